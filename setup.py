@@ -24,14 +24,14 @@ class FromHere(Distribution):
 
 
 def found(*patterns):
-    """The files of patterns, relative to this folder."""
+    """Return the files of patterns, relative to this folder."""
     here = Path(__file__).resolve().parent
     paths = (path for pattern in patterns for path in here.glob(pattern))
     return sorted(str(path.relative_to(here)) for path in paths)
 
 
 def parsed(text):
-    """What a TOML file says."""
+    """Return the content of a TOML file."""
     for name in PARSERS:
         try:
             return import_module(name).loads(text)
@@ -41,7 +41,7 @@ def parsed(text):
 
 
 def options():
-    """What colcon has to be told."""
+    """Return the arguments of ``setup`` by pyproject.toml, for colcon."""
     text = Path(__file__).resolve().with_name("pyproject.toml").read_text("utf-8")
     toml = parsed(text)
     project, packaging = toml["project"], toml["tool"]["setuptools"]

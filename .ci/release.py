@@ -49,7 +49,7 @@ def prepare(version: str, root: Path, day: str) -> None:
 
 
 def released(text: str, version: str, day: str) -> str:
-    """The change log with the forthcoming section called by its version."""
+    """Return the change log with the forthcoming section called by its version."""
     if sections(text).get(version) is not None:
         raise ValueError(f"{CHANGES}: {version} is released already")
     title = f"{version} ({day})"
@@ -60,13 +60,13 @@ def released(text: str, version: str, day: str) -> str:
 
 
 def sections(text: str) -> dict[str, str]:
-    """What each version brought."""
+    """Return the notes of each version."""
     parts = re.split(r"(?m)^(\S+)(?: \([\d-]+\))?\n-{3,}$\n", text)
     return dict(zip(parts[1::2], parts[2::2], strict=True))
 
 
 def notes(tag: str, root: Path) -> str:
-    """The notes of a tag; ValueError where a file says another version."""
+    """Return the notes of a tag; raises ValueError where a file says another version."""
     version = tag.removeprefix("v")
     for name, pattern in PLACES.items():
         said = {it[0] for it in re.finditer(pattern, (root / name).read_text())}

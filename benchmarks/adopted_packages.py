@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Packages that got a prefix by hand, as they were before, under ``multibot adopt``, beside the commit.
 
-``python benchmarks/adopted_packages.py MIRRORS`` prints what docs/measurements.md has a table of;
-commits behind it are those that are looked at.
+``python benchmarks/adopted_packages.py MIRRORS`` prints the figures of one section of
+docs/contributing/measurements.md; commits behind it are those that are looked at.
 MIRRORS has clones, ``OWNER+NAME/repo``.
 """
 
@@ -125,9 +125,9 @@ def ours(folder: Path, given: dict[str, str]) -> str:
         return f"refused: {str(error)[:200]}"
     if not made.argument:
         return f"has {sorted(set(made.already.values()))} already"
-    names = ", ".join(os.path.basename(it) for it in made.proved[:4])
+    names = ", ".join(os.path.basename(it) for it in made.verified[:4])
     return (
-        f"{made.argument}, {made.namespace or '-'}: {len(made.proved)} proved ({names}),"
+        f"{made.argument}, {made.namespace or '-'}: {len(made.verified)} proved ({names}),"
         f" {len(made.after)} files,"
         f" {len(made.left)} left, {len(made.unread)} unread, {len(made.already)} already"
     )

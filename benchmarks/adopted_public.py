@@ -3,7 +3,7 @@
 
 ``python benchmarks/adopted_public.py MIRRORS [FIRST [LAST]]`` prints a row for each: xacro expands
 every configuration before and after, without a prefix and with one. MIRRORS has clones,
-``OWNER+NAME/repo``. docs/measurements.md has the table.
+``OWNER+NAME/repo``. docs/contributing/measurements.md has the table.
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ def expanded(path: str, arguments: Mapping[str, str]) -> bytes:
 
 def judged(made: Adopted) -> Judged:
     """Every configuration of a package whose files are on the disk as they were."""
-    given: list[tuple[str, dict[str, str]]] = [(it, {}) for it in made.proved]
+    given: list[tuple[str, dict[str, str]]] = [(it, {}) for it in made.verified]
     for it in made.configurations:
         path, *words = it.split(" ")
         given.append((path, dict(word.split(":=", 1) for word in words)))
@@ -136,7 +136,7 @@ def one(row: Mapping[str, str], mirrors: Path) -> tuple[str, ...]:
         return (
             "counts",
             made.argument,
-            f"{len(made.proved)} descriptions",
+            f"{len(made.verified)} descriptions",
             f"{len(made.configurations)} others",
             f"{len(made.after)} files",
             f"{found.same} of {found.every} the same",

@@ -2,7 +2,7 @@
 """Measure whole commands of this checkout against those of an earlier commit, in one run.
 
 python benchmarks/bench_before.py COMMIT            print the table
-python benchmarks/bench_before.py COMMIT --write    and put it into docs/measurements.md
+python benchmarks/bench_before.py COMMIT --write    and put it into docs/contributing/measurements.md
 
 Both read the same inputs: the examples of the commit, descriptions that are made, and plans with
 snapshots that each makes for itself, since their forms differ.

@@ -2,7 +2,7 @@
 """Measure ``multibot build`` on 100 robots with Nav2's full set, against other ways, in one run.
 
 python benchmarks/bench_build.py            print the table
-python benchmarks/bench_build.py --write    and put it into docs/measurements.md
+python benchmarks/bench_build.py --write    and put it into docs/contributing/measurements.md
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 """Measure the checking of a live graph, with real nodes on this machine, in one run.
 
 python benchmarks/bench_graph.py            print the table
-python benchmarks/bench_graph.py --write    and put it into docs/measurements.md
+python benchmarks/bench_graph.py --write    and put it into docs/contributing/measurements.md
 
 Needs rclpy and zenoh (pip install '.[test]').
 """

@@ -2,7 +2,7 @@
 """Measure how the cost of a rewrite and of the lint grows: what twice as much costs, in CPU time.
 
 python benchmarks/bench_growth.py            print the table
-python benchmarks/bench_growth.py --write    and put it into docs/measurements.md
+python benchmarks/bench_growth.py --write    and put it into docs/contributing/measurements.md
 """
 
 from __future__ import annotations

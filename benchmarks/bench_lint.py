@@ -2,7 +2,7 @@
 """Measure the lint against its floor and other linters: ratios and files a second, in one run.
 
 python benchmarks/bench_lint.py            print the tables
-python benchmarks/bench_lint.py --write    and put them into docs/measurements.md
+python benchmarks/bench_lint.py --write    and put them into docs/contributing/measurements.md
 
 check_urdf (liburdfdom-tools), ign (ignition-tools, libsdformat-dev), urdf_validate (pip install
 urdf-validator), linkforge (pip install linkforge-core) and simcheck are measured where they are on the

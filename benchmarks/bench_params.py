@@ -2,7 +2,7 @@
 """Measure parameter files against other ways to namespace them: ratios, taken in pairs in one run.
 
 python benchmarks/bench_params.py [FILE]            print the table
-python benchmarks/bench_params.py [FILE] --write    and put it into docs/measurements.md
+python benchmarks/bench_params.py [FILE] --write    and put it into docs/contributing/measurements.md
 
 FILE is a Nav2 parameter file; without one, Nav2's own is looked for in the corpus.
 """

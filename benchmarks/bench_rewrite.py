@@ -2,7 +2,7 @@
 """Measure the rewrite against its floors: ratios of CPU time, all taken in one run.
 
 python benchmarks/bench_rewrite.py                    print the tables
-python benchmarks/bench_rewrite.py --write            and put them into docs/measurements.md
+python benchmarks/bench_rewrite.py --write        and put them into docs/contributing/measurements.md
 python benchmarks/bench_rewrite.py --files FOLDER     with public URDFs of one's own
 
 Without a folder the public files are those of the corpus beside the repository or, where there is none,

@@ -398,7 +398,7 @@ def main(words: list[str]) -> None:
     print(*made.values(), kinds_table(every), tests, *several, sep="\n\n")
     if options.write:
         for word, text in made.items():
-            write(options.checkout / "docs" / "architecture.md", word, text)
+            write(options.checkout / "docs" / "contributing" / "architecture.md", word, text)
     if options.loop:
         said = f"The fast tests take {loop_seconds(options.checkout):.0f} seconds of CPU."
         print(said)

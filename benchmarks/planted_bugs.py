@@ -2,7 +2,7 @@
 """Do the tests notice? Plants bugs in a copy of the repository, one at a time, and runs the fast tests.
 
 python benchmarks/planted_bugs.py                     6 bugs in each room, and the table
-python benchmarks/planted_bugs.py --write             and put it into docs/measurements.md
+python benchmarks/planted_bugs.py --write             and put it into docs/contributing/measurements.md
 python benchmarks/planted_bugs.py steps remap -n 20   more of them in some rooms
 python benchmarks/planted_bugs.py --seed 2            other ones
 python benchmarks/planted_bugs.py producers --tests tests/producers    do these tests alone notice?

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page of vendors' robots, docs/robots.md.
+"""The page of vendors' robots, docs/contributing/robots.md.
 
     python benchmarks/vendor_pages.py [ROBOT ...]      print the sections of some robots
     python benchmarks/vendor_pages.py --write          write the page
@@ -23,7 +23,7 @@ from vendor_recipes import ROBOTS, Outcome, Recipe, false_findings, is_true, out
 from vendor_sources import WITHOUT, sources_folder
 from vendor_systems import read_vendors
 
-PAGE = Path(__file__).parent.parent / "docs" / "robots.md"
+PAGE = Path(__file__).parent.parent / "docs" / "contributing" / "robots.md"
 _WIDE = 60
 # Where packages are for a comparison.
 _INSTALLED = re.compile(r"/tmp/\w+/prefix")

@@ -97,7 +97,7 @@ def _verdict(path: Path, layout: str, release: str, systems: str | None) -> Verd
     if path.suffix == ".xacro" and b"<link" not in first.data:
         return None
     why = tuple((it.code, it.message) for it in first.findings if it.code in REASONS)
-    word = OPEN if first.not_proved else PROVED
+    word = OPEN if first.not_verified else PROVED
     return Verdict(str(path), kind_of(first.data), layout, release, word, why)
 
 

@@ -24,7 +24,7 @@ from tools.pages.every import STANDS_FOR, every_page, meant  # noqa: E402
 
 # Where they are in the repository, and in the site's folder of pages.
 OUTSIDE = ("CONTRIBUTING.md", "SECURITY.md", "examples/*/README.md")
-EARLY, LATE = {"Tutorials", "How-to"}, {"Measurements", "Contributing"}
+EARLY, LATE = {"Tutorials", "How-to"}, {"Contributing"}
 # Its text is needed where it is one word, as a code is.
 LINK = re.compile(r"((?:\[(\w+))?\]\()([^)\s:#]+)((?:#[^)\s]*)?)\)")
 FENCED = re.compile(r"(^```.*?^```$)", re.MULTILINE | re.DOTALL)

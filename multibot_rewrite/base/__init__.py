@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What every room uses: names and their spelling, records, findings, bounds."""
+"""What every package uses: names and their spelling, records, findings, bounds."""

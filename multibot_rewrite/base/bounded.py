@@ -72,8 +72,8 @@ def open_text(path: str) -> bytes | None:
 
 @outside
 def read_bytes(path: str, limit: int = MAX_BYTES) -> bytes:
-    """The bytes of a file, which may be a device without an end; raises OSError, also for a file that
-    is too large or a pipe in a folder, and ValueError for a path that no system takes."""
+    """Return the bytes of a file, which may be a device without an end. Raises OSError, also for a file
+    that is too large or a pipe in a folder, and ValueError for a path that no system takes."""
     if (text := open_text(path)) is not None:
         return text
     _refuse_pipe(path)
@@ -90,7 +90,7 @@ def read_bytes(path: str, limit: int = MAX_BYTES) -> bytes:
 
 @outside
 def read_start(path: str, most: int) -> bytes:
-    """The first bytes of a file; raises OSError, also for a pipe, and ValueError."""
+    """Return the first bytes of a file; raises OSError, also for a pipe, and ValueError."""
     _refuse_pipe(path)
     with open(path, "rb") as file:
         return file.read(most)
@@ -98,11 +98,11 @@ def read_start(path: str, most: int) -> bytes:
 
 def _refuse_pipe(path: str) -> None:
     if stat.S_ISFIFO(os.stat(path).st_mode) and not path.startswith(_OF_A_SHELL):
-        raise OSError(errno.EINVAL, "it is a pipe: who reads it may wait for ever", path)
+        raise OSError(errno.EINVAL, "it is a pipe, and reading it may never end: give a file", path)
 
 
 def bytes_if_read(path: str) -> bytes:
-    """The bytes of a file, none of one that cannot be read."""
+    """Return the bytes of a file, or none if it cannot be read."""
     try:
         return read_bytes(path)
     except OSError:
@@ -110,14 +110,14 @@ def bytes_if_read(path: str) -> bytes:
 
 
 def read_text(path: str) -> str:
-    """The text of a file, lines ended by a newline; raises what ``read_bytes`` raises, and
+    """Return the text of a file with newlines as line ends; raises what ``read_bytes`` raises, and
     UnicodeDecodeError."""
     text = read_bytes(path).decode().removeprefix("\ufeff")  # utf-8-sig is a module to be loaded
     return text.replace("\r\n", "\n").replace("\r", "\n") if "\r" in text else text
 
 
 def own_text(module: str, name: str) -> str:
-    """The text of a file of this package, beside ``module``, which gives its ``__file__``."""
+    """Return the text of a file of this package in the folder of ``module``, a ``__file__``."""
     return read_text(os.path.join(os.path.dirname(module), name))
 
 
@@ -132,8 +132,8 @@ def compose_yaml(text: str, file: str, remedy: str = CORRECT) -> yaml.Node | Non
 
 
 def compose_own_yaml(text: str) -> yaml.Node | None:
-    """The same of a text of this package, whose bounds nobody has to ask for; all but booleans and
-    nothing at all is text."""
+    """Return the root node of a YAML text of this package, without limits for its size. All values but
+    booleans and null are text."""
     import yaml
 
     return yaml.compose(text, Loader=_plain_loader())
@@ -149,7 +149,7 @@ def load_yaml(text: str, file: str, remedy: str = CORRECT) -> Any:
 
 def load_own_yaml(module: str, name: str) -> Any:
     """Return the value of a YAML file of this package, whose bounds are not checked; ``module`` is the
-    ``__file__`` beside it."""
+    ``__file__`` next to it."""
     import yaml
 
     return yaml.load(own_text(module, name), _loader())
@@ -182,9 +182,9 @@ def _yaml_fault(error: Exception, text: str, file: str, remedy: str) -> str:
 
 
 def load_json(data: bytes | str, made: Callable[[dict[str, Any]], object] | None = None) -> Any:
-    """The value of a JSON text; raises json.JSONDecodeError, UnicodeDecodeError.
+    """Return the value of a JSON text; raises json.JSONDecodeError, UnicodeDecodeError.
 
-    ``made`` makes something else of each object, the innermost first.
+    ``made`` replaces each object, the innermost first.
     """
     import json
 
@@ -218,7 +218,7 @@ def _json_depth(data: bytes) -> int:
 
 @cache
 def _loader() -> type[yaml.SafeLoader]:
-    """The safe loader, in C where PyYAML has it, which says where a value is that is none."""
+    """Return the safe YAML loader, in C if PyYAML has it; its errors have the place."""
     import yaml
 
     base: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -234,8 +234,7 @@ def _loader() -> type[yaml.SafeLoader]:
 
 @cache
 def _plain_loader() -> type[yaml.SafeLoader]:
-    """A loader that asks of no value whether it is a number or a date: a look into a table of words in
-    place of PyYAML's search for patterns."""
+    """Return a loader that reads numbers and dates as text, without PyYAML's search for patterns."""
     import yaml
 
     words = {**dict.fromkeys(_TRUTH, f"{_TAG}bool"), **dict.fromkeys(_NOTHING, f"{_TAG}null")}

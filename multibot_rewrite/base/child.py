@@ -39,12 +39,12 @@ _NO_FILTER = {"required": "false"}
 
 
 def python(module: str, *words: str) -> list[str]:
-    """The command that runs a module of this package in a process of its own."""
+    """Return the command that runs a module of this package in a process of its own."""
     return [sys.executable, _START, module, *words]
 
 
 def isolated(module: str) -> list[str]:
-    """The same for ``main`` of a module in a process that no variable of Python reaches."""
+    """Return the command that runs ``main`` of a module in a process without Python's variables."""
     paths = json.dumps(search_path())
     quiet = ["-B"] if sys.dont_write_bytecode else []
     prefix = sys.pycache_prefix
@@ -59,7 +59,7 @@ def search_path() -> list[str]:
 
 
 def variables(given: Mapping[str, str] = os.environ) -> dict[str, str]:
-    """The environment for a child of Python: a relative part of PYTHONPATH is the current folder's."""
+    """Return the environment for a child of Python, without relative folders in PYTHONPATH."""
     found = dict(given)
     paths = [it for it in found.get(_PATHS, "").split(os.pathsep) if os.path.isabs(it)]
     if _PATHS in found:

@@ -27,7 +27,7 @@ _PLACE = lazy_compile(r" \((?:at )?line (\d+),? column (\d+)(?!\d)[^()]*\)$")
 
 
 def configured_vocabulary(near: str) -> tuple[str, ...]:
-    """The vocabulary files that the pyproject.toml nearest above ``near`` asks for, in its order.
+    """Return the files of plugin definitions that the nearest pyproject.toml above ``near`` lists.
 
     ``near`` is the input file, a folder, or ``-`` for standard input: then the working directory
     counts. Raises UsageError, naming the pyproject.toml, for whatever is wrong with its table.
@@ -54,7 +54,7 @@ def folders_above(near: str) -> Iterator[str]:
 
 
 def read(path: str) -> bytes:
-    """The bytes of a configuration file; raises UsageError with the reason."""
+    """Return the bytes of a configuration file; raises UsageError with the reason."""
     try:
         return read_bytes(path)
     except (OSError, ValueError) as error:
@@ -80,7 +80,7 @@ def _table(project: str, data: bytes) -> dict[str, object]:
 
 
 def parse(path: str, data: bytes) -> dict[str, object]:
-    """A TOML file's content; raises UsageError with the place of what is wrong."""
+    """Return the content of a TOML file; raises UsageError with the place of an error."""
     toml = _parser(path)
     try:
         text = data.decode()
@@ -106,7 +106,7 @@ def parse(path: str, data: bytes) -> dict[str, object]:
 
 
 def _parser(path: str) -> Any:
-    """The module that reads TOML; raises UsageError where Python 3.10 has none."""
+    """Return the module that reads TOML; raises UsageError where Python 3.10 has none."""
     for name in _PARSERS:
         try:
             return import_module(name)
@@ -117,14 +117,14 @@ def _parser(path: str) -> Any:
 
 
 def _broken(toml: Any) -> type[Exception]:
-    """The error of a parser for a text that is no TOML."""
+    """Return the exception that a parser raises for a text that is no TOML."""
     name = "TOMLDecodeError" if hasattr(toml, "TOMLDecodeError") else "TomlDecodeError"
     error: type[Exception] = getattr(toml, name)
     return error
 
 
 def listed_files(where: str, folder: str, listed: object) -> tuple[str, ...]:
-    """A value that is a list of files, below ``folder`` or absolute; ``where`` names it."""
+    """Return a list of files as paths below ``folder``; ``where`` names the value in errors."""
     if not isinstance(listed, list):
         raise UsageError(f'{where} is {type_name(listed)}, write a list: ["acme.vocab"]')
     wrong = next((item for item in listed if not isinstance(item, str)), None)
@@ -137,6 +137,6 @@ def listed_files(where: str, folder: str, listed: object) -> tuple[str, ...]:
 
 
 def type_name(value: object) -> str:
-    """What a value is, in TOML's words."""
+    """Return the type of a value in TOML's words, with its article."""
     words = {str: "a string", bool: "a boolean", dict: "a table", list: "a list"}
     return words.get(type(value), "a number" if isinstance(value, int | float) else "a date")

@@ -17,7 +17,7 @@ from multibot_rewrite.base.lazy import lazy_compile
 
 
 def _rows() -> Mapping[str, Sequence[tuple[list[str], str]]]:
-    """Return the words of each row and what stands behind them, by the parts of the table."""
+    """Return the words of each row and what follows them, by the parts of the table."""
     found: dict[str, list[tuple[list[str], str]]] = {}
     name = ""
     with open(os.path.join(os.path.dirname(__file__), "conventions.txt"), encoding="utf-8") as file:
@@ -30,7 +30,9 @@ def _rows() -> Mapping[str, Sequence[tuple[list[str], str]]]:
     return found
 
 
-_ROWS = _rows()
+# The rows of the table, by its parts.
+ROWS = _rows()
+
 # Who sends a topic, or reads it: every node there is; any node may; some nodes do; a single one.
 EVERY, ANY, SOME, ONE = range(4)
 _WHO = {"every": EVERY, "any": ANY, "some": SOME, "one": ONE}
@@ -49,7 +51,7 @@ class SharedTopic(NamedTuple):
 
 TOPICS = tuple(
     SharedTopic(name, _WHO[sends], _WHO[reads], bool(kept), source)
-    for (name, sends, reads, *kept), source in _ROWS["topics"]
+    for (name, sends, reads, *kept), source in ROWS["topics"]
 )
 CLOCK = "/clock"
 # Topics that may be shared; what every node sends, has, may send; what a rewrite leaves.
@@ -76,7 +78,7 @@ class UsualFrame(NamedTuple):
 
 FRAMES = tuple(
     UsualFrame(name, _FIXED_TO[to], bool(usual), source)
-    for (name, to, *usual), source in _ROWS["frames"]
+    for (name, to, *usual), source in ROWS["frames"]
 )
 WORLD_FRAMES = tuple(it.name for it in FRAMES if it.fixed_to == WORLD)
 BODY_FRAMES = tuple(it.name for it in FRAMES if it.fixed_to == BODY)
@@ -101,12 +103,12 @@ LISTENER = "transform_listener_impl_"
 CLIENT = "_rclcpp_node"
 TOOLS = tuple(
     ToolNode(pattern.format(listener=LISTENER, client=CLIENT), bool(looks), source)
-    for (pattern, *looks), source in _ROWS["tools"]
+    for (pattern, *looks), source in ROWS["tools"]
 )
 
 
 # Words for parts of any robot and for what they send.
-PARTS = frozenset(word for words, _ in _ROWS["parts"] for word in words)
+PARTS = frozenset(word for words, _ in ROWS["parts"] for word in words)
 
 
 # Nodes of a simulator, one for all robots: gazebo_ros gazebo_ros_init.cpp.
@@ -116,7 +118,7 @@ BY_HAND = ("teleop_twist_keyboard", "rviz2")
 
 
 def tool_patterns() -> tuple[str, ...]:
-    """The patterns of all tools, without those inside another."""
+    """Return the name patterns of all tools, without those inside another pattern."""
     from fnmatch import fnmatchcase  # few commands ask for a pattern
 
     every = [it.pattern for it in TOOLS]
@@ -134,7 +136,7 @@ def is_tool_word(word: str) -> bool:
 
 @lru_cache(maxsize=4096)
 def only_looks(word: str) -> bool:
-    """Does a node called so only look, or pass on what a person asks for?"""
+    """Return whether a node of this name only observes, or passes on what a person asks for."""
     return _any_of(tuple(it.pattern for it in TOOLS if it.looks)).fullmatch(word) is not None
 
 
@@ -146,23 +148,40 @@ def _any_of(patterns: tuple[str, ...]) -> re.Pattern[str]:
 
 
 def types_of(word: str) -> tuple[str, ...]:
-    """The types of messages, or how they begin, of which a convention says this."""
-    return tuple(type_ for (type_, *said), _ in _ROWS["types"] if word in said)
+    """Return the message types, or their beginnings, that a convention lists for this word."""
+    return tuple(type_ for (type_, *said), _ in ROWS["types"] if word in said)
 
 
 # Data of one kind: a reader of one type may have meant the other.
 KINDS_OF_DATA = {
-    type_: it[1:] for (type_, *said), _ in _ROWS["types"] for it in said if it[0] == "="
+    type_: it[1:] for (type_, *said), _ in ROWS["types"] for it in said if it[0] == "="
 }
-FRAMES_OF_SENSORS = {type_: tuple(words) for (type_, *words), _ in _ROWS["frames of sensors"]}
+FRAMES_OF_SENSORS = {type_: tuple(words) for (type_, *words), _ in ROWS["frames of sensors"]}
 # Nodes that compare the time of messages with their own clock.
-TIMED = tuple(word for words, _ in _ROWS["timed"] for word in words)
+TIMED = tuple(word for words, _ in ROWS["timed"] for word in words)
+FILES = {kind: said.split(" | ") for (kind,), said in ROWS["kinds of files"]}
+NAME_SEPARATORS = {kind: mark for (kind, mark), _ in ROWS["separators"]}
+TF_SWITCHES, STAMP_SWITCHES = "tf switches", "stamp switches"
+
+
+def switches(kind: str) -> Mapping[str, tuple[str, ...]]:
+    """Return the parameters that switch this, each with patterns of its nodes."""
+    return {name: tuple(nodes) for (name, *nodes), _ in ROWS[kind]}
+
+
+def switch(kind: str, node: str) -> str:
+    """Return the parameter of a node that switches this; empty where none is known."""
+    last = node.rpartition("/")[2]
+    found = (name for name, nodes in switches(kind).items() if _any_of(nodes).fullmatch(last))
+    return next(found, "")
+
+
 # Topics of a robot's body: two of them are enough, or one of tf.
-OF_A_ROBOT = tuple(word for words, _ in _ROWS["of a robot"] for word in words)
+OF_A_ROBOT = tuple(word for words, _ in ROWS["of a robot"] for word in words)
 
 
 # Topics and services that nodes read and no robot need send, by the last word, and who does.
-FROM_OUTSIDE = {who: tuple(words) for words, who in _ROWS["from outside"]}
+FROM_OUTSIDE = {who: tuple(words) for words, who in ROWS["from outside"]}
 _OUTSIDE = frozenset(word for words in FROM_OUTSIDE.values() for word in words)
 
 
@@ -172,19 +191,19 @@ def is_from_outside(name: str) -> bool:
 
 
 # Nodes that send one after another, by an order among themselves: as many as one sender.
-TEAMS = {name: tuple(nodes) for nodes, name in _ROWS["teams"]}
+TEAMS = {name: tuple(nodes) for nodes, name in ROWS["teams"]}
 # Between several senders and a robot: they choose one.
 _CHOOSES = lazy_compile(r"mux|prioriti|arbit|selector|switch|twist_manager")
 
 
 def team(node: str) -> str:
-    """The node's name, or that of the nodes that it takes turns with."""
+    """Return the node's name, or the name of the nodes that it takes turns with."""
     last = node.rpartition("/")[2]
     return next((name for name, nodes in TEAMS.items() if _any_of(nodes).fullmatch(last)), node)
 
 
 def chooses(node: str) -> bool:
-    """Does the node choose between several senders, like twist_mux?"""
+    """Return whether the node chooses between several senders, like twist_mux."""
     return bool(_CHOOSES.search(node.rpartition("/")[2]))
 
 

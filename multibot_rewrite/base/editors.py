@@ -18,13 +18,13 @@ FLEET, NODES, PLAN, LINT = (
 
 
 def schema_line(schema: str) -> str:
-    """Return the comment by which yaml-language-server (VS Code, Vim, Emacs) finds the schema beside a
+    """Return the comment by which yaml-language-server (VS Code, Vim, Emacs) finds the schema next to a
     file, which is there on every machine that has the file."""
     return f"# yaml-language-server: $schema={schema_name(schema)}"
 
 
 def schema_name(schema: str) -> str:
-    """Return what a schema of this package is called beside a file that it is for."""
+    """Return what a schema of this package is called next to a file that it is for."""
     return f".{os.path.basename(schema)}"
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import re
 from codecs import BOM_UTF8
-from collections.abc import Mapping
 from typing import NamedTuple
 
+from multibot_rewrite.base.conventions import FILES
 from multibot_rewrite.base.lazy import COMMENT, lazy_compile, without_comments
 from multibot_rewrite.base.model import TEMPLATE, InputError
 
@@ -28,38 +28,7 @@ class FileKind(NamedTuple):
     use: str
 
 
-_IN_FLEET = "rewrite it with urdf-postfix, or name it in a fleet file, {}"
-_MADE = "use multibot init, which makes a fleet file of it"
-_OTHER_SIMULATOR = "no command takes it, give the robot's URDF or SDF, or a world of Gazebo"
-KINDS: Mapping[str, FileKind] = {
-    URDF: FileKind("a description", _MADE),
-    XACRO: FileKind("a description", _MADE),
-    SDF: FileKind("a description", _MADE),
-    SRDF: FileKind("an SRDF", _IN_FLEET.format("srdf: FILE")),
-    WORLD: FileKind("a world of Gazebo", "name it in a fleet file, simulator_world: FILE"),
-    PARAMS: FileKind("a parameter file", _IN_FLEET.format("companions: {params: FILE}")),
-    RVIZ: FileKind("a config of RViz", _IN_FLEET.format("companions: {rviz: FILE}")),
-    BRIDGE: FileKind("a file of ros_gz_bridge", _IN_FLEET.format("companions: {bridge: FILE}")),
-    MOVEIT: FileKind("a file of MoveIt", _IN_FLEET.format("companions: {moveit: FILE}")),
-    TREE: FileKind("a behavior tree", _IN_FLEET.format("companions: {behavior_trees: FILE}")),
-    LUA: FileKind("a Lua file of Cartographer", _IN_FLEET.format("companions: {lua: FILE}")),
-    FLEET: FileKind("a fleet file", "use multibot build, plan or view"),
-    PLAN: FileKind("a plan", "use multibot check"),
-    SNAPSHOT: FileKind("a snapshot", "use multibot check --from"),
-    LAUNCH: FileKind("a launch file", "use multibot check-launch, or multibot plan"),
-    BAG: FileKind("a recording", "use multibot check --from with its folder or .mcap or .db3"),
-    SESSION: FileKind("a session of Zenoh", "call it .json5 and use multibot check --from"),
-    MAP: FileKind("a map for map_server", "it holds no robot's name, leave it out"),
-    STAGE: FileKind("a world of Stage", _OTHER_SIMULATOR),
-    WEBOTS: FileKind("a file of Webots", _OTHER_SIMULATOR),
-    MUJOCO: FileKind("a model of MuJoCo", _OTHER_SIMULATOR),
-    USD: FileKind("a file of USD", _OTHER_SIMULATOR),
-    MESH: FileKind("a mesh", "give the description that names it"),
-    MANIFEST: FileKind("the package.xml of a package", "use multibot init with its folder"),
-    CONFIG: FileKind("the model.config of a model", "give the model.sdf that it names"),
-    BUILT: FileKind("the list of what a build wrote", "use plan.yaml or fleet.launch.py beside it"),
-    RULES: FileKind("the remap rules of a fleet", "use plan.yaml beside it"),
-}
+KINDS = {kind: FileKind(*words) for kind, words in FILES.items()}
 # Of XML: how the root begins; comments and declarations are left out before.
 _ROOT = rb"\A\s*(?:<!DOCTYPE[^<>\[]*(?:\[[^\]]*\]\s*)?>\s*)?<"
 _TREE = rb"<BehaviorTree\b|<root\b[^<>]*\b(?:BTCPP_format|main_tree_to_execute)\b"
@@ -148,7 +117,7 @@ _STARTS = {
 
 
 def recognised(data: bytes) -> str:
-    """The kind of a file; empty for one of no known kind."""
+    """Return the kind of a file by its contents, empty for one of no known kind."""
     text = data[:_LOOKED_AT].removeprefix(BOM_UTF8).lstrip()
     started = next((kind for start, kind in _STARTS.items() if text.startswith(start)), "")
     if started:
@@ -163,15 +132,15 @@ def _first(marks: tuple[tuple[str, re.Pattern[bytes]], ...], text: bytes) -> str
 
 
 def refuse_others(data: bytes, file: str, *wanted: str) -> None:
-    """Raises InputError that says what a file is, and which command takes it, unless it is of a wanted
-    kind, or of none that is known."""
+    """Raise InputError that names the kind of a file and the command for it, unless it is of a wanted
+    kind or of no known one."""
     kind = recognised(data)
     if kind and kind not in wanted:
         raise InputError(f"{file}: {KINDS[kind].words}; {KINDS[kind].use}")
 
 
 def refuse_templates(data: bytes, file: str) -> None:
-    """Raises InputError for a text that a template language fills in: it is none of the kinds yet."""
+    """Raise InputError for a text that a template language has yet to fill in."""
     # One character is found in a hundredth of the time of two, and most descriptions have none.
     if b"{" not in data or (b"{{" not in data and b"{%" not in data):
         return

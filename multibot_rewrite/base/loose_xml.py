@@ -55,7 +55,7 @@ class Mended(NamedTuple):
     more: int
 
     def column(self, line: int, column: int) -> int:
-        """The column in the source of a place in the text."""
+        """Return the column in the source of a place in the text."""
         before = self.text.rfind(b"\n", 0, self.at) + 1
         same = line == self.text.count(b"\n", 0, self.at) + 1
         return column - self.more if same and column > self.at - before + self.more else column
@@ -69,7 +69,7 @@ class Slip(NamedTuple):
 
 
 def well_formed(source: bytes) -> Mended:
-    """The text for a complete parser, as TinyXML-2 would read it."""
+    """Return the text for a strict parser, as TinyXML-2 would read it."""
     first = _before_all(source)
     text = _PART.sub(lambda it: _mended(it, first)[0], source)
     root = next((it for it in _PART.finditer(text) if _is_tag(it[0])), None)
@@ -96,7 +96,7 @@ def slips(source: bytes) -> Iterator[Slip]:
 
 
 def is_loose(source: bytes) -> bool:
-    """A cheap look: may a complete parser read other names than TinyXML-2, without a complaint?"""
+    """Return whether a strict parser may read other names than TinyXML-2; a quick test."""
     return b"xmlns" in source and _DEFAULT.search(source) is not None
 
 
@@ -107,7 +107,7 @@ def _before_all(source: bytes) -> int:
 
 
 def _mended(part: re.Match[bytes], first: int) -> tuple[bytes, str]:
-    """A part in as many bytes, and what was wrong with it."""
+    """Return a part of the text with its faults replaced, in as many bytes, and what was wrong."""
     text = part[0]
     if text.startswith(b"<!--"):
         inner = text[4:-3]

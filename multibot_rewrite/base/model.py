@@ -21,7 +21,7 @@ class SiteRow(NamedTuple):
     ``namespaced`` is true where a ROS namespace reaches the value. ``whole_value_kind`` is the
     kind where the whole value is the name of a link or joint and of nothing else. ``when`` is
     ``sibling=text`` where only that sibling's text makes the value a name. ``below_model`` are the
-    releases in which a relative topic here stands below the namespace of the model. ``releases`` are
+    releases in which a relative topic here is below the namespace of the model. ``releases`` are
     the words for the only releases that read it, empty for all. ``fill`` is what is written where the
     default cannot be, which is below the name of the model. ``does`` is what the consumer does with a
     topic or service of that name (``publishes``, ``subscribes``, ``serves``), ``type`` its type.
@@ -112,7 +112,7 @@ class InputError(MultibotError):
 
 
 class VocabularyError(MultibotError):
-    """A vocabulary file is wrong; the message names file and line."""
+    """A definition file is wrong; the message names file and line."""
 
 
 class ProofError(MultibotError):

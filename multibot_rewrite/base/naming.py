@@ -10,33 +10,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple, TypedDict
 
-from multibot_rewrite.base.conventions import SHARED_TOPICS, WORLD_FRAMES
+from multibot_rewrite.base.conventions import NAME_SEPARATORS, SHARED_TOPICS, WORLD_FRAMES
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 
 PREFIX, POSTFIX, NAMESPACE = "prefix", "postfix", "namespace"
 TF_TOPICS = ("tf", "tf_static")
 # Order and grouping as shown in reports; the value is the default separator.
-SEPARATORS = {
-    "link": "/",
-    "joint": "_",
-    "frame": "/",
-    "sensor": "_",
-    "light": "_",
-    "transmission": "_",
-    "actuator": "_",
-    "hardware": "_",
-    "gpio": "_",
-    "model": "_",
-    "group": "_",
-    "shape": "_",
-    "node": "_",
-    "stem": "_",
-    "topic": "/",
-    "subtopic": "/",
-    "service": "/",
-    "namespace": "/",
-}
+SEPARATORS = NAME_SEPARATORS
 # What a ROS 2 name can hold: a node name is one token, a topic a path of tokens; no remap rule can
 # hold two underscores in a row (rcl lexer.c).
 ROS_SEPARATORS = {
@@ -82,7 +63,7 @@ class Layout(NamedTuple):
 
 
 LAYOUTS = (
-    Layout("tf-per-robot", "L1", False, True, True, "tf topic per robot, bare frames"),
+    Layout("tf-per-robot", "L1", False, True, True, "tf topic per robot, shared frame names"),
     Layout("frames-per-robot", "L2", True, False, True, "one /tf, frames per robot"),
     Layout("both", "L3", True, True, True, "tf topic and frames per robot"),
     Layout("postfix", "L4", True, True, False, "everything renamed per robot, no namespaces"),
@@ -186,7 +167,7 @@ def make_naming(
 
 
 def find_layout(word: str) -> Layout:
-    """The layout called ``word``; raises UsageError naming all of them."""
+    """Return the layout called ``word``; raises UsageError with the names of all layouts."""
     known = {name: it for it in LAYOUTS for name in (it.name, it.short)}
     if word not in known:
         _one_of("layout", word, tuple(it.name for it in LAYOUTS))
@@ -212,7 +193,7 @@ def _separators(given: Mapping[str, str]) -> dict[str, str]:
 
 
 def _active(layout: Layout, topics: str, separators: dict[str, str]) -> dict[str, str]:
-    """The kinds that this layout and topic strategy rename at all."""
+    """Return the separator of each kind that this layout and topic strategy rename."""
     # A light is no frame and in no other file, so it has no reason to be the same in any layout.
     kinds = {"light", "stem", *TOPIC_KINDS, "namespace" if topics == NAMESPACE else "node"}
     if layout.at_run_time:
@@ -260,7 +241,7 @@ def _is_shared_frame(naming: Naming, kind: str, text: str) -> bool:
 
 
 def spelled(naming: Naming, robot: str, kind: str, text: str, namespaced: bool = False) -> str:
-    """What ``text``, a name of ``kind``, becomes for ``robot``; unchanged where it is not renamed."""
+    """Return ``text``, a name of ``kind``, as it is for ``robot``; unchanged if it is not renamed."""
     there = affix(naming, kind, text, namespaced)
     return there.spell(text, robot) if there else text
 
@@ -313,7 +294,7 @@ def _namespace_affix(separator: str, text: str) -> Affix | None:
 def removal(
     naming: Naming, robot: str, kind: str, text: str, namespaced: bool = False
 ) -> tuple[int, int] | None:
-    """The part of ``text`` that ``affix`` put there for ``robot``; None where there is none."""
+    """Return start and end of the part of ``text`` that was added for ``robot``; None without one."""
     if robot not in text:
         return None
     if naming.own:

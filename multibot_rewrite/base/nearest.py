@@ -19,7 +19,7 @@ _BEGINNING = 3
 
 
 def nearest(name: str, known: Iterable[str], alike: float = ALIKE) -> str:
-    """The known name most like ``name``, one that differs in case or dashes alone first; else ""."""
+    """Return the known name most like ``name``; one with other case or dashes comes first. Or ""."""
     return _nearest(name, tuple(known), alike)
 
 
@@ -30,7 +30,7 @@ def _nearest(name: str, known: tuple[str, ...], alike: float) -> str:
 
 
 def slip_of(name: str, known: Iterable[str]) -> str:
-    """The known name that is ``name`` but for camel case or a letter or two; else ""."""
+    """Return the known name that is ``name`` except for camel case or a letter or two; or ""."""
     names = list(known)
     letters = _letters(name)
     same = next((it for it in names if _letters(it) == letters), "")
@@ -80,13 +80,13 @@ def nearest_few(name: str, known: Iterable[str], most: int, alike: float = ALIKE
 
 
 def fold(name: str) -> str:
-    """A name without what is often written in another way: case, scope, slash, dashes, spaces."""
+    """Return a name without what is often written differently: case, scope, slash, dashes, spaces."""
     bare = name.rpartition("::")[2].strip().strip("/").casefold()
     return bare.replace("-", "_").replace(" ", "_")
 
 
 def did_you_mean(name: str, known: Iterable[str], alike: float = ALIKE) -> str:
-    """The hint ``did you mean 'x'?``; "" where no known name is like ``name``."""
+    """Return the hint ``did you mean 'x'?``; "" if no known name is like ``name``."""
     return _hint(nearest(name, known, alike))
 
 
@@ -113,7 +113,7 @@ def _hint(near: str) -> str:
 
 
 def meant_name(name: str, known: Iterable[str]) -> str:
-    """The known name that differs from ``name`` by one typing mistake in one word."""
+    """Return the known name that differs from ``name`` by one typing mistake in one word, or ""."""
     words = _words(name)
     for it, _ in zip(known, range(COMPARED), strict=False):
         others = _words(it)

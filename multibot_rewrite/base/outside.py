@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a result rests on beside its arguments: answers of the disk and of the environment.
+"""What a result rests on besides its arguments: answers of the disk and of the environment.
 
 A function that asks them is marked ``outside``. While ``recorded`` runs a job, each call of such a
 function is noted with a digest of its answer. ``answer_now`` asks again, so a result that was kept
@@ -69,7 +69,7 @@ def outside(function: Callable[_P, _T]) -> Callable[_P, _T]:
 
 
 def recorded(job: Callable[[], _T]) -> tuple[_T, Asked | None]:
-    """The result of a job, and what it asked; None where it may have another result another time."""
+    """Return the result of a job and what it asked for; None for the latter if it may change."""
     notes: Asked = {}
     with _noting(notes):
         result = job()
@@ -84,7 +84,7 @@ def unrepeatable() -> None:
 
 
 def answer_now(question: Question) -> str:
-    """The digest of today's answer; raises LookupError for what is no function marked ``outside``."""
+    """Return the digest of today's answer; raises LookupError for an unmarked function."""
     module, _, name = question.function.partition(":")
     function = getattr(import_module(module), name, None) if module.startswith(PACKAGE) else None
     if not getattr(function, "is_outside", False):
@@ -97,7 +97,7 @@ def answer_now(question: Question) -> str:
 
 
 def digest(answer: object) -> str:
-    """A short text that differs where two answers do."""
+    """Return a short text that differs if two answers do."""
     if isinstance(answer, bytes):
         return blake2b(answer, digest_size=16).hexdigest()
     if isinstance(answer, (set, frozenset)):
@@ -146,19 +146,19 @@ def is_there(path: str) -> bool:
 
 @outside
 def real_path(path: str) -> str:
-    """The path without links."""
+    """Return the path with links resolved."""
     return os.path.realpath(path)
 
 
 @outside
 def variable(name: str) -> str | None:
-    """A variable of the environment; None where it is not set."""
+    """Return a variable of the environment; None if it is not set."""
     return os.environ.get(name)
 
 
 @outside
 def file_state(path: str) -> tuple[int, ...]:
-    """What differs where a file was written anew; empty where it is not there."""
+    """Return time and size of a file, which change when it is written; empty for no file."""
     try:
         it = os.stat(path)
     except (OSError, ValueError):
@@ -167,8 +167,8 @@ def file_state(path: str) -> tuple[int, ...]:
 
 
 def kept_bytes(path: str, most: int) -> bytes:
-    """The first bytes of a large file; raises OSError. What rests on them holds as long as the file
-    has its state: to read it again would cost more than the answer."""
+    """Return the first bytes of a large file; raises OSError. Results that use them hold as long as the
+    file has its time and size: reading it again would cost more than the answer."""
     file_state(path)
     with _noting(None), open(path, "rb") as file:
         return file.read(most)

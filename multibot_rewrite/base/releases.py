@@ -18,7 +18,10 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 
 RELEASES = ("humble", "jazzy", "kilted", "lyrical", "rolling")
+RELEASE_OR_NONE = ("", *RELEASES)
 NEWEST_LTS = "lyrical"
+# The days on which they came; rolling goes on from the last one.
+CAME = dict(zip(RELEASES, ("2022-05-23", "2024-05-23", "2025-05-23", "2026-05-22"), strict=False))
 # Which ROS loads a plugin that both have.
 ROS_1, ROS_2 = "1", "2"
 VARIABLE = "ROS_DISTRO"
@@ -43,8 +46,7 @@ _TERM = lazy_compile(r"(?P<until><=)?(?P<release>[a-z]+)(?: (?P<version>[0-9][0-
 
 
 def chosen_release(given: str, environment: Mapping[str, str]) -> str:
-    """The release that is asked for, else that of ROS_DISTRO, else of the ROS that is sourced, else the
-    newest LTS.
+    """Return the requested release, or that of ROS_DISTRO, of the sourced ROS, or the newest LTS.
 
     Raises UsageError for a release that is not known.
     """
@@ -70,7 +72,7 @@ def told_release(given: str, environment: Mapping[str, str]) -> str:
 
 
 def why_told(given: str, environment: Mapping[str, str]) -> str:
-    """What tells the release of ``told_release``; empty where nothing does."""
+    """Return what sets the release of ``told_release``: an option or variable; empty for neither."""
     if not told_release(given, environment):
         return ""
     by_variable = VARIABLE if environment.get(VARIABLE) else "that ROS is sourced"
@@ -78,14 +80,14 @@ def why_told(given: str, environment: Mapping[str, str]) -> str:
 
 
 def _sourced(environment: Mapping[str, str]) -> str:
-    """The release of the first folder of an installed ROS among those that are sourced."""
+    """Return the release of the first folder of an installed ROS in AMENT_PREFIX_PATH, or ""."""
     paths = environment.get("AMENT_PREFIX_PATH", "").split(":")
     names = (it.removeprefix(_INSTALLED) for it in paths if it.startswith(_INSTALLED))
     return next((it for it in names if it in RELEASES), "")
 
 
 def unusual_release(given: str, environment: Mapping[str, str]) -> str:
-    """A warning about a ROS_DISTRO that is not known or has ended; empty for any other."""
+    """Return a warning about a ROS_DISTRO that is not known or has ended, or ""."""
     found = environment.get(VARIABLE, "")
     if given or not found or found in RELEASES:
         return ""
@@ -95,8 +97,8 @@ def unusual_release(given: str, environment: Mapping[str, str]) -> str:
 
 
 def evidence(text: bytes) -> str:
-    """What says that a description is for ``OF_OLD`` or earlier: the name of a library; empty for one
-    that may be for any release."""
+    """Return the library that shows that a description is for ``OF_OLD`` or earlier; empty if none
+    does."""
     if not any(it in text for it in _OLD_WORDS):
         return ""
     # Words are found faster than an expression.
@@ -107,7 +109,7 @@ def evidence(text: bytes) -> str:
 
 
 def _in_force(pattern: re.Pattern[bytes], text: bytes) -> re.Match[bytes] | None:
-    """The first match that is in no comment."""
+    """Return the first match outside of XML comments, or None."""
     at = 0
     while found := pattern.search(text, at):
         comment = text.rfind(b"<!--", at, found.start())
@@ -118,7 +120,7 @@ def _in_force(pattern: re.Pattern[bytes], text: bytes) -> re.Match[bytes] | None
 
 
 def lacks_classic(release: str, text: bytes) -> bool:
-    """Does a description load libraries of Gazebo Classic alone, which a release has not?"""
+    """Return whether a description loads only libraries of Gazebo Classic, which a release lacks."""
     return release not in ("", OF_OLD) and evidence(text).startswith(CLASSIC)
 
 
@@ -143,18 +145,18 @@ def release_doubt(given: str | None = None) -> str:
 
 
 def facts_of_release(release: str, why: str = "") -> str:
-    """The end of a summary: which release it is for, and why; nothing where that is not known."""
+    """Return the end of a summary: the release and the reason for it; empty without one."""
     return f" (ROS 2 {release}{why and f': {why}'})" if release else ""
 
 
 @cache  # so many facts, so few words
 def has_release(words: str, release: str) -> bool:
-    """Does a fact with these release words hold in ``release``? No words stand for all releases."""
+    """Return whether a fact with these release words holds in ``release``; always without words."""
     return not words or any(_holds(it, release) for it in _terms(words))
 
 
 def releases_with(words: str) -> tuple[str, ...]:
-    """The releases in which a fact with these release words holds."""
+    """Return the releases in which a fact with these release words holds."""
     return tuple(it for it in RELEASES if has_release(words, it))
 
 
@@ -164,7 +166,7 @@ def share_release(words: str, others: str) -> bool:
 
 
 def since_version(words: str, release: str) -> str:
-    """The version of its package with which a fact came into ``release``; "" if it always had it."""
+    """Return the package version that brought a fact into ``release``; "" if it always had it."""
     found = [it["version"] or "" for it in _terms(words) if _holds(it, release)]
     return min(found, default="")
 

@@ -11,20 +11,20 @@ _LONGEST = 60
 
 
 def shorten(names: Iterable[str], most: int = FEW) -> str:
-    """The first names of a list, each once, and how many more there are."""
+    """Return the first names of a list, each once, and the number of the others, as a text."""
     unique = list(dict.fromkeys(names))
     more = f" and {len(unique) - most} more" if len(unique) > most else ""
     return ", ".join(unique[:most]) + more
 
 
 def clip(text: str) -> str:
-    """A value on one line and not longer than a line can show."""
+    """Return a value on one line, cut to the length that a line can show."""
     line = " ".join(text.split())
     return line if len(line) <= _LONGEST else f"{line[: _LONGEST - 1]}…"
 
 
 def and_then(words: Sequence[str]) -> str:
-    """``a``, ``a and b``, ``a, b and c``."""
+    """Return words as a list in English: ``a``, ``a and b``, ``a, b and c``."""
     return " and ".join(filter(None, (", ".join(words[:-1]), *words[-1:])))
 
 
@@ -34,12 +34,12 @@ def unique(names: Iterable[str]) -> tuple[str, ...]:
 
 
 def only(names: Sequence[str]) -> str:
-    """The one name; empty where there are several, or none."""
+    """Return the one name, empty for several or none."""
     return names[0] if len(names) == 1 else ""
 
 
 def plural(count: int, word: str) -> str:
-    """A number with the word for what is counted."""
+    """Return a number with the word for the things counted."""
     ending = "es" if word.endswith("s") else "s"
     return f"{count} {word}{ending * (count != 1)}"
 
@@ -58,8 +58,8 @@ _IN_A_TEXT = f"[{_ODD}]|\x1b(?!\\[[0-9;]*m)"
 
 
 def one_line(text: str) -> str:
-    r"""The text with every odd character as Python writes it: ``\n``, ``\x1b``, ``\udcff``. Of a very
-    long one the middle is left out."""
+    r"""Return the text with every odd character escaped as in Python: ``\n``, ``\x1b``, ``\udcff``. The
+    middle of a very long text is left out."""
     if len(text) > LONGEST:
         text = f"{text[: LONGEST // 2]} … {text[-LONGEST // 2 :]}"
     if text.isprintable():
@@ -68,14 +68,14 @@ def one_line(text: str) -> str:
 
 
 def for_terminal(text: str) -> str:
-    """The same for several lines, which may be coloured."""
+    """Return several lines, possibly coloured, with every odd character escaped."""
     if text.replace("\n", "").isprintable():
         return text
     return re.sub(_IN_A_TEXT, _escaped, text)
 
 
 def in_json(text: str) -> str:
-    """A JSON text with the escapes of JSON for what it may hold as it is, and a terminal obeys."""
+    """Return a JSON text with JSON escapes for the characters that a terminal would obey."""
     return re.sub(_NOT_ESCAPED, lambda found: f"\\u{ord(found[0]):04x}", text)
 
 

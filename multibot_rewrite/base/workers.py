@@ -73,7 +73,7 @@ class WorkerPool(Generic[_Item, _Made]):
         return _Worker(pid, os.fdopen(requests[1], "wb", 0), os.fdopen(answers[0], "rb"))
 
     def _serve(self, requests: tuple[int, int], answers: tuple[int, int]) -> NoReturn:
-        """The loop of a worker; it ends with the pipe of its requests, even if the parent died."""
+        """Answer requests until their pipe is closed, also if the parent died."""
         try:
             # Ctrl-C reaches every process of a terminal; the parent handles it.
             signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -97,7 +97,7 @@ class WorkerPool(Generic[_Item, _Made]):
             os._exit(0)
 
     def results(self) -> Iterator[_Made]:
-        """The results for the items, in their order."""
+        """Yield the results for the items, in their order."""
         waiting = iter(range(len(self.items)))
         busy: dict[int, int] = {}
         done: dict[int, _Made] = {}
@@ -125,7 +125,7 @@ class WorkerPool(Generic[_Item, _Made]):
             return  # it died while idle: its answers end as well
 
     def _answer(self, fd: int, number: int) -> tuple[_Made, int]:
-        """A worker's result for an item, and the worker for the next one: a new one if it died."""
+        """Return a worker's result for an item, and the worker for the next one, which may be new."""
         try:
             made: _Made = pickle.load(self.workers[fd].answers)
         except (EOFError, pickle.UnpicklingError):

@@ -7,7 +7,7 @@ import argparse
 
 from multibot_rewrite.base.config import configured_vocabulary
 from multibot_rewrite.base.wording import plural
-from multibot_rewrite.cli.output import deliver_changed, note, note_unread, proof_words
+from multibot_rewrite.cli.output import deliver_changed, note, note_unread, verified_words
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.usage import arguments_alone
 from multibot_rewrite.refactor.adopt import Adopted, adopt
@@ -29,19 +29,19 @@ def run(options: argparse.Namespace) -> int:
 
 def _tell(options: argparse.Namespace, made: Adopted) -> None:
     if made.argument:
-        many = plural(len(made.proved), "description")
+        many = plural(len(made.verified), "description")
         if made.configurations:
             many += f" and {plural(len(made.configurations), 'other configuration')}"
-        end = proof_words(made.unread) if made.proved else "not proved, see what is left"
+        end = verified_words(made.unread) if made.verified else "not verified, see what is left"
         where = plural(len(made.after), "file")
         note(options, f"argument {made.argument}: {many} in {where}; {end}")
     if made.namespace:
         where = plural(len(made.spaced), "description")
-        note(options, f"argument {made.namespace}: what ROS names in {where}; proved")
+        note(options, f"argument {made.namespace}: what ROS names in {where}; verified")
     for it in made.launches:
         given = made.namespace and f"{made.namespace}:=".encode() in made.after[it]
         what = f"{made.argument} and {made.namespace}" if given else made.argument
-        note(options, f"{it}: it hands {what} on; proved")
+        note(options, f"{it}: it hands {what} on; verified")
     for path, name in made.already.items():
         note(options, f"{path}: it has such an argument already: {name}")
     for one in made.left:

@@ -19,7 +19,7 @@ from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.report import About, check_report, chosen, report_beside, with_coverage
 from multibot_rewrite.cli.usage import asked_number
 from multibot_rewrite.cli.walk import check_link, is_same_file
-from multibot_rewrite.description.checks.verdict import not_proved
+from multibot_rewrite.description.checks.verdict import not_verified
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.sources.release_said import MANIFEST
 from multibot_rewrite.fleet.build import make_outputs
@@ -75,14 +75,14 @@ def run(options: argparse.Namespace) -> int:
         found = output_changes(files, known, there)
         if options.check:
             return _stale(options, found)
-        why = not_proved({*made.findings, *plan.fleet.table.problems})
-        end = f"; not proved: {', '.join(why)}" if why else ""
+        why = not_verified({*made.findings, *plan.fleet.table.problems})
+        end = f"; not verified: {', '.join(why)}" if why else ""
         end = f"{end}{facts_of_release(plan.file.distro, plan.file.why)}"
         return _written(options, files, found, held, end)
 
 
 def _read(plan: FleetPlan, files: Iterable[OutputFile]) -> dict[str, bytes]:
-    """The files that a build was made from."""
+    """Return the files that a build was made from, by path."""
     paths = {path for it in files for path in it.sources} | set(plan.file.files)
     paths |= {it.interface for it in plan.fleet.facts if it.interface}
     for it in plan.file.robots:
@@ -105,7 +105,7 @@ def _check_folder(folder: str) -> None:
 
 
 def _known(folder: str) -> dict[str, str]:
-    """What is a build's: what the last one made, and what one that was killed has made of it."""
+    """Return hashes of the files that the last build made, and that a killed build has made so far."""
     found = _of_manifest(folder, MANIFEST)
     begun = _of_manifest(folder, NOTE)
     there = _there(folder, begun)

@@ -74,8 +74,8 @@ def _before(options: argparse.Namespace) -> System | None:
 def _looked_at(
     options: argparse.Namespace, plan: System, several: Sequence[int]
 ) -> Mapping[int, System]:
-    """What is planned for each domain that is looked at; empty where there is one for all. A plan of
-    one domain holds for each that is named: of robots alike, which have no names."""
+    """Return the plan for each domain that is checked, empty for one plan for all. A plan of one domain
+    holds for each that is named: for robots that are alike and have no names."""
     parts = by_domain(plan)
     if not parts:
         return dict.fromkeys(several, plan)
@@ -88,7 +88,7 @@ def _looked_at(
 
 
 def _apart(options: argparse.Namespace, plan: System, parts: Mapping[int, System]) -> int:
-    """The same of a plan whose robots are in several domains: all are looked at, side by side."""
+    """Check all domains of a plan with robots in several domains; returns the exit code."""
     seen = live.graphs(options, parts)
     if options.state or any(map(answering, seen.values())):
         plan = _with_files(options, plan)
@@ -98,14 +98,14 @@ def _apart(options: argparse.Namespace, plan: System, parts: Mapping[int, System
 
 
 def _with_files(options: argparse.Namespace, plan: System) -> System:
-    """The plan with the parameters in the files beside it."""
+    """Return the plan with the parameters in the files of its folder."""
     from multibot_rewrite.fleet.outputs.built_states import with_built
 
     return with_built(plan, os.path.dirname(options.plan))
 
 
 def _parameters(plan: System) -> dict[str, list[str]]:
-    """What the nodes of the plan are asked for."""
+    """Return the parameters of the plan to ask for, by node."""
     return lists_by_key((it.node, it.name) for it in plan.parameters)
 
 
@@ -120,8 +120,7 @@ def _check_use(options: argparse.Namespace) -> None:
 
 
 def plan_of(options: argparse.Namespace) -> System:
-    """The plan that a file holds, or that follows from a fleet file; of an earlier snapshot that all
-    of it is there again."""
+    """Return the plan in a file or of a fleet file; for a snapshot, that all of it is there again."""
     path: str = options.plan
     data = read_file(path, MAX_FLEET_BYTES)
     if recognised(data) == SNAPSHOT:
@@ -152,7 +151,7 @@ def plan_of(options: argparse.Namespace) -> System:
 
 
 def _of_release(options: argparse.Namespace, plan: System) -> System:
-    """The plan, which is of the release that ``--distro`` names, if it says so."""
+    """Return the plan; raises UsageError if it is for another release than ``--distro``."""
     asked: str = options.distro or ""
     if asked and plan.release not in ("", asked):
         hint = f"make one with multibot plan --distro {asked}, or leave out --distro"
@@ -190,8 +189,8 @@ def conclude(
 
 
 def _gaps(options: argparse.Namespace, plan: System) -> list[Finding]:
-    """What is open in the plan. What a driver that is not named may send is only counted where notes
-    are not asked for."""
+    """Return the open findings of the plan. Topics that an unnamed driver may publish are only counted,
+    unless notes are asked for."""
     found = chosen(options, plan.gaps)
     unsent = [it for it in found if it.code == nothing_known_sends.code and it.level == NOTE]
     if not unsent or options.fail_on == NOTE or options.verbose:

@@ -64,7 +64,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def orders_of(options: argparse.Namespace, words: Sequence[str]) -> list[LaunchOrder]:
-    """The launch files that words name, with the arguments; raises UsageError for other words."""
+    """Return the launch files in the words, with their arguments; raises UsageError."""
     orders = orders_in_words(words, shlex.join(words), options.roots)
     return [it._replace(trusted=options.trust) for it in orders]
 

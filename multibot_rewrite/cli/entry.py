@@ -15,17 +15,17 @@ _COMMANDS = "multibot_rewrite.cli"
 
 
 def multibot() -> int:
-    """The program ``multibot``."""
+    """Run the program ``multibot``; returns the exit code."""
     return _run("multibot")
 
 
 def urdf_postfix() -> int:
-    """The program ``urdf-postfix``."""
+    """Run the program ``urdf-postfix``; returns the exit code."""
     return _run("urdf_postfix")
 
 
 def urdf_lint() -> int:
-    """The program ``urdf-lint``."""
+    """Run the program ``urdf-lint``; returns the exit code."""
     return _run("urdf_lint")
 
 

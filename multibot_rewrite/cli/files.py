@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writing results: all of them or none, each appearing whole.
 
-All are written beside their targets, then all are seen onto the disk, then all are renamed: whenever
+All are written next to their targets, then all are seen onto the disk, then all are renamed: whenever
 the machine stops, each file is whole, the old one or the new one. The disk writes them while more
 are made, and has to finish only once.
 """
@@ -17,7 +17,7 @@ from multibot_rewrite.base.model import UsageError
 
 
 def write_all(items: Iterable[tuple[str, bytes]]) -> None:
-    """Write every (path, data) beside its target, then rename; on an error everything is as it was.
+    """Write every (path, data) next to its target, then rename; on an error everything is as it was.
 
     Missing folders are made. An existing file keeps its mode bits, a link stays a link. Raises
     UsageError with path, cause and remedy.
@@ -86,7 +86,7 @@ def _commit(staged: dict[str, str]) -> None:
 
 
 def _stage(path: str, data: bytes, staged: dict[str, str]) -> None:
-    """Put the data beside its target and note that in ``staged``, by target; a device or pipe is
+    """Put the data next to its target and note that in ``staged``, by target; a device or pipe is
     written at once."""
     target, mode = _target(path)
     if mode and not stat.S_ISREG(mode):
@@ -103,7 +103,7 @@ def _stage(path: str, data: bytes, staged: dict[str, str]) -> None:
 
 
 def _target(path: str) -> tuple[str, int]:
-    """The file behind ``path``, links followed, and its mode; 0 where there is none yet."""
+    """Return the file at ``path`` with links resolved, and its mode; 0 if there is none yet."""
     try:
         mode = os.lstat(path).st_mode
     except FileNotFoundError:
@@ -144,7 +144,7 @@ def see_on_disk(path: str) -> None:
 
 @contextmanager
 def explained(path: str) -> Iterator[None]:
-    """What the system refuses in the block is a UsageError about ``path``, in one line."""
+    """Turn an OSError of the block into a one-line UsageError about ``path``."""
     try:
         yield
     except OSError as error:
@@ -157,7 +157,7 @@ def explained(path: str) -> Iterator[None]:
 
 
 def existing_folder(path: str) -> str:
-    """The nearest of the folders above ``path`` that is there; it may turn out to be a file."""
+    """Return the nearest existing path above ``path``; it may turn out to be a file."""
     above = os.path.dirname(path) or "."
     while not os.path.lexists(above):
         above = os.path.dirname(above) or "."

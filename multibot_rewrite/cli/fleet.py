@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from multibot_rewrite.base.config import configured_vocabulary
 from multibot_rewrite.base.file_kinds import DESCRIPTIONS, refuse_others
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.releases import release_here
+from multibot_rewrite.base.releases import release_doubt
 from multibot_rewrite.cli.output import note
 from multibot_rewrite.cli.report import About, check_report, chosen, report_beside
 from multibot_rewrite.cli.usage import (
@@ -98,6 +98,8 @@ def _from_words(options: argparse.Namespace) -> Fleet:
         refuse_others(read_file(options.input), options.input, *DESCRIPTIONS)
         raise UsageError("no ROBOT given, and the input is no fleet file (*.yaml)")
     check_xacro(options, [options.input])
+    if doubt := release_doubt(options.distro):
+        note(options, f"warning: {doubt}")
     nodes, nodl = own_nodes(options)
     return make_fleet(
         options.input,
@@ -112,12 +114,12 @@ def _from_words(options: argparse.Namespace) -> Fleet:
         launch=[
             launch_order(it, options.roots)._replace(trusted=options.trust) for it in options.launch
         ],
-        release=release_here(options.distro),
+        release=options.distro or "",
     )
 
 
 def own_nodes(options: argparse.Namespace) -> tuple[str | None, list[str]]:
-    """What ``--nodes`` names: the user's file of nodes and stacks, and NoDL files or folders."""
+    """Return the values of ``--nodes``: the user's file of nodes, and NoDL files or folders."""
     nodl = [it for it in options.nodes if _is_nodl(it)]
     files = [it for it in options.nodes if it not in nodl]
     if len(files) > 1:

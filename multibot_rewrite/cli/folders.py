@@ -2,7 +2,7 @@
 """A folder of results that changes as a whole: whoever looks sees the old files or the new ones.
 
 The new folder is made beside the old one, of links to what stays, and one call of the kernel swaps
-the two. Where that cannot be (a mount point, the working directory, no right to write beside it),
+the two. Where that cannot be (a mount point, the working directory, no right to write next to it),
 files are replaced one by one, all or none, and a note of what they are to be tells the next build
 what a killed one has left.
 """
@@ -33,7 +33,7 @@ class _CannotSwapError(Exception):
 
 @contextmanager
 def locked(folder: str) -> Iterator[None]:
-    """Alone with a folder: another build into it, or beside it, waits until this one is done."""
+    """Alone with a folder: another build into it, or next to it, waits until this one is done."""
     import fcntl
 
     above = os.path.dirname(os.path.realpath(folder))
@@ -172,7 +172,7 @@ def _write_all(folder: str, stage: str, write: Mapping[str, bytes]) -> None:
 
 
 def _mode(path: str) -> int:
-    """The mode bits of a file that is there; 0 for none."""
+    """Return the mode bits of an existing file; 0 for none."""
     try:
         return stat.S_IMODE(os.lstat(path).st_mode)
     except OSError:
@@ -180,7 +180,7 @@ def _mode(path: str) -> int:
 
 
 def _exchange(stage: str, folder: str) -> None:
-    """The new folder takes the old one's place, in one step."""
+    """Replace the old folder by the new one, in one step."""
     if not os.path.lexists(folder):
         with explained(folder):
             os.rename(stage, folder)
@@ -194,7 +194,7 @@ def _exchange(stage: str, folder: str) -> None:
 
 
 def _bring_late(stage: str, folder: str, but: Collection[str]) -> None:
-    """What somebody put into the old folder while the new one was made."""
+    """Move files into the new folder that somebody put into the old one meanwhile."""
     if not os.path.isdir(stage):
         return
     for path, entry in list(_walk(stage)):

@@ -94,8 +94,8 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _quietly(wanted: Wanted, call: Callable[[Wanted], _T]) -> _T:
-    """What a call makes of it, and a terminal shows what is looked at. What xacro warns about is said
-    by the build, of the files that are taken."""
+    """Return the result of a call, with its progress on the terminal and without warnings of xacro. The
+    build reports those of the files that are used."""
     show = status()
     try:
         with redirect_stderr(StringIO()):
@@ -105,7 +105,7 @@ def _quietly(wanted: Wanted, call: Callable[[Wanted], _T]) -> _T:
 
 
 def _wanted(options: argparse.Namespace) -> Wanted:
-    """What the options say."""
+    """Return the options as ``Wanted``."""
     wanted = Wanted(
         tuple(plain_words(options)) or (os.curdir,),
         len(options.robots) or options.count or 0,
@@ -125,7 +125,7 @@ def _wanted(options: argparse.Namespace) -> Wanted:
 
 
 def _launch(options: argparse.Namespace) -> tuple[LaunchOrder, ...] | None:
-    """The launch file that was named, none for the word ``none``; None where nobody said it."""
+    """Return the named launch files, none for ``--launch none``; None without the option."""
     words = options.launch
     if not words or words == [NONE]:
         return () if words else None
@@ -187,7 +187,7 @@ def _deliver(options: argparse.Namespace, made: Proposal, file: str) -> int:
 
 
 def ask_for_fleet(seen: Seen, wanted: Wanted) -> Proposal:
-    """The fleet that the user describes; what ``wanted`` says is not asked."""
+    """Return the fleet that the user describes; what ``wanted`` has is not asked."""
     robots = seen.robots if seen.named else _chosen([seen.robots[0], *seen.rivals])
     wanted = _with_names(wanted) if len(robots) == 1 else _with_count(wanted)
     if not wanted.named:
@@ -215,7 +215,7 @@ def ask_for_fleet(seen: Seen, wanted: Wanted) -> Proposal:
 
 
 def _chosen(found: Sequence[Looked]) -> Sequence[Looked]:
-    """The one that the user takes of several."""
+    """Return the description that the user chooses, in a list."""
     if len(found) == 1:
         return found
     shown = [f"{it.path} ({plural(it.links, 'link')})" for it in found]
@@ -225,7 +225,7 @@ def _chosen(found: Sequence[Looked]) -> Sequence[Looked]:
 def _with_files_asked_for(
     robots: Sequence[Looked], found: Found, wanted: Wanted, refused: Mapping[str, str]
 ) -> tuple[Found, Proposal]:
-    """The fleet, and the files with what the user has said where several may be meant."""
+    """Return the files with the user's choices, and the fleet that is made of them."""
     try:
         return found, _quietly(wanted, lambda it: that_builds(robots, found, it, refused))
     except Undecided as question:
@@ -257,7 +257,7 @@ def _with_count(wanted: Wanted) -> Wanted:
 
 
 def _with_names(wanted: Wanted) -> Wanted:
-    """A number is enough: the robots are robot1, robot2 then."""
+    """Return ``wanted`` with names of robots; a number stands for robot1, robot2 and so on."""
     if wanted.names:
         return wanted
     given = "2" if not wanted.each else ", ".join(names_of([""], wanted.each)[0])
@@ -269,7 +269,7 @@ def _with_names(wanted: Wanted) -> Wanted:
 
 
 def _with_launch(robot: Looked, wanted: Wanted, found: Found) -> Wanted:
-    """The launch file that starts the robot, where several do; none is one, too."""
+    """Return ``wanted`` with the launch file that starts the robot; the user may choose none."""
     (it,) = _quietly(wanted, lambda asked: with_arguments([robot], asked, found))
     if wanted.launch is not None or it.bringup is None or not it.bringup.others:
         return wanted
@@ -280,7 +280,7 @@ def _with_launch(robot: Looked, wanted: Wanted, found: Found) -> Wanted:
 
 
 def _with_arguments(robot: Looked, wanted: Wanted, found: Found) -> Looked:
-    """The arguments of a xacro that name the robot, or that it needs and nobody gave."""
+    """Return the robot with values for the xacro arguments that name it or have no default."""
     (it,) = _quietly(wanted, lambda asked: with_arguments([robot], asked, found))
     asked = [(name, value) for name, value in it.arguments if name not in wanted.arguments]
     if asked:
@@ -290,7 +290,7 @@ def _with_arguments(robot: Looked, wanted: Wanted, found: Found) -> Looked:
 
 
 def _left_out(made: Proposal) -> list[str]:
-    """The files beside the descriptions that the user does not want."""
+    """Return the related files that the user does not want."""
     paths = list(dict.fromkeys(path for it in made.members for path in it.companions.paths))
     if not paths:
         return []
@@ -348,7 +348,7 @@ def _one_of(what: str, words: Sequence[str], default: Choice) -> str:
 
 
 def _valid(question: str, default: str, fits: Callable[[str], bool]) -> str:
-    """The answer, asked for again until it fits."""
+    """Return the answer to a question, which is repeated until the answer fits."""
     while not fits(text := _ask(question, default).strip()):
         say(f"  {text!r} does not fit", PROGRAM)
     return text

@@ -48,6 +48,7 @@ from multibot_rewrite.description.sources.read import is_xacro
 from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.knowledge.stacks import every_release
 from multibot_rewrite.lint.catalogue import rules
 
 # A word that ends so is a file, there or not.
@@ -96,6 +97,9 @@ def show(options: argparse.Namespace, name: str | None) -> int:
     found = look_up(vocabulary, name, TYPES)
     if not found and is_name(name):
         return explain(options, [name])
+    node = None if found else every_release().nodes.get(name)
+    if node:
+        return node_source.run_known(options, node)
     if not found:
         raise _unknown(vocabulary, name, TYPES)
     if options.form == JSON:
@@ -154,7 +158,7 @@ def _row(site: SiteRow, section: VocabularySection) -> tuple[str, ...]:
 
 
 def as_json(section: VocabularySection) -> dict[str, object]:
-    """A section as ``--form json`` writes it; docs/stacks.md describes it."""
+    """Return a section as ``--form json`` writes it; docs/stacks.md describes it."""
     return {
         "type": section.type,
         "names": section.names,
@@ -288,7 +292,7 @@ def try_arguments(options: argparse.Namespace, words: Sequence[str]) -> int:
 
 
 def _only_xacro(options: argparse.Namespace, words: Sequence[str]) -> str:
-    """The one word, which is a xacro file; raises UsageError."""
+    """Return the only word, which is a xacro file; raises UsageError."""
     missing = next((it for it in words if not os.path.lexists(it)), None)
     if missing is not None:
         raise UsageError(f"{missing}: there is no such file or folder")
@@ -305,7 +309,7 @@ def _only_xacro(options: argparse.Namespace, words: Sequence[str]) -> str:
 
 
 def arguments_report(found: XacroArguments) -> Iterator[str | Grid]:
-    """What is printed of a xacro's arguments."""
+    """Yield the lines and tables about a xacro's arguments."""
     rows: list[tuple[str, ...]] = []
     for it in found.arguments:
         first = it.name, clip(it.default)

@@ -47,14 +47,14 @@ def _join(options: argparse.Namespace) -> int:
     _deliver(options, made, parts)
     for it in (*map(str, made.findings), *made.notes):
         note(options, it)
-    why = ", ".join(made.not_proved)
-    end = f"joined, not proved: {why}" if why else "joined; proved"
+    why = ", ".join(made.not_verified)
+    end = f"joined, not verified: {why}" if why else "joined; verified"
     note(options, f"{', '.join(made.parts)}: {end}")
     return DONE
 
 
 def _deliver(options: argparse.Namespace, made: Joined, parts: Sequence[Part]) -> None:
-    """The description, with the files that belong to it beside it."""
+    """Write the description and the files that go with it."""
     moveit = ((f"_{name}", data) for name, data in made.moveit.items())
     first = ((".srdf", made.srdf), ("_controllers.yaml", made.controllers), (".rviz", made.rviz))
     more = [(ending, data) for ending, data in (*first, *moveit) if data]
@@ -93,7 +93,7 @@ def _split(options: argparse.Namespace) -> int:
 
 
 def _parts(options: argparse.Namespace) -> list[Part]:
-    """The parts as the words name them: each file with the xacro arguments behind it."""
+    """Return the parts in the words: each file with the xacro arguments after it."""
     files: list[tuple[str, dict[str, str]]] = []
     for word in options.words:
         name, is_argument, text = word.partition(":=")
@@ -115,7 +115,7 @@ def _parts(options: argparse.Namespace) -> list[Part]:
 
 
 def _for_each(option: str, values: Sequence[str], many: int, of_all: bool = False) -> list[str]:
-    """The value for each part; the first part has none unless there is one for all."""
+    """Return the value for each part; the first part has none unless there is one for all."""
     if of_all and len(values) == many:
         return list(values)
     if not values or len(values) == many - 1:

@@ -107,7 +107,7 @@ def of_release(
 
 
 def _files(options: argparse.Namespace, config: Configured) -> tuple[list[str], list[Finding]]:
-    """What is to be linted, and findings for folders that cannot be looked into."""
+    """Return the files to lint, and findings for folders that cannot be read."""
     paths = plain_words(options)
     if paths == [STDIN]:
         return paths, []
@@ -144,7 +144,7 @@ def _check_selecting(options: argparse.Namespace, paths: Sequence[str]) -> None:
     check_xacro(options, paths)
     alone = (".urdf", ".xacro", ".sdf")
     if options.urdf and all(it.endswith(alone) and ".srdf" not in it for it in paths):
-        raise UsageError("--urdf is for an SRDF or a file beside a description, and there is none")
+        raise UsageError("--urdf is for an SRDF or a related file; no such file is given")
 
 
 def _check_shared(
@@ -179,7 +179,7 @@ def _lint(options: argparse.Namespace, settings: Settings, paths: Sequence[str])
 
 
 def _fixed(options: argparse.Namespace, settings: Settings, findings: list[Finding]) -> list[str]:
-    """The files that are fixed. With --diff none is, and the changes are printed."""
+    """Apply fixes and return the fixed files. With --diff print the changes and fix none."""
     from multibot_rewrite.cli.output import diff
     from multibot_rewrite.description.sources.read import read_file
     from multibot_rewrite.lint.fix import fix
@@ -261,7 +261,7 @@ def check_use(options: argparse.Namespace) -> None:
 
 @contextmanager
 def cached(options: argparse.Namespace, settings: Settings) -> Iterator[Cache | None]:
-    """The cache for a lint, which is saved at the end; a folder that cannot be written is no error."""
+    """Yield the cache for a lint, or None, and save it at the end if its folder can be written."""
     # What trusted files look at is not known.
     if options.trust:
         yield None
@@ -281,7 +281,7 @@ def cached(options: argparse.Namespace, settings: Settings) -> Iterator[Cache | 
 
 
 def given(options: argparse.Namespace) -> dict[str, object]:
-    """What the command line says about the settings, by the names of ``with_options``."""
+    """Return the settings of the command line, by the names of ``with_options``."""
     said: dict[str, object] = {
         name: tuple(value) for name in _LISTS if (value := getattr(options, name))
     }

@@ -39,7 +39,7 @@ LOOK_SECONDS = 15.0
 
 
 def check_source(options: argparse.Namespace) -> None:
-    """Raises UsageError for what a saved source or a router has not."""
+    """Raise UsageError for options that a saved source or a router does not support."""
     saved, watching = bool(options.snapshot), getattr(options, "watch", False)
     if getattr(options, "bag", None):
         given = vars(options)
@@ -62,10 +62,10 @@ Judge = Callable[[System], Iterable[Finding]]
 def graph(
     options: argparse.Namespace, request: Request | None = None, judge: Judge | None = None
 ) -> System:
-    """The graph that the options name; raises Unusable, UsageError, InputError.
+    """Return the graph that the options name; raises Unusable, UsageError, InputError.
 
-    A live one is looked at until it is quiet, unless ``request`` says otherwise: a second node of a
-    name or a leak may come after the planned nodes. Meanwhile a terminal shows what ``judge`` finds.
+    A live one is observed until it is quiet, unless ``request`` says otherwise: a second node of a name
+    may come after the planned nodes. Meanwhile a terminal shows what ``judge`` finds.
     """
     if options.snapshot:
         from multibot_rewrite.producers.snapshot_file import read_snapshots
@@ -99,7 +99,7 @@ def graph(
 
 
 def so_far(seen: System, judge: Judge | None) -> str:
-    """What is wrong with a view that may not be whole: nothing of what is missing in it."""
+    """Return a line about a view that may be incomplete: node count and certain faults."""
     found = [it for it in judge(seen) if it.level in (ERROR, WARNING)] if judge else []
     sure = [it for it in found if it.code not in ABSENCE]
     nodes = f"{plural(len(seen.nodes), 'node')} so far"
@@ -111,21 +111,21 @@ def so_far(seen: System, judge: Judge | None) -> str:
 
 
 def at(options: argparse.Namespace, domain: int | None) -> argparse.Namespace:
-    """The options, for another domain."""
+    """Return the options, for another domain."""
     return argparse.Namespace(**{**vars(options), "domain": domain})
 
 
 def by_domain(options: argparse.Namespace) -> tuple[argparse.Namespace, list[int]]:
-    """The options for the domain of which ``--domain`` names one, or none; and all where it names
-    several, to be looked at side by side."""
+    """Return the options with the one domain of ``--domain``, or none; and all domains if it names
+    several."""
     asked = list(dict.fromkeys(options.domain or []))
     one = at(options, asked[0] if len(asked) == 1 else None)
     return one, asked if len(asked) > 1 else []
 
 
 def graphs(options: argparse.Namespace, domains: Collection[int]) -> dict[int, System]:
-    """The graph of each of these domains, looked at side by side, or those of the saved snapshots;
-    raises as ``graph``."""
+    """Return the graph of each of these domains, live or of the saved snapshots; raises as
+    ``graph``."""
     if options.snapshot:
         from multibot_rewrite.producers.snapshot_file import read_by_domain
 
@@ -144,8 +144,8 @@ def graphs(options: argparse.Namespace, domains: Collection[int]) -> dict[int, S
 def with_states(
     options: argparse.Namespace, seen: System, parameters: Mapping[str, Collection[str]] = NO_MORE
 ) -> System:
-    """The live graph with what its nodes answer to ``--state``, and a line of how many did; without it
-    the graph as it is. ``parameters`` are asked of the nodes besides."""
+    """Return the live graph with the answers to ``--state``, and print their number; without the option
+    the graph unchanged. ``parameters`` are asked for in addition."""
     if not options.state:
         return seen
     from multibot_rewrite.producers.ros.child import ask
@@ -158,7 +158,7 @@ def with_states(
 
 
 def note_answers(options: argparse.Namespace, seen: System) -> None:
-    """A line of how many nodes answered ``--state``."""
+    """Print how many nodes answered ``--state``."""
     if options.state:
         nodes = plural(len({it.node for it in questions(seen)}), "node")
         note(options, f"{len(answering(seen))} of {nodes} answered --state")
@@ -169,9 +169,8 @@ def watched(
     parameters: Mapping[str, Collection[str]] = NO_MORE,
     domains: Collection[int] = (),
 ) -> Generator[Mapping[int, System], None, None]:
-    """What is seen of the live graph that the options name, or in each of these domains once all were
-    seen, after each change; with ``--state`` also with what nodes answer, who are asked for
-    ``parameters`` besides."""
+    """Yield the live graph by domain after each change, once all domains were seen. With ``--state`` it
+    has the nodes' answers, also about ``parameters``."""
     gc.enable()  # no short process any more
     asks = dict(parameters) if options.state else None
     asked = Request(options.timeout or inf, watch=True, asks=asks)
@@ -193,16 +192,16 @@ def watched(
 
 
 def _router(options: argparse.Namespace, given: Mapping[str, str]) -> Router:
-    """The domain is that of ROS_DOMAIN_ID in the environment; it is a part of every key."""
+    """Return the router to ask, with the domain of ROS_DOMAIN_ID, which is a part of every key."""
     from multibot_rewrite.producers.zenoh.observe import Router
 
     return Router(options.zenoh, settings(given).domain)
 
 
 def environ(domain: int | None = None) -> dict[str, str]:
-    """The environment to look in, with ``domain`` where one is given.
+    """Return the environment to observe in, with ``domain`` if one is given.
 
-    Raises UsageError where rcl would end the process without a message.
+    Raises UsageError if rcl would end the process without a message.
     """
     result = dict(os.environ)
     if domain is not None:

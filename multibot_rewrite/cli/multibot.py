@@ -39,7 +39,7 @@ def run(words: Sequence[str]) -> int:
 
 
 def find_command(word: str) -> Command:
-    """The command of that name; UsageError with the nearest one."""
+    """Return the command of that name; raises UsageError with the nearest one."""
     if word in COMMANDS:
         return COMMANDS[word]
     if word.startswith("-"):
@@ -53,7 +53,7 @@ def find_command(word: str) -> Command:
 
 
 def _with_option(word: str) -> str:
-    """A command line with the option, of the first command that has it."""
+    """Return a command line with the option, for the first command that has it."""
     option = word.partition("=")[0]
     groups = ((it, group) for it in COMMANDS.values() for group in it.groups)
     has = (it for it, group in groups if any(option in one.names for one in group.options))
@@ -62,7 +62,7 @@ def _with_option(word: str) -> str:
 
 
 def overview(colour: str) -> str:
-    """The help of ``multibot`` itself."""
+    """Return the help of ``multibot`` itself."""
     rows = [f"  {it.name:<14}{it.about}" for it in COMMANDS.values()]
     text = "\n".join(
         (

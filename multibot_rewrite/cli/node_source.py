@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``multibot inspect PACKAGE_FOLDER/PROGRAM``: what the source of a node says, with file and line."""
+"""``multibot inspect PACKAGE_FOLDER/PROGRAM``: what the source of a node says, with file and line.
+``multibot inspect NODE``: what is known of a node of a public package, and of what version of it."""
 
 from __future__ import annotations
 
@@ -8,13 +9,16 @@ import os
 from collections.abc import Iterator
 
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.releases import release_here
+from multibot_rewrite.base.releases import RELEASES, has_release, release_here
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import deliver
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.tables import JSON, Grid, deliver_report, json_bytes
 from multibot_rewrite.description.sources.packages import MANIFEST, package_of
 from multibot_rewrite.knowledge.conditions import said
+from multibot_rewrite.knowledge.packages import older, versions_of
+from multibot_rewrite.knowledge.records import Endpoint, NodeFacts, NodeParameters, Param
+from multibot_rewrite.knowledge.stacks import every_release
 from multibot_rewrite.producers.launch.source_packages import packages_for
 from multibot_rewrite.producers.sources.facts import NodeSource, node_of_program
 
@@ -46,11 +50,34 @@ def run(options: argparse.Namespace, word: str) -> int:
     return DONE
 
 
+def run_known(options: argparse.Namespace, facts: NodeFacts) -> int:
+    """Show a known node and its package in the release that is asked for, or in all; returns the exit
+    code."""
+    releases = [options.distro] if options.distro else [*RELEASES]
+    of_package = versions_of(facts.package)
+    rows = [
+        (it, *of_package[it], older(facts.package, it) and "older than the release")
+        for it in releases
+        if it in of_package
+    ]
+    ends = (it for it in facts.endpoints if any(has_release(it.releases, one) for one in releases))
+    known = every_release().parameters.get(facts.name.rpartition("/")[2], NodeParameters("", ""))
+    params = (it for it in known.forms if any(has_release(it.releases, one) for one in releases))
+    found = NodeSource(facts._replace(endpoints=tuple(ends)), tuple(params), (), facts.source)
+    if options.form == JSON:
+        versions = {it: of_package[it]._asdict() for it in releases if it in of_package}
+        deliver(options, json_bytes({"nodes": [{**_as_json(found), "versions": versions}]}))
+    else:
+        grid = Grid(("release", "came with", "has", "read at", "of version", "of", ""), rows)
+        deliver_report(options, (*_details(found, ""), *(("", grid) if rows else ())))
+    return DONE
+
+
 def _details(found: NodeSource, folder: str) -> Iterator[str | Grid]:
     facts = found.facts
     yield f"node {facts.name} of {facts.package}, by {plural(len(found.files), 'file')} of its source"
     own = [
-        (it.role, it.name, it.type, it.parameter, said(it.when), _near(it.source[0], folder))
+        (it.role, it.name, _types(it), it.parameter, said(it.when), _source(it, folder))
         for it in facts.endpoints
     ]
     if own:
@@ -58,7 +85,7 @@ def _details(found: NodeSource, folder: str) -> Iterator[str | Grid]:
         yield Grid(("role", "name", "type", "parameter", "only if", "source"), own)
     if found.params:
         yield ""
-        rows = [(it.path, it.default, it.kind, _near(it.source[0], folder)) for it in found.params]
+        rows = [(it.path, it.default, it.kind, _source(it, folder)) for it in found.params]
         yield Grid(("parameter", "default", "holds", "source"), rows)
     if found.frames:
         yield ""
@@ -68,9 +95,19 @@ def _details(found: NodeSource, folder: str) -> Iterator[str | Grid]:
         yield f"not known: {_near(it.text, folder)}"
 
 
+def _types(end: Endpoint) -> str:
+    """Its type, and those that it has on a condition."""
+    return "; ".join((end.type, *(f"{type_} if {said(it)}" for it, type_ in end.types)))
+
+
+def _source(it: Endpoint | Param, folder: str = "") -> str:
+    """Where it can be read, else the releases that have it."""
+    return _near(it.source[0], folder) if it.source else it.releases
+
+
 def _near(text: str, folder: str) -> str:
-    """A place as it is below the package."""
-    return text.replace(os.path.join(os.path.realpath(folder), ""), "")
+    """Return a place relative to the package."""
+    return text.replace(os.path.join(os.path.realpath(folder), ""), "") if folder else text
 
 
 def _as_json(found: NodeSource) -> dict[str, object]:
@@ -85,12 +122,12 @@ def _as_json(found: NodeSource) -> dict[str, object]:
                     key: getattr(it, key)
                     for key in ("role", "kind", "name", "type", "parameter", "when")
                 },
-                "source": it.source[0],
+                "source": _source(it),
             }
             for it in facts.endpoints
         ],
         "parameters": [
-            {"name": it.path, "default": it.default, "holds": it.kind, "source": it.source[0]}
+            {"name": it.path, "default": it.default, "holds": it.kind, "source": _source(it)}
             for it in found.params
         ],
         "frames": [

@@ -73,7 +73,7 @@ def with_schema(path: str, data: bytes, schema: str) -> list[tuple[str, bytes]]:
 
 
 def _given(options: argparse.Namespace) -> Iterator[tuple[str, str]]:
-    """The files that the options name to be read, each behind its option."""
+    """Yield each option that names files to read, with each of its files."""
     for name in READ:
         value = getattr(options, name, None) or ()
         yield from ((name, it) for it in ([value] if isinstance(value, str) else value))
@@ -113,14 +113,14 @@ def write_files(options: argparse.Namespace, items: Iterable[tuple[str, bytes]])
 
 
 def goes_to_file(options: argparse.Namespace) -> bool:
-    """Does the result leave standard output free?"""
+    """Return whether the result leaves standard output free."""
     return options.output not in (None, STANDARD)
 
 
 def serves_a_program(options: argparse.Namespace) -> bool:
-    """Does a program read result and messages, each through a pipe, as ``Command`` of launch?
+    """Return whether a program reads result and messages through pipes, as launch's ``Command``.
 
-    That takes any word on standard error for a failure. A terminal, a log file, ``-o`` and
+    That takes any text on standard error for a failure. A terminal, a log file, ``-o`` and
     ``--verbose`` get all messages.
     """
     if options.output or options.in_place or options.verbose:
@@ -130,7 +130,7 @@ def serves_a_program(options: argparse.Namespace) -> bool:
 
 
 def _pipe(stream: TextIO | None) -> int | None:
-    """The number of the pipe that a stream writes to; None if it is none."""
+    """Return the number of the pipe that a stream writes to; None if it is none."""
     try:
         found = os.fstat(stream.fileno()) if stream else None
     except OSError:
@@ -139,7 +139,7 @@ def _pipe(stream: TextIO | None) -> int | None:
 
 
 def watched(items: Iterable[_T], total: int, doing: str) -> Iterable[_T]:
-    """The same items, with a progress bar where there are many and a terminal shows it."""
+    """Return the same items, with a progress bar on a terminal if there are many."""
     if total < MANY or not sys.stderr.isatty():
         return items
     from rich.console import Console
@@ -154,8 +154,8 @@ def is_screen(stream: TextIO | None) -> TypeGuard[TextIO]:
 
 
 def status() -> Callable[[str], None]:
-    """What shows a line about the work, in the place of the one before; an empty one takes it away. It
-    shows nothing where standard error is no terminal."""
+    """Return a function that shows a line about the work in place of the one before. An empty line
+    removes it. Nothing is shown if standard error is no terminal."""
     screen = sys.stderr
     if not is_screen(screen):
         return lambda _: None
@@ -199,7 +199,7 @@ def print_bytes(data: bytes) -> None:
 
 
 def print_lines(lines: Iterable[object]) -> None:
-    """A line each to standard output; what is no text of one line is shown escaped."""
+    """Print each line to standard output; odd characters are escaped."""
     print_bytes("".join(f"{one_line(str(line))}\n" for line in lines).encode())
 
 
@@ -209,24 +209,24 @@ def prints_colour(options: argparse.Namespace) -> bool:
 
 
 def say(text: str, program: str) -> None:
-    """A line to standard error."""
+    """Print a line to standard error."""
     sys.stderr.write(f"{one_line(f'{program}: {text}')}\n")
 
 
 def note(options: argparse.Namespace, text: str) -> None:
-    """A summary or remark to standard error, unless ``--quiet``."""
+    """Print a summary or remark to standard error, unless ``--quiet``."""
     if not options.quiet:
         say(text, options.program)
 
 
 def detail(options: argparse.Namespace, text: str) -> None:
-    """A line to standard error that only ``--verbose`` asks for."""
+    """Print a line to standard error with ``--verbose`` only."""
     if options.verbose and not options.quiet:
         say(text, options.program)
 
 
 def diff(old: bytes, new: bytes, name: str, new_name: str, colour: bool = False) -> bytes:
-    """A unified diff that patch reads."""
+    """Return a unified diff that patch reads."""
     from difflib import diff_bytes, unified_diff
 
     # Unlike splitlines, this ends lines at line feeds only, as patch does.
@@ -238,7 +238,7 @@ def diff(old: bytes, new: bytes, name: str, new_name: str, colour: bool = False)
 
 
 def _named(path: str) -> bytes:
-    """The bytes of a path; what would end its line is escaped."""
+    """Return the bytes of a path, with control characters escaped."""
     return os.fsencode("".join(it if it >= " " else one_line(it) for it in path))
 
 
@@ -268,12 +268,12 @@ def deliver_changed(
     deliver(options, b"".join(patches))
 
 
-def proof_words(unread: Mapping[str, str]) -> str:
-    """Return the word for a change that is proved, with how many descriptions were not read for it."""
-    return f"proved, {plural(len(unread), 'description')} not read" if unread else "proved"
+def verified_words(unread: Mapping[str, str]) -> str:
+    """Return the word for a verified change, with the number of descriptions that were not read."""
+    return f"verified, {plural(len(unread), 'description')} not read" if unread else "verified"
 
 
 def note_unread(options: argparse.Namespace, unread: Mapping[str, str]) -> None:
     """Name the descriptions that could not be read, each with the reason."""
     for path, why in unread.items():
-        note(options, f"not looked at: {why or path}")
+        note(options, f"not checked: {why or path}")

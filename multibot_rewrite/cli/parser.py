@@ -47,7 +47,7 @@ class Parser(argparse.ArgumentParser):
         return painted(super().format_help(), is_coloured(self.colour, sys.stdout))
 
     def known(self) -> list[str]:
-        """The names of all options."""
+        """Return the names of all options."""
         return [name for action in self._actions for name in action.option_strings]
 
     def arguments(self) -> list[str]:
@@ -81,14 +81,14 @@ _plain = partial(_Formatter, width=96)
 
 
 def painted(text: str, colour: bool) -> str:
-    """A help text with bold headings and coloured names of options."""
+    """Return a help text with bold headings and coloured names of options."""
     if not colour:
         return text
     return _NAME.sub("\033[36m\\1\033[0m", _HEADING.sub("\033[1m\\1\033[0m", text))
 
 
 def make_parser(command: Command, prog: str = "") -> Parser:
-    """The parser of a command; ``prog`` is how it is called, if not by its name."""
+    """Return the parser of a command; ``prog`` is the name it is called by, if not its own."""
     result = Parser(
         prog=prog or command.name,
         usage=command.usage,
@@ -136,7 +136,7 @@ def short_help(command: Command, prog: str) -> str:
 
 
 def _fitted(example: Example) -> str:
-    """An example in one line; empty if that is too long."""
+    """Return an example in one line, empty if that is too long."""
     lines = (
         f"  {example.command}    # {example.about}" * bool(example.about),
         f"  {example.command}",
@@ -145,7 +145,7 @@ def _fitted(example: Example) -> str:
 
 
 def _names(group: OptionGroup) -> list[str]:
-    """The options of a group by name, wrapped."""
+    """Return the options of a group by name, wrapped."""
     title = group.title.partition(",")[0]
     words = [
         it.names[-1] if it.names[0].startswith("-") else it.keywords["metavar"]
@@ -162,7 +162,7 @@ def _example(example: Example) -> str:
 
 
 def wrapped(text: str, width: int = 80) -> str:
-    """A paragraph in lines of that width."""
+    """Return a paragraph in lines of that width."""
     lines = [""]
     for word in text.split():
         if len(lines[-1]) + len(word) >= width:
@@ -172,7 +172,7 @@ def wrapped(text: str, width: int = 80) -> str:
 
 
 def parsed(parser: Parser, words: Sequence[str]) -> argparse.Namespace:
-    """What the words say; a mistake ends the process with one line."""
+    """Return the options in the words; a mistake ends the process with one line."""
     parser.colour = _colour_asked(words)
     if wrong := _first_unknown_option(words, parser.known()):
         from multibot_rewrite.cli.hints import option_hint  # a mistake alone needs it
@@ -200,7 +200,7 @@ def parsed(parser: Parser, words: Sequence[str]) -> argparse.Namespace:
 
 
 def _tell_sources(options: argparse.Namespace) -> None:
-    """The sources of a graph by their kind; raises UsageError for several, unless all are saved."""
+    """Set the options for a graph's sources by kind; raises UsageError for several kinds."""
     saved, *others = ([it for of, it in options.sources if of == kind] for kind in SOURCES)
     single = [it for its in others for it in its]
     if len(single) + bool(saved) > 1:
@@ -210,7 +210,7 @@ def _tell_sources(options: argparse.Namespace) -> None:
 
 
 def _kind_of(word: str, program: str) -> str:
-    """What a file is that a command does not take, and which one does."""
+    """Return the kind of a file that a command does not take, with the command for it."""
     from multibot_rewrite.base.bounded import read_bytes
     from multibot_rewrite.base.file_kinds import refuse_others
 

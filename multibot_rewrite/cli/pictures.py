@@ -26,7 +26,7 @@ _SOURCES = (".urdf", ".xacro", ".srdf", ".sdf", ".xml", ".world", ".yaml", ".yml
 
 
 def check(options: argparse.Namespace) -> None:
-    """Raises UsageError for a page that cannot go where it is asked for, before any work."""
+    """Raise UsageError, before any work, for a report that cannot be written to its file."""
     target = vars(options).get("report")
     if target is None:
         return

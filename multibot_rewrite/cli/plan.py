@@ -77,7 +77,7 @@ def _write(options: argparse.Namespace, plan: System) -> None:
 
 
 def _of_launch(options: argparse.Namespace) -> int:
-    """The plan of what a launch file starts; what is not known of it is said."""
+    """Write the plan of what a launch file starts; returns the exit code."""
     given = given_options(options, NOT_OF_LAUNCH)
     if given or options.form != PLAN:
         what = given[0] if given else "--form"
@@ -102,7 +102,7 @@ def deliver_rules(options: argparse.Namespace, made: Fleet) -> None:
     known = {node.robot for node in made.table.runs}
     nothing = [robot for robot in made.inventories if robot not in known]
     if nothing:
-        hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
+        hint = f"name a node set of its nodes, or leave out {NO_STATE_PUBLISHER}"
         note(options, f"no node of {', '.join(nothing)} is known, so no rule is for it; {hint}")
     if options.form == TABLE:
         rows = [

@@ -82,13 +82,13 @@ def _refused(options: argparse.Namespace, error: RewriteRefused) -> int:
 
 
 def run_alone(command: Command, arguments: Sequence[str] | None) -> int:
-    """A command that is a program; ``arguments`` are those of the process if they are None."""
+    """Run a command that is a program; ``arguments`` are those of the process if they are None."""
     words = sys.argv[1:] if arguments is None else arguments
     return guarded(command.name, partial(start, command, words), own_process=arguments is None)
 
 
 def guarded(program: str, run: Callable[[], int], own_process: bool) -> int:
-    """The exit code of ``run``; its errors are reported in the name of ``program``.
+    """Return the exit code of ``run``; its errors are reported in the name of ``program``.
 
     With ``own_process`` SIGTERM and SIGHUP end it as Ctrl-C does, and this does not return: nothing
     else runs in this process.
@@ -122,7 +122,7 @@ def _guarded(program: str, run: Callable[[], int], own_process: bool) -> int:
                 signal.signal(signal.SIGHUP, signal.default_int_handler)
         return run()
     except ProofError as error:
-        fault = "the proof failed, nothing was written; this is a fault of the tool"
+        fault = "verification failed, nothing was written; this is a fault of the tool"
         say(f"{fault}: {error}", program)
         return STOPPED
     except MultibotError as error:

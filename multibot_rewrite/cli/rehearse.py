@@ -71,8 +71,8 @@ def run(options: argparse.Namespace) -> int:
 def _played(
     options: argparse.Namespace, plan: System, nodes: Sequence[Stub]
 ) -> tuple[dict[int, System], dict[str, str]]:
-    """What is seen of the stubs in each domain of the plan, and which types are replaced; the domains
-    that they are played in are free ones of this machine."""
+    """Play the stubs and return the graph seen in each domain of the plan, and the replaced types. The
+    domains they are played in are free ones of this machine."""
     parts, numbers = by_domain(plan) or {ONE: plan}, domain_of(plan)
     environs = stages(options.domain, len(parts))
     casts = {

@@ -7,7 +7,7 @@ import argparse
 
 from multibot_rewrite.base.config import configured_vocabulary
 from multibot_rewrite.base.wording import plural
-from multibot_rewrite.cli.output import deliver_changed, detail, note, note_unread, proof_words
+from multibot_rewrite.cli.output import deliver_changed, detail, note, note_unread, verified_words
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.usage import arguments_alone
 from multibot_rewrite.refactor.rename import MOST_MENTIONS, Renaming, rename_symbol
@@ -34,7 +34,7 @@ def _tell(options: argparse.Namespace, made: Renaming) -> None:
     where = f"{plural(made.places, 'place')} in {plural(len(made.after), 'file')}"
     note(
         options,
-        f"{options.kind} {options.old} -> {options.new}: {where}; {proof_words(made.unread)}",
+        f"{options.kind} {options.old} -> {options.new}: {where}; {verified_words(made.unread)}",
     )
     note_unread(options, made.unread)
     if left := made.mentions:

@@ -73,7 +73,7 @@ def check_report(options: argparse.Namespace, printed: bool) -> None:
 
 
 def chosen(options: argparse.Namespace, findings: Iterable[Finding]) -> list[Finding]:
-    """The findings that ``--select`` and ``--ignore`` ask for."""
+    """Return the findings that ``--select`` and ``--ignore`` ask for."""
     codes = tuple(options.select) or Selection().select
     return selected(findings, Selection(codes, tuple(options.ignore)))
 

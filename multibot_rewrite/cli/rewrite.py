@@ -32,7 +32,7 @@ from multibot_rewrite.cli.rewrite_use import (
 )
 from multibot_rewrite.cli.usage import rewriting, robots, xacro_args
 from multibot_rewrite.cli.walk import standard_input
-from multibot_rewrite.description.checks.verdict import given, not_proved
+from multibot_rewrite.description.checks.verdict import given, not_verified
 from multibot_rewrite.description.library import Rewrite, rewrite_all, strip
 from multibot_rewrite.description.readback.meeting import NUMBERED
 from multibot_rewrite.description.sources.own_names import filled, name_robot
@@ -40,7 +40,7 @@ from multibot_rewrite.description.sources.read import Source
 from multibot_rewrite.description.sources.whole import read_whole
 
 # What the summary calls a kind whose own word says little; the others are their own word.
-WORDS = {"stem": "topic word"}
+WORDS = {"stem": "topic prefix"}
 
 
 def run(options: argparse.Namespace) -> int:
@@ -93,7 +93,7 @@ def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:
         raise with_missing_options(error, options, undo, robot) from None
     check_unread(options, [robot], (*read.read, *beside))
     deliver(options, [(robot, read.data, stripped)], 1)
-    tell(options, f"{robot} taken out, proved by rewriting again")
+    tell(options, f"{robot} taken out, verified by rewriting again")
     if words := more_to_undo(stripped, options, undo, robot):
         tell(options, f"warning: {robot} is in all links still; was the file made with {words}?")
     return DONE
@@ -172,8 +172,8 @@ def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:
 def summary(
     first: Rewrite, robots: list[str], own_arguments: str = "", of_release: str = ""
 ) -> str:
-    """One line: how many names of each kind were renamed, how many the xacro's own arguments have
-    named, and the release with what says so."""
+    """Return one line: the number of renamed names of each kind, the names that arguments of the xacro
+    set, whether the result is verified, and the release with the reason for it."""
     inventory, plan = first.template.inventory, first.template.plan
     names = {
         (kind, claim.value)
@@ -183,12 +183,13 @@ def summary(
     counts = Counter(kind for kind, _ in names)
     known = [plural(counts[it], WORDS.get(it, it)) for it in SEPARATORS if counts[it]]
     own = first.prepared.job.naming.own
-    known += [f"{plural(len(own), 'name')} by {own_arguments}"] if own else []
-    inserted = f", {len(plan.insertions)} inserted" if plan.insertions else ""
+    known += [f"{plural(len(own), 'name')} set by {own_arguments}"] if own else []
+    renamed = f"renamed {', '.join(known)}" if known else "nothing to rename"
+    added = f"; added {plural(len(plan.insertions), 'element')}" if plan.insertions else ""
     who = robots[0] if len(robots) == 1 else plural(len(robots), "robot")
-    why = not_proved(first.findings)
+    why = not_verified(first.findings)
     aside = dict(first.prepared.job.aside)
-    proved = " ".join(filter(None, ["proved", given(first.findings, aside)]))
-    end = f"rewritten, not proved: {', '.join(why)}" if why else proved
+    verified = " ".join(filter(None, ["Verified", given(first.findings, aside)]))
+    end = f"Not verified: {', '.join(why)}" if why else verified
     end += facts_of_release(first.distro, of_release)
-    return f"{who}: {', '.join(known) or 'nothing to rename'}{inserted}; {end}"
+    return f"{who}: {renamed}{added}. {end}"

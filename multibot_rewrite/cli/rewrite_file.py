@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``urdf-postfix`` for a file beside a description: parameters, RViz, MoveIt, a bridge, a tree, Lua."""
+"""``urdf-postfix`` for a related file: parameters, RViz, MoveIt, a bridge, a tree, Lua."""
 
 from __future__ import annotations
 
@@ -60,8 +60,8 @@ def run(options: argparse.Namespace, source: Source, names: list[str]) -> int:
 
 
 def summary(made: list[RewrittenFile], robots: list[str], release: str, of_release: str) -> str:
-    """One line: what it is, and whether it is proved."""
+    """Return one line: the kind of the file, and whether the result is verified."""
     who = robots[0] if len(robots) == 1 else plural(len(robots), "robot")
-    why = dict.fromkeys(it for one in made for it in one.not_proved)
-    end = f"rewritten, not proved: {', '.join(why)}" if why else "proved"
-    return f"{who}: {WORDS[made[0].kind]}; {end}{facts_of_release(release, of_release)}"
+    why = dict.fromkeys(it for one in made for it in one.not_verified)
+    end = f"Not verified: {', '.join(why)}" if why else "Verified"
+    return f"{who}: rewrote {WORDS[made[0].kind]}. {end}{facts_of_release(release, of_release)}"

@@ -107,7 +107,7 @@ def _same_file(path: str, other: str) -> bool:
 
 
 def below(output: str | None, source: str) -> str | None:
-    """The output where it is a folder: a file of each robot below it, as a build has them."""
+    """Return the output; for a folder, the pattern of each robot's file below it, as in a build."""
     if not output or not (output.endswith("/") or os.path.isdir(output)):
         return output
     name = "robot.urdf" if source == "-" else os.path.basename(source).removesuffix(".xacro")
@@ -115,12 +115,12 @@ def below(output: str | None, source: str) -> str | None:
 
 
 def target_path(output: str, robot: str) -> str:
-    """The output file of one robot."""
+    """Return the output file of one robot."""
     return output.replace(PLACEHOLDER, robot)
 
 
 def input_name(options: argparse.Namespace) -> str:
-    """The input as messages call it."""
+    """Return the input as messages call it."""
     if options.input == "-":
         return "<stdin>"
     expanded = " (expanded)" if is_xacro(options.input) else ""
@@ -142,7 +142,7 @@ def is_stopped(
 
 
 def tell(options: argparse.Namespace, text: str) -> None:
-    """A line beside the result, unless a program reads it."""
+    """Print a line in addition to the result, unless a program reads it."""
     if not options.silent:
         note(options, text)
 

@@ -92,7 +92,7 @@ def _remark(options: argparse.Namespace, caveat: Caveat) -> None:
 
 
 def report(snapshot: System) -> Iterator[str | Grid]:
-    """What is printed: how it was looked, a row a node, a tf topic, a header, a node's answer."""
+    """Yield lines and tables of a snapshot: nodes, tf topics, headers, answers of nodes."""
     yield _headline(snapshot)
     # Small numbers in place of the process groups; nothing where the group is not known.
     groups = sorted({node.process for node in snapshot.nodes} - {""})
@@ -184,7 +184,7 @@ def write_nodes(options: argparse.Namespace, graph: System) -> int:
         deliver(options, to_nodes_yaml(learned, stack, library).encode(), editors.NODES)
     for remark in remarks:
         note(options, f"note: {remark}")
-    shape = "NoDL" if as_nodl else f"stack {stack}"
+    shape = "NoDL" if as_nodl else f"node set {stack}"
     what = f"{plural(len(learned), 'node')} learned as {shape}"
     note(options, f"{what}{facts_of_release(release)}")
     return live.INCONCLUSIVE if doubtful else DONE

@@ -35,7 +35,7 @@ def deliver_report(options: argparse.Namespace, parts: Iterable[str | Grid]) -> 
 
 
 def _width(options: argparse.Namespace) -> int | None:
-    """The terminal's width; None where a program or a file gets the text."""
+    """Return the terminal's width; None if a program or a file gets the text."""
     if goes_to_file(options) or sys.stdout is None or not sys.stdout.isatty():
         return None
     from shutil import get_terminal_size
@@ -44,7 +44,7 @@ def _width(options: argparse.Namespace) -> int | None:
 
 
 def render(parts: Iterable[str | Grid], width: int | None = None, colour: bool = False) -> str:
-    """The report as text; without a ``width`` nothing is folded."""
+    """Return the report as text; without a ``width`` nothing is folded."""
     return "".join(f"{line.rstrip()}\n" for part in parts for line in _lines(part, width, colour))
 
 
@@ -72,7 +72,7 @@ def _table(grid: Grid, width: int | None, colour: bool) -> Iterator[str]:
 
 
 def _fitted(grid: Grid, width: int | None) -> list[int] | None:
-    """The width of each column; None where names would have to be cut."""
+    """Return the width of each column; None if names would have to be cut."""
     columns = [*zip(grid.columns, *grid.rows, strict=True)]
     natural = [max(map(len, cells)) for cells in columns]
     least = [max(len(it) for cell in cells for it in _pieces(cell)) for cells in columns]
@@ -89,12 +89,12 @@ def _fitted(grid: Grid, width: int | None) -> list[int] | None:
 
 
 def _pieces(cell: str) -> list[str]:
-    """The parts of a cell between which it may be folded."""
+    """Return the parts of a cell between which it may be folded."""
     return [it.rstrip() for it in _PIECE.findall(cell) if it] or [""]
 
 
 def _folded(cell: str, width: int) -> list[str]:
-    """A cell in lines of that width."""
+    """Return a cell in lines of that width."""
     lines = [""]
     for piece in filter(None, _PIECE.findall(cell)):
         if len(lines[-1]) + len(piece.rstrip()) > width:
@@ -104,7 +104,7 @@ def _folded(cell: str, width: int) -> list[str]:
 
 
 def _row(row: Sequence[str], grid: Grid, widths: Sequence[int]) -> Iterator[str]:
-    """The lines of a row, one for most."""
+    """Yield the lines of a row, usually one."""
     folded = [_folded(cell, width) for cell, width in zip(row, widths, strict=True)]
     for line in zip_longest(*folded, fillvalue=""):
         cells = zip(line, grid.columns, widths, strict=True)

@@ -31,7 +31,7 @@ def with_missing_options(
 ) -> RewriteRefused:
     """Return the error with the options that are missing as its hint, if some make ``undo`` succeed.
 
-    What ``undo`` gives is proved: rewritten with these options it is the file again.
+    What ``undo`` gives is verified: rewritten with these options it is the file again.
     """
     words = _fullest(options, undo, robot)[1]
     hint = f"the file was made with {words}: give that, too"

@@ -30,7 +30,7 @@ from multibot_rewrite.system.tool_nodes import is_tool
 
 
 def run(options: argparse.Namespace, domains: Sequence[int] = ()) -> int:
-    """Look, report, sum up; returns the exit code. Several ``domains`` are looked at side by side."""
+    """Look, report, sum up; returns the exit code. Several ``domains`` are checked side by side."""
     _check_use(options, domains)
     if options.watch:
         return _watch(options, domains)
@@ -101,7 +101,7 @@ def _report(
     empty: Sequence[str],
     each: Mapping[int, Diagnosis],
 ) -> int:
-    """The findings, and what is asked for; ``empty`` says that there was nothing to see."""
+    """Report the findings and write what is asked for; ``empty`` are reasons why nothing was seen."""
     findings = chosen(options, seen.findings)
     about = _about(options, seen)
     failed = report_first(options, findings, about)
@@ -123,7 +123,7 @@ def _about(options: argparse.Namespace, seen: Diagnosis) -> About:
 
 
 def _nothing_seen(seen: Diagnosis) -> Iterator[str]:
-    """A graph in which nothing runs is not a healthy one; a recording never has nodes."""
+    """Yield a reason if no robot's node runs; a recording never has nodes."""
     only_tools = all(is_tool(node.name) for node in seen.graph.nodes)
     if only_tools and not seen.findings and not is_recorded(seen.graph):
         yield "no node of a robot is in this graph, so there is nothing to judge"
@@ -166,8 +166,8 @@ def _watch(options: argparse.Namespace, domains: Sequence[int] = ()) -> int:
 
 
 def _looking(each: dict[int, Diagnosis]) -> Look:
-    """What is found in one graph after another, ``each`` of the last; a robot that ran is missed when
-    it is gone."""
+    """Return a function that judges one graph after another; ``each`` keeps the last. A robot that ran
+    is reported when it is gone."""
     known: dict[str, set[str]] = {}
 
     def look(views: Mapping[int, System]) -> tuple[System, Coverage, Sequence[Finding]]:

@@ -20,7 +20,7 @@ OF_DESCRIPTION = tuple(kind for kind in SEPARATORS if kind not in ROS_SEPARATORS
 
 
 def policy(options: argparse.Namespace) -> Policy:
-    """The naming policy that the options ask for, as ``make_naming`` takes it; only what is given."""
+    """Return the naming options that are given, as ``make_naming`` takes them."""
     given = {name: getattr(options, name) for name in ("layout", "affix", "topics")}
     words: Policy = {name: value for name, value in given.items() if value is not None}  # type: ignore[assignment]
     if options.separator:
@@ -34,7 +34,7 @@ def policy(options: argparse.Namespace) -> Policy:
 
 
 def rewriting(options: argparse.Namespace) -> dict[str, Any]:
-    """What the options say to every call of the library that rewrites, undoes or explains."""
+    """Return the options for every library call that rewrites, undoes or explains."""
     return {
         **policy(options),
         "urdf": options.urdf,
@@ -56,7 +56,7 @@ def separators(options: argparse.Namespace) -> dict[str, str]:
 
 
 def plain_words(options: argparse.Namespace) -> list[str]:
-    """The words that are not xacro arguments."""
+    """Return the words that are not xacro arguments."""
     return [word for word in options.words if ":=" not in word]
 
 
@@ -91,13 +91,13 @@ def named_robots(options: argparse.Namespace) -> list[str]:
 
 
 def xacro_args(options: argparse.Namespace) -> dict[str, str]:
-    """The words that are xacro arguments, as name -> value."""
+    """Return the xacro arguments in the words, as name -> value."""
     pairs = [word.partition(":=") for word in options.words if ":=" in word]
     return {name: value for name, _, value in pairs}
 
 
 def arguments_alone(options: argparse.Namespace) -> dict[str, str]:
-    """The xacro arguments, of a command that takes no other words; raises UsageError for these."""
+    """Return the xacro arguments of a command without other words; raises UsageError for these."""
     if others := plain_words(options):
         raise UsageError(f"{others[0]!r} is one word too many; xacro arguments are NAME:=VALUE")
     return xacro_args(options)

@@ -36,14 +36,14 @@ def full_names(text: str) -> list[str]:
 
 
 def full_name(text: str) -> str:
-    """The name of a node or a topic with its namespace."""
+    """Return the full name of a node or topic; raises ArgumentTypeError for another text."""
     if not text.startswith("/"):
         raise argparse.ArgumentTypeError(f"{text!r} is not a full name, give for example /{text}")
     return text
 
 
 def path(text: str) -> str:
-    """The name of a file or folder."""
+    """Return the name of a file or folder; raises ArgumentTypeError for an empty one."""
     if not text:
         raise argparse.ArgumentTypeError("the name is empty, give the name of a file")
     return text
@@ -58,7 +58,7 @@ def folders(text: str) -> list[str]:
 
 
 def source(text: str) -> tuple[str, str]:
-    """What a graph is read from, behind the kind of it: one of ``SOURCES``."""
+    """Return the kind of a graph's source, one of ``SOURCES``, and the source."""
     if text.endswith(".json5") or (_ADDRESS.fullmatch(text) and not os.path.exists(text)):
         return ROUTER, zenoh_router(text)
     if text.endswith((".mcap", ".db3", "/")) or os.path.isdir(text):
@@ -67,7 +67,7 @@ def source(text: str) -> tuple[str, str]:
 
 
 def zenoh_router(text: str) -> str:
-    """An endpoint as Zenoh writes it, or the name of a session configuration."""
+    """Return an endpoint as Zenoh writes it, or the name of a session configuration."""
     return text if text.endswith((".json5", ".json")) else zenoh_endpoint(text)
 
 
@@ -95,20 +95,20 @@ def one_of(known: Collection[str]) -> Callable[[str], str]:
 
 
 def some_of(known: Collection[str]) -> Callable[[str], list[str]]:
-    """Some of the words that are known, with commas between."""
+    """Return a function that reads some of the known words, separated by commas."""
     read = one_of(known)
     return lambda text: [read(it) for it in names(text)]
 
 
 def word(text: str) -> str:
-    """One word, as the name of a stack is."""
+    """One word, as the name of a node set is."""
     if not _WORD.fullmatch(text):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a name of a stack, give one word")
+        raise argparse.ArgumentTypeError(f"{text!r} is not a name of a node set, give one word")
     return text
 
 
 def seconds(text: str) -> float:
-    """A time."""
+    """Return a time in seconds; raises ArgumentTypeError for another text."""
     try:
         value = float(text)
     except ValueError:
@@ -121,7 +121,7 @@ def seconds(text: str) -> float:
 
 
 def domain(text: str) -> int:
-    """A ROS_DOMAIN_ID."""
+    """Return a ROS_DOMAIN_ID; raises ArgumentTypeError for another text."""
     if not text.isdecimal() or int(text) > MAX_DOMAIN:
         raise argparse.ArgumentTypeError(f"{text!r} is not a domain, give 0 to {MAX_DOMAIN}")
     return int(text)
@@ -133,7 +133,7 @@ def domains(text: str) -> list[int]:
 
 
 def count(text: str) -> int:
-    """A number, 0 or more."""
+    """Return a number, 0 or more; raises ArgumentTypeError for another text."""
     if not text.isdecimal():
         raise argparse.ArgumentTypeError(f"{text!r} is not a number, give 0 or more")
     return int(text)

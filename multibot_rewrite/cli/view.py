@@ -51,7 +51,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _graph(options: argparse.Namespace) -> System | None:
-    """What was seen or recorded of tf, if that is asked for."""
+    """Return the saved or recorded graph with tf, or None without one."""
     if options.zenoh:
         raise UsageError("view shows what was saved or recorded: save it with multibot snapshot")
     if options.bag:
@@ -77,9 +77,9 @@ def _notes(robots: Sequence[ViewedRobot], meshes: Meshes) -> Iterator[str]:
 
 
 def framed(options: argparse.Namespace, graph: System) -> Framed | None:
-    """The robots for the head of a report, their frames as the graph has them.
+    """Return the robots for the head of a report, with their frames from the graph.
 
-    None, with a note, where they cannot be shown, and where the command knows no description.
+    None, with a note, if they cannot be shown, and if the command has no description.
     """
     given = vars(options)
     try:
@@ -104,7 +104,7 @@ def _meshes(scene: ShownScene) -> Meshes:
 
 
 def _fleet_file(path: str) -> str:
-    """This file, or the fleet file that was built into its folder and is the same since."""
+    """Return this file, or the unchanged fleet file that was built into its folder."""
     if is_fleet(read_file(path)):
         return path
     for name, hash_ in inputs_of(os.path.dirname(path)).items():
@@ -116,7 +116,7 @@ def _fleet_file(path: str) -> str:
 
 
 def _plan(options: argparse.Namespace) -> FleetPlan:
-    """The fleet of a fleet file, or of a description and names of robots."""
+    """Return the fleet of a fleet file, or of a description and names of robots."""
     first: str = options.input
     if first.endswith(FLEET_FILES):
         check_own(options)

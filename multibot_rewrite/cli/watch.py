@@ -47,7 +47,7 @@ def follow(
 
 
 def _print_lines(planned: bool, state: WatchState) -> None:
-    """What changed, for a log: findings come with + and go with -."""
+    """Print what changed, for a log: findings come with + and go with -."""
     at = f"{state.graph.environment.seconds:7.1f} s"
     changes = (("+", state.appeared), ("-", state.solved)) if state.complete else ()
     lines = [f"{at}  {sign} {finding}" for sign, findings in changes for finding in findings]
@@ -56,7 +56,7 @@ def _print_lines(planned: bool, state: WatchState) -> None:
 
 @contextmanager
 def _screen(planned: bool) -> Iterator[Show]:
-    """A screen that is drawn anew at every change."""
+    """Yield a function that redraws a screen at every change."""
     from rich.live import Live
     from rich.text import Text
 

@@ -50,7 +50,7 @@ def _lines(item: Explanation, path: str, robot: str) -> Iterator[str]:
 
 
 def _facts(item: Explanation, robot: str) -> Iterator[str]:
-    """The facts about one value, indented below its place."""
+    """Yield the facts about one value, indented below its place."""
     if item.inserted:
         yield f"  [{item.value}] gets for {robot}: {item.reason}"
         yield from (f"    {element}" for element in item.inserted)

@@ -75,12 +75,11 @@ class BridgeFile(NamedTuple):
 def rewrite_bridge(
     document: YamlText, context: Context, known: Mapping[str, str] = NOTHING, above: str = ""
 ) -> BridgeFile:
-    """What each robot needs for itself; ``known`` is ``fleet_topics`` of the namespace slot,
-    ``above`` the namespace in the robot's that the file is for.
+    """Return the entries that each robot needs for itself, and those for all robots.
 
-    Names come out in full, so it makes no difference which namespace the bridge runs in, whether it
-    expands gz names, and whether one bridge carries all robots. Raises InputError for a file that
-    is no list of entries.
+    ``known`` is ``fleet_topics`` of the namespace slot, ``above`` the namespace in the robot's that the
+    file is for. Names come out in full, so neither the bridge's namespace nor its expansion of gz names
+    changes them. Raises InputError for a file that is no list of entries.
     """
     entries = _entries(document, context, known, above)
     own = [it for it in entries if it.own]
@@ -101,7 +100,7 @@ def rewrite_bridge(
 
 
 def read_bridge(document: YamlText, context: Context) -> NamedFile:
-    """The names of a file, whatever its form; raises nothing."""
+    """Return the names of a file, whatever its form; raises nothing."""
     model, nowhere = model_of(document), Block(0, 0, 0)
     loaded = (it for it in items(document.root) if not any(faults(it)))
     maps = (it for it in loaded if isinstance(it, yaml.MappingNode))
@@ -112,7 +111,7 @@ def read_bridge(document: YamlText, context: Context) -> NamedFile:
 def _entries(
     document: YamlText, context: Context, known: Mapping[str, str], above: str
 ) -> list[BridgeEntry]:
-    """The entries that the bridge loads."""
+    """Return the entries that the bridge loads; raises InputError for a file without a list."""
     root = document.root
     if root is None:
         raise InputError(f"{document.file}: the bridge file is empty; write a list of topics")
@@ -186,12 +185,12 @@ def _entry(
 
 
 def _in_full(name: str) -> str:
-    """A relative name would follow the namespace of the bridge; a placeholder stays."""
+    """Return an absolute name, which the bridge's namespace does not change; a placeholder stays."""
     return name if PLACEHOLDER.search(name) else f"/{name.lstrip('/')}"
 
 
 def gz_topic(context: Context, name: str, gz_type: str = "") -> str:
-    """A gz topic as the rewritten description and the spawned model have it."""
+    """Return a gz topic as the rewritten description and the spawned model have it."""
     found = GZ_MODEL.fullmatch(name)
     rest = (found["rest"] or "") if found else name
     if PLACEHOLDER.search(rest):
@@ -223,7 +222,7 @@ def gz_topic(context: Context, name: str, gz_type: str = "") -> str:
 
 
 def _made_parts(context: Context, name: str) -> list[NamePart]:
-    """The names in a topic that a system of the description makes of a word of its parameters."""
+    """Return the names in a topic that a Gazebo system builds from one of its parameters."""
     parts = [*parts_of(name, context.names.words, context.names.declared)]
     # The description spells what it gives in full: there the model is one of its names.
     naming, is_given = context.names.naming, name.lstrip("/") in context.names.given
@@ -254,7 +253,7 @@ def _splices(document: YamlText, entry: BridgeEntry) -> Iterator[Splice]:
 
 
 def _only(document: YamlText, kept: Sequence[BridgeEntry]) -> list[Splice]:
-    """The splices that take all other entries out of the file."""
+    """Return the splices that remove all other entries from the file."""
     assert document.root is not None
     stay = {it.block for it in kept}
     found = blocks(document, document.root)

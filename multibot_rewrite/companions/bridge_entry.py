@@ -22,18 +22,9 @@ BOTH, ROS, GZ = "topic_name", "ros_topic_name", "gz_topic_name"
 TYPES = ("ros_type_name", "gz_type_name")
 DIRECTIONS = ("BIDIRECTIONAL", "GZ_TO_ROS", "ROS_TO_GZ")
 SERVICE, FRAME = "service_name", "frame_id"
-KEYS: tuple[str, ...] = (
-    BOTH,
-    ROS,
-    GZ,
-    *TYPES,
-    SERVICE,
-    "direction",
-    "publisher_queue",
-    "subscriber_queue",
-    "lazy",
-)
-KEYS += ("publish_optical_frame", FRAME, "qos_profile", "gz_req_type_name", "gz_rep_type_name")
+KEYS: tuple[str, ...] = (BOTH, ROS, GZ, *TYPES, SERVICE, "direction", "publisher_queue")
+KEYS += ("subscriber_queue", "lazy", "publish_optical_frame", FRAME, "qos_profile")
+KEYS += ("gz_req_type_name", "gz_rep_type_name")
 GZ_MODEL = re.compile(r"(?P<above>/?(?:world/[^/]+/)?model/)(?P<model>[^/]+)(?P<rest>/.*)?")
 # A link, joint or sensor in a gz topic.
 PART = re.compile(r"(?<=/)(link|joint|sensor)/([^/]+)")
@@ -67,12 +58,12 @@ _OUT = "the bridge leaves it out"
 
 
 def row_of(node: yaml.Node) -> Row:
-    """The keys and values of an entry by the texts of the keys."""
+    """Return the keys and values of an entry by the texts of the keys."""
     return {str(key.value): (key, value) for key, value in pairs(node)}
 
 
 def text_in(row: Row, key: str) -> str:
-    """The value of a key as text; empty if it is missing or not a scalar."""
+    """Return the value of a key as text; empty if it is missing or not a scalar."""
     value = row[key][1] if key in row else None
     return str(value.value) if isinstance(value, yaml.ScalarNode) else ""
 
@@ -100,7 +91,7 @@ def faults(node: yaml.Node) -> Iterator[RowFault]:
 
 
 def below(name: str, above: str) -> str:
-    """A ROS name of a bridge that runs in a namespace below the robot's."""
+    """Return a ROS name of a bridge that runs in the namespace ``above`` below the robot's."""
     return f"/{above}/{name}" if above and not name.startswith("/") else name
 
 
@@ -114,5 +105,5 @@ def models(document: YamlText) -> Iterator[tuple[yaml.Node, str]]:
 
 
 def model_of(document: YamlText) -> str:
-    """The model that a file is for: the first in its gz topics, empty for none."""
+    """Return the model that a file is for: the first in its gz topics, empty for none."""
     return next((name for _, name in models(document)), "")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a companion file is rewritten with, the same for every robot of one description; and a text
+"""What a related file is rewritten with, the same for every robot of one description; and a text
 with slots for a robot's namespace and tag: made once, filled for each robot.
 """
 
@@ -33,7 +33,7 @@ class FileTemplate(NamedTuple):
 
 
 def number_slot(first: int) -> str:
-    """What stands for a number of the robot; raises nothing."""
+    """Return the slot for a number of the robot, which is ``first`` for the first robot."""
     return f"{_NUMBER}{first}Slot"
 
 
@@ -45,7 +45,7 @@ def check_no_slots(text: str, file: str) -> None:
 
 
 def make_template(text: str, splices: Iterable[Splice]) -> FileTemplate:
-    """The text with the splices made; their new text may hold slots. They do not overlap."""
+    """Return the text with the splices applied; their new text may hold slots. They do not overlap."""
     held: list[str] = [""]
     at = 0
     for start, end, new in sorted(set(splices)):
@@ -59,7 +59,7 @@ def make_template(text: str, splices: Iterable[Splice]) -> FileTemplate:
 
 
 def fill_template(template: FileTemplate, namespace: str, tag: str, number: int = 0) -> str:
-    """The text for a robot, which is the ``number``-th one after the first that has the file."""
+    """Return the text for a robot, the ``number``-th one after the first that has the file."""
     pieces = list(template.pieces)
     pieces[1::2] = [_filled(slot, namespace, tag, number) for slot in pieces[1::2]]
     return "".join(pieces)
@@ -77,7 +77,7 @@ NO_FRAMES: Frames = {}
 
 class Context(NamedTuple):
     """``names`` is the rename map of links, joints and frames, ``topics`` that of ROS names, both
-    with a slot for the robot. ``nodes`` maps a node's name in the stack to the full name it runs
+    with a slot for the robot. ``nodes`` maps a node's name in the node set to the full name it runs
     under; nodes that serve all robots keep theirs. ``distro`` is the ROS release. ``frames`` are
     those that the robots have in the place of a default: by the node's last name and the parameter.
     """
@@ -97,8 +97,8 @@ def make_context(
     own: Mapping[tuple[str, str], str] = NO_OWN,
     words: Stems = NO_WORDS,
 ) -> Context:
-    """The context of a description (not rewritten) and the nodes that its robots run; ``own`` and
-    ``words`` as in ``CompanionNames``."""
+    """Return the context of a description (not rewritten) and the nodes of its robots; ``own`` and
+    ``words`` are those of ``CompanionNames``."""
     nodes = {
         it.name: f"/{it.name}" if it.shared else full_name(it.name, naming, it.apart)
         for it in facts
@@ -108,7 +108,7 @@ def make_context(
 
 
 def full_name(node: str, naming: Naming, apart: bool = False) -> str:
-    """The full name that a robot's node runs under, with a slot for the robot; ``apart`` as in
-    ``NodeFacts``."""
+    """Return the full name that a robot's node runs under, with a slot for the robot; ``apart`` is that
+    of ``NodeFacts``."""
     namespace, name = placed(NAMESPACE_SLOT, node, naming, apart)
     return f"{namespace.rstrip('/')}/{name}"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every kind of file beside a description, rewritten: its sites and their new texts -> splices."""
+"""Every kind of related file, rewritten: its sites and their new texts -> splices."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ _MARKS = re.compile(r"(?:[&!][^\s,\[\]{}]*\s+)*")
 
 
 def spell_site(context: Context, facts: Facts, site: Site) -> TopicText:
-    """What the name of a site becomes for a robot; ``facts`` are the robot's nodes, whose remap rules
-    move topics too."""
+    """Return the name of a site for a robot; ``facts`` are the robot's nodes, whose remap rules move
+    topics too."""
     if site.kind in GRAPH:
         return spell_topic(context, site.node, site.kind, site.text, site.reach, facts)
     if site.kind == "controller_topic":
@@ -52,7 +52,7 @@ def _controller_topic(context: Context, facts: Facts, site: Site) -> TopicText:
 
 
 def text_of(context: Context, facts: Facts, site: Site) -> str:
-    """The text alone; raises nothing."""
+    """Return the text of a site's new name; raises nothing."""
     return spell_site(context, facts, site).text
 
 
@@ -67,10 +67,10 @@ def with_slots(file: NamedFile, facts: Facts, more: Iterable[Splice] = ()) -> Co
 
 
 def splices_of(text: str, file: str, made: Iterable[tuple[Site, str]]) -> Iterator[Splice]:
-    """The splices that give each site its new text. A value may hold several names, and an alias may
-    reach one twice; a block of text stays.
+    """Yield the splices that give each site its new text.
 
-    Raises InputError for one text that would need two names, and for a value that cannot be edited.
+    A value may hold several names, and an alias may reach one twice; a block of text stays. Raises
+    InputError for one text that would need two names, and for a value that cannot be edited.
     """
     values: dict[int, dict[int, tuple[Site, str]]] = {}
     for site, new in made:
@@ -90,7 +90,7 @@ def splices_of(text: str, file: str, made: Iterable[tuple[Site, str]]) -> Iterat
 
 
 def written(text: str, file: str, slot: Slot, new: str) -> Splice:
-    """The splice that gives a slot another value; an anchor and a tag before it stay."""
+    """Return the splice that gives a slot another value; an anchor and a tag before it stay."""
     if slot.style == UNCLEAR:
         place = f"{file}:{slot.line}"
         raise InputError(f"{place}: {slot.value!r} cannot be edited in place; write it on one line")

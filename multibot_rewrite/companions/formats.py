@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The kinds of files beside a description: how each is read, made for any robot, and rewritten
+"""The kinds of related files: how each is read, made for any robot, and rewritten
 alone.
 """
 
@@ -45,15 +45,15 @@ _Writer = Callable[[bytes, str, Context, Iterable[NodeFacts]], Companion]
 
 
 def read_named(kind: str, data: bytes, file: str, context: Context) -> NamedFile:
-    """The names of a file of a kind; raises InputError for one that its reader rejects."""
+    """Return the names of a file of a kind; raises InputError for one that its reader rejects."""
     return _READERS[kind](data, file, context)
 
 
 def made_for_any(
     kind: str, data: bytes, file: str, context: Context, facts: Iterable[NodeFacts] = ()
 ) -> Companion:
-    """A file with slots for a robot; ``facts`` are those of the robot's nodes, whose remap rules move
-    topics too. RViz and bridges are for all robots. Raises InputError as ``read_named``."""
+    """Return a file with slots for a robot; ``facts`` are those of the robot's nodes, whose remap rules
+    move topics too. RViz and bridges are for all robots. Raises InputError as ``read_named``."""
     return _WRITERS[kind](data, file, context, facts)
 
 
@@ -82,7 +82,7 @@ _IN_BRACES = lazy_compile(rb"\bros__parameters\b")
 
 
 def kind_alone(data: bytes, file: str) -> str:
-    """The kind of a file by its text; InputError for a file of no kind."""
+    """Return the kind of a file by its contents; raises InputError for a file of no kind."""
     found = kind_of(data)
     if found or _IN_BRACES.search(data):
         return found or PARAMS
@@ -109,9 +109,9 @@ class OneFile(NamedTuple):
 def rewrite_alone(
     kind: str, data: bytes, file: str, context: Context, robot: str, number: int
 ) -> OneFile:
-    """The file for a robot whose word in names and in the graph is one, the ``number``-th after the
-    first; what a bridge carries for all robots is in that of the first. Raises InputError for a file
-    that its reader rejects."""
+    """Return the file for a robot with one name in names and in the graph, the ``number``-th after the
+    first. Topics that a bridge has for all robots are in the file of the first. Raises InputError for a
+    file that its reader rejects."""
     if kind == RVIZ:
         document = read_yaml(data, file)
         names, topics = (it._replace(robot=robot) for it in (context.names, context.topics))
@@ -131,7 +131,7 @@ def rewrite_alone(
 
 
 def _of(context: Context, robot: str) -> Context:
-    """The context of the robot's own description, in which every name is the robot's."""
+    """Return the context of the robot's own description, in which every name is the robot's."""
     names = context.names._replace(robot=robot)
     declared = {
         kind: {spell(names, kind, it): at for it, at in its.items()} if kind in KINDS else its

@@ -21,7 +21,7 @@ from multibot_rewrite.companions.joined import (
     part_moveit,
     part_rviz,
 )
-from multibot_rewrite.description.checks.verdict import not_proved
+from multibot_rewrite.description.checks.verdict import not_verified
 from multibot_rewrite.description.joining.from_file import plain_text, plain_texts
 from multibot_rewrite.description.joining.join import GivenPart, JoinedText, join_texts
 from multibot_rewrite.description.joining.part import Part, ReadPart, prefixing
@@ -63,10 +63,10 @@ class Joined(NamedTuple):
         return self.data.decode()
 
     @property
-    def not_proved(self) -> tuple[str, ...]:
+    def not_verified(self) -> tuple[str, ...]:
         """Why a name may lack its prefix, with counts, as ``1 plugin not known``; empty where the join
-        is proved. Raises nothing."""
-        return not_proved(self.findings)
+        is verified. Raises nothing."""
+        return not_verified(self.findings)
 
 
 @checked
@@ -103,8 +103,8 @@ def join(
 
 
 def join_plain(parts: Sequence[Part], place: str, tree: Tree, trust: bool) -> Joined:
-    """The same for what reads the result at once: without comments of the join, and refused where a
-    name has no prefix. Raises InputError that names ``place``."""
+    """Return the joined parts without comments of the join, refused if a name lacks a prefix. Raises
+    InputError that names ``place``."""
     given, _ = plain_texts(parts, trust)
     try:
         made = join_texts(given, tree)
@@ -117,7 +117,7 @@ def join_plain(parts: Sequence[Part], place: str, tree: Tree, trust: bool) -> Jo
 def _with_beside(
     given: Sequence[Part], made: JoinedText, tree: Tree, trust: bool, samples: int = 0
 ) -> Joined:
-    """With the files beside the parts."""
+    """With the related files of the parts."""
     has_srdf = any(it.srdf for it in given)
     srdfs, controllers, configs = [], [], []
     for it, part in zip(given, (it.part for it in made.parts), strict=True):
@@ -149,8 +149,8 @@ def _with_beside(
 
 @checked
 def split(source: Source, *, vocabulary: Iterable[str] = (), distro: str = "") -> dict[str, bytes]:
-    """The parts of what ``join`` made, by name, as they were. Raises InputError for a text that no
-    join made or that was edited where a part cannot be known any more."""
+    """Return the parts that ``join`` joined, by name, as they were. Raises InputError for a text that
+    no join made, or that was edited so that a part cannot be recognised."""
     read_in = read_whole(source, {})
     tree = builtin_tree(tuple(vocabulary), release_here(distro))
     return split_text(read_in.data, read_in.file, tree)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files beside parts as those of the robot that they make: parameters that one controller manager
+"""Related files of parts as those of the robot that they make: parameters that one controller manager
 gets, MoveIt's files for one move_group, one RViz config.
 
 A controller of a part has the part's prefix, as its joints, links and groups have; one controller
@@ -90,7 +90,7 @@ class JoinedFile(NamedTuple):
 
 
 def part_file(data: bytes, file: str, part: Inventory, prefix: str) -> PartFile:
-    """A file with the prefix of its part; ``part`` is its description without. Raises InputError."""
+    """Return a file with its part's prefix; ``part`` is described without it. Raises InputError."""
     before = raw_sections(read_yaml(data, file))
     shared = frozenset(_shared(before))
     if not prefix:
@@ -129,7 +129,7 @@ def _node(section: RawSection) -> str:
 
 
 def _shared(sections: Sequence[RawSection]) -> Iterator[str]:
-    """The manager, and a broadcaster of all joints."""
+    """Yield the controller manager, and each broadcaster of all joints."""
     yield MANAGER
     set_for = {_node(it): {key.value for key, _ in pairs(it.body)} for it in sections}
     for name, type_ in controller_types(sections).items():
@@ -207,8 +207,8 @@ class JoinedMoveit(NamedTuple):
 
 
 def part_moveit(data: bytes, file: str, part: Inventory, said: Declared, prefix: str) -> PartMoveit:
-    """A file with the prefix of its part, whose SRDF declares what is ``said``; raises InputError for
-    one that is not MoveIt's, UsageError where a part without an SRDF has groups in it."""
+    """Return a file with the prefix of its part, whose SRDF declares ``said``. Raises InputError for
+    one that is not MoveIt's, UsageError if it has groups and the part has no SRDF."""
     document = read_yaml(data, file)
     kind = file_kind(document)
     if prefix and kind == "kinematics" and not said.get("group"):
@@ -245,8 +245,7 @@ def joined_moveit(files: Iterable[PartMoveit]) -> JoinedMoveit:
 
 
 def _spell_alike(roots: Sequence[yaml.MappingNode]) -> None:
-    """Controllers at the top of a file, which its launch file puts below their manager, are written
-    there if those of another file are."""
+    """Move controllers at the top of a file below their manager, if another file has them there."""
     if not any(key.value == SIMPLE for root in roots for key, _ in entries(root)):
         return
     for root in roots:
@@ -268,8 +267,8 @@ class PartRviz(NamedTuple):
 
 
 def part_rviz(data: bytes, file: str, part: Inventory, name: str, prefix: str) -> PartRviz:
-    """A config with the prefix of its part; ``part`` is its description without. Raises InputError for
-    one that is not for RViz 2."""
+    """Return a config with the prefix of its part; ``part`` is its description without it. Raises
+    InputError for one that is not for RViz 2."""
     config = read_config(read_yaml(data, file))
     naming = prefixing((*PREFIXED, "group"), PREFIX)
     names = companion_names(part.declared, naming, prefix, {})
@@ -306,7 +305,7 @@ def joined_rviz(parts: Sequence[PartRviz]) -> JoinedFile:
 
 
 def _shows(one: RvizItem) -> tuple[str, ...]:
-    """What a display shows: its class and its topics; a grid, its frame."""
+    """Return the class and topics of a display, or the frame of a grid."""
     named = (it for it in one.places if it.kind in (TOPIC, GRAPH_NAMESPACE))
     frame = value(one.node, "Reference Frame")
     return (

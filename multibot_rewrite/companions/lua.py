@@ -57,7 +57,7 @@ class LuaOption(NamedTuple):
 
 
 def rewrite_lua(data: bytes, file: str, context: Context) -> Companion:
-    """A Lua file with slots for a robot.
+    """Return a Lua file with slots for a robot.
 
     Only ``name = "frame"`` is rewritten; any other assignment is ``computed``. Raises InputError for
     strings and comments that do not end, and text that is not UTF-8.
@@ -66,7 +66,7 @@ def rewrite_lua(data: bytes, file: str, context: Context) -> Companion:
 
 
 def read_lua(data: bytes, file: str, context: Context) -> NamedFile:
-    """The names of a file; raises as ``rewrite_lua``."""
+    """Return the names of a file; raises as ``rewrite_lua``."""
     try:
         text = data.decode()
     except UnicodeDecodeError:
@@ -98,7 +98,7 @@ def read_lua(data: bytes, file: str, context: Context) -> NamedFile:
 
 
 def tokens_of(text: str, file: str) -> Iterator[Token]:
-    """The tokens of Lua code without comments; InputError where one does not end."""
+    """Yield the tokens of Lua code without comments; raises InputError for one that does not end."""
     line, start = 1, 0
     for found in _TOKEN.finditer(text):
         kind = found.lastgroup or "mark"
@@ -112,7 +112,7 @@ def tokens_of(text: str, file: str) -> Iterator[Token]:
 
 
 def _assigned(tokens: Sequence[Token], at: int) -> tuple[str, int]:
-    """The name assigned to at a token, ``name =`` or ``["name"] =``, and where the value starts."""
+    """Return the name assigned to at a token, ``name =`` or ``["name"] =``, and its value's index."""
     token, texts = tokens[at], [it.text for it in tokens[at + 1 : at + 3]]
     if token.kind == "name" and texts[:1] == ["="]:
         return token.text, at + 2
@@ -122,7 +122,7 @@ def _assigned(tokens: Sequence[Token], at: int) -> tuple[str, int]:
 
 
 def _ends(tokens: Sequence[Token], at: int) -> bool:
-    """Does an expression end before this token? If not, it is more than one string."""
+    """Return whether an expression ends before this token. If not, it is more than one string."""
     if at >= len(tokens) or tokens[at].text in (",", ";", "}"):
         return True
     return tokens[at].kind == "name" and tokens[at].text not in ("and", "or")

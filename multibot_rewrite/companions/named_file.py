@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A file beside a description: its kind, which its text tells, and its names as a list."""
+"""A related file: its kind, which its text tells, and its names as a list."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _IS_TREE = dict(BESIDE)[TREE]
 
 
 def is_named_beside(path: str) -> bool:
-    """Is a file called as only files beside a description are?"""
+    """Is a file called as only related files are?"""
     return path.lower().endswith(SUFFIXES) and not path.lower().endswith(_XML)
 
 
@@ -59,12 +59,12 @@ def _text_of(path: str) -> bytes | None:
 
 
 def kind_of(data: bytes) -> str:
-    """The kind of a file by its text; empty for all others."""
+    """Return the kind of a file by its contents; empty for all others."""
     return next((kind for kind, mark in BESIDE if mark.search(data)), "")
 
 
 class NamedFile(NamedTuple):
-    """A file beside a description, as rules ask it.
+    """A related file, as rules ask it.
 
     ``names`` are those of known kinds, ``others`` the texts of unknown use, ``twice`` the keys that
     are repeated in one map, ``included`` the files that it includes and ``computed`` the names that are
@@ -105,7 +105,7 @@ class NamedFile(NamedTuple):
 
 
 class Companion(NamedTuple):
-    """A companion file as a template for any robot, what was read, and what only its rewrite finds."""
+    """A related file as a template for any robot, what was read, and what only its rewrite finds."""
 
     template: FileTemplate
     file: NamedFile

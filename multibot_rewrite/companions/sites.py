@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names in a file beside a description: what each is, where it is, what is known of it."""
+"""Names in a related file: what each is, where it is, what is known of it."""
 
 from __future__ import annotations
 
@@ -90,10 +90,10 @@ def slot_of(node: yaml.Node) -> Slot:
 
 
 def site_at(node: yaml.Node, kind: str, text: str, key: str = "", in_key: bool = False) -> Site:
-    """The site that is the whole of a node of YAML."""
+    """Return the site that is the whole of a YAML node."""
     return Site(kind, text, key, slot_of(node), in_key=in_key)
 
 
 def found_in(file: str, slot: Slot, rule: Rule, message: str, hint: str) -> Finding:
-    """A finding of ``rule`` at a slot."""
+    """Return a finding of ``rule`` at a slot."""
     return rule.finding(message, hint, file=file, line=slot.line, column=slot.column)

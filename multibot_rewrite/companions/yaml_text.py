@@ -90,8 +90,8 @@ def pairs(node: yaml.Node | None) -> list[tuple[yaml.ScalarNode, yaml.Node]]:
 
 
 def names_below(node: yaml.Node) -> yaml.MappingNode | None:
-    """The mapping whose keys are parts of names: the value, or what rcl reads in the same way, a list
-    of one mapping with one key that has a list (rcl_yaml_param_parser jazzy 9.2 src/parse.c)."""
+    """Return the mapping whose keys are parts of names: the value, or what rcl reads in the same way, a
+    list of one mapping with one key that has a list (rcl_yaml_param_parser jazzy 9.2 src/parse.c)."""
     if isinstance(node, yaml.MappingNode):
         return node
     only = node.value[0] if isinstance(node, yaml.SequenceNode) and len(node.value) == 1 else None
@@ -101,33 +101,33 @@ def names_below(node: yaml.Node) -> yaml.MappingNode | None:
 
 
 def items(node: yaml.Node | None) -> list[yaml.Node]:
-    """The items of a list; a scalar is a list of itself, anything else has none."""
+    """Return the items of a list; a scalar is a list of itself, anything else has none."""
     if isinstance(node, yaml.SequenceNode):
         return list(node.value)
     return [node] if isinstance(node, yaml.ScalarNode) else []
 
 
 def is_text(node: yaml.Node) -> bool:
-    """Does rcl read this scalar as a string: quoted, and not a number, boolean or null?"""
+    """Return whether rcl reads this scalar as a string: quoted, and not a number, boolean or null."""
     if not isinstance(node, yaml.ScalarNode):
         return False
     return node.style in ("'", '"') or node.tag == "tag:yaml.org,2002:str"
 
 
 def line_of(node: yaml.Node) -> int:
-    """The line of a node, from 1."""
+    """Return the line of a node, from 1."""
     return int(node.start_mark.line) + 1
 
 
 def found_at(document: YamlText, node: yaml.Node, rule: Rule, message: str, hint: str) -> Finding:
-    """A finding of ``rule`` at the place of ``node``."""
+    """Return a finding of ``rule`` at the place of ``node``."""
     mark = node.start_mark
     place = {"file": document.file, "line": mark.line + 1, "column": mark.column + 1}
     return rule.finding(message, hint, **place)
 
 
 def replaced(node: yaml.ScalarNode, new: str) -> Splice:
-    """The splice that gives a scalar another value, with the quotes it had or now needs.
+    """Return the splice that gives a scalar another value, with the quotes it had or now needs.
 
     Raises ValueError for a block scalar, which spans several lines.
     """
@@ -137,7 +137,7 @@ def replaced(node: yaml.ScalarNode, new: str) -> Splice:
 
 
 def quoted(value: str, style: str = "") -> str:
-    """A string as YAML text, in the style it had if that can hold it."""
+    """Return a string as YAML text, in the style it had if that can hold it."""
     if style == "'" and value.isprintable():
         return "'" + value.replace("'", "''") + "'"
     if not style and _PLAIN.fullmatch(value) and value.lower() not in QUOTED:
@@ -148,14 +148,13 @@ def quoted(value: str, style: str = "") -> str:
 
 
 def joined_text(files: Iterable[str], root: yaml.Node) -> bytes:
-    """A file that is made of others; called by their names, it is the same from every working
-    directory."""
+    """Return a file made of others, with their names in a comment, without folders."""
     names = ", ".join(dict.fromkeys(map(os.path.basename, files)))
     return f"# joined by multibot from {names}\n{yaml.serialize(root, width=inf)}".encode()
 
 
 def spliced(document: YamlText, splices: Iterable[Splice]) -> str:
-    """The text with the splices made; they do not overlap."""
+    """Return the text with the splices applied; they do not overlap."""
     parts = []
     at = 0
     for start, end, new in sorted(splices):
@@ -195,9 +194,9 @@ def inserted(document: YamlText, at: int, text: str) -> Splice:
 
 
 def blocks(document: YamlText, node: yaml.Node) -> list[Block]:
-    """The lines of each entry of a block list or map, comments above an entry included.
+    """Return the lines of each entry of a block list or map, with the comments above it.
 
-    They lie side by side; comments after the last entry do not belong to it.
+    They are adjacent; comments after the last entry are in none.
     """
     found: list[Block] = []
     at = line_start(document, node.start_mark.index)
@@ -234,7 +233,7 @@ def line_end(document: YamlText, at: int) -> int:
 
 
 def cut_out(document: YamlText, start: int, end: int, splices: Iterable[Splice] = ()) -> str:
-    """The text between two positions with the splices made; it ends with a line end."""
+    """Return the text between two positions with the splices applied; it ends with a line end."""
     parts, at = [], start
     for first, last, new in sorted(set(splices)):
         assert at <= first <= last <= end, "a splice outside of its block, or two that overlap"
@@ -245,7 +244,7 @@ def cut_out(document: YamlText, start: int, end: int, splices: Iterable[Splice] 
 
 
 def lines_of(text: str) -> list[str]:
-    """The lines of a text with their ends."""
+    """Return the lines of a text with their ends."""
     ends = [0, *(it.end() for it in _END.finditer(text)), len(text)]
     return [text[start:end] for start, end in pairwise(ends) if start < end]
 
@@ -261,7 +260,7 @@ def moved(text: str, by: int) -> str:
 
 
 def as_item(text: str, column: int, target: int) -> str:
-    """The lines of a map at ``column`` as an item of a list with its dashes at ``target``."""
+    """Return the lines of a map at ``column`` as an item of a list with its dashes at ``target``."""
     lines = lines_of(moved(text, target + 2 - column))
     at = next(at for at, line in enumerate(lines) if line.strip() and line.lstrip()[0] != "#")
     lines[at] = f"{' ' * target}- {lines[at][target + 2 :]}"

@@ -19,7 +19,7 @@ from multibot_rewrite.base.releases import release_told
 from multibot_rewrite.base.rosnames import check_robot_name, check_robot_names
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.checks.problem import to_findings
-from multibot_rewrite.description.checks.verdict import not_proved
+from multibot_rewrite.description.checks.verdict import not_verified
 from multibot_rewrite.description.readback.meeting import OPENED
 from multibot_rewrite.description.rewriters.vocabulary.grammar import split_opens
 from multibot_rewrite.description.sources.job import Job, read_job, read_jobs
@@ -78,7 +78,7 @@ class Rewrite(NamedTuple):
     @property
     def template(self) -> Template:
         """What the text was made from. A copy makes it again: it raises as ``rewrite`` does where
-        a vocabulary file is gone."""
+        a definition file is gone."""
         return self.prepared.template
 
     @property
@@ -87,10 +87,10 @@ class Rewrite(NamedTuple):
         return self.data.decode()
 
     @property
-    def not_proved(self) -> tuple[str, ...]:
+    def not_verified(self) -> tuple[str, ...]:
         """Why the robots may meet, with counts, as ``1 topic shared by all robots``; empty where the
-        rewrite is proved. Raises nothing."""
-        return not_proved(self.findings)
+        rewrite is verified. Raises nothing."""
+        return not_verified(self.findings)
 
     @property
     def distro(self) -> str:
@@ -129,7 +129,7 @@ def rewrite(
     distro: str = "",
     world_systems: str | None = None,
 ) -> Rewrite:
-    """Rewrite a robot description for ``robot`` and prove it; ``.not_proved`` says what is open.
+    """Rewrite a robot description for ``robot`` and prove it; ``.not_verified`` says what is open.
 
     ``source`` is a path (str or PathLike), XML text (a str that starts with ``<``) or bytes; a path
     ending in ``.xacro`` is expanded. The options are those of ``rewrite_all``. In a launch file:
@@ -176,7 +176,7 @@ def rewrite_all(
     becomes of an SRDF's groups and end effectors; ``urdf`` is the description an SRDF belongs to;
     ``xacro_args`` are the arguments of a xacro, ``{robot}`` in them is the robot's name: what they
     name after the robot stays as it is, and each robot is an expansion of its own; ``vocabulary``
-    are vocabulary files beside the built-in one; ``again`` allows a second rewrite; ``file`` is the
+    are definition files beside the built-in one; ``again`` allows a second rewrite; ``file`` is the
     name used in messages; ``trust`` lets xacro files do anything: without it they only compute, and
     read what is near them (SECURITY.md); ``distro`` is the ROS 2 release that the robots run (default:
     ROS_DISTRO, else what is sourced, else what the description loads, else the newest LTS);
@@ -267,12 +267,12 @@ def explain(
     trust: bool = False,
     distro: str = "",
 ) -> list[Explanation]:
-    """What is known about the values that start on ``line``, and what they become for ``robot``; of a
-    xacro, about those that something on this line makes, and of which pieces: an element, the call of a
-    macro, a property. Of a file that others include, it is what the line makes in one of them.
+    """Return what is known about the values that start on ``line``, and their names for ``robot``.
 
-    The options are those of ``rewrite_all``. A description that a rewrite refuses is explained all
-    the same. Raises InputError, UsageError and VocabularyError as ``rewrite`` does.
+    Of a xacro it is about the values that something on this line makes, and from which pieces: an
+    element, the call of a macro, a property. Of a file that others include, it is what the line makes
+    in one of them. The options are those of ``rewrite_all``. A description that a rewrite refuses is
+    explained all the same. Raises InputError, UsageError and VocabularyError as ``rewrite`` does.
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)

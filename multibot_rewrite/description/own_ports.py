@@ -8,7 +8,7 @@ A comment in front of what is changed says what was there, so that ``--undo`` ca
 
 It says ``the default`` where nothing was written.
 
-Sources of the steps (``address+STEP`` in the vocabulary): ArduPilot
+Sources of the steps (``address+STEP`` in the plugin definitions): ArduPilot
 libraries/AP_HAL_SITL/SITL_cmdline.cpp (10 for each instance, ``sim_vehicle.py -I``); PX4-Autopilot
 launch/multi_uav_mavros_sitl.launch (1 for each instance); of hardware see its section.
 """
@@ -121,7 +121,7 @@ def _free(port: Port, held: set[int], taken: set[int]) -> int:
 
 
 def ports_of(inventory: Inventory) -> Iterator[Port]:
-    """What can be numbered in a description, each at its place; raises nothing."""
+    """Yield the numbers that can differ for each robot, with their places; raises nothing."""
     document = inventory.document
     starts = dict(zip(document.elements, document.starts, strict=True))
     for host, section in inventory.served:
@@ -148,7 +148,7 @@ def _written(
 def _default(
     source: bytes, starts: Mapping[_Element, int], host: _Element, opened: grammar.Opened
 ) -> Iterator[Port]:
-    """One that is not written is put first into its plugin, or into what is there of the path."""
+    """Yield a port that the file leaves to its default, to be inserted into its plugin."""
     *above, last = grammar.split_path(opened.path)[0]
     inside = next(elements_at(host, tuple(above)), None)
     start = 0 if inside is None else starts[inside]
@@ -175,7 +175,7 @@ def _edits(robot: str, given: Iterable[tuple[Port, int]]) -> list[Edit]:
 
 
 def without_numbers(source: bytes, file: str, robot: str, tree: Tree) -> bytes:
-    """The text of a robot with the numbers that it had before, proved by numbering it again; raises
+    """Return the text of a robot with its original numbers, verified by numbering it again; raises
     InputError for one that was edited by hand."""
     document = read_document(source, file)
     edits = sorted(_taken_out(document, robot), key=lambda it: it.start)
@@ -195,7 +195,7 @@ def _edited(document: Document, robot: str) -> InputError:
 
 
 def _taken_out(document: Document, robot: str) -> Iterator[Edit]:
-    """The edits that give each element behind a comment its number back, or take it out."""
+    """Yield the edits that restore the number of each commented element, or remove it."""
     source, starts = document.source, dict(zip(document.elements, document.starts, strict=True))
     head, tail = _MARK[4:-3].format(robot, "\n").split("\n")
     for comment in document.root.iter(Comment):
@@ -214,8 +214,8 @@ def _taken_out(document: Document, robot: str) -> Iterator[Edit]:
 
 
 def number_changes(template: Template, data: bytes) -> Iterator[Change]:
-    """The numbers of a robot's text that are others than those of its source, each at its place there;
-    raises nothing."""
+    """Yield the numbers of a robot's text that differ from the source, with their places there; raises
+    nothing."""
     source, file, *_ = template.inventory.document
     written = collect(read_document(data, file), template.tree)
     for it, new in zip(ports_of(template.inventory), ports_of(written), strict=False):
@@ -227,8 +227,8 @@ def number_changes(template: Template, data: bytes) -> Iterator[Change]:
 def judged_together(
     template: Template, texts: Mapping[str, bytes]
 ) -> tuple[list[bytes], list[Finding]]:
-    """The texts of one description for these robots with numbers of their own, and what is said of
-    them: each number, and by the second reading what two robots would open all the same."""
+    """Return the texts of these robots with numbers of their own, and the findings: each number, and
+    names that two robots share all the same."""
     document, vocabulary = template.inventory.document, template.tree.vocabulary
     file = document.file
     again = {it: collect(read_document(texts[it], file), template.tree) for it in texts}

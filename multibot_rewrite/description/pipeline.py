@@ -39,7 +39,7 @@ def prepare(
 ) -> Template:
     """Everything that does not depend on a robot's name; raises InputError and RewriteRefused.
 
-    ``urdf_declarations`` is what the URDF beside an SRDF declares. ``own`` says more of a source that
+    ``urdf_declarations`` is what the URDF of an SRDF declares. ``own`` says more of a source that
     is one robot's own.
     """
     inventory = collect(read_document(source, file), tree, urdf_declarations, naming.read_as)
@@ -70,7 +70,7 @@ def prepare(
 def _shared_with_twin(
     inventory: Inventory, twin: bytes, naming: Naming, tree: Tree
 ) -> Iterator[Problem]:
-    """What a robot whose xacro has arguments of its own would share with all others."""
+    """Yield the names that a robot with its own xacro arguments shares with all others."""
     document = inventory.document
     # What the arguments name gets the twin's name once more: only whether it has it matters.
     read = collect(read_document(twin, document.file), tree, layout=naming.read_as)
@@ -80,19 +80,19 @@ def _shared_with_twin(
 
 
 def check_urdf(inventory: Inventory, urdf_declarations: Declared) -> None:
-    """An SRDF names what its URDF declares: neither makes sense without the other."""
+    """Raise InputError unless an SRDF comes with its URDF, and a URDF without an SRDF's."""
     file = inventory.document.file
     if inventory.format == SRDF and not urdf_declarations:
-        raise InputError(f"{file}: an SRDF is rewritten beside its URDF: add --urdf robot.urdf")
+        raise InputError(f"{file}: an SRDF is rewritten with its URDF: add --urdf robot.urdf")
     if inventory.format != SRDF and urdf_declarations:
-        raise InputError(f"{file}: only an SRDF has a URDF beside it: leave out --urdf")
+        raise InputError(f"{file}: only an SRDF needs a URDF: leave out --urdf")
 
 
 def render(prepared: Template, robots: Sequence[str], again: bool = False) -> Iterator[bytes]:
-    """The text for each robot in turn, the first one proved.
+    """Yield the text for each robot in turn, the first one verified.
 
-    The others differ from it in nothing but the robot's name at the same places; that no two names
-    become one is checked for all of them before the first is returned.
+    The others differ only in the robot's name at the same places. Before the first is returned, all are
+    checked for names that become one.
     """
     inventory, plan, pieces, _, naming, tree, urdf_declarations = prepared
     renames = plan.renames
@@ -140,7 +140,7 @@ def strip(
     urdf_declarations: Declared = NOTHING,
     before: bytes = b"",
 ) -> bytes:
-    """Undo a rewrite for ``robot``; the result is proved by rewriting it again.
+    """Undo a rewrite for ``robot``; the result is verified by rewriting it again.
 
     ``urdf_declarations`` is what the rewritten URDF beside a rewritten SRDF declares. ``before`` is
     what the robot's own xacro arguments make, where the naming has names of these.

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.model import UsageError
@@ -108,27 +108,27 @@ def make_fleet(
     launch: Sequence[LaunchOrder] = (),
     release: str,
 ) -> Fleet:
-    """Rewrite a description for every robot and make the fleet's table, with the facts of a release.
+    """Rewrite a description for every robot and return the fleet with its table, by the facts of the
+    release that the rewrite is for: ``release``, or where it is empty what ``rewrite_all`` takes.
 
     ``nodes`` is a file with more nodes and stacks, ``nodl`` are NoDL files, see ``find_interfaces``;
     ``trust`` lets a xacro file do anything; ``launch`` are the launch files that start each robot's
     nodes. Raises as ``rewrite_all``, and UsageError for an unknown stack.
     """
+    how: dict[str, Any] = {
+        "vocabulary": vocabulary,
+        "xacro_args": xacro_args,
+        "trust": trust,
+        "distro": release,
+    }
+    found = list(rewrite_all(source, robots, **how, **policy))
+    release = found[0].prepared.job.release
     library = known_nodes(nodes, release, nodl).library
     known = known_here(library.nodes, launch, robots[0], release)
     facts = facts_of(stacks, nodes, release, nodl)
     usual = load_known_nodes(nodes or "", release)
     launched = launched_robot(facts, launch, known, robots[:1], usual, release)
     runs = nodes_with(launched, facts, given_with(launched, ()), known)
-    found = rewrite_all(
-        source,
-        robots,
-        vocabulary=vocabulary,
-        xacro_args=xacro_args,
-        trust=trust,
-        distro=release,
-        **policy,
-    )
     members = [member(it, it.data, it.robot) for it in found]
     wired = under_plugins(runs.nodes, launched, members[0].handed_on, release)
     every = with_hardware(wired, members[0].source.root, members[0].source.file, known)
@@ -177,7 +177,7 @@ def facts_of(
         added = () if has_publisher else nodes_of(known, STATE_PUBLISHER)
         return (*found, *added)
     if has_publisher:
-        hint = f"leave out one of the stacks, {NO_STATE_PUBLISHER} or the one that has it"
+        hint = f"leave out one of the node sets, {NO_STATE_PUBLISHER} or the one that has it"
         raise UsageError(f"{STATE_PUBLISHER} is asked for and left out; {hint}")
     return tuple(found)
 
@@ -256,7 +256,7 @@ def expected(fleet: Fleet) -> System:
     plan = planned(fleet)
     nothing = vacuous(plan)
     if nothing:
-        hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
+        hint = f"name a node set of its nodes, or leave out {NO_STATE_PUBLISHER}"
         raise UsageError(f"{nothing}, so every graph would be as planned; {hint}")
     return plan
 

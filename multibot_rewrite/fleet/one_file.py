@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.base.arguments import checked
-from multibot_rewrite.base.conventions import SHARED_TOPICS, WORLD_FRAMES
+from multibot_rewrite.base.conventions import ROWS, SHARED_TOPICS, WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import DEFAULT_LAYOUT, Naming, make_naming
@@ -27,22 +27,8 @@ from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.rules.files.judge import judged_once
 from multibot_rewrite.rules.files.wheels import with_description
 
-# Code -> what is counted and what is said of it. A file with one of these findings is not proved.
-REASONS = {
-    "MB853": ("frame", "in no description"),
-    "MB854": ("joint", "in no description"),
-    "MB901": ("name", "not understood"),
-    "MB876": ("name", "in a block of text"),
-    "MB105": ("placeholder", "that a launch file has to replace"),
-    "MB422": ("prefix parameter", "that no postfix reaches"),
-    "MB412": ("resource", "shared by all robots"),
-    "MF120": ("topic", "that remap rules move"),
-    "MF203": ("tf topic", "that rviz2 has to be given"),
-    "MB891": ("display", "not known"),
-    "MB881": ("value", "not rewritten"),
-    "MB887": ("file", "that it includes"),
-    "MB888": ("frame", "that is no plain string"),
-}
+# Code -> what is counted and what is said of it. A file with one of these findings is not verified.
+REASONS = {code: (" ".join(what), said) for (code, *what), said in ROWS["reasons"]}
 _DECLARED = frozenset(it for kinds in KINDS.values() for it in kinds)
 # Kinds of names that are spelled without a description.
 _IN_GRAPH = frozenset(("topic", "service"))
@@ -50,13 +36,13 @@ _IN_GRAPH = frozenset(("topic", "service"))
 
 class RewrittenFile(NamedTuple):
     """A file as one robot needs it: its ``kind`` (params, rviz, moveit, bridge, tree or lua), its
-    bytes, what is wrong in it, and why robots may meet all the same (empty where it is proved)."""
+    bytes, what is wrong in it, and why robots may meet all the same (empty where it is verified)."""
 
     robot: str
     kind: str
     data: bytes
     findings: tuple[Finding, ...]
-    not_proved: tuple[str, ...]
+    not_verified: tuple[str, ...]
 
     @property
     def text(self) -> str:

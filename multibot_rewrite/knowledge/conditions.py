@@ -13,6 +13,7 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.releases import has_release
+from multibot_rewrite.knowledge.packages import by_version
 
 Values = Callable[[str], object]
 RELEASE, VERSION, PROGRAM, HEARD, UNSENT = "release", "version", "program", "heard", "unsent"
@@ -95,7 +96,7 @@ def of_release(text: str, release: str) -> str | None:
     """The condition without what it says of releases; None where it never holds in this one."""
 
     def decide(it: Condition) -> bool | None:
-        return has_release(it.values[0], release) if it.parameter == RELEASE else None
+        return has_release(by_version(it.values[0]), release) if it.parameter == RELEASE else None
 
     return settled(text, decide)
 

@@ -99,9 +99,9 @@ def stack_of(library: NodeLibrary, name: str) -> tuple[NodeFacts, ...]:
     what the library's release lacks.
     """
     if name in library.elsewhere:
-        hint = "name one of these releases, or leave the stack out"
+        hint = "name one of these releases, or leave the node set out"
         has = f"it is in {library.elsewhere[name]}"
-        raise UsageError(f"{library.release} has no node of stack {name!r}; {has}; {hint}")
+        raise UsageError(f"node set {name!r} has no node in {library.release}; {has}; {hint}")
     if name not in library.stacks and name in library.nodes:
         return (library.nodes[name],)
     if name not in library.stacks:
@@ -111,7 +111,7 @@ def stack_of(library: NodeLibrary, name: str) -> tuple[NodeFacts, ...]:
         others = (it for it in found if it is not node and it.name == node.name)
         if any(share_release(node.releases, other.releases) for other in others):
             raise UsageError(
-                f"stack {name!r} has two different nodes called {node.name!r}; "
+                f"node set {name!r} has two different nodes called {node.name!r}; "
                 "rename one of them with 'as'"
             )
     return found
@@ -126,7 +126,7 @@ def with_included(library: NodeLibrary, name: str) -> Iterator[str]:
 
 def _gathered(library: NodeLibrary, name: str, above: tuple[str, ...]) -> Iterator[NodeFacts]:
     if name in above:
-        raise UsageError(f"stack {name!r} includes itself: {' -> '.join((*above, name))}")
+        raise UsageError(f"node set {name!r} includes itself: {' -> '.join((*above, name))}")
     stack = library.stacks[name]
     for other in stack.include:
         yield from (_in_stack(it, stack) for it in _gathered(library, other, (*above, name)))
@@ -187,7 +187,7 @@ def extend(library: NodeLibrary, text: str, file: str, own: bool = False) -> Nod
             found_nodes = stack_of(whole, name)
         except UsageError as error:
             wrong(item, str(error))
-        for of_node, rules in table_of(table(item, "a stack", STACK_KEYS), "remaps").items():
+        for of_node, rules in table_of(table(item, "a node set", STACK_KEYS), "remaps").items():
             ends = [end for it in found_nodes if it.name == of_node for end in it.endpoints]
             if not ends:
                 wrong(rules, unknown("node", of_node, {it.name for it in found_nodes}))
@@ -205,7 +205,7 @@ def _check_rule(item: YamlItem, given: str, ends: Iterable[Endpoint]) -> None:
 
 
 def _stack(item: YamlItem, library: NodeLibrary, stacks: Iterable[str]) -> Stack:
-    keys = table(item, "a stack", STACK_KEYS)
+    keys = table(item, "a node set", STACK_KEYS)
     known = {name: name for name in stacks}
     return Stack(
         word_of(keys, "about"),

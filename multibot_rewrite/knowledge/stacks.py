@@ -14,6 +14,7 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import RELEASES, has_release, releases_with, since_version
 from multibot_rewrite.knowledge.conditions import VERSION, joined, of_release
 from multibot_rewrite.knowledge.node_library import NodeLibrary, extend, stack_of
+from multibot_rewrite.knowledge.packages import older
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 
 HERE = os.path.dirname(__file__)
@@ -105,6 +106,12 @@ def every_release() -> NodeLibrary:
     for path in (*(os.path.join(folder, it) for it in names), os.path.join(HERE, STACKS)):
         library = extend(library, read_text(path), os.path.basename(path), own=True)
     return library
+
+
+def older_node(name: str, release: str) -> str:
+    """Say that what was read of a known node is older than a release, as ``packages.older``."""
+    found = every_release().nodes.get(name) if name and release else None
+    return older(found.package, release) if found else ""
 
 
 def in_release(library: NodeLibrary, release: str) -> NodeLibrary:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.releases import RELEASES, has_release, is_release_words
 from multibot_rewrite.knowledge.conditions import parse_condition
+from multibot_rewrite.knowledge.packages import by_version
 
 _BOOLEAN = "tag:yaml.org,2002:bool"
 _NULL = "tag:yaml.org,2002:null"
@@ -176,12 +177,14 @@ _SOURCE = lazy_compile(r"[\w.-]+/[\w.-]+@[\w./+-]+ [^\s:]+(?::[0-9]+)?")
 
 def releases_of(keys: Mapping[str, YamlItem], key: str = RELEASES_KEY) -> str:
     """The release words of a key, empty for all releases."""
-    words = word_of(keys, key)
+    words = by_version(word_of(keys, key))
     if words and not is_release_words(words):
         for name in _WORD.findall(words):
             if name not in RELEASES:
                 wrong(keys[key], unknown("release", name, RELEASES))
-        hint = "write jazzy, kilted+, <=jazzy or jazzy 1.3.9+, with commas between"
+        hint = (
+            "write jazzy, kilted+, <=jazzy, jazzy 1.3.9+ or twist_mux 4.4.0+, with commas between"
+        )
         wrong(keys[key], f"{key} {words!r} names no releases; {hint}")
     return words
 

@@ -162,7 +162,7 @@ def _taken(
     """The options that are ours, and launch_ros's."""
     _check_options(word, options)
     if not of_stack:
-        raise UsageError(f'{word}: which node? Write its name in the stack: {word}("amcl")')
+        raise UsageError(f'{word}: which node? Write its name in the node set: {word}("amcl")')
     rest = dict(options)
     own = {key: rest.pop(key, None) for key in ("files", "describe", SIM_TIME)}
     own["of"] = RobotRef(rest.pop("robot", None), rest.pop("fleet", None))
@@ -173,7 +173,9 @@ def _check_options(word: str, options: Mapping[str, Any]) -> None:
     """Raises UsageError for options that the fleet decides."""
     for it in FROM_THE_FLEET:
         if it in options:
-            first = f'write {word}("amcl") with the name in its stack, and ' if it == "name" else ""
+            first = (
+                f'write {word}("amcl") with its name in the node set, and ' if it == "name" else ""
+            )
             raise UsageError(f"{word}: {it} comes from the fleet file; {first}remove {it}=")
 
 
@@ -213,7 +215,7 @@ def _with_program(
         return dict(options)
     program = robot.program(name)
     if program is None or not (runs := getattr(program, word)):
-        raise UsageError(f"no stack says what runs {name}; write package= and {word}=")
+        raise UsageError(f"no node set says what runs {name}; write package= and {word}=")
     made = {"package": program.package, word: runs, **options}
     arguments = [] if component else [*program.words, *_option_list(options, "arguments")]
     return {**made, "arguments": arguments} if arguments else made
@@ -227,7 +229,7 @@ def _option_list(options: Mapping[str, Any], word: str) -> list[Any]:
 def _loaded(box: str, options: Mapping[str, Any], given: Mapping[str, Any]) -> list[Action]:
     """A component, loaded into the container that the robot runs; raises UsageError for a program."""
     if "executable" in given:
-        name, stays = options["name"], "or take a stack in which it has a process of its own"
+        name, stays = options["name"], "or take a node set in which it has a process of its own"
         raise UsageError(f"{name} is a component of {box}: write plugin= for executable=, {stays}")
     component = of_launch_ros("descriptions").ComposableNode(**{**options, "condition": None})
     loaded = {"composable_node_descriptions": [component]}

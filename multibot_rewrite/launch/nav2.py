@@ -43,12 +43,8 @@ TRANSITIONS: Mapping[str, int] = MappingProxyType({"configure": 1, "activate": 3
 _INFO = "costmap_filter_info_server"
 # Nodes of stacks that are called otherwise than what they are.
 _KINDS: Mapping[str, str] = MappingProxyType(
-    {
-        "keepout_filter_mask_server": MAP_SERVER,
-        "speed_filter_mask_server": MAP_SERVER,
-        f"keepout_{_INFO}": _INFO,
-        f"speed_{_INFO}": _INFO,
-    }
+    {f"{it}_filter_mask_server": MAP_SERVER for it in ("keepout", "speed")}
+    | {f"{it}_{_INFO}": _INFO for it in ("keepout", "speed")}
 )
 # Launch arguments: name, default (None if it has to be given), what it is.
 ARGUMENTS = (
@@ -59,11 +55,7 @@ ARGUMENTS = (
     ("rviz", NONE, "none, one (one RViz for all robots) or each (one for each robot)"),
     ("robot_state_publisher", "false", "whether to start that of each robot, too"),
     ("autostart", "true", "whether the lifecycle managers start their nodes"),
-    (
-        "use_respawn",
-        "false",
-        "whether nodes that end are started again, where they are not composed",
-    ),
+    ("use_respawn", "false", "whether nodes that end are started again, if not composed"),
     ("log_level", "info", "the log level of all nodes"),
 )
 
@@ -76,7 +68,8 @@ def generate_launch_description() -> Any:
         for name, default, about in ARGUMENTS
     ]
     fleet, robots = _said("fleet"), _said("robots")
-    made = [opaque(function=_shared), each_robot(fleet, _of_robot, robots), opaque(function=_rviz)]
+    each = each_robot(fleet, lambda it: [opaque(function=partial(_started, it)), place()], robots)
+    made = [opaque(function=_shared), each, opaque(function=_rviz)]
     return of_launch().LaunchDescription([*declared, *made])
 
 
@@ -86,12 +79,6 @@ def _said(argument: str) -> Any:
 
 def _is_on(context: Context, argument: str) -> bool:
     return str(context.launch_configurations.get(argument, "")).strip().lower() in ("true", "1")
-
-
-def _of_robot(robot: LoadedRobot) -> list[Action]:
-    """All that one robot runs."""
-    started = partial(_started, robot)
-    return [of_launch("actions").OpaqueFunction(function=started), place()]
 
 
 def _started(robot: LoadedRobot, context: Context) -> list[Action]:

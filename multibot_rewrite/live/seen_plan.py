@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from multibot_rewrite.base.conventions import EVERYBODYS, SENT_BY_EVERY_NODE, WORLD_FRAMES
 from multibot_rewrite.base.naming import DEFAULT_LAYOUT, TF_TOPICS
 from multibot_rewrite.base.wording import unique
 from multibot_rewrite.live.diagnose import Diagnosis
 from multibot_rewrite.system.guess import GuessedRobot
-from multibot_rewrite.system.records import End, Node, Robot, System
+from multibot_rewrite.system.records import Edge, End, Node, Robot, System
 from multibot_rewrite.system.tf_copies import tree_topic
 from multibot_rewrite.system.tool_nodes import is_tool
 from multibot_rewrite.system.words import OF_EVERY_NODE
@@ -36,11 +38,21 @@ def seen_plan(seen: Diagnosis) -> System:
     return System(
         tuple(Node(it, robot=names.get(whose[it], "")) for it in nodes),
         tuple(dict.fromkeys(made)),
+        tuple(_from_world(seen)),
         robots=tuple(_robot(seen, it) for mine, it in robots.items() if mine in whose.values()),
         layout=seen.layout.name if seen.layout else DEFAULT_LAYOUT,
         shared_topics=tuple(sorted({*bare, *EVERYBODYS})),
         shared_frames=tuple(sorted(WORLD_FRAMES)),
     )
+
+
+def _from_world(seen: Diagnosis) -> Iterator[Edge]:
+    """The fixed transforms by which robots hang from a frame of all, each by nodes of its robot."""
+    for it in seen.graph.edges:
+        robot = seen.whose.frame_robot(it.child)
+        nodes = tuple(one for one in it.publishers if seen.whose.robot(one) == robot)
+        if it.static and robot and it.parent in WORLD_FRAMES:
+            yield Edge(it.child, it.parent, static=True, publishers=nodes)
 
 
 def robots_to_plan(seen: Diagnosis) -> tuple[GuessedRobot, ...]:

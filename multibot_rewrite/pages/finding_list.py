@@ -23,7 +23,7 @@ class Sources(NamedTuple):
 
 
 def filters(scene: Scene) -> Iterator[str]:
-    """The filters of findings and drawings, which the script shows because they need it."""
+    """Yield the filters of findings and drawings, which the script shows because they need it."""
     levels = [level for level in LEVELS if any(it.level == level for it in scene.findings)]
     robots = [(str(at), name) for at, name in enumerate(scene.robots)]
     yield '<p id="filters" hidden>'
@@ -42,7 +42,7 @@ def _select(name: str, default: str, options: Iterable[tuple[str, str]]) -> str:
 def finding_list(
     scene: Scene, ids: Ids, sections: Sequence[PageSection], sources: Sources
 ) -> Iterator[str]:
-    """The findings in their order."""
+    """Yield the findings in their order, as HTML."""
     yield '<section id="findings">\n<h2>Findings</h2>\n'
     if not scene.rows:
         text = f"{in_words(scene.coverage)}; no findings: {scene.outcome.words}"
@@ -97,7 +97,7 @@ def _body(row: FindingRow, sources: Sources) -> str:
 
 
 def explanations(codes: Iterable[str], rules: Mapping[str, Rule]) -> Iterator[str]:
-    """A section with what the rules find, why that is a problem and how to fix it."""
+    """Yield a section with what the rules find, why that is a problem and how to fix it."""
     found = [rules[code] for code in sorted(set(codes)) if code in rules]
     if found:
         yield '<section id="rules">\n<h2>What the codes mean</h2>\n'
@@ -113,5 +113,5 @@ def explanations(codes: Iterable[str], rules: Mapping[str, Rule]) -> Iterator[st
 
 
 def with_code(markdown: str) -> str:
-    """A sentence with words in backticks."""
+    """Return a sentence as HTML, with words in backticks as code."""
     return re.sub("`([^`]*)`", r"<code>\1</code>", safe(markdown))

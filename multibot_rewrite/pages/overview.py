@@ -38,7 +38,7 @@ class _Box(NamedTuple):
 
 
 def overview(robots: Sequence[Tile], crossings: Sequence[Crossing], shared: Iterable[str]) -> str:
-    """The picture; ``shared`` are the nodes of no robot."""
+    """Return the picture of the robots; ``shared`` are the nodes of no robot."""
     below = list(_shared_tiles(crossings, list(shared)))
     in_row, _, tall, gap = _size(len(robots))
     middle = -(-len(robots) // in_row) * (tall + gap) if below else 0
@@ -124,7 +124,7 @@ def _tile(tile: Tile, box: _Box) -> str:
 
 
 def _path(start: _Box, end: _Box) -> tuple[str, float, float]:
-    """A curve from box to box and its middle; the two directions do not overlap."""
+    """Return a curve from box to box and its middle; the two directions do not overlap."""
     x, to_x = start.x + start.wide / 2 + 12, end.x + end.wide / 2 - 12
     if start.y == end.y:
         y, bend = start.y, 46 if x < to_x else 26

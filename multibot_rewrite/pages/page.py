@@ -59,7 +59,7 @@ def to_html(
     snippets: Mapping[str, Sequence[str]] = NO_SNIPPETS,
     robots: Framed | None = None,
 ) -> bytes:
-    """The page; ``snippets`` are lines of files by ``file:line``, ``robots`` is below its head."""
+    """Return the page, with ``snippets`` of files by ``file:line``, and ``robots`` below its head."""
     css, js = _asset("page.css"), _asset("page.js") + _asset("zoom.js")
     # Nothing but what is in the page.
     style, script, images, frame = source_hash(css), source_hash(js), "", ""
@@ -104,7 +104,7 @@ def _asset(name: str) -> str:
 
 
 def source_hash(text: str) -> str:
-    """A style or script as a policy names it."""
+    """Return the hash of a style or script as a content policy has it."""
     return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
 
 
@@ -176,7 +176,7 @@ MANY_HEALTHY = 12
 
 
 def graphs(scene: Scene, ids: Ids, sections: Sequence[PageSection]) -> Iterator[str]:
-    """The overview where something crosses, and a group for each robot."""
+    """Yield the overview, if something crosses, and a group for each robot."""
     yield '<section id="graph">\n<h2>Nodes and names</h2>\n'
     met = {robot for it in scene.crossings for robot in (it.source, it.target)}
     tiles = []
@@ -212,7 +212,7 @@ def _pane(drawing: str, css_class: str = "") -> str:
 
 
 def _legend(scene: Scene) -> Iterator[str]:
-    """The states that are drawn."""
+    """Yield the states that are drawn."""
     drawn = {node.state for group in scene.groups for node in group.nodes}
     drawn |= {edge.state for group in scene.groups for edge in group.edges}
     for state in STATES:
@@ -243,7 +243,7 @@ def _group(section: PageSection, scene: Scene, ids: Ids) -> Iterator[str]:
 
 
 def _alternatives(section: PageSection, scene: Scene) -> Iterator[str]:
-    """The groups of nodes of which one runs, as far as they are of this robot."""
+    """Yield the groups of nodes of which one runs, as far as they are of this robot."""
     own = {node.name for node in section.group.nodes}
     for group in scene.one_of:
         if own.isdisjoint(group):
@@ -257,7 +257,7 @@ def _alternatives(section: PageSection, scene: Scene) -> Iterator[str]:
 
 
 def trees(scene: Scene, ids: Ids) -> Iterator[str]:
-    """A tree for each robot on each tf topic."""
+    """Yield a tree for each robot on each tf topic."""
     yield '<section id="tf">\n<h2>tf</h2>\n'
     if not scene.trees:
         yield '<p class="none">No tf messages were received.</p>\n'

@@ -47,7 +47,7 @@ class PageSection(NamedTuple):
 
 
 def make_ids(scene: Scene) -> Ids:
-    """A short id for everything that is drawn."""
+    """Return a short id for everything that is drawn."""
     nodes = sorted({node.name for group in scene.groups for node in group.nodes})
     names = sorted({name.name for group in scene.groups for name in group.names})
     frames = dict.fromkeys((one.topic, row.frame) for one in scene.trees for row in one.rows)
@@ -61,7 +61,7 @@ def _numbered(letter: str, things: Iterable[_Key]) -> dict[_Key, str]:
 
 
 def ids_of(about: Targets, ids: Ids) -> list[str]:
-    """The ids of what a finding is about, as far as it is drawn."""
+    """Return the ids of the nodes, names and frames of a finding, as far as they are drawn."""
     found = (
         *(ids.names.get(name, "") for name in about.names),
         *(ids.nodes.get(node, "") for node in about.nodes),
@@ -97,7 +97,7 @@ def make_sections(scene: Scene) -> list[PageSection]:
 
 
 def concerns_of(scene: Scene) -> dict[str, tuple[int, ...]]:
-    """The numbers of the findings that concern each robot."""
+    """Return the numbers of the findings that concern each robot."""
     found = lists_by_key(
         (robot, at) for at, row in enumerate(scene.rows) for robot in row.robots or ("",)
     )
@@ -105,12 +105,12 @@ def concerns_of(scene: Scene) -> dict[str, tuple[int, ...]]:
 
 
 def look_of(section: PageSection) -> str:
-    """The CSS class of a robot."""
+    """Return the CSS class of a robot."""
     return "bad" if section.levels[ERROR] else "odd" if section.faulty else "good"
 
 
 def ids_in(section: PageSection, ids: Ids) -> set[str]:
-    """What can be linked to in a section."""
+    """Return the ids that can be linked to in a section."""
     if not section.drawn:
         return set()
     nodes = {ids.nodes[node.name] for node in section.shown.nodes}
@@ -136,7 +136,7 @@ def link_to(
 
 
 def summarize(levels: Mapping[str, int]) -> str:
-    """What is serious, in words."""
+    """Return the numbers of findings by level, in words."""
     return in_words({level: levels[level] for level in LEVELS})
 
 
@@ -155,7 +155,7 @@ def without_common(group: DrawnGroup) -> DrawnGroup:
 
 
 def only_common(group: DrawnGroup) -> DrawnGroup:
-    """What ``without_common`` drops."""
+    """Return the part of a group that ``without_common`` drops."""
     shown = {(edge.kind, edge.name) for edge in without_common(group).edges}
     hidden = [edge for edge in group.edges if (edge.kind, edge.name) not in shown]
     nodes = {edge.node for edge in hidden}
@@ -170,7 +170,7 @@ def has_faults(group: DrawnGroup) -> bool:
 
 
 def _with_edges(group: DrawnGroup, edges: Iterable[DrawnEdge]) -> DrawnGroup:
-    """The group with only these edges; robots and tools without an edge are dropped."""
+    """Return the group with only these edges; robots and tools without an edge are dropped."""
     kept = tuple(edges)
     nodes = {edge.node for edge in kept}
     names = {(edge.kind, edge.name) for edge in kept}
@@ -214,7 +214,7 @@ class _Card(NamedTuple):
 def robot_cards(
     scene: Scene, sections: Sequence[PageSection], rules: Mapping[str, Rule]
 ) -> Iterator[str]:
-    """The robots with findings first, then those without; what is of no robot is last."""
+    """Yield the robots with findings first, then those without; the nodes of no robot come last."""
     rows = concerns_of(scene)
     own = ((rows.get(it.group.robot, ()), not it.group.robot, it) for it in sections)
     same = lists_by_key(

@@ -156,8 +156,8 @@ class _RobotOf(NamedTuple):
 def make_scene(
     plan: System, graph: System, found: Sequence[Finding], outcome: Outcome | None = None
 ) -> Scene:
-    """What is drawn of ``graph`` with its plan and findings; the outcome follows from these if a
-    command does not say otherwise."""
+    """Return the drawing of ``graph`` with its plan and findings; without an outcome it follows from
+    these."""
     verdict, held = judge(found, graph), coverage(plan, graph)
     by_plan, seen = side_by_side(plan, graph)
     targets = find_targets(by_plan, seen, found)
@@ -198,13 +198,13 @@ def _rows(plan: Index, targets: Mapping[Finding, Targets]) -> Iterator[FindingRo
         node = plan.node.get(finding.node)
         if not place and node is not None:
             # Where a planned node is from: its plugin, a file, or its stack.
-            stack = f"stack {node.stack}" if node.stack else ""
+            stack = f"node set {node.stack}" if node.stack else ""
             place = str(node.plugin) or str(node.place) or stack
         yield FindingRow(finding, merged(targets[it] for it in members), robots, place)
 
 
 def _edges(plan: Index, seen: Index, states: States) -> Iterator[DrawnEdge]:
-    """The endpoints in the graph, and those that a finding reports as missing."""
+    """Yield the endpoints in the graph, and those that a finding reports as missing."""
     # One endpoint with a known type is enough.
     common_names = {
         end.name

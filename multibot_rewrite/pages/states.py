@@ -35,7 +35,7 @@ class Targets(NamedTuple):
 
 
 def merged(targets: Iterable[Targets]) -> Targets:
-    """What several findings are about, each part once."""
+    """Return the nodes, names and frames of several findings, each once."""
     nodes, names, frames = zip(*targets, strict=True)
     return Targets(*(tuple(dict.fromkeys(chain(*part))) for part in (nodes, names, frames)))
 
@@ -53,12 +53,12 @@ class States(NamedTuple):
 
 
 def worst(states: Iterable[str]) -> str:
-    """The worst of some states; ``ok`` if there are none."""
+    """Return the worst of some states; ``ok`` if there are none."""
     return min(states, key=STATES.index, default=OK)
 
 
 def find_targets(plan: Index, seen: Index, findings: Iterable[Finding]) -> tuple[Targets, ...]:
-    """What each finding is about, by its fields and by the names in its message."""
+    """Return the nodes, names and frames of each finding, by its fields and its message."""
     homes = (tree_topic(robot.tf_topic) for robot in plan.system.robots)
     topics = [*dict.fromkeys((*(tree.topic for tree in seen.trees if tree.edges), *homes))]
     found = []
@@ -78,7 +78,7 @@ def find_targets(plan: Index, seen: Index, findings: Iterable[Finding]) -> tuple
 
 
 def make_states(findings: Iterable[Finding], targets: Sequence[Targets]) -> States:
-    """The states of everything that findings are about; the worst where there are several."""
+    """Return the states of everything in findings; the worst if there are several."""
     endpoints: dict[tuple[str, str], str] = {}
     nodes: dict[str, str] = {}
     frames: dict[FrameKey, tuple[str, ...]] = {}
@@ -116,7 +116,7 @@ def _endpoint_targets(plan: Index, seen: Index, finding: Finding) -> Targets:
 
 
 def robots_of(plan: Index, finding: Finding) -> set[str]:
-    """The robots that a finding is about, or of which it names a node, a name or a frame."""
+    """Return the robots of a finding, and those of a node, name or frame in it."""
     in_tf = finding.code.startswith(TF_CODES)
     of_name = plan.of_frames.robot if in_tf else plan.of_names.robot
     words = words_of(finding.message)
@@ -127,5 +127,5 @@ def robots_of(plan: Index, finding: Finding) -> set[str]:
 
 
 def words_of(message: str) -> set[str]:
-    """The words of a message, without punctuation."""
+    """Return the words of a message, without punctuation."""
     return {word.strip(",:;?()'") for word in message.split()}

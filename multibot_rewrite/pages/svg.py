@@ -65,12 +65,12 @@ def safe(text: str) -> str:
 
 
 def tooltip(*lines: str) -> str:
-    """The text that is shown under the mouse pointer."""
+    """Return the text that is shown under the mouse pointer."""
     return f"<title>{chr(10).join(map(safe, filter(None, lines)))}</title>"
 
 
 def group_svg(group: DrawnGroup, ids: Ids, prefix: str) -> str:
-    """The picture of a group; ``prefix`` is put before its anchors, without it there are none."""
+    """Return the picture of a group; ``prefix`` comes before its anchors, empty for no anchors."""
     place = lay_out(group)
     kinds = {plural(len(group.nodes), "node"), plural(len(group.names), "name")}
     label = safe(f"{group.robot or 'shared'}: {', '.join(sorted(kinds))}")
@@ -156,7 +156,7 @@ def _meaning(state: str) -> str:
 
 
 def _label(name: str, robot: str, room: float) -> str:
-    """A name cut to ``room`` pixels, with the robot's name in it dimmed."""
+    """Return a name cut to ``room`` pixels, with the robot's name in it dimmed."""
     text = visible(name)
     spaces = int(room / LETTER)
     for own in (f"/{robot}", f"_{robot}"):
@@ -170,7 +170,7 @@ def _label(name: str, robot: str, room: float) -> str:
 
 
 def tree_svg(found: FrameTree, robots: Iterable[str], ids: Ids) -> str:
-    """A tf tree, the frames in the colours of their robots."""
+    """Return a tf tree, with the frames in the colours of their robots."""
     colours = {robot: f" c{at % 8}" for at, robot in enumerate(robots)}
     high = len(found.rows) * TREE_ROW
     lines, boxes, ends = [], [], []
@@ -217,14 +217,14 @@ def clipped(text: str, room: int) -> str:
 
 
 def columns(text: str) -> int:
-    """The width of ``text`` in a fixed-width font; East Asian letters are two columns wide."""
+    """Return the width of ``text`` in a fixed-width font; East Asian letters are two columns wide."""
     if text.isascii():
         return len(text)
     return sum(2 if east_asian_width(c) in "WF" else 1 for c in text)
 
 
 def _fitting(text: str, room: int) -> str:
-    """The longest beginning of ``text`` that fits into ``room`` columns."""
+    """Return the longest beginning of ``text`` that fits into ``room`` columns."""
     at = 0
     while at < len(text) and room > 0:
         room -= columns(text[at])
@@ -253,7 +253,7 @@ _NameKey = tuple[str, str]
 
 
 def lay_out(group: DrawnGroup) -> GroupLayout:
-    """The layout of one group."""
+    """Return the layout of one group."""
     nodes = {node.name: node for node in group.nodes}
     offers = _names_by_node(edge for edge in group.edges if edge.role in OFFERING)
     uses = _names_by_node(edge for edge in group.edges if edge.role not in OFFERING)
@@ -283,7 +283,7 @@ def _ordered_names(
     offers: Mapping[str, Sequence[_NameKey]],
     uses: Mapping[str, Sequence[_NameKey]],
 ) -> list[_NameKey]:
-    """The names, the worst first, within the same state in an order with few crossings."""
+    """Return the names, the worst first, within the same state in an order with few crossings."""
     severity = {(name.kind, name.name): len(STATES) for name in group.names}
     for edge in group.edges:
         if edge.state in FAULTY:

@@ -42,7 +42,7 @@ class FrameTree(NamedTuple):
 
 
 def make_frame_trees(plan: Index, seen: Index, states: States) -> tuple[FrameTree, ...]:
-    """The trees on each topic in the order of the robots, then the frames missing there."""
+    """Return the trees on each topic in the order of the robots, then the frames missing there."""
     edges = {tree.topic: tree.edges for tree in seen.trees if tree.edges}
     if not (edges or states.frames):
         return ()

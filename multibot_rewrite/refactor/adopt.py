@@ -39,7 +39,7 @@ from multibot_rewrite.refactor.declaring import SPACES, declared, free_name
 from multibot_rewrite.refactor.launch_argument import Space
 from multibot_rewrite.refactor.launches import Trial, fillable, with_launches
 from multibot_rewrite.refactor.named_elsewhere import named_elsewhere, root_sections
-from multibot_rewrite.refactor.namespaces import namespaced, space_proved
+from multibot_rewrite.refactor.namespaces import namespaced, space_verified
 from multibot_rewrite.refactor.package import (
     Description,
     Expanding,
@@ -64,22 +64,22 @@ from multibot_rewrite.refactor.source_edits import (
 
 _PARTS = ("link", "joint")
 TRIED = "robot1_"
-_ALONE = "no place for the prefix changes names alone"
+_ALONE = "wherever the prefix is put, it changes more than names"
 
 
 class Adopted(NamedTuple):
     """A package with its new argument. ``before`` and ``after`` are the bytes of the files that change,
-    by path, empty for a new one; ``proved`` are the descriptions that take it, ``left`` is what could
+    by path, empty for a new one; ``verified`` are the descriptions that take it, ``left`` is what could
     not be changed, ``unread`` are descriptions that could not be read, with the reason. ``already`` are
     those that have such an argument, with its name: they stay. ``launches`` are the launch files that
-    are proved to hand it on, ``configurations`` those that were proved besides the one by default, as
+    are verified to hand it on, ``configurations`` those that were verified besides the default one, as
     ``robot.urdf.xacro gripper:=true``. ``namespace`` is the argument for a namespace, empty where
     nothing needs one, ``spaced`` the descriptions that take it."""
 
     argument: str
     before: Mapping[str, bytes]
     after: Mapping[str, bytes]
-    proved: tuple[str, ...]
+    verified: tuple[str, ...]
     left: tuple[Left, ...]
     unread: Mapping[str, str]
     already: Mapping[str, str] = MappingProxyType({})
@@ -100,7 +100,7 @@ def adopt(
 ) -> Adopted:
     """Give every description of ``folder`` an argument for a prefix, in its xacro sources; a plain URDF
     becomes a xacro. Writes nothing. Raises InputError where there is no description that can be
-    expanded, or no place for the prefix changes names alone."""
+    expanded, or wherever the prefix is put, it changes more than names."""
     tree = builtin_tree(tuple(vocabulary), release_here(distro))
     how = Expanding(TRUSTED if trust else BOUNDED, xacro_args or {})
     package = read_package(folder, tree, how)
@@ -149,7 +149,7 @@ def _with_files_beside(made: Adopted, found: Sequence[Description], job: _Job) -
         before={**made.before, **{path: read_file(path) for path in launches.after}},
         after={**made.after, **launches.after},
         left=tuple(dict.fromkeys((*made.left, *launches.left, *elsewhere))),
-        launches=launches.proved,
+        launches=launches.verified,
     )
 
 
@@ -169,7 +169,7 @@ def _made(
     how: Expanding,
     more: Collection[SourceEdit] = (),
 ) -> tuple[Adopted, Mapping[str, bytes]]:
-    """The descriptions with the argument and what was proved of them, beside ``more`` edits; and the
+    """The descriptions with the argument and what was verified of them, beside ``more`` edits; and the
     files that change, by their real paths."""
     word = b"${%s}" % argument.encode()
     asked = [list(_changes(it)) for it in found]
@@ -186,17 +186,17 @@ def _made(
         at, why = next(iter(wrong.items()))
         raise InputError(f"{found[at].words}: {_ALONE}; {why}")
     unmade = {found[at].path for at in (*wrong, *lacking)}
-    proved = tuple(path for path in paths if path not in unmade)
+    verified = tuple(path for path in paths if path not in unmade)
     left = (
         *made.left,
         *chain.from_iterable(map(_not_written, found)),
-        *(Left(found[at].words, f"its names are not proved: {it}") for at, it in wrong.items()),
+        *(Left(found[at].words, f"its names are not verified: {it}") for at, it in wrong.items()),
     )
     named = as_named(after, found)
     before = {path: data for path, data in as_named(texts, found).items() if path in named}
     before |= dict.fromkeys((path for path in before if not os.path.exists(path)), b"")
     others = tuple(it.words for at, it in enumerate(found) if it.arguments and at not in wrong)
-    return Adopted(argument, before, named, proved, left, {}, configurations=others), after
+    return Adopted(argument, before, named, verified, left, {}, configurations=others), after
 
 
 def _with_namespace(found: Sequence[Description], own: Mapping[str, str], job: _Job) -> Adopted:
@@ -212,12 +212,14 @@ def _with_namespace(found: Sequence[Description], own: Mapping[str, str], job: _
     if space.argument:
         try:
             made, after = _made(found, texts, prefix, job.how, space.edits)
-            proved, wrong = space_proved(space, prefix, TRIED, after, job.how, job.tree)
+            verified, wrong = space_verified(space, prefix, TRIED, after, job.how, job.tree)
         except InputError as error:
-            proved, wrong = (), (Left(found[0].path, f"it gets no namespace: {error}"),)
+            verified, wrong = (), (Left(found[0].path, f"it gets no namespace: {error}"),)
         left += wrong
-        if proved:
-            return made._replace(left=(*made.left, *left), namespace=space.argument, spaced=proved)
+        if verified:
+            return made._replace(
+                left=(*made.left, *left), namespace=space.argument, spaced=verified
+            )
     made, _ = _made(found, texts, prefix, job.how)
     return made._replace(left=(*made.left, *left))
 
@@ -263,7 +265,7 @@ def _as_xacros(descriptions: Iterable[Description], job: _Job) -> Iterator[Descr
         if not _is_srdf(it) and not it.inventory.declared.get("link"):
             why = f"it has no link; {robot_instead(it.path)}"
         elif it.read is None and os.path.exists(f"{it.path}.xacro"):
-            why = "its xacro is beside it; make it anew from that"
+            why = "its xacro is in the same folder; generate it again from that"
         if why:
             job.unread[it.path] = f"{it.path}: {why}"
             continue

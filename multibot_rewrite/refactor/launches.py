@@ -39,10 +39,10 @@ _DESCRIPTION = "robot_description"
 
 
 class Launches(NamedTuple):
-    """Launch files with the argument by path, those of them that are proved, and what is left."""
+    """Launch files with the argument by path, those of them that are verified, and what is left."""
 
     after: Mapping[str, bytes]
-    proved: tuple[str, ...]
+    verified: tuple[str, ...]
     left: tuple[Left, ...]
 
 
@@ -58,7 +58,7 @@ class Trial(NamedTuple):
 
 
 class _Verdict(NamedTuple):
-    """What is wrong with a launch file, or why it cannot be read; both empty where it is proved."""
+    """What is wrong with a launch file, or why it cannot be read; both empty where it is verified."""
 
     fault: str
     unread: str
@@ -69,7 +69,7 @@ def with_launches(
 ) -> Launches:
     """The launch files that expand a description of ``after``, files by their paths. One that does not
     hand the argument on is left as it was. Of the parameter files those are filled in that no other
-    file names and that are proved with their launch file; so is a namespace given."""
+    file names and that are verified with their launch file; so is a namespace given."""
     texts = {path: read_file(path) for path in launches}
     alone = {
         name: it
@@ -80,13 +80,13 @@ def with_launches(
     made = [_tried(folder, path, text, after, how) for path, text in texts.items()]
     return Launches(
         {path: data for it in made for path, data in it.after.items()},
-        tuple(path for it in made for path in it.proved),
+        tuple(path for it in made for path in it.verified),
         tuple(one for it in made for one in it.left),
     )
 
 
 def _tried(folder: str, path: str, text: bytes, after: Mapping[str, bytes], how: Trial) -> Launches:
-    """A launch file with all that is asked for, or with less of it, as far as that is proved."""
+    """A launch file with all that is asked for, or with less of it, as far as that is verified."""
     names = {os.path.basename(it) for it in after}
     plain = how._replace(parameters={})
     one = Launches({}, (), ())
@@ -101,7 +101,7 @@ def _tried(folder: str, path: str, text: bytes, after: Mapping[str, bytes], how:
 def _one(
     folder: str, path: str, made: LaunchEdit, after: Mapping[str, bytes], how: Trial
 ) -> Launches:
-    """One launch file with what it fills in, as far as it is proved."""
+    """One launch file with what it fills in, as far as it is verified."""
     argument = how.argument
     if made.data is None:
         return Launches({}, (), made.left)
@@ -122,7 +122,7 @@ def _one(
     if it.unread and filled:
         return Launches({}, (), ())
     if it.unread:
-        why = f"it gets {argument}, which is not proved: {it.unread}"
+        why = f"it gets {argument}, which is not verified: {it.unread}"
         return Launches(changed, (), (*made.left, Left(path, why)))
     return Launches(changed, (path,), made.left)
 

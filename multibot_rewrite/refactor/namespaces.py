@@ -108,7 +108,7 @@ def _spaced(it: Description, data: bytes, tree: Tree) -> Spaced:
         return Spaced(it, pipeline.prepare(data, it.path, spacing(), tree))
 
 
-def space_proved(
+def space_verified(
     space: Namespaced,
     prefix: str,
     tried: str,
@@ -127,7 +127,7 @@ def space_proved(
             data, _ = read_text(it.found.path, beside, after)
             why = _fault(_spaced(it.found, data, tree), after, given, space.argument, how)
         if why:
-            wrong[it.found.path] = Left(it.found.words, f"its ROS names are not proved: {why}")
+            wrong[it.found.path] = Left(it.found.words, f"its ROS names are not verified: {why}")
     paths = dict.fromkeys(it.found.path for it in space.every)
     return tuple(it for it in paths if it not in wrong), tuple(wrong.values())
 

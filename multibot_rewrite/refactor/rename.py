@@ -2,7 +2,7 @@
 """One name of a package's descriptions changed everywhere: where it is made, and where it is used.
 
 Which values hold the name is what a rewrite asks, too: the rewriters find it, the map of renames has
-nothing but this one name. It is changed in the source of each xacro, and proved by expanding all of
+nothing but this one name. It is changed in the source of each xacro, and verified by expanding all of
 them again: nothing else may have changed."""
 
 from __future__ import annotations

@@ -79,7 +79,7 @@ def _abouts(it: Finding, rules: Mapping[str, Rule]) -> Iterator[_About]:
     whose = {it.node, it.robot} if _is_absence(it, rules) else {it.node, it.robot, ""}
     yield from ((one, name) for name in it.names for one in whose)
     if len(it.names) == 2:
-        yield from ((f"beside {it.names[1 - at]}", name) for at, name in enumerate(it.names))
+        yield from ((f"with {it.names[1 - at]}", name) for at, name in enumerate(it.names))
 
 
 def _is_of_an_end(it: Finding, rules: Mapping[str, Rule]) -> bool:
@@ -97,7 +97,7 @@ def _same(seen: Index, it: Finding, rules: Mapping[str, Rule]) -> Iterator[_Abou
         used = it.names[-1]
         is_tf = any(end.type == TF for end in ends_of(seen, used))
         about = tree_topic(used) if is_tf else used
-        yield from ((whose, about) for whose in (it.node, f"beside {it.names[0]}", it.robot, ""))
+        yield from ((whose, about) for whose in (it.node, f"with {it.names[0]}", it.robot, ""))
     elif _is_of_an_end(it, rules):
         # What all robots have, such as /clock, the nodes of a robot lack together; whoever has to send
         # it is not one of them, but the cause.

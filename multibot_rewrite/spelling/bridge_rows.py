@@ -84,7 +84,7 @@ def given_topic(row: BridgeRow, plugin: _Element, release: str) -> str:
 
 
 def default_topics(row: BridgeRow, plugin: _Element, model: str) -> Iterator[tuple[str, str]]:
-    """Return the default topics, each with what stands below the model or its namespace.
+    """Return the default topics, each with what is below the model or its namespace.
 
     There are several where an element is repeated, and none where one is missing.
     """

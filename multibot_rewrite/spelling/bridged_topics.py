@@ -147,13 +147,13 @@ def is_bridged(inventory: Inventory) -> bool:
 
 
 def plugin_libraries(inventory: Inventory) -> list[str]:
-    """The libraries of a description's plugins, as ``library_key`` has them."""
+    """Return the libraries of a description's plugins, as ``library_key`` has them."""
     hosts = (it.element for it in inventory.hosts)
     return [library_key(it.get("filename", "")) for it in hosts if it.tag == "plugin"]
 
 
 def model_name(inventory: Inventory) -> str:
-    """What a description calls its model: <robot> itself, in SDF the first <model>."""
+    """Return the name of a description's model: <robot> itself, in SDF the first <model>."""
     root = inventory.document.root
     return next(root.iter("robot", "model"), root).get("name", "")
 
@@ -317,7 +317,7 @@ def _line(element: etree._Element) -> int:
 
 
 def _ros_name(name: str) -> str:
-    """A gz topic has no namespace: the name in the description is the full name, as ROS takes it."""
+    """Return the ROS name of a gz topic, which has no namespace: its name is the full name."""
     return f"/{_as_ros(name.lstrip('/'))}"
 
 
@@ -331,7 +331,7 @@ def _tf_name(robot: str, naming: Naming) -> str:
 
 
 def _robot_name(name: str, robot: str, naming: Naming) -> str:
-    """A name as the robot's own topic, with what ROS takes in one."""
+    """Return a name as the robot's own topic, with the characters that ROS allows."""
     name = _as_ros(name)
     if naming.topics == NAMESPACE:
         return f"/{robot}/{name}"
@@ -339,7 +339,7 @@ def _robot_name(name: str, robot: str, naming: Naming) -> str:
 
 
 def as_yaml(bridged: Iterable[BridgedTopic]) -> str:
-    """The configuration file of ``ros_gz_bridge parameter_bridge``."""
+    """Return the configuration file of ``ros_gz_bridge parameter_bridge``."""
     return "".join(
         f'- ros_topic_name: "{it.ros}"\n'
         f'  gz_topic_name: "/{it.gz.lstrip("/")}"\n'
@@ -356,7 +356,7 @@ _ROLES = {"GZ_TO_ROS": (PUBLISHES,), "ROS_TO_GZ": (SUBSCRIBES,)}
 
 
 def bridged_as(topics: Iterable[BridgedTopic]) -> tuple[Topic, ...]:
-    """The topics that descriptions have, each once."""
+    """Return the topics that descriptions have, each once."""
     return once(
         Topic(it.ros, bridge=_ROLES.get(it.direction, BOTH), type=it.ros_type) for it in topics
     )

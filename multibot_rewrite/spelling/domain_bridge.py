@@ -49,16 +49,16 @@ class Crossing(NamedTuple):
 
 
 def bridge_name(robot: str) -> str:
-    """What the bridge of a robot is called."""
+    """Return the name of a robot's bridge."""
     return f"{robot.replace('/', '_')}_bridge"
 
 
 def with_bridges(plan: System, given: Sequence[str] = ()) -> System:
-    """The plan with a bridge for each robot that has something to bring; ``given`` are topics of each
-    robot that cross besides what nodes of the plan need: to the domain of all robots, or from it what
-    people and planners send to a robot, such as ``cmd_vel``.
+    """Return the plan with a bridge for each robot that has topics to bridge.
 
-    Raises UsageError for one that no robot has.
+    ``given`` are topics of each robot that cross in addition to the needs of nodes in the plan: to the
+    domain of all robots, or from it operator topics such as ``cmd_vel``. Raises UsageError for one that
+    no robot has.
     """
     # One without a type ends the bridge: it loads what its type is called (bridge_topic).
     found = [it for it in crossings(plan, given) if it.type]
@@ -76,14 +76,14 @@ def with_bridges(plan: System, given: Sequence[str] = ()) -> System:
 
 
 def beyond(plan: System) -> dict[str, str]:
-    """The nodes that robots' bridges have in the domain of all robots, each with its robot."""
+    """Return the nodes that robots' bridges have in the domain of all robots, each with its robot."""
     shared = domain_of(plan).get("")
     names = {f"/{bridge_name(it.name)}_{shared}": it.name for it in plan.robots}
     return {it.name: names[it.name] for it in plan.nodes if it.name in names}
 
 
 def crossings(plan: System, given: Sequence[str]) -> list[Crossing]:
-    """What a node of one domain reads and none of its domain sends, and what is asked for."""
+    """Return the topics that a node reads and no node of its domain sends, and those requested."""
     numbers = domain_of(plan)
     found = [*_needed(surely(plan), numbers), *_given(plan, numbers, given)]
     return sorted(dict.fromkeys(found))

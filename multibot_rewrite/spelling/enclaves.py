@@ -65,13 +65,13 @@ class Profile(NamedTuple):
 
 
 def enclave_of(robot: str) -> str:
-    """The path of a robot's enclave."""
+    """Return the path of a robot's enclave."""
     return f"/{robot}"
 
 
 def to_policy(plan: System, more: Iterable[End] = ()) -> str:
-    """The policy file of a fleet. ``more`` are endpoints that nodes may have besides those of the plan,
-    by parameter: a policy that lacks them would stop these nodes."""
+    """Return the policy file of a fleet. ``more`` are endpoints that nodes may have besides those of
+    the plan, by parameter: a policy that lacks them would stop these nodes."""
     from xml.sax.saxutils import escape, quoteattr  # takes half as long to import as a check does
 
     lines = [f'<policy version="{VERSION}">', "  <enclaves>"]

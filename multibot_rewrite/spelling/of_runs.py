@@ -25,13 +25,13 @@ _OF_ROBOTS = frozenset(USUAL_FRAMES) - frozenset(WORLD_FRAMES)
 
 
 def parsed(rules: Iterable[Rule]) -> tuple[RemapRule, ...]:
-    """The rules as rcl reads them."""
+    """Return the rules as rcl reads them."""
     found = (parse_remap(f"{source}:={target}") for source, target in rules)
     return tuple(rule for rule in found if rule is not None)
 
 
 def with_names(run: Run) -> Run:
-    """The run with the names of its ends; those that are made at run time have none."""
+    """Return the run with the names of its ends; those that are made at run time have none."""
     own = bind(run.name, run.namespace, parsed(run.rules))
     bare = bind(run.name, run.namespace, ())
     space = run.process_namespace
@@ -52,7 +52,7 @@ def asked_beside(end: Endpoint, bound: BoundNode) -> str:
 
 
 def asked_alone(node: NodeFacts, end: Endpoint) -> str:
-    """Return the name that a node of a robot alone asks for, under the rules of its stack."""
+    """Return the name that a node of a robot alone asks for, under the rules of its node set."""
     others = (it.remapped for it in node.endpoints if it.name == end.beside and it.remapped)
     return _sibling(next(others, end.beside), end.name) if end.beside else end.name
 
@@ -63,7 +63,7 @@ def _sibling(other: str, name: str) -> str:
 
 
 def _name_of(run: Run, end: Endpoint, bound: BoundNode) -> str:
-    """The name that an end has."""
+    """Return the name of an end."""
     if end.beside:
         return resolve_bound(asked_beside(end, bound), end.kind, bound)
     name = end.name
@@ -77,7 +77,7 @@ def _name_of(run: Run, end: Endpoint, bound: BoundNode) -> str:
 
 
 def ends_of(run: Run) -> Iterator[End]:
-    """The ends of a node; those under a condition may be there."""
+    """Yield the ends of a node; those under a condition may be there."""
     full_name = run.full_name
     for end, name in run.names:
         given = run.values.get(end.parameter)
@@ -98,7 +98,7 @@ def ends_of(run: Run) -> Iterator[End]:
 
 
 def each_once(ends: Iterable[End]) -> Iterator[End]:
-    """The ends, and of those that only may be there one of each name that no other end has."""
+    """Yield the ends; of optional ones only one of each name that no other end has."""
     every = dict.fromkeys(ends)
     known = {(it.node, it.kind, it.role, it.name): it for it in every if it.sure == RUNS}
     for it in every:
@@ -107,8 +107,8 @@ def each_once(ends: Iterable[End]) -> Iterator[End]:
 
 
 def lookups_of(run: Run, prefix: str = "") -> Iterator[Lookup]:
-    """The frames that a node reads by its parameters, and does not send itself; by default the usual
-    ones of a robot. The node puts ``prefix`` before each."""
+    """Yield the frames that a node reads by its parameters and does not send; by default the usual ones
+    of a robot. The node puts ``prefix`` before each."""
     own = {name for it in run.fact.sends for name in it[:2]}
     for it in (frame for frame in run.fact.frames if frame.parameter not in own):
         found = run.values.get(it.parameter)
@@ -129,7 +129,7 @@ ACTION_PARTS = (
 
 
 def placed(robot: str, node: str, naming: Naming, apart: bool = False) -> tuple[str, str]:
-    """The namespace and name that a robot's node runs under; ``apart`` as in ``NodeFacts``."""
+    """Return the namespace and name that a robot's node runs under; ``apart`` as in ``NodeFacts``."""
     # A costmap is a node in its own namespace, whatever its robot.
     above, _, name = node.strip("/").rpartition("/")
     if apart or naming.topics == NAMESPACE:
@@ -138,7 +138,8 @@ def placed(robot: str, node: str, naming: Naming, apart: bool = False) -> tuple[
 
 
 def expanded(endpoint: Endpoint) -> Iterator[tuple[str, str]]:
-    """The names that rcl sees for an endpoint, with their kinds: an action is services and topics.
+    """Yield the names that rcl sees for an endpoint, with their kinds: an action is services and
+    topics.
 
     A name in ``<>`` is made at run time, so it yields none.
     """
@@ -155,10 +156,10 @@ def expanded(endpoint: Endpoint) -> Iterator[tuple[str, str]]:
 
 
 def target_of(name: str, kind: str, robot: str, naming: Naming) -> str:
-    """The target of the rule for ``name``; empty if no rule is needed.
+    """Return the target of the rule for ``name``; empty if no rule is needed.
 
-    With namespaces targets are relative, so the rule is the same for every robot; a relative name
-    that all robots share would be each robot's own without a rule.
+    With namespaces targets are relative, so the rule is the same for every robot; a relative name that
+    all robots share would be each robot's own without a rule.
     """
     bare = name.strip("/")
     if name.startswith("~"):

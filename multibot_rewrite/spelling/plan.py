@@ -41,7 +41,7 @@ NO_WORDS: Mapping[str, str] = {}
 
 
 def robot_words(plan: System) -> dict[str, str]:
-    """The words that stand for robots, in names and in frames, and the robot of each."""
+    """Return the words for robots, in names and in frames, with the robot of each."""
     return {word: it.name for it in plan.robots for word in (it.name, it.tag) if word}
 
 
@@ -63,11 +63,11 @@ def expect(
     words: Mapping[str, str] = NO_WORDS,
     maybe_real: Container[str] = (),
 ) -> System:
-    """The plan that follows from a remap table.
+    """Return the plan that follows from a remap table.
 
     ``frames`` are the declared frames of each robot, ``named`` further frames in its description.
-    ``words`` has the name of a robot in its frames, where that is another one than its name;
-    plugins of ``maybe_real`` robots may be missing.
+    ``words`` has the name of a robot in its frames, if it differs; plugins of ``maybe_real`` robots may
+    be missing.
     """
     # The default frames of parameters; a name in <> stands for another parameter.
     facts = {id(it.fact): it.fact for it in table.runs if not it.written}
@@ -111,7 +111,7 @@ def expect(
 
 
 def named_frames(inventory: Inventory) -> tuple[str, ...]:
-    """The frames that a description names anywhere, such as those of its plugins' messages."""
+    """Return the frames that a description names anywhere, such as those of its plugins' messages."""
     values = (
         claim.value.strip()
         for claim in inventory.claims
@@ -165,7 +165,7 @@ def _private_nodes(table: Table, always: bool = False) -> dict[str, tuple[str, .
 
 
 def _planned(table: Table) -> Iterator[End]:
-    """The ends of nodes; what a helper without a name has is nobody's."""
+    """Yield the ends of nodes; those of a helper without a name have no node."""
     for run in table.runs:
         # What is planned is not said by a place.
         bare = run._replace(values={}, place=NOWHERE)
@@ -175,7 +175,7 @@ def _planned(table: Table) -> Iterator[End]:
 
 
 def tf_topic(robot: str, naming: Naming) -> str:
-    """The tf topic of a robot in this layout."""
+    """Return the tf topic of a robot in this layout."""
     topic = f"/{TF_TOPICS[0]}"
     if not naming.layout.tf_per_robot:
         return topic

@@ -98,12 +98,12 @@ class Run(NamedTuple):
         return self.has_fact or is_viewer(self.name)
 
     def value(self, name: str) -> object:
-        """What a parameter is set to; None where nothing sets it."""
+        """Return the value of a parameter; None if nothing sets it."""
         given = self.values.get(name)
         return given.value if given else None
 
     def is_untold(self, name: str) -> bool:
-        """Does only a run tell what a parameter is set to, or if anything sets it?"""
+        """Return whether only a run shows the value of a parameter, or whether it is set."""
         return name in self.untold or (ANY_NAME in self.untold and name not in self.values)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a viewer can show of each robot of a plan: topics, description, the frame it stands in; a
+"""What a viewer can show of each robot of a plan: topics, description, the frame it is in; a
 layout of Foxglove that shows it."""
 
 from __future__ import annotations
@@ -41,12 +41,12 @@ class Shown(NamedTuple):
         return next((it for it in sent if _DESCRIPTION in it), usual)
 
     def of_type(self, types: Iterable[str]) -> list[str]:
-        """What it sends of some types."""
+        """Return the topics of these types that it sends."""
         some = set(types)
         return [name for name, type_ in self.sent.items() if type_ in some]
 
     def clicked(self, word: str) -> str:
-        """The topic it reads that is called so, or ""."""
+        """Return the topic of this name that it reads, or ""."""
         return next((it for it in self.read if self.is_called(it, word)), "")
 
     def is_called(self, topic: str, word: str) -> bool:
@@ -78,7 +78,7 @@ def _add(shown: Shown | None, role: str, topic: str, type_: str) -> None:
 
 
 def world_of_plan(plan: System) -> str:
-    """The frame of all robots in which they stand, else the first robot's first."""
+    """Return the frame of all robots that is their world, or the first frame of the first robot."""
     shared = plan.shared_frames
     worlds = (
         *(it.parent for it in plan.edges if it.parent in shared),
@@ -113,7 +113,7 @@ class _Tab(NamedTuple):
 
 
 def to_layout(plan: System) -> str:
-    """The layout as JSON; empty where the frames of two robots have the same names."""
+    """Return the layout as JSON; empty if the frames of two robots have the same names."""
     layout = next(it for it in LAYOUTS if plan.layout in (it.name, it.short))
     if not layout.frames and len(plan.robots) > 1:
         return ""
@@ -144,7 +144,7 @@ def to_layout(plan: System) -> str:
 
 
 def _own(shown: Shown, shared: Shown, sent: set[str], prefixed: bool) -> Panels:
-    """The robot in 3D, its images, and buttons that drive it."""
+    """Return the robot in 3D, its images, and buttons that drive it."""
     name, frames = shown.robot.name, shown.robot.frames
     bodies = [it for it in frames if any(body in it for body in BODY_FRAMES)]
     frame = next(iter(bodies or frames), "")

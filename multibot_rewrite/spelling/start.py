@@ -26,9 +26,10 @@ _COMMANDS = {("rviz2", "rviz2"): ("rviz2",)}
 
 
 class File(NamedTuple):
-    """The path of a file of the build."""
+    """The path of a file of the build; ``substituted``: the launch replaces the substitutions in it."""
 
     path: str
+    substituted: bool = False
 
 
 class Text(NamedTuple):
@@ -45,11 +46,13 @@ NOTHING: Mapping[str, str] = {}
 class Process(NamedTuple):
     """How a process runs, besides what its node is given.
 
-    ``prefix`` stands before its command, ``cwd`` is its folder, with ``shell`` a shell reads the line.
+    ``prefix`` is before its command, ``cwd`` is its folder, with ``shell`` a shell reads the line.
     With ``respawn`` it is started again when it ends, after ``respawn_delay`` seconds. It starts
     ``delay`` seconds after the launch, or after the ``event`` (one of ``EVENTS``) of the process that
     is number ``after`` in its launch, -1 for none. ``is_include`` is true for a launch file of a
-    package, with launch arguments as words.
+    package, with launch arguments as words; ``is_beside`` for what puts something else than the robot
+    into its simulator. ``switches`` are the launch arguments that turn it off with another value, each
+    with the one with which it starts.
     """
 
     prefix: str = ""
@@ -61,6 +64,8 @@ class Process(NamedTuple):
     event: str = ""
     after: int = -1
     is_include: bool = False
+    is_beside: bool = False
+    switches: tuple[tuple[str, str], ...] = ()
 
 
 AS_USUAL = Process()
@@ -79,9 +84,9 @@ class Start(NamedTuple):
 
     ``components`` are loaded into it: each has its class as ``plugin`` and no ``executable``.
     ``brought_up`` is true if its node has a life cycle that nobody else configures and activates.
-    It starts if the launch argument ``condition`` is true and the package ``needs`` is installed,
-    where these are not empty. ``environment`` is what is set for it. ``number`` is its place in the
-    launch that it is from, -1 for none.
+    It starts if each launch argument of ``condition`` is true, or false after ``!``, and the package
+    ``needs`` is installed, where these are not empty. ``environment`` is what is set for it.
+    ``number`` is its place in the launch that it is from, -1 for none.
 
     Without a package the ``executable`` is a command. A launch file of a package has its path in the
     share folder for one, and names and values of launch arguments as words.

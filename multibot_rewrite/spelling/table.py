@@ -45,7 +45,7 @@ def build_table(
     *,
     release: str,
 ) -> Table:
-    """The remap table of a fleet with its problems; nodes for all robots are in it once.
+    """Return the remap table of a fleet with its problems; nodes for all robots are in it once.
 
     ``nodes`` run once for each robot, with the parameters that are ``given``; ``plugins`` are those of
     each robot's rewritten description.
@@ -96,7 +96,7 @@ def joined(table: Table, other: Table) -> Table:
 
 
 def _copy(run: Run, robot: str) -> Run:
-    """The probe's node, renamed for another robot."""
+    """Return the probe's node, renamed for another robot."""
     return run._replace(
         robot=robot,
         namespace=run.namespace.replace(PROBE, robot),
@@ -161,7 +161,7 @@ class _Place(NamedTuple):
 
 
 def _targets(endpoint: Endpoint, place: _Place) -> Iterator[Rule]:
-    """The rules that an endpoint needs."""
+    """Yield the rules that an endpoint needs."""
     robot, naming, namespace, root, others, once = place
     meant = expanded(endpoint._replace(name=endpoint.remapped or endpoint.name))
     for (kind, source), (_, wanted) in zip(expanded(endpoint), meant, strict=True):
@@ -197,8 +197,8 @@ def _root(namespace: str, robot: str, node: NodeFacts, naming: Naming) -> str:
 
 
 def places_of(robot: str, nodes: Iterable[NodeFacts], naming: Naming) -> Places:
-    """Return the full names of a robot's nodes, by their names in the stack, and of the hosts of
-    those: the controller manager may be made by what is not in the stack."""
+    """Return the full names of a robot's nodes, by their names in the node set, and of the hosts of
+    those: the controller manager may be made by what is not in the node set."""
     own = [it for it in nodes if not it.shared]
     found = {it.host: placed(robot, it.host, naming) for it in own if it.host}
     found |= {it.name: placed(robot, it.name, naming, it.apart) for it in own}
@@ -224,8 +224,8 @@ def _heads(robot: str, runs: Iterable[Run], naming: Naming) -> Places:
 
 
 def _below(name: str, naming: Naming, others: Places) -> str:
-    """The target for a name below another node of the robot, such as a private service of it, if that
-    node is renamed, or for a topic of a plugin; else empty."""
+    """Return the target for a name below another node of the robot, such as its private service, if
+    that node is renamed, or for a topic of a plugin; otherwise ""."""
     bare = name.strip("/")
     head = next((it for it in others if it[-1:] == "/" and bare.startswith(it)), "")
     head, slash, rest = (head[:-1], "/", bare[len(head) :]) if head else bare.partition("/")

@@ -86,8 +86,8 @@ def useless_rules(
 
 @cache
 def _of_managers(release: str) -> frozenset[str]:
-    """The names in the code of controller managers and of controllers that get their rules, in any
-    release: one description may be for several."""
+    """Return the names in the code of controller managers and of controllers that get their rules, in
+    any release: one description may be for several."""
     handed_on = controller_way(release).of_manager
     every = every_release().nodes.values()
     nodes = [it for it in every if it.name == MANAGER or (handed_on and it.host == MANAGER)]
@@ -119,7 +119,7 @@ def _names(run: Run) -> _Names:
 
 
 def asked_for(name: str, endpoint: Endpoint, namespace: str) -> tuple[str, ...]:
-    """A name in a node's code, and what its node makes of it in the namespace above its own."""
+    """Return a name in a node's code, and the name below the namespace above its own."""
     above = namespace.rpartition("/")[0]
     return (name, f"{above}/{name.lstrip('/')}") if endpoint.above and above else (name,)
 
@@ -133,6 +133,6 @@ def _matches(left: str, names: _Names) -> bool:
 
 
 def _split(source: str) -> tuple[str, str]:
-    """The node that the left side of a rule asks for, and the name."""
+    """Return the node in the left side of a rule, and the name."""
     whose, colon, name = source.rpartition(":")
     return (whose, name) if colon else ("", source)

@@ -46,7 +46,7 @@ def ros_args(table: Table) -> str:
 
 
 def _comment(table: Table) -> str:
-    """A line that says whose facts the table rests on, for shells and Python."""
+    """Return a line with the release of the table, for shells and Python."""
     return f"# ROS 2 {table.release}\n" if table.runs else ""
 
 
@@ -84,7 +84,7 @@ def _launch_table(found: list[Started], way: str, name: str, *words: str) -> str
 
 
 def as_data(table: Table) -> dict[str, object]:
-    """The table as plain data, as in the YAML and JSON formats."""
+    """Return the table as plain data, as in the YAML and JSON formats."""
     return {
         "layout": table.layout,
         "distro": table.release,
@@ -146,7 +146,7 @@ def gazebo(table: Table) -> str:
 
 
 def given_to(it: Delivery) -> str:
-    """Where the rules of a node stand, for people."""
+    """Where the rules of a node are written, for people."""
     if it.way == HOST:
         return f"process of {it.taker}"
     return {PROCESS: "its process", SPAWNER: "its spawner", PLUGIN: "its plugin"}.get(

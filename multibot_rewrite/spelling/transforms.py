@@ -34,10 +34,10 @@ def edges_of(
     word: str = "",
     plain: Mapping[tuple[str, str], str] = NO_PLAIN,
 ) -> dict[tuple[str, str], list[Edge]]:
-    """The transforms that a robot's nodes send, by robot and node: description, odometry, map.
+    """Return the transforms that a robot's nodes send, by robot and node: description, odometry, map.
 
-    ``word`` is the robot's name in its frames, empty where that is its name; ``plain`` are links that
-    arguments of a xacro make of what nodes call otherwise.
+    ``word`` is the robot's name in its frames, empty if that is its name; ``plain`` are links from
+    xacro arguments that nodes name differently.
     """
     tree = list(tree_of(inventory, naming, word or robot))
     children = {edge.child for edge in tree}
@@ -64,27 +64,27 @@ def edges_of(
 
 
 def state_publisher_of(nodes: Sequence[NodeFacts]) -> str:
-    """The node that sends the robot's description: another state publisher sends that of a dock or the
-    like, under another name. Empty for none."""
+    """Return the node that sends the robot's description, empty for none. Another state publisher sends
+    that of a dock or the like, under another name."""
     found = [node.name for node in nodes if node.package == STATE_PUBLISHER]
     return STATE_PUBLISHER if STATE_PUBLISHER in found else next(iter(found), "")
 
 
 def _once(by_naming: Callable[[str], str]) -> Callable[[str], str]:
-    """The naming for arguments, which may have the robot's name in front of a frame already."""
+    """Return the naming for arguments, which may already have the robot's name before a frame."""
     own = by_naming("x").removesuffix("x")
     return lambda frame: frame if own and frame.startswith(own) else by_naming(frame)
 
 
 def tree_of(inventory: Inventory, naming: Naming, robot: str) -> Iterator[Edge]:
-    """The transforms that a robot's robot_state_publisher sends for its rewritten description."""
+    """Yield the transforms that a robot's robot_state_publisher sends for its rewritten description."""
     for it in edges_in(inventory.document.root):
         parent, child = (at_run_time(naming, robot, link) for link in (it.parent, it.child))
         yield it._replace(parent=parent, child=child)
 
 
 def links_of(inventory: Inventory, naming: Naming, robot: str) -> list[str]:
-    """The links of a rewritten description as frames; those below ``<gazebo>`` are in no tf."""
+    """Return the links of a rewritten description as frames; those below ``<gazebo>`` are in no tf."""
     root = inventory.document.root
     own = [it.get("name", "") for it in root.iterfind("link")]
     links = own if root.tag == "robot" else inventory.declared["link"]
@@ -92,17 +92,17 @@ def links_of(inventory: Inventory, naming: Naming, robot: str) -> list[str]:
 
 
 def at_run_time(naming: Naming, robot: str, link: str) -> str:
-    """The frame of a link: nodes may put the robot's name before it."""
+    """Return the frame of a link: nodes may put the robot's name before it."""
     return spelled(naming, robot, "frame", link) if naming.layout.at_run_time else link
 
 
 def edges_in(root: _Element) -> Iterator[Edge]:
-    """The transforms that robot_state_publisher sends for the joints of a description as it is."""
+    """Yield the transforms that robot_state_publisher sends for the joints of a description."""
     yield from (it for _, it in tree_joints(root))
 
 
 def tree_joints(root: _Element) -> Iterator[tuple[_Element, Edge]]:
-    """The joints of the tree, each with its transform. A frame of an SDF is the link that it is
+    """Yield the joints of the tree, each with its transform. A frame of an SDF is the link that it is
     attached to; a joint below ``<gazebo>`` is for the simulator alone. Of two with one child the last
     by name counts (urdfdom_headers model.h initTree)."""
     frames = ((it.get("name", ""), it.get("attached_to", "")) for it in root.iter("frame"))
@@ -120,7 +120,7 @@ def tree_joints(root: _Element) -> Iterator[tuple[_Element, Edge]]:
 
 
 def sent_by(node: NodeFacts, root: str) -> Iterator[Edge]:
-    """The transforms that a node's parameters name.
+    """Yield the transforms that a node's parameters name.
 
     With ``root`` that frame is the child, except for odometry frames and those that a file sets.
     """
@@ -136,7 +136,7 @@ def sent_by(node: NodeFacts, root: str) -> Iterator[Edge]:
 
 
 def _is_static(node: NodeFacts) -> bool:
-    """Does it only send transforms that hold for ever?"""
+    """Return whether it only sends static transforms."""
     sent = {it.name.strip("/") for it in node.endpoints if it.role == PUBLISHES}
     return "tf_static" in sent and "tf" not in sent
 
@@ -162,10 +162,10 @@ def with_odometry(edges: Edges, robot: str, naming: Naming) -> tuple[Edges, str]
 def frames_of(
     inventory: Inventory, sent: Iterable[Edge], naming: Naming, robot: str
 ) -> tuple[str, ...]:
-    """A robot's own frames: those of its description, and those its nodes send besides.
+    """Return a robot's own frames: those of its description, and those that its nodes also send.
 
     A ``<frame>`` of an SDF is not on tf: sdformat_urdf (jazzy, sdformat_urdf.cpp) makes a URDF of links
-    and joints. Nor is a link that no joint has beside others, as that of a model in the model.
+    and joints. Nor is a link without a joint if others have one, as that of a model in the model.
     """
     links = links_of(inventory, naming, robot)
     ends = [frame for edge in sent for frame in (edge.parent, edge.child)]

@@ -42,7 +42,7 @@ class _Standing(NamedTuple):
 
 
 def running_nodes(table: Table, left_out: Collection[str] = ()) -> Iterator[tuple[Delivery, Run]]:
-    """Where the rules of each node stand, and the node with the rules that rcl has for it and its
+    """Where the rules of each node are written, and the node with the rules that rcl has for it and its
     process; those that stand at one of the ways ``left_out`` are missing."""
     meant = deliveries(table)
     given = [it for it in meant if it.way not in left_out]
@@ -105,7 +105,7 @@ def is_stand_in(node: Run, endpoint: Endpoint) -> bool:
 
 
 def bound_to(node: Run, rules: Iterable[Rule]) -> BoundNode:
-    """The node under these rules."""
+    """Return the node under these rules."""
     return bind(node.name, node.namespace, parsed(rules))
 
 
@@ -137,7 +137,7 @@ def not_taken(table: Table) -> Iterator[Finding]:
 
     @cache
     def owners() -> Mapping[str, set[str]]:
-        """The robots that have each name."""
+        """Return the robots that have each name."""
         return sets_by_key((name, run.robot) for run, _, name in table.ends)
 
     seen: Counter[str] = Counter()
@@ -157,7 +157,7 @@ def not_taken(table: Table) -> Iterator[Finding]:
 
 
 def _robots_worth_a_look(table: Table) -> set[str]:
-    """Those of which descriptions decide something, and the first with each of the stack's nodes."""
+    """Those of which descriptions decide something, and the first with each of the node set's nodes."""
     first: dict[str, set[str]] = {}
     found = {""}
     for it in table.runs:
@@ -190,7 +190,7 @@ def _finding(it: Delivery, kept: list[str], release: str) -> Finding:
     hint = f"give its rules to the process of {node.fact.host or node.name}"
     if node.process_wide and controller_way(release).spawner:
         message = f"on {release} its controllers do not get its rules for {names}"
-        hint = "name their stack, and start each with its spawner's --controller-ros-args"
+        hint = "name their node set, and start each with its spawner's --controller-ros-args"
     elif it.way == PLUGIN:
         message = f"on {release} it gets the rules of the first robot alone, none for {names}"
         hint = "give each robot a namespace, with --topics namespace"

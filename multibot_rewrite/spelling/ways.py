@@ -28,9 +28,9 @@ COSTMAP_HAS_RULES_OF_ITS_PARENT = "lyrical+"
 
 
 class Delivery(NamedTuple):
-    """Rules for a node, as they are written where they stand: left and right sides.
+    """Rules for a node, as they are written: left and right sides.
 
-    ``taker`` is the node that is started with them, by its name in the stack: the node itself, its
+    ``taker`` is the node that is started with them, by its name in the node set: the node itself, its
     host or its container; for a plugin the node that the plugin is known by.
     """
 
@@ -47,7 +47,7 @@ Sources: TypeAlias = Mapping[str, frozenset[str]]
 
 
 def key_of(run: Run) -> Key:
-    """Its robot and its name in its stack."""
+    """Its robot and its name in its node set."""
     return run.robot, run.node
 
 
@@ -64,7 +64,7 @@ def deliveries(table: Table) -> tuple[Delivery, ...]:
 
 
 def rules_by_taker(given: Iterable[Delivery]) -> dict[Key, Rules]:
-    """The rules by robot and taker; those for hosted nodes name them, so they come first.
+    """Return the rules by robot and taker; those for hosted nodes name them, so they come first.
 
     A plugin has only what is written in its description.
     """
@@ -76,7 +76,7 @@ def rules_by_taker(given: Iterable[Delivery]) -> dict[Key, Rules]:
 
 
 def merged(nodes: Iterable[Run]) -> tuple[Run, ...]:
-    """The nodes, each once: one that a description and a stack have stands in the description."""
+    """Return the nodes, each once: one of a description and a node set is that of the description."""
     found: dict[tuple[str, str], Run] = {}
     for node in nodes:
         key = (node.robot, node.full_name)
@@ -101,7 +101,7 @@ def way_of(node: Run, known: Nodes, release: str) -> str:
 
 
 def taker_of(node: Run, known: Nodes, release: str) -> str:
-    """The node that is started with the rules of this one."""
+    """Return the node that is started with the rules of this one."""
     host = known.get((node.robot, node.fact.host))
     if way_of(node, known, release) not in (HOST, PLUGIN) or not node.fact.host:
         return node.node
@@ -146,9 +146,9 @@ class Started(NamedTuple):
 
 
 def started(table: Table) -> Iterator[Started]:
-    """What is started for the nodes of a table; a node in another's process or plugin is not.
+    """Yield what is started for the nodes of a table; a node in another's process or plugin is not.
 
-    A controller is always started by a spawner, also where that takes no rules.
+    A controller is always started by a spawner, even if that takes no rules.
     """
     given = deliveries(table)
     rules = rules_by_taker(given)
@@ -169,8 +169,8 @@ def started(table: Table) -> Iterator[Started]:
 
 
 def arguments(it: Started) -> list[str]:
-    """What follows ``ros2 run PACKAGE EXECUTABLE``, the spawner of a controller,
-    or ``ros2 component load CONTAINER PACKAGE PLUGIN``; empty if nothing is needed."""
+    """Return the arguments of ``ros2 run PACKAGE EXECUTABLE``, of a controller's spawner, or of ``ros2
+    component load CONTAINER PACKAGE PLUGIN``; empty if nothing is needed."""
     if it.way == SPAWNER:
         return [*spawner_arguments(it), *ros_arguments(it.node.namespace, "", ())]
     if it.way == COMPONENT:
@@ -180,7 +180,7 @@ def arguments(it: Started) -> list[str]:
 
 
 def launch_arguments(it: Started) -> dict[str, Any]:
-    """The keywords of launch_ros's Node, of ComposableNode for a component."""
+    """Return the keywords of launch_ros's Node, of ComposableNode for a component."""
     if it.way == SPAWNER:
         package, executable = SPAWN
         program = {"package": package, "executable": executable}
@@ -189,7 +189,7 @@ def launch_arguments(it: Started) -> dict[str, Any]:
 
 
 def spawner_arguments(it: Started) -> list[str]:
-    """What follows the spawner besides ROS's own arguments.
+    """Return the arguments of the spawner, without ROS's own.
 
     The rules are one value: the spawner splits it at blanks, in all releases that have the option.
     """

@@ -302,5 +302,5 @@ def why_not_seen(graph: System, robot: str, seen: Machines) -> str:
         )
     started = "is the robot started, and with this ROS_DOMAIN_ID?"
     if around.range == LOCALHOST and not around.static_peers:
-        return f"{started} Only this machine is looked at: range LOCALHOST, no ROS_STATIC_PEERS"
+        return f"{started} Only this machine is checked: range LOCALHOST, no ROS_STATIC_PEERS"
     return f"{started} {plural(len(seen), 'machine')} are seen" if len(seen) > 1 else started

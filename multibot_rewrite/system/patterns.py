@@ -47,11 +47,11 @@ def with_names(plan: System, graph: System) -> System:
     if not any(ANY in it.name for it in plan.ends):
         return plan
     by_node = lists_by_key((end.node, end) for end in graph.ends)
-    found = (end for it in plan.ends for end in _there(it, by_node))
+    found = (end for it in plan.ends for end in _matching_ends(it, by_node))
     return plan._replace(ends=tuple(dict.fromkeys(found)))
 
 
-def _there(planned: End, by_node: Mapping[str, Sequence[End]]) -> Iterator[End]:
+def _matching_ends(planned: End, by_node: Mapping[str, Sequence[End]]) -> Iterator[End]:
     if ANY not in planned.name:
         yield planned
         return

@@ -8,7 +8,7 @@ Texts for people decide nothing.
 from typing import Annotated, NamedTuple
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.releases import RELEASES
+from multibot_rewrite.base.releases import RELEASE_OR_NONE
 
 TOPIC, SERVICE, ACTION = "topic", "service", "action"
 KINDS = (TOPIC, SERVICE, ACTION)
@@ -65,7 +65,7 @@ def place_of(text: str) -> Place:
 
 
 # What a plan writes before the name of a stack that names a node.
-_STACK = "stack "
+_STACK = "stack"
 
 
 class Origin(NamedTuple):
@@ -77,8 +77,8 @@ class Origin(NamedTuple):
     def __str__(self) -> str:
         text = str(self.place)
         # A file of such a name is no stack.
-        text = f"./{text}" if text.startswith(_STACK) else text
-        return f"{_STACK}{self.stack}" if self.stack else text
+        text = f"./{text}" if text.startswith(f"{_STACK} ") else text
+        return f"{_STACK} {self.stack}" if self.stack else text
 
 
 NO_ORIGIN = Origin()
@@ -86,8 +86,8 @@ NO_ORIGIN = Origin()
 
 def origin_of(text: str) -> Origin:
     """Return the origin that a plan writes as this text."""
-    if text.startswith(_STACK):
-        return Origin(text.removeprefix(_STACK))
+    if text.startswith(f"{_STACK} "):
+        return Origin(text.removeprefix(f"{_STACK} "))
     return Origin(place=place_of(text))
 
 
@@ -157,7 +157,7 @@ class Node(NamedTuple):
     ``host`` is any word: nodes of one host run on one machine, those of two on two. ``way`` is how it
     gets its remap rules if not by --ros-args of its own (``remap.ways``), ``taker`` the node that takes
     them for it. ``plugin`` is where a description has the plugin that starts it, ``place`` what else
-    names it, ``stack`` the stack that it is from. ``known`` is what its stack or file
+    names it, ``stack`` the node set that it is from. ``known`` is what its node set or file
     calls it, ``untold`` what its source does not tell before it runs, each with its place.
     """
 
@@ -229,7 +229,7 @@ def edge_of(parent: str, child: str, static: bool = False) -> Edge:
 
 class Heard(NamedTuple):
     """The ``header.frame_id`` of a message that came on ``topic``, stamped ``age`` seconds before; inf
-    for a stamp of 0, and for a clock that stands, 0 for less than a second or not known. ``rate`` are
+    for a stamp of 0, and for a stopped clock, 0 for less than a second or not known. ``rate`` are
     messages a second, 0 if not known, ``child`` the ``child_frame_id`` of odometry, ``joints`` the
     names in a message about joints, which has no frame, ``back`` by how much a clock went back,
     ``pose`` that of odometry or a pose, as the numbers of an edge; ``link`` is that of the sensor in a
@@ -383,7 +383,7 @@ class System(NamedTuple):
     robots: tuple[Robot, ...] = ()
     topics: tuple[Topic, ...] = ()
     layout: str = ""
-    release: Annotated[str, ("", *RELEASES)] = ""
+    release: Annotated[str, RELEASE_OR_NONE] = ""
     shared_topics: tuple[str, ...] = ()
     shared_frames: tuple[str, ...] = ()
     ignored_nodes: tuple[str, ...] = ()

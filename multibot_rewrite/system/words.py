@@ -25,6 +25,7 @@ _TO_JOINTS = ("cmd", "command", "goal", "target", "desired", "reference")
 JOYSTICK = "sensor_msgs/msg/Joy"
 DESCRIPTION, _TEXT = "robot_description", "std_msgs/msg/String"
 # The node of `ros2 bag play`.
+CHANGE_STATE, NODE_NAMES = "/change_state", "node_names"
 PLAYER = "rosbag2_player"
 
 

@@ -355,4 +355,4 @@ def test_a_rule_for_a_terminal() -> None:
         "Bad:\n\n    <a>\n    </a>\n\nFixed by --fix:\n\n    <b/>\n"
     )
     assert codes.examples(WrittenRule(*it)) == [("Bad", "<a/>"), ("Good", "<b/>")]
-    assert codes.examples(RuleOfFiles(*it))[1:] == [("Beside it, a.yaml", "x: 1\n")]
+    assert codes.examples(RuleOfFiles(*it))[1:] == [("With it, a.yaml", "x: 1\n")]

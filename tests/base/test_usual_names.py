@@ -85,7 +85,7 @@ def test_patterns_inside_another_are_left_out() -> None:
         "equilibrium_pose", "speed_scaling_input", "footprint", "delta_twist_cmds",
         "delta_joint_cmds", "pose_target_cmds", "planning_scene", "planning_scene_world",
         "collision_object", "attached_collision_object", "clock", "diagnostics",
-        "parameter_events", "robot_description",
+        "parameter_events",
     ],
 )  # fmt: skip
 def test_what_a_person_or_a_scene_sends(name: str) -> None:

@@ -218,10 +218,11 @@ def test_a_vocabulary_file_teaches_a_plugin(folder: Path) -> None:
 def test_the_report_counts_by_kind(folder: Path, rover: bytes) -> None:
     result = run(folder, "rover.urdf", "robot1")
     links, joints = len(names(rover, "link")), len(names(rover, "joint"))
-    start = f"urdf-postfix: robot1: {links} links, {joints} joints, 3 sensors, 1 model"
+    start = f"urdf-postfix: robot1: renamed {links} links, {joints} joints, 3 sensors, 1 model"
     assert result.err.startswith(start)
-    assert ", 5 nodes, 1 topic word, 2 topics, " in result.err
-    assert result.err.endswith("; proved (ROS 2 humble: it loads libgazebo_ros_diff_drive.so)\n")
+    assert ", 5 nodes, 1 topic prefix, 2 topics; " in result.err
+    why = "ROS 2 humble: it loads libgazebo_ros_diff_drive.so"
+    assert result.err.endswith(f"; added 6 elements. Verified ({why})\n")
     assert result.err.count("\n") == 1
 
 
@@ -455,7 +456,7 @@ def test_help_into_a_closed_pipe(folder: Path) -> None:
     ("redirection", "words", "code", "said"),
     [
         pytest.param(">&-", ("rover.urdf", "r1"), 2, "standard output is closed", id="no-stdout"),
-        pytest.param(">&-", ("rover.urdf", "r1", "-o", "a"), 0, "proved", id="no-need-of-stdout"),
+        pytest.param(">&-", ("rover.urdf", "r1", "-o", "a"), 0, "Verified", id="no-need-of-stdout"),
         pytest.param("<&-", ("-", "r1"), 2, "standard input is closed", id="no-stdin"),
         pytest.param("2>&-", ("rover.urdf", "r1"), 0, "", id="no-stderr"),
         pytest.param("2>&-", ("siblings.urdf", "r-1"), 2, "", id="no-stderr-to-complain"),

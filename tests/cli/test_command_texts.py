@@ -310,12 +310,12 @@ def test_the_summary_of_a_file_beside_a_description() -> None:
     }  # fmt: skip
     for kind, text in words.items():
         made = [RewrittenFile("r1", kind, b"", (), ())]
-        assert rewrite_file.summary(made, ["r1"], "", "") == f"r1: {text}; proved"
+        assert rewrite_file.summary(made, ["r1"], "", "") == f"r1: rewrote {text}. Verified"
     kept = [
         RewrittenFile(it, "lua", b"", (), why) for it, why in (("a", ("x", "y")), ("b", ("y",)))
     ]
     assert rewrite_file.summary(kept, ["a", "b"], "jazzy", "it is set") == (
-        "2 robots: a Lua file; rewritten, not proved: x, y (ROS 2 jazzy: it is set)"
+        "2 robots: rewrote a Lua file. Not verified: x, y (ROS 2 jazzy: it is set)"
     )
 
 
@@ -432,13 +432,13 @@ def test_what_a_rename_changes_and_leaves(capsys: pytest.CaptureFixture[str]) ->
         "mentions": (),
     }
     rename._tell(given, options(**usual))  # type: ignore[arg-type]
-    assert capsys.readouterr().err == "multibot: link a -> b: 3 places in 2 files; proved\n"
+    assert capsys.readouterr().err == "multibot: link a -> b: 3 places in 2 files; verified\n"
     left = [f"f:{at}" for at in range(rename.MOST_MENTIONS + 1)]
     more = {**usual, "unread": {"p": "p: odd", "q": ""}, "mentions": left}
     rename._tell(given, options(**more))  # type: ignore[arg-type]
     assert capsys.readouterr().err.splitlines() == [
-        "multibot: link a -> b: 3 places in 2 files; proved, 2 descriptions not read",
-        "multibot: not looked at: p: odd", "multibot: not looked at: q",
+        "multibot: link a -> b: 3 places in 2 files; verified, 2 descriptions not read",
+        "multibot: not checked: p: odd", "multibot: not checked: q",
         f"multibot: left as they are: {len(left)} lines with 'a'",
         *(f"multibot:   {it}" for it in left[:-1]),
     ]  # fmt: skip
@@ -447,7 +447,7 @@ def test_what_a_rename_changes_and_leaves(capsys: pytest.CaptureFixture[str]) ->
 def test_what_a_package_takes_from_now_on(capsys: pytest.CaptureFixture[str]) -> None:
     given = options(quiet=False, program="multibot")
     usual: dict[str, Any] = {
-        "argument": "prefix", "proved": ("a",), "configurations": (), "after": {"f": b""},
+        "argument": "prefix", "verified": ("a",), "configurations": (), "after": {"f": b""},
         "namespace": "", "spaced": (), "launches": (), "already": {}, "left": (), "unread": {},
     }  # fmt: skip
 
@@ -455,28 +455,28 @@ def test_what_a_package_takes_from_now_on(capsys: pytest.CaptureFixture[str]) ->
         adopt._tell(given, options(**{**usual, **more}))  # type: ignore[arg-type]
         return [it.removeprefix("multibot: ") for it in capsys.readouterr().err.splitlines()]
 
-    assert told() == ["argument prefix: 1 description in 1 file; proved"]
-    assert told(proved=()) == [
-        "argument prefix: 0 descriptions in 1 file; not proved, see what is left"
+    assert told() == ["argument prefix: 1 description in 1 file; verified"]
+    assert told(verified=()) == [
+        "argument prefix: 0 descriptions in 1 file; not verified, see what is left"
     ]
-    assert told(proved=("a", "b"), configurations=("c",)) == [
-        "argument prefix: 2 descriptions and 1 other configuration in 1 file; proved"
+    assert told(verified=("a", "b"), configurations=("c",)) == [
+        "argument prefix: 2 descriptions and 1 other configuration in 1 file; verified"
     ]
     assert told(unread={"u": "u: odd"}) == [
-        "argument prefix: 1 description in 1 file; proved, 1 description not read",
-        "not looked at: u: odd",
+        "argument prefix: 1 description in 1 file; verified, 1 description not read",
+        "not checked: u: odd",
     ]
     files = {"l": b"<arg prefix:= />", "m": b"<arg ns:= prefix:= />"}
     assert told(argument="", unread={"u": "u: odd", "v": ""}, already={"x": "tf_prefix"}) == [
-        "x: it has such an argument already: tf_prefix", "not looked at: u: odd", "not looked at: v",
+        "x: it has such an argument already: tf_prefix", "not checked: u: odd", "not checked: v",
     ]  # fmt: skip
     left = (options(place="f:3", why="it is odd"),)
     assert told(
         namespace="ns", spaced=("a", "b"), launches=("l", "m"), after=files, left=left
     ) == [
-        "argument prefix: 1 description in 2 files; proved",
-        "argument ns: what ROS names in 2 descriptions; proved",
-        "l: it hands prefix on; proved", "m: it hands prefix and ns on; proved",
+        "argument prefix: 1 description in 2 files; verified",
+        "argument ns: what ROS names in 2 descriptions; verified",
+        "l: it hands prefix on; verified", "m: it hands prefix and ns on; verified",
         "f:3: left as it is: it is odd",
     ]  # fmt: skip
 
@@ -604,7 +604,7 @@ def test_the_command_of_ros2() -> None:
     [
         (
             ProofError("x"), 1,
-            "the proof failed, nothing was written; this is a fault of the tool: x",
+            "verification failed, nothing was written; this is a fault of the tool: x",
         ),
         (UsageError("x"), 2, "x"), (InputError("x"), 2, "x"), (Unusable("x"), 4, "x"),
         (KeyboardInterrupt(), 130, "interrupted; no half-written file is left"),

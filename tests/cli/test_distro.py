@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from multibot_rewrite import system_of_description
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
 
 MODEL = """<sdf version="1.12"><model name="rover" namespace="fleet"><link name="base"/>
@@ -167,6 +168,42 @@ def test_a_rewrite_says_which_release_it_is_for_and_why(
     monkeypatch.setenv("ROS_DISTRO", "iron")
     urdf_postfix.main(["c.urdf", "robot1", "-o", "o.urdf"])
     assert "(ROS 2 jazzy: ROS_DISTRO)" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("variable", "options", "release"),
+    [("", [], "humble"), ("jazzy", [], "jazzy"), ("foxy", ["--distro", "rolling"], "rolling")],
+)
+def test_a_plan_is_for_the_release_of_the_rewrite(
+    folder: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    variable: str,
+    options: list[str],
+    release: str,
+) -> None:
+    (folder / "c.urdf").write_text(CLASSIC)
+    if variable:
+        monkeypatch.setenv("ROS_DISTRO", variable)
+    urdf_postfix.main(["c.urdf", "robot1", "-o", "o.urdf", *options])
+    assert f"(ROS 2 {release}" in capsys.readouterr().err
+    multibot.main(["plan", "c.urdf", "robot1", *options])
+    planned = capsys.readouterr()
+    assert f"\nrelease: {release}\n" in planned.out
+    assert "warning: ROS_DISTRO" not in planned.err
+    assert (
+        system_of_description("c.urdf", ["robot1"], distro=options[-1] if options else "").release
+        == release
+    )
+
+
+def test_a_plan_names_a_release_that_is_not_known(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "c.urdf").write_text(CLASSIC)
+    monkeypatch.setenv("ROS_DISTRO", "noetic")
+    assert multibot.main(["plan", "c.urdf", "robot1"]) == 0
+    assert "warning: ROS_DISTRO is 'noetic', which is not known" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

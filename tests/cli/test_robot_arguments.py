@@ -47,8 +47,8 @@ def test_a_file_for_each_robot_and_a_summary(
         own = [f"{robot}_{it}" for it in ("base_link", "tool0", "gripper", "camera_link")]
         assert links(tmp_path / f"{robot}.urdf") == own
     said = capfd.readouterr().err
-    assert "2 robots: 1 link, 1 joint, " in said
-    assert ", 6 names by tf_prefix, 1 inserted; proved" in said
+    assert "2 robots: renamed 1 link, 1 joint, " in said
+    assert ", 6 names set by tf_prefix; added 1 element. Verified" in said
 
 
 def test_changes_of_every_robot_are_its_own(tmp_path: Path) -> None:

@@ -27,7 +27,7 @@ ROVER = FIXTURES / "robots" / "rover.urdf"
         ("--affix prefix --separator _", "--affix prefix", "--separator _"),
         ("--layout frames-per-robot", "", "--layout frames-per-robot"),
         ("--layout both --affix prefix", "--layout both", "--affix prefix"),
-        # That of frame-prefix alone would be proved as well, and leave the links.
+        # That of frame-prefix alone would be verified as well, and leave the links.
         (
             "--layout frames-per-robot --affix prefix",
             "",

@@ -82,8 +82,8 @@ def test_a_value_is_read(read: Callable[[str], object], text: str, value: object
         ),
         (values.one_of(KNOWN), "xyz", "'xyz' is not known, use one of text, json, sarif"),
         (values.some_of(KNOWN), "text,xyz", "'xyz' is not known, use one of text, json, sarif"),
-        (values.word, "a b", "'a b' is not a name of a stack, give one word"),
-        (values.word, "", "'' is not a name of a stack, give one word"),
+        (values.word, "a b", "'a b' is not a name of a node set, give one word"),
+        (values.word, "", "'' is not a name of a node set, give one word"),
         *(
             (values.seconds, it, f"'{it}' is not a time, give seconds up to 3600")
             for it in ("0", "-1", "3600.5", "nan", "x", "inf")

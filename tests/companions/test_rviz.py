@@ -360,7 +360,7 @@ def test_relayed_tf_shows_all_robots_in_one_window() -> None:
     ][-2:] == ["robot1", "robot2"]
 
 
-NO_RVIZ = "name the stack rviz_moveit or rviz_nav2: each robot gets an rviz2 with its rules"
+NO_RVIZ = "name the node set rviz_moveit or rviz_nav2: each robot gets an rviz2 with its rules"
 RULE_OF_EACH = (
     "its topics are absolute: delete it here, and open it in an rviz2 that has a rule for each of"
     " them, one for each robot"

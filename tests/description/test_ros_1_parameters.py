@@ -98,7 +98,7 @@ BARE = PLUGIN.replace("<topicName>imu</topicName><bodyName>base</bodyName>", "")
 def test_plugins_of_both_that_disagree_are_not_verified(more: str, is_open: bool) -> None:
     text = f'<robot name="rover"><link name="base"/>\n{more}{MOVE}{BARE}</robot>'
     one = rewrite(text, "robot1", layout="both")
-    assert ("1 plugin not known" in one.not_proved) == is_open
+    assert ("1 plugin not known" in one.not_verified) == is_open
     told = [it.message for it in one.findings if it.code == "MB902"]
     assert [("planar_move" in it, "imu_sensor" in it) for it in told] == [(True, True)] * is_open
 

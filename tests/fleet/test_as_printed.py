@@ -35,15 +35,16 @@ LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "frame-prefix", "postfix"
 
 def robot(name: str, model: str, x: str, robots_number: int) -> RobotStarts:
     """A robot with all that one may start."""
-    params, frames = File(f"{name}/p.yaml"), {"frame_prefix": f"{name}/", "rate": 1.5, "n": 2}
+    params, more = File(f"{name}/p.yaml"), File(f"{name}/q.yaml", substituted=True)
+    frames = {"frame_prefix": f"{name}/", "rate": 1.5, "n": 2}
     box = Start(
         "pkg", "", f"/{name}", "part", (params, {"on": True}), (("a", "b"),), plugin="pkg::Part"
     )
     return RobotStarts(
-        name, "rover.urdf", f"namespace /{name}", (params.path,),
+        name, "rover.urdf", f"namespace /{name}", (params, more),
         (
             Start("state", "state", f"/{name}", "state",
-                  (params, {"robot_description": Text(f"{name}/rover.urdf"), **frames}),
+                  (params, more, {"robot_description": Text(f"{name}/rover.urdf"), **frames}),
                   (("/tf", "tf"), ("/scan", f"/{name}/scan"))),
             Start("rclcpp_components", "isolated", f"/{name}", "box", components=(box,)),
             Start("slam_toolbox", "sync", f"/{name}", "slam", brought_up=True),
@@ -159,7 +160,7 @@ def test_a_process_of_a_launch_is_printed_as_planned(tmp_path: Path) -> None:
     assert differences(LAUNCHED._replace(robots=robots), text, tmp_path / "out")
 
 
-@pytest.mark.slow
+@pytest.mark.deep
 def test_one_simulator_and_one_domain(tmp_path: Path) -> None:
     """Other constants of the file: only gz, no domain, no default clock."""
     starts = ALL._replace(simulators=(GZ,), domains={}, use_sim_time=False)

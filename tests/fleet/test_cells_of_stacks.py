@@ -21,7 +21,7 @@ ROWS = [
 
 
 @pytest.mark.slow
-@pytest.mark.sample(74)
+@pytest.mark.sample(101)
 @pytest.mark.parametrize("row", ROWS, ids=["-".join(name) for name, _ in ROWS])
 def test_nothing_that_the_build_adds_refuses_a_robot(
     row: tuple[tuple[str, ...], tuple[Cell, ...]], tmp_path: Path
@@ -32,7 +32,7 @@ def test_nothing_that_the_build_adds_refuses_a_robot(
 
 
 @pytest.mark.slow
-@pytest.mark.sample(41)
+@pytest.mark.sample(59)
 @pytest.mark.parametrize("release", ["jazzy", "lyrical"])
 @pytest.mark.parametrize("pair", [*stack_cells.pairs()], ids="-".join)
 def test_two_stacks_fit_each_other(pair: tuple[str, str], release: str, tmp_path: Path) -> None:
@@ -72,6 +72,7 @@ def test_the_built_folder_agrees_with_its_plan(cell: Cell, tmp_path: Path) -> No
         Cell("gz", "cartographer", "jazzy", "frames-per-robot", "gazebo"),
         Cell("gz", "controllers", "humble", "tf-per-robot", "gazebo"),
         Cell("arm", "gz_ros2_control", "humble", "tf-per-robot", "gazebo"),
+        Cell("controlled", "controllers", "humble", "tf-per-robot", "none"),
     ],
     ids="-".join,
 )

@@ -89,6 +89,7 @@ def is_as_planned(folder: Path) -> bool:
     )
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
 @pytest.mark.parametrize("layout", ["both", "frames-per-robot"])
 def test_nav2_drives_a_controller(release: str, layout: str, tmp_path: Path) -> None:
@@ -194,6 +195,7 @@ REAL = DRIVEN.replace("gz_ros2_control/GazeboSimSystem", "acme/Driver")
 BARE = f"{REAL[: REAL.index('<gazebo>')]}</robot>"
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("layout", ["postfix", "both"])
 @pytest.mark.parametrize("stack", ["controllers", "gz_ros2_control"])
 @pytest.mark.parametrize(
@@ -235,6 +237,7 @@ MUX = """twist_mux:
 """
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("stack", ["nav2", "[nav2, teleop]", "[navigation, twist_mux]"])
 @pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
 @pytest.mark.parametrize(
@@ -267,3 +270,43 @@ def test_a_mux_that_the_build_starts_sends_to_the_drive(layout: str, tmp_path: P
         node, topic = "/robot1/twist_mux", "/robot1/cmd_vel"
     assert ("publishes", topic) in ends(tmp_path, node)
     assert is_as_planned(tmp_path)
+
+
+@pytest.mark.sample(2)
+@pytest.mark.parametrize("layout", ["tf-per-robot", "postfix"])
+@pytest.mark.parametrize("release", ["jazzy", "lyrical"])
+def test_the_launch_replaces_the_share_folders_in_a_parameter_file(
+    layout: str, release: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """nav2_bringup params/nav2_params.yaml: its own launch file gives it by ParameterFile with
+    allow_substs."""
+    own = """bt_navigator:
+  ros__parameters:
+    bt_search_directories: [$(find-pkg-share nav2_bt_navigator)/behavior_trees]
+"""
+    (tmp_path / "nav2.yaml").write_text(f"{NAV2}{own}")
+    (tmp_path / "fleet.yaml").write_text(
+        f"distro: {release}\nlayout: {layout}\nstack: nav2\ndescription: {ROVER}\n"
+        "companions: {params: [nav2.yaml]}\nrobots: [{name: a}, {name: b}]\n"
+    )
+    build = ["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out"), "-q"]
+    assert main(build) == 0
+    launch = tmp_path / "out" / "fleet.launch.py"
+    assert "nav2.yaml'), allow_substs=True)" in launch.read_text()
+    check = ["check-launch", str(launch), "--plan", str(tmp_path / "out" / "plan.yaml"), "-q"]
+    # 3: the package may not be installed here.
+    assert main(check) in (0, 3)
+    assert " error: " not in capsys.readouterr().out
+
+
+def test_what_needs_an_argument_of_a_launch_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    own = "bt_navigator: {ros__parameters: {bt_search_directories: [$(var trees)/a, $(env HOME)/b]}}\n"
+    (tmp_path / "nav2.yaml").write_text(f"{NAV2}{own}")
+    (tmp_path / "fleet.yaml").write_text(
+        f"distro: lyrical\nlayout: both\nstack: nav2\ndescription: {ROVER}\n"
+        "companions: {params: [nav2.yaml]}\nrobots: [{name: a}, {name: b}]\n"
+    )
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out")]) == 1
+    assert "MB105 the placeholder $(var trees) stays" in capsys.readouterr().err

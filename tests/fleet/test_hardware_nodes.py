@@ -93,6 +93,10 @@ ARGUMENT = '<xacro:arg name="{}" default="{}"/>'
 VIA = '<xacro:property name="port" default="/dev/a"/>'
 
 
+OWN_YAML = """<xacro:property name="own" value="${xacro.load_yaml('own.yaml')}"/>
+  <material name="m${own['a']}"/>"""
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("declared", "port", "argument"),
@@ -104,11 +108,13 @@ VIA = '<xacro:property name="port" default="/dev/a"/>'
          "dev"),
         (ARGUMENT.format("n", "a"), "/dev/$(arg n)", "n"),
         (VIA + ARGUMENT.format("other", "x"), "${port}", ""),
+        (VIA + ARGUMENT.format("usb", "${port}") + OWN_YAML, "$(arg usb)", "usb"),
     ],
 )  # fmt: skip
 def test_the_remedy_for_one_device_names_the_argument_and_helps(
     declared: str, port: str, argument: str, tmp_path: Path
 ) -> None:
+    (tmp_path / "own.yaml").write_text("a: 1\n")
     made = load_fleet(fleet(tmp_path, declared=declared, port=port))
     (told,) = [it for it in made.made.findings if it.code == "MB412"]
     if not argument:

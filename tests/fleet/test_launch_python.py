@@ -16,7 +16,7 @@ from multibot_rewrite.spelling.start import File, Start, Text, shell_line
 
 PARAMS = File("r1/p.yaml")
 FULL = RobotStarts(
-    "r1", "rover.urdf", "/r1", ("r1/p.yaml",),
+    "r1", "rover.urdf", "/r1", (PARAMS,),
     (
         Start(
             "nav2_amcl", "amcl", "/r1", "amcl",

@@ -736,6 +736,81 @@ def test_the_simulator_has_the_options_and_the_world_of_its_launch_file(
     assert of(found, "create")["arguments"][-2:] == ["-world", "w"]
 
 
+def test_a_world_that_cannot_be_read_is_given_as_it_is(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It is the vendor's: a build says what is wrong with it, and starts what he starts."""
+    world = tmp_path / "maze.sdf"
+    world.write_text(
+        '<!-- mine -->\n<?xml version="1.0"?>\n<sdf version="1.8"><world name="m"/></sdf>'
+    )
+    found = actions(tmp_path, GZ.replace("ARGS", f"-r {world}"), CREATE, more="simulator: gazebo")
+    (gz,) = (dict(it.values["launch_arguments"]) for it in found if "launch_arguments" in it.values)
+    assert gz["gz_args"] == f'-r "{world}"'
+    said = capsys.readouterr().err
+    assert f"MF823 the simulator gets a world that cannot be read: {world}:2" in said
+
+
+@pytest.mark.parametrize("robot", ["'-topic', 'robot_description'", "'-file', 'robot.urdf'"])
+@pytest.mark.parametrize("given", ["true", "false"])
+def test_what_is_put_beside_the_robot_is_there_once(robot: str, given: str, tmp_path: Path) -> None:
+    """Of the files that are spawned the first is the robot, where none is its published description."""
+    spawner = "Node(package='ros_gz_sim', executable='create', arguments=[{}])"
+    box = spawner.format("'-file', '/srv/box.sdf', '-name', 'box', '-x', '3'")
+    order = [spawner.format(robot), box][:: 1 if "file" in robot else -1]
+    body = GZ.replace("ARGS", "-r").replace("create]", f"{order[0]}]") + f"{order[1]},"
+    switches = {"robots": "2", "simulator": given}
+    found = actions(tmp_path, body, "pass", more="simulator: gazebo", given=switches)
+    words = [it.values["arguments"] for it in found if _word(it) == "create"]
+    boxes = [it for it in words if "/srv/box.sdf" in it]
+    assert len(words) - len(boxes) == (2 if given == "true" else 0)
+    assert boxes == [["-file", "/srv/box.sdf", "-name", "box", "-x", "3"]] * (given == "true")
+    real = actions(tmp_path, body, "pass", more="simulator: none", given={"robots": "2"})
+    assert "create" not in told(real)
+
+
+SEVERAL = """
+        *[GroupAction([PushRosNamespace(name),
+            Node(package='robot_state_publisher', executable='robot_state_publisher'),
+            here('driver', name='driver', parameters=[f'FOLDER/{name}.yaml', {'frame': 'laser'}],
+                remappings=[('/scan', f'/{name}/front')]),
+            RegisterEventHandler(OnProcessExit(target_action=first, on_exit=[here('late')])),
+            ]) for name in NAMES],
+        ExecuteProcess(cmd=['call', 'NAME2']), ExecuteProcess(cmd=['all']), first,
+"""
+
+
+def test_a_launch_file_of_several_robots_is_that_of_its_first(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """What it starts for the first is started for each of the fleet, under the names of these."""
+    for name in ("tb1", "tb2"):
+        text = f"/**:\n  ros__parameters: {{topic: /{name}/scan, rate: {name[-1]}}}\n"
+        (tmp_path / f"{name}.yaml").write_text(text)
+    body = SEVERAL.replace("FOLDER", str(tmp_path)).replace("NAME2", "/tb2/go")
+    found = actions(tmp_path, body.replace("NAMES", "('tb1', 'tb2')"), given={"robots": "2"})
+    drivers = [it.values for it in found if _word(it) == "driver"]
+    assert [it["namespace"] for it in drivers] == ["/robot1", "/robot2"]
+    assert ["/scan", "front"] in drivers[1]["remappings"]
+    names = [Path(it).name for it in drivers[1]["parameters"] if isinstance(it, str)]
+    assert names == ["tb1.yaml"]
+    written = yaml.safe_load((tmp_path / "out/robot2/tb1.yaml").read_text())
+    values = written["/**"]["ros__parameters"]
+    assert (values["rate"], "tb" in values["topic"]) == (1, False)
+    assert "call" not in told(found) and told(found).count("OnProcessExit of first") == 2
+    said = capsys.readouterr().err
+    assert "the launch file starts tb1, tb2: each robot is as tb1 is" in said
+
+
+def test_two_sides_of_a_robot_are_no_two_robots(tmp_path: Path) -> None:
+    for name in ("left", "right"):
+        (tmp_path / f"{name}.yaml").write_text("/**:\n  ros__parameters: {rate: 1}\n")
+    body = SEVERAL.replace("FOLDER", str(tmp_path)).replace("NAMES", "('left', 'right')")
+    found = actions(tmp_path, body)
+    own = [it.values["namespace"] for it in found if _word(it) == "driver"]
+    assert own == ["/robot2/left", "/robot2/right"]
+
+
 @pytest.mark.parametrize("simulator", ["true", "false"])
 def test_spawners_start_when_the_robot_is_in_its_simulator(simulator: str, tmp_path: Path) -> None:
     """Without the simulator of the launch file they do not wait for it."""
@@ -834,6 +909,71 @@ def test_what_a_condition_keeps_out_is_named_with_the_arguments_that_decide(
     assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "other")]) == 0
     text = (tmp_path / "other/fleet.launch.py").read_text()
     assert "Not started: acme yes" in text and text.count("Not started") == 1
+
+
+SWITCHES = """
+        *[DeclareLaunchArgument(it, default_value=value) for it, value in {
+            'joy': 'true', 'mock': 'False', 'both': 'true', 'mode': 'a', 'sim': 'true',
+            'rviz': 'true'}.items()],
+        here('stick', condition=IfCondition(joy)),
+        here('driver', condition=UnlessCondition(LaunchConfiguration('mock'))),
+        here('fake', condition=IfCondition(PythonExpression(["'", both, "' == 'false'"]))),
+        here('real', condition=IfCondition(both)),
+        here('other', condition=IfCondition(PythonExpression(["'", mode, "' == 'a'"]))),
+        GroupAction([here('inner', condition=UnlessCondition(LaunchConfiguration('mock'))),
+            TimerAction(period=2.0, actions=[here('late')])], condition=IfCondition(joy)),
+        RegisterEventHandler(OnProcessExit(target_action=first, on_exit=[here('after')])),
+        GroupAction([first], condition=IfCondition(LaunchConfiguration('sim'))),
+        here('map', condition=IfCondition(LaunchConfiguration('rviz'))),
+"""
+
+
+@pytest.mark.parametrize(
+    ("given", "gone"),
+    [
+        ({}, []),
+        ({"joy": "false"}, ["stick", "inner", "TimerAction", "late"]),
+        ({"mock": "true"}, ["driver", "inner"]),
+        ({"sim": "0"}, ["OnProcessExit of first", "after", "first"]),
+        ({"mode": "b", "both": "false", "rviz": "false"}, []),
+    ],
+)
+def test_a_launch_argument_turns_off_what_its_condition_starts(
+    given: dict[str, str], gone: list[str], tmp_path: Path
+) -> None:
+    """One that also turns something on, has more values than two, or is one of every build, does not:
+    what it decides is decided in the fleet file."""
+    setup = """from launch.conditions import UnlessCondition
+    from launch.substitutions import PythonExpression
+    joy, both, mode = map(LaunchConfiguration, ('joy', 'both', 'mode'))
+    first = here('first')"""
+    found = told(actions(tmp_path, SWITCHES, setup, given={"robots": "2", **given}))
+    every = ["stick", "driver", "real", "other", "inner", "TimerAction", "late", "first", "map"]
+    every += ["OnProcessExit of first", "after"]
+    left = [it for it in every if it not in gone]
+    assert {it: found.count(it) for it in every} == {it: 2 * (it in left) for it in every}
+    text = (tmp_path / "out/fleet.launch.py").read_text()
+    declared = text.split("def generate_launch_description")[1]
+    own = {
+        it: f"            '{it}',\n                default_value=" in declared
+        for it in ("joy", "mock", "sim", "both", "mode", "rviz")
+    }
+    assert own == dict.fromkeys(own, False) | dict.fromkeys(("joy", "mock", "sim"), True)
+    assert "'mock',\n                default_value='False'" in declared
+
+
+def test_an_argument_with_two_values_turns_nothing_off(tmp_path: Path) -> None:
+    """Robots with other values of it would need two arguments of one name."""
+    body = "DeclareLaunchArgument('joy', default_value='true'), here('a', condition=If(joy)),"
+    body += "here('b', condition=UnlessCondition(joy)),"
+    body = body.replace("If(", "IfCondition(")
+    setup = "from launch.conditions import UnlessCondition\n    joy = LaunchConfiguration('joy')"
+    actions(tmp_path, body, setup)
+    fleet = (tmp_path / "fleet.yaml").read_text()
+    other = "robot2, launch: up.launch.py joy:=false,"
+    (tmp_path / "fleet.yaml").write_text(fleet.replace("robot2,", other))
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "more")]) == 0
+    assert "'joy'," not in (tmp_path / "more/fleet.launch.py").read_text()
 
 
 ODOMETRY = """<gazebo>

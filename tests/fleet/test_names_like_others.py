@@ -40,6 +40,7 @@ def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_robots_may_be_called_as_words_of_frames_and_topics(layout: str) -> None:
     """The first robot has none of these frames; topics below that of a lidar end with ``points``."""
@@ -52,6 +53,7 @@ def test_robots_may_be_called_as_words_of_frames_and_topics(layout: str) -> None
     built({"layout": layout, "robots": [{"name": "barrow1", **other}, *rovers]}, files)
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_a_model_may_be_called_as_another_robot_and_more(layout: str) -> None:
     robots = [{"name": "rover"}, {"name": "amr_01", "model": "rover_2", "pose": {"x": 3}}]
@@ -60,6 +62,7 @@ def test_a_model_may_be_called_as_another_robot_and_more(layout: str) -> None:
     assert "MG411" not in said
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize("name", ["gz/tf", "gz_tf"])
 def test_a_row_may_bring_the_frames_of_the_simulator_elsewhere(layout: str, name: str) -> None:
@@ -75,6 +78,7 @@ def test_a_row_may_bring_the_frames_of_the_simulator_elsewhere(layout: str, name
             assert "warning" in line and "ros_gz_bridge" in line and "bring it to tf, too" in line
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize("names", [("left_arm", "arm_left"), ("robot_a", "robota")])
 def test_robots_of_names_alike_do_not_mean_each_other(names: tuple[str, str], layout: str) -> None:
@@ -107,6 +111,7 @@ perception:
 """
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_a_robot_may_be_called_as_a_part_of_all(layout: str) -> None:
     """camera/image is the topic of a camera, also of the robot that is called camera. A word that is no
@@ -127,6 +132,7 @@ JOINT_STATES = """<gazebo><plugin name="jsp" filename="libgazebo_ros_joint_state
 <ros>{}</ros><joint_name>left_wheel_joint</joint_name></plugin></gazebo></robot>"""
 
 
+@pytest.mark.sample(2)
 @pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize(
     "rule",

@@ -141,7 +141,7 @@ def test_it_is_left_out_by_a_stack(tmp_path: Path, rover: str) -> None:
 
 
 def test_it_cannot_be_asked_for_and_left_out() -> None:
-    with pytest.raises(UsageError, match="asked for and left out; leave out one of the stacks"):
+    with pytest.raises(UsageError, match="asked for and left out; leave out one of the node sets"):
         facts_of([NO_STATE_PUBLISHER, "robot_state"], None, NEWEST_LTS)
 
 

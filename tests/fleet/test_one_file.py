@@ -63,7 +63,7 @@ def test_a_file_is_told_by_its_text(name: str) -> None:
     made = rewrite_file(text.encode(), "robot1", urdf=ROVER, **policy)
     assert made.kind == name.partition(" ")[0]
     assert line in made.text
-    assert made.findings == () and made.not_proved == ()
+    assert made.findings == () and made.not_verified == ()
 
 
 HINT = "name a description, parameters, a tree, or a file of RViz, MoveIt, ros_gz_bridge or Lua"
@@ -104,7 +104,7 @@ def test_what_is_wrong_in_it_is_told_and_it_is_not_proved() -> None:
         ("MB853", "nav.yaml", 3),
         ("MB105", "nav.yaml", 4),
     ]
-    assert made.not_proved == (
+    assert made.not_verified == (
         "1 frame in no description",
         "1 placeholder that a launch file has to replace",
     )
@@ -114,7 +114,7 @@ def test_a_name_that_stays_is_not_called_proved() -> None:
     """rcl reads a block with its line break: the frame is not that of the robot."""
     block = NAV.replace("base_frame_id: base_footprint", "base_frame_id: |\n      base_footprint")
     made = rewrite_file(block.encode(), "robot1", urdf=ROVER, layout="both")
-    assert made.not_proved == ("1 frame in no description", "1 name in a block of text")
+    assert made.not_verified == ("1 frame in no description", "1 name in a block of text")
 
 
 def test_the_clock_is_bridged_by_the_first_alone() -> None:
@@ -145,7 +145,7 @@ def test_the_command_writes_a_file_for_each(
         out,
     ]
     assert main([*given, "--layout", "both", "--affix", "prefix"]) == 0
-    assert "2 robots: a parameter file; proved" in capsys.readouterr().err
+    assert "2 robots: rewrote a parameter file. Verified" in capsys.readouterr().err
     for robot in "ab":
         section = yaml.safe_load((tmp_path / f"{robot}.yaml").read_text())[f"/{robot}/amcl"]
         assert section["ros__parameters"]["base_frame_id"] == f"{robot}/base_footprint"

@@ -118,8 +118,8 @@ def test_robots_that_are_rewritten_together_have_numbers_of_their_own(
     assert len({it.findings for it in three}) == 1
     found = [etree.fromstring(it.data).findtext(path) for it in three]
     assert found == (numbers or [None] * 3)
-    assert [it.data for it in three[:1]] == [one.data] and one.not_proved
-    assert bool(three[2].not_proved) == (numbers is None)
+    assert [it.data for it in three[:1]] == [one.data] and one.not_verified
+    assert bool(three[2].not_verified) == (numbers is None)
     assert ("MF845" in {it.code for it in three[0].findings}) == bool(numbers)
     met = [it.hint for it in one.findings if it.code == "MB412"]
     assert all(("in one call" in it) == bool(numbers) for it in met) and met

@@ -167,9 +167,7 @@ def test_the_build_bridges_them_and_opens_one_window_for_all(
     out = tmp_path / "out"
     assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(out), "-q"]) == 0
     said = capsys.readouterr().err
-    assert (
-        "one.rviz:4:7: warning: MF216 in the window for all robots nothing is shown by scan" in said
-    )
+    assert "one.rviz:4:7: warning: MF216 the window for all robots shows nothing of scan" in said
     commands = (out / "commands.md").read_text()
     own = "-r __ns:=/robot1 -r __node:=tf_namespace_bridge"
     assert f"ros2 run tf_namespace_bridge tf_namespace_bridge --ros-args {own}\n" in commands

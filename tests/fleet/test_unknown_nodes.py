@@ -154,7 +154,7 @@ def test_a_section_of_a_node_that_nobody_starts_is_told_once(
     started(tmp_path, body, "companions: {params: own.yaml}", own=text)
     told = [it for it in capsys.readouterr().err.splitlines() if "MF858" in it]
     assert [it.removeprefix(f"{tmp_path}/").partition(";")[0] for it in told] == [
-        "own.yaml:7:1: note: MF858 no launch file and no stack starts lonely, other"
+        "own.yaml:7:1: note: MF858 no launch file and no node set starts lonely, other"
     ]
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Two arms of vendors, from their own files, against what the vendors' own prefix arguments make.
 
-The recipes are in docs/arms.md. With MULTIBOT_SOURCES=FOLDER, which holds the checkouts that
-``tests/support/vendors/arms.yaml`` names; skipped without. The judge is xacro with the vendor's
+The recipes are in docs/contributing/arms.md. With MULTIBOT_SOURCES=FOLDER, which holds the checkouts
+that ``tests/support/vendors/arms.yaml`` names; skipped without. The judge is xacro with the vendor's
 arguments, or the vendor's xacro for two arms; what differs from it is listed here, and why.
 """
 

@@ -78,7 +78,9 @@ def test_a_stack_has_the_nodes_of_the_release(release: str, names: list[str]) ->
 def test_a_stack_without_nodes_is_refused_with_the_releases_that_have_it(
     release: str, name: str, releases: str
 ) -> None:
-    with pytest.raises(UsageError, match=f"{release} has no node of stack '{name}'.* {releases};"):
+    with pytest.raises(
+        UsageError, match=f"node set .{name}. has no node in {release}; .* {releases};"
+    ):
         stack_of(library(release), name)
 
 
@@ -93,5 +95,7 @@ stacks: {s: {nodes: [{node: a, as: x, releases: <=jazzy}, {node: b, as: x, relea
 """
     (node,) = stack_of(library("humble", text.replace("REST", "kilted+")), "s")
     assert (node.name, node.package) == ("x", "a")
-    with pytest.raises(UsageError, match=r"n.yaml:3: stack 's' has two different nodes called 'x'"):
+    with pytest.raises(
+        UsageError, match=r"n.yaml:3: node set 's' has two different nodes called 'x'"
+    ):
         library("humble", text.replace("REST", "jazzy+"))

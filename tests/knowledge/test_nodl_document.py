@@ -161,6 +161,6 @@ def test_what_the_schema_allows_is_read_and_what_it_forbids_is_refused() -> None
 
 
 def _is_laxer(path: tuple[Any, ...]) -> bool:
-    """A text is a number to us, and what is not used is not looked at: values in parameters."""
+    """A text is a number to us, and what is not used is not checked: values in parameters."""
     free = ("description", "depth", "deadline_ns", "lifespan_ns", "liveliness_lease_duration_ns")
     return path[0] in ("parameters", "codegen", "nodl_version") or path[-1] in free

@@ -68,7 +68,7 @@ def test_a_stack_names_each_node_once(name: str) -> None:
 def test_shared_nodes_are_those_that_serve_all() -> None:
     shared = {name for name, node in load_nodes(NEWEST_LTS).items() if node.shared}
     bridges = {"domain_bridge", "foxglove_bridge", "ros_gz_bridge", "rosbridge_websocket"}
-    assert shared == {*bridges, "rviz2", "map_merging", "Ros2Supervisor"}
+    assert shared == {*bridges, "rviz2", "map_merge", "map_merging", "Ros2Supervisor"}
     assert [node.shared for node in load_stack("rviz_nav2", NEWEST_LTS)] == [False]
 
 
@@ -272,7 +272,7 @@ def test_what_a_file_says_anew_counts_in_its_stacks() -> None:
         ),
         (
             "stacks: {a: {nodes: [amcl, {node: map_server, as: amcl}]}}",
-            "stack 'a' has two different nodes called 'amcl'",
+            "node set 'a' has two different nodes called 'amcl'",
         ),
     ],
 )

@@ -404,7 +404,9 @@ def test_a_program_that_no_stack_has_is_asked_for(fleet: str, context: Any) -> N
         "nodes:\n  driver: {publishes: {scan: sensor_msgs/msg/LaserScan}}\n"
     )
     Path(fleet).write_text(f"nodes: nodes.yaml\n{FLEET.replace('[nav2, ', '[own, nav2, ')}")
-    with pytest.raises(UsageError, match="no stack says what runs driver; write package= and exec"):
+    with pytest.raises(
+        UsageError, match="no node set says what runs driver; write package= and exec"
+    ):
         run(context, launch.node("driver", robot="robot1", fleet=fleet))
 
 

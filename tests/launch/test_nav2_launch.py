@@ -178,7 +178,7 @@ WITHOUT = launch.missing() or ("" if sources_folder() else f"set {VARIABLE}")
 @pytest.mark.skipif(not importlib.util.find_spec("rclpy"), reason="no rclpy")
 @pytest.mark.parametrize("number", range(67))
 def test_nav2_comes_up_as_planned(number: int) -> None:
-    """Every row of the table in docs/nav2.md."""
+    """Every row of the table in docs/contributing/nav2.md."""
     from nav2_cells import cells, outcome
 
     sources = sources_folder()

@@ -156,7 +156,7 @@ def colcon(pytestconfig: pytest.Config) -> Path:
     return program
 
 
-@pytest.mark.more
+@pytest.mark.deep
 def test_colcon_tests_both_kinds_of_packages(
     colcon: Path, ament: list[str], tmp_path: Path
 ) -> None:

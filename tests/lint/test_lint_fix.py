@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""urdf-lint --fix: proved, idempotent, and nothing but the edited spans is another byte."""
+"""urdf-lint --fix: verified, idempotent, and nothing but the edited spans is another byte."""
 
 from __future__ import annotations
 

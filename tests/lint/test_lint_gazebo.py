@@ -720,7 +720,7 @@ RADIUS_IS = (
         (
             classic("gazebo_ros_p3d", f"{P3D}<remapping>odom:=a</remapping><ros/>"),
             "MB112 warning <remapping>odom:=a</remapping>: gazebo_ros_p3d reads 'remapping' in"
-            " <ros>, not beside it; move it into <ros>",
+            " <ros>, not outside of it; move it into <ros>",
         ),
         (classic("gazebo_ros_p3d", f"{P3D}<remapping>odom:=a</remapping>"), ""),
         (

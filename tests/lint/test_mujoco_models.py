@@ -61,6 +61,6 @@ def test_other_hardware_and_models_that_are_not_here_say_nothing(
 def test_the_topic_of_all_actuators_is_one_for_all_robots() -> None:
     """mujoco_system_interface.cpp:367: absolute, of the node of the controller manager."""
     made = rewrite(URDF.replace("CLASS", INTERFACE), "robot1", layout="frames-per-robot")
-    assert made.not_proved == ("1 topic shared by all robots",)
+    assert made.not_verified == ("1 topic shared by all robots",)
     other = URDF.replace("CLASS", "mock_components/GenericSystem")
-    assert rewrite(other, "robot1", layout="frames-per-robot").not_proved == ()
+    assert rewrite(other, "robot1", layout="frames-per-robot").not_verified == ()

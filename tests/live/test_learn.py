@@ -115,7 +115,7 @@ def parts_of(end: Endpoint) -> Iterator[tuple[str, str, str, str]]:
 def learned(
     seen: System, *names: str, base: str = "/", library: NodeLibrary = UNKNOWN
 ) -> tuple[LearnedNode, ...]:
-    """What is learned, proved to survive the file."""
+    """What is learned, verified to survive the file."""
     found = learn(seen, choose_nodes(seen, names, base), base, library)
     assert to_yaml(found, "mine", library)
     return found
@@ -809,8 +809,8 @@ def test_helpers_without_a_node_are_reported(
         (["--namespace", "old"], "'old' is not a full name"),
         (["--namespace", "/a-b"], "namespace '/a-b': character 3, '-', is not a letter"),
         (["--namespace", "/none"], "there is no node to learn below /none"),
-        (["--stack", ""], "'' is not a name of a stack, give one word"),
-        (["--stack", "a\nb"], "is not a name of a stack, give one word"),
+        (["--stack", ""], "'' is not a name of a node set, give one word"),
+        (["--stack", "a\nb"], "is not a name of a node set, give one word"),
         (["--timeout", "5"], "--timeout is for the live graph, leave out --from"),
         (["--domain", "5"], "--domain is for the live graph, leave out --from"),
         (["--node"], "argument --node: expected one argument"),

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import small_fleet
+from graph_calls import check, read_plan, to_yaml
 
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.live.seen_plan import NAMELESS, robots_to_plan, seen_plan
@@ -25,6 +26,7 @@ SHARED = (
     "/bond", "/clock", "/diagnostics", "/diagnostics_agg", "/localized_scan", "/parameter_events",
     "/rosout",
 )  # fmt: skip
+TF, JOINTS = "tf2_msgs/msg/TFMessage", "sensor_msgs/msg/JointState"
 WORLD = ("earth", "map", "utm", "world")
 
 
@@ -91,3 +93,33 @@ def test_without_a_name_of_a_robot_all_is_of_one() -> None:
     assert [it.robot for it in made.nodes] == ["robot1", "robot1"]
     assert made.robots == (Robot("robot1", ("base", "odom"), "/tf"),)
     assert made.layout == "postfix"
+
+
+def arms(*hanging: str) -> System:
+    """Two arms, of which these hang from the world."""
+    names = ("left", "right")
+    nodes = tuple(Node(f"/{it}/robot_state_publisher") for it in names)
+    senders = tuple(it.name for it in nodes)
+    ends = tuple(
+        end(TOPIC, PUBLISHES, topic, it, type_)
+        for it in senders
+        for topic, type_ in (
+            ("/tf", TF),
+            ("/tf_static", TF),
+            (f"/{it.split('/')[1]}/joint_states", JOINTS),
+        )
+    )
+    above = tuple(Edge(f"{it}/base", "world", "/tf_static", True, senders) for it in hanging)
+    own = tuple(Edge(f"{it}/arm", f"{it}/base", "/tf_static", True, senders) for it in names)
+    return System(nodes, ends, (*above, *own))
+
+
+def test_a_robot_that_hangs_from_a_frame_of_all_is_planned_so() -> None:
+    whole = arms("left", "right")
+    plan = read_plan(to_yaml(planned(whole)).encode(), "plan.yaml")
+    assert [str(it) for it in check(plan, whole)] == []
+    (found,) = check(plan, arms("right"))
+    assert (found.code, found.robot, found.names) == ("MG406", "left", ("left/base", "world"))
+    assert "/left/robot_state_publisher sends world -> left/base, and does not" in found.hint
+    # What the plan does not have from the start is not asked for.
+    assert check(planned(arms("right")), arms("right")) == []

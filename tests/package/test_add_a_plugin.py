@@ -17,7 +17,11 @@ from multibot_rewrite.description.rewriters.vocabulary.grammar import OPTIONS, R
 
 pytestmark = pytest.mark.slow
 
-GUIDE = (ROOT / "docs" / "add-a-plugin.md").read_text()
+# The page for users, then the one for those who contribute their section.
+GUIDE = "\n".join(
+    (ROOT / "docs" / it).read_text()
+    for it in ("add-a-plugin.md", "contributing/plugin-definitions.md")
+)
 STEPS = guides.steps(GUIDE)
 
 

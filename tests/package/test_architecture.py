@@ -11,7 +11,7 @@ import pytest
 from parsed import PACKAGE
 from paths import ROOT
 
-PAGE = (ROOT / "docs" / "architecture.md").read_text()
+PAGE = (ROOT / "docs" / "contributing" / "architecture.md").read_text()
 MOST_LINES, QUESTIONS = 200, 20
 # So much may a figure differ, or by so many.
 SHARE, FEW = 0.05, 3

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every real file is rewritten and proved, or refused for a reason that is on record and true."""
+"""Every real file is rewritten and verified, or refused for a reason that is on record and true."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Damaged real files: each is refused with a reason, or rewritten and proved."""
+"""Damaged real files: each is refused with a reason, or rewritten and verified."""
 
 from __future__ import annotations
 

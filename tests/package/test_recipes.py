@@ -15,6 +15,12 @@ pytestmark = pytest.mark.live
 PAGE = (ROOT / "docs" / "recipes.md").read_text()
 RECIPES = page_commands.sections(PAGE)
 USUAL = [*RECIPES][::3]
+THREADS = {
+    heading: threads
+    for it in (ROOT / "tests" / "support" / "recipe_threads.tsv").read_text().splitlines()
+    if not it.startswith("#")
+    for heading, threads in [it.split("\t")]
+}
 # Questions of users, numbered, with the threads they come from.
 QUESTIONS = ROOT.parent / "shared" / "field" / "systems.md"
 THREAD = re.compile(r"([\w.-]+)(?: PR)?#(\d+)")
@@ -44,11 +50,11 @@ def test_another_recipe_prints_what_it_shows(
 def test_every_recipe_has_a_question_an_answer_and_a_command() -> None:
     parts = re.split(r"^### ", PAGE, flags=re.MULTILINE)[1:]
     assert len(parts) == len(RECIPES) >= 30
+    assert [it.split("\n", 1)[0] for it in parts] == [*THREADS]
     for part in parts:
         heading, rest = part.split("\n", 1)
-        asked, answer = rest.strip().split("\n\n")[:2]
+        answer = rest.strip().split("\n\n")[0]
         assert heading.count('"') >= 2, heading
-        assert asked.startswith("*") and asked.endswith("*"), heading
         sentences = re.split(r"(?<=[.:])\s+(?=[A-Z`])", answer.strip())
         assert 1 <= len(sentences) <= 5, (heading, sentences)
 
@@ -64,7 +70,7 @@ def test_every_question_that_is_known_has_a_recipe() -> None:
     text = QUESTIONS.read_text().partition("## (c)")[2].partition("## (d)")[0]
     entries = re.findall(r"^(\d+)\. (.*(?:\n(?!\d+\. |#).*)*)", text, re.MULTILINE)
     assert len(entries) == 55
-    answered = set(re.findall(r"#(\d+)", PAGE))
+    answered = {number for it in THREADS.values() for number in re.findall(r"#(\d+)", it)}
     missing = [
         number
         for number, entry in entries

@@ -14,12 +14,17 @@ from multibot_rewrite.lint import catalogue
 
 MOST, MOST_OF_A_PARAGRAPH = 25, 120
 # Tables of what was measured, and pages that programs write.
-MEASURED = {"measurements", "strangers", "robots", "vendors"}
+MEASURED = {"measurements", "strangers", "robots", "vendors", "nav2"}
 PAGES = (
     *(ROOT / f"{it}.md" for it in ("README", "CONTRIBUTING", "SECURITY")),
     *sorted(ROOT.glob("examples/*/README.md")),
+    *sorted((ROOT / "docs").glob("*.md")),
     *sorted((ROOT / "docs" / "tutorials").glob("*.md")),
-    *(it for it in sorted((ROOT / "docs").glob("*.md")) if it.stem not in MEASURED),
+    *(
+        it
+        for it in sorted((ROOT / "docs" / "contributing").glob("*.md"))
+        if it.stem not in MEASURED
+    ),
 )
 # Texts of the code that are no message: XML, Python, the examples of rules, a list of words.
 NO_MESSAGE = re.compile(

@@ -38,6 +38,8 @@ def listed() -> list[Path]:
 
 PAGES = listed()
 MOST_PAGES, MOST_LINES = 40, 6100
+# Words of the pages for users, and of those for contributors.
+MOST_WORDS, MOST_WORDS_OF_CONTRIBUTORS = 35_000, 24_500
 # Written by programs of the repository.
 MADE = ("measurements.md", "robots.md", "vendors.md", "strangers.md", "launch-idioms.md")
 
@@ -79,6 +81,16 @@ def test_pages_are_few_and_have_links() -> None:
     hand_written = [it for it in docs if it.name not in MADE]
     assert sum(len(it.read_text().splitlines()) for it in hand_written) < MOST_LINES
     assert sum(len(links(it)) for it in PAGES) > 200
+
+
+def test_pages_have_few_words() -> None:
+    def words(*folders: Path) -> int:
+        pages = (page for it in folders for page in it.glob("*.md"))
+        return sum(len(it.read_text().split()) for it in pages)
+
+    docs = ROOT / "docs"
+    assert words(docs, docs / "tutorials") <= MOST_WORDS
+    assert words(docs / "contributing") <= MOST_WORDS_OF_CONTRIBUTORS
 
 
 @pytest.mark.parametrize("link", ["nowhere.md", "plan.md#nowhere", "../../outside", "#nowhere"])
@@ -192,7 +204,7 @@ def test_files_of_the_repository_are_at_its_host(read: dict[Path, Html], site: P
 def test_every_public_call_is_explained(read: dict[Path, Html], site: Path) -> None:
     ids = read[site / "api" / "index.html"].ids
     assert {f"multibot_rewrite.{it}" for it in multibot_rewrite.__all__} <= ids
-    assert "multibot_rewrite.Rewrite.not_proved" in ids
+    assert "multibot_rewrite.Rewrite.not_verified" in ids
     assert "Raises InputError" in (site / "api" / "index.html").read_text()
 
 

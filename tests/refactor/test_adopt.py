@@ -91,7 +91,7 @@ def test_the_sources_take_the_prefix(case: str, tmp_path: Path) -> None:
     assert {name: data.decode() for name, data in made.after.items()} == {
         str(path): robot(wanted, ARGUMENT)
     }
-    assert (made.argument, made.proved, made.left) == ("prefix", (str(path),), ())
+    assert (made.argument, made.verified, made.left) == ("prefix", (str(path),), ())
     assert made.before == {str(path): path.read_bytes()}
 
 
@@ -105,7 +105,7 @@ def test_an_included_file_is_changed_once_for_all_that_include_it(tmp_path: Path
         include = '<xacro:include filename="part.xacro"/><xacro:p n="x"/>'
         (tmp_path / f"{name}.urdf.xacro").write_text(robot(include))
     made = adopt(str(tmp_path))
-    assert len(made.proved) == 2
+    assert len(made.verified) == 2
     assert made.after[str(part)].count(b"${prefix}") == 1
     assert b'<link name="${prefix}${n}_p"/>' in made.after[str(part)]
 
@@ -226,7 +226,7 @@ def test_a_urdf_beside_its_xacro_is_left(tmp_path: Path) -> None:
     (tmp_path / "r.urdf").write_text('<robot name="r"><link name="base"/></robot>')
     (tmp_path / "r.urdf.xacro").write_text(robot('<link name="base"/>'))
     made = adopt(str(tmp_path))
-    assert made.proved == (str(tmp_path / "r.urdf.xacro"),)
+    assert made.verified == (str(tmp_path / "r.urdf.xacro"),)
     assert list(made.unread) == [str(tmp_path / "r.urdf")]
 
 
@@ -260,7 +260,7 @@ def test_a_name_between_others_is_left_with_its_place(tmp_path: Path) -> None:
     assert [(it.place.partition(":")[2], it.why) for it in made.left] == [
         (f"2:{robot(inside).splitlines()[1].index('<gazebo') + 1}", "'a' is put together")
     ]
-    assert made.proved == ()
+    assert made.verified == ()
 
 
 def test_a_name_that_stays_with_another_argument_is_left(tmp_path: Path) -> None:
@@ -284,7 +284,7 @@ def test_what_compares_a_name_is_refused(tmp_path: Path) -> None:
         '</xacro:macro><xacro:m n="a"/><xacro:m n="world"/>'
     )
     (tmp_path / "r.urdf.xacro").write_text(robot(inside))
-    with pytest.raises(InputError, match="no place for the prefix changes"):
+    with pytest.raises(InputError, match="wherever the prefix is put, it changes"):
         adopt(str(tmp_path))
 
 
@@ -304,7 +304,7 @@ def test_the_command_prints_a_patch_or_changes_the_files(
     shown = capsys.readouterr()
     assert "--- a/r.urdf.xacro\n+++ b/r.urdf.xacro\n" in shown.out
     assert '+  <link name="${prefix}base"/>\n' in shown.out
-    assert shown.err == "multibot: argument prefix: 1 description in 1 file; proved\n"
+    assert shown.err == "multibot: argument prefix: 1 description in 1 file; verified\n"
     assert path.read_text() == robot('<link name="base"/>')
     assert main(["adopt", ".", "--in-place"]) == 0
     assert path.read_text() == robot('<link name="${prefix}base"/>', ARGUMENT)

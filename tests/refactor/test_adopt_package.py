@@ -54,7 +54,7 @@ FILES = [
 def test_a_launch_file_is_read_with_the_argument(package: Path, name: str, text: str) -> None:
     path = package / "launch" / name
     path.write_text(text)
-    # The world is no name of the robot: the launch file is proved with it.
+    # The world is no name of the robot: the launch file is verified with it.
     robot = package / "urdf/r.urdf.xacro"
     robot.write_text(robot.read_text().replace("  <link", '  <link name="world"/>\n  <link', 1))
     made = adopt(str(package), trust=True)
@@ -215,17 +215,17 @@ def test_one_that_cannot_be_read_at_all_gets_it_and_is_not_proved(package: Path)
     path.write_text(f"raise RuntimeError(1)\n{LAUNCH}")
     made = adopt(str(package), trust=True)
     assert (str(path) in made.after, made.launches) == (True, ())
-    assert any("not proved" in it.why for it in made.left if it.place == str(path))
+    assert any("not verified" in it.why for it in made.left if it.place == str(path))
 
 
 def test_a_launch_file_is_proved_behind_fences(package: Path) -> None:
-    """What it does besides is refused, and it is not proved; ``trust`` lets it."""
+    """What it does besides is refused, and it is not verified; ``trust`` lets it."""
     path, made = package / "launch/a.launch.py", package / "made"
     path.write_text(f"open({str(made)!r}, 'w')\n{LAUNCH}")
     found = adopt(str(package))
     assert str(path) in found.after and not made.exists()
     (why,) = [it.why for it in found.left if it.place == str(path)]
-    assert "not proved" in why and "--trust" in why
+    assert "not verified" in why and "--trust" in why
     assert str(path) in adopt(str(package), trust=True).launches and made.exists()
 
 
@@ -373,7 +373,7 @@ def test_one_that_takes_it_and_one_that_does_not(package: Path) -> None:
     (package / "urdf/other.urdf.xacro").write_text(f'<robot name="o" {SPACE}>{own}</robot>')
     made = adopt(str(package))
     assert list(made.already) == [str(package / "urdf/other.urdf.xacro")]
-    assert made.proved == (str(package / "urdf/r.urdf.xacro"),)
+    assert made.verified == (str(package / "urdf/r.urdf.xacro"),)
 
 
 def test_an_srdf_that_takes_one_stays_and_its_urdf_gets_the_same(package: Path) -> None:
@@ -382,4 +382,4 @@ def test_an_srdf_that_takes_one_stays_and_its_urdf_gets_the_same(package: Path) 
     srdf.write_text(f'<robot name="r" {SPACE}>{own}</group></robot>')
     made = adopt(str(package))
     assert (made.argument, dict(made.already)) == ("prefix", {str(srdf): "prefix"})
-    assert made.proved == (str(package / "urdf/r.urdf.xacro"),)
+    assert made.verified == (str(package / "urdf/r.urdf.xacro"),)

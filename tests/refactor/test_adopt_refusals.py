@@ -93,7 +93,7 @@ def test_one_bad_description_of_two_is_told_and_the_other_adopted(tmp_path: Path
     bad = tmp_path / "bad.urdf.xacro"
     bad.write_text(robot('<xacro:include filename="bad.urdf.xacro"/>'))
     made = adopt(str(tmp_path))
-    assert (made.proved, list(made.unread)) == ((str(tmp_path / "r.urdf.xacro"),), [str(bad)])
+    assert (made.verified, list(made.unread)) == ((str(tmp_path / "r.urdf.xacro"),), [str(bad)])
 
 
 def test_a_folder_that_is_not_there(tmp_path: Path) -> None:

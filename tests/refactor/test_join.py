@@ -144,7 +144,7 @@ def test_controller_managers_of_two_simulators_both_stay_and_a_line_says_so() ->
         "gz_ros2_control-system",
         "libgazebo_ros2_control.so",
     ]
-    assert "makes a controller manager, and another plugin before it does, too" in made.notes[0]
+    assert "makes a controller manager, and so does an earlier plugin" in made.notes[0]
 
 
 def test_what_is_said_of_the_whole_robot_is_said_once_and_other_settings_are_told() -> None:
@@ -345,7 +345,7 @@ def test_the_command_joins_and_splits(
     Path("hand.urdf").write_text(HAND)
     words = ["join", "arm.urdf", "hand.urdf", "--at", "tool", "--prefix", "h_"]
     assert main([*words, "--pose", "0 0 0.5 0 0 1.5", "-o", "out/r.urdf"]) == 0
-    assert capsys.readouterr().err == "multibot: arm, h: joined; proved\n"
+    assert capsys.readouterr().err == "multibot: arm, h: joined; verified\n"
     assert Path("out/r.urdf").read_text() == JOINED.replace(" hand ", " h ").replace(
         "hand_mount", "h_mount"
     )
@@ -453,8 +453,10 @@ def test_a_plugin_that_is_not_known_takes_the_word_proved(
 ) -> None:
     inside = link("a") + '<gazebo><plugin filename="libmine.so" name="m"><x>a</x></plugin></gazebo>'
     made = join([Part(robot(link("base"))), Part(robot(inside), "base", prefix="p_")])
-    assert made.not_proved == ("1 name not understood", "1 plugin not known")
-    assert join([Part(robot(link("base"))), Part(robot(inside), "base", name="n")]).not_proved == ()
+    assert made.not_verified == ("1 name not understood", "1 plugin not known")
+    assert (
+        join([Part(robot(link("base"))), Part(robot(inside), "base", name="n")]).not_verified == ()
+    )
     for name, text in (("base", link("base")), ("part", inside)):
         (tmp_path / f"{name}.urdf").write_text(robot(text))
     words = [str(tmp_path / "base.urdf"), str(tmp_path / "part.urdf"), "--at", "base"]
@@ -462,7 +464,7 @@ def test_a_plugin_that_is_not_known_takes_the_word_proved(
     said = capsys.readouterr().err.splitlines()
     assert (
         said[-1]
-        == "multibot: base, p: joined, not proved: 1 name not understood, 1 plugin not known"
+        == "multibot: base, p: joined, not verified: 1 name not understood, 1 plugin not known"
     )
 
 

@@ -2,7 +2,7 @@
 """Two arms that are joined, against the vendors' own descriptions of two arms.
 
 With MULTIBOT_SOURCES=FOLDER, which has the checkouts; skipped without. What differs is listed here, and
-in docs/measurements.md why.
+in docs/contributing/measurements.md why.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The argument for a namespace is proved: what a description is with it, said where that is wrong."""
+"""The argument for a namespace is verified: what a description is with it, said where that is wrong."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.access import BOUNDED
 from multibot_rewrite.refactor.declaring import NAMES, SPACES, free_name
-from multibot_rewrite.refactor.namespaces import namespaced, space_proved
+from multibot_rewrite.refactor.namespaces import namespaced, space_verified
 from multibot_rewrite.refactor.package import Expanding, read_package, texts_of
 from multibot_rewrite.refactor.source_edits import edited
 
@@ -24,8 +24,8 @@ ROBOT = (
 Tamper = Callable[[bytes], bytes]
 
 
-def proved(folder: Path, tamper: Tamper, more: str = "") -> tuple[tuple[str, ...], list[str]]:
-    """The names of files that are proved with the edits, which somebody tampered with, and why others
+def verified(folder: Path, tamper: Tamper, more: str = "") -> tuple[tuple[str, ...], list[str]]:
+    """The names of files that are verified with the edits, which somebody tampered with, and why others
     are not."""
     (folder / "r.urdf.xacro").write_text(ROBOT.format(more))
     tree, how = builtin_tree((), NEWEST_LTS), Expanding(BOUNDED, {})
@@ -34,7 +34,7 @@ def proved(folder: Path, tamper: Tamper, more: str = "") -> tuple[tuple[str, ...
     space = namespaced(found, texts, tree)
     assert (space.argument, space.left) == ("namespace", ())
     after = {path: tamper(data) for path, data in edited(texts, space.edits).items()}
-    paths, wrong = space_proved(space, "prefix", "robot1_", after, how, tree)
+    paths, wrong = space_verified(space, "prefix", "robot1_", after, how, tree)
     assert {it.place for it in wrong} <= {str(folder / "r.urdf.xacro")}
     return tuple(Path(it).name for it in paths), [it.why for it in wrong]
 
@@ -63,7 +63,7 @@ def test_names_of_arguments_are_those_that_people_use() -> None:
 
 
 def test_what_the_rewrite_makes_is_proved(tmp_path: Path) -> None:
-    assert proved(tmp_path, lambda it: it) == (("r.urdf.xacro",), [])
+    assert verified(tmp_path, lambda it: it) == (("r.urdf.xacro",), [])
 
 
 @pytest.mark.parametrize(
@@ -84,13 +84,13 @@ def test_what_is_otherwise_is_said(tmp_path: Path, old: bytes, new: bytes, said:
         assert old in data
         return data.replace(old, new)
 
-    why = f"its ROS names are not proved: with namespace:=ns1 it has {said}"
-    assert proved(tmp_path, tamper) == ((), [why])
+    why = f"its ROS names are not verified: with namespace:=ns1 it has {said}"
+    assert verified(tmp_path, tamper) == ((), [why])
 
 
 def test_what_does_not_expand_is_said(tmp_path: Path) -> None:
-    paths, (why,) = proved(tmp_path, lambda it: it.replace(b"${namespace", b"${nowhere"))
-    assert paths == () and why.startswith("its ROS names are not proved: ")
+    paths, (why,) = verified(tmp_path, lambda it: it.replace(b"${namespace", b"${nowhere"))
+    assert paths == () and why.startswith("its ROS names are not verified: ")
     assert "nowhere" in why
 
 
@@ -99,8 +99,8 @@ def test_it_is_tried_beside_a_prefix_too(tmp_path: Path) -> None:
     declared = b'<xacro:arg name="prefix" default=""/>'
     test = b"${'$(arg prefix)' != '' and namespace != ''}"
     bad = b'<xacro:if value="%s"><link name="odd"/></xacro:if>' % test
-    why = 'its ROS names are not proved: with namespace:=ns1 it has <link name="odd">'
-    tampered = proved(
+    why = 'its ROS names are not verified: with namespace:=ns1 it has <link name="odd">'
+    tampered = verified(
         tmp_path,
         lambda it: it.replace(b"<link name='last'/>", declared + bad + b"<link name='last'/>"),
     )

@@ -172,7 +172,7 @@ def test_the_command_writes_all_or_shows_it(
     assert main([*words, "--diff", "--color", "never", "-v"]) == 0
     shown = capsys.readouterr()
     assert '-  <xacro:property name="root" value="base_link"/>' in shown.out
-    assert "link base_link -> chassis: 3 places in 2 files; proved" in shown.err
+    assert "link base_link -> chassis: 3 places in 2 files; verified" in shown.err
     assert "left as they are: 1 line with 'base_link'" in shown.err
     assert "  node.py:1\n" in shown.err
     assert (package / "r.urdf.xacro").read_text() == ROBOT

@@ -34,6 +34,17 @@ def said(
 
 
 CONTRADICTIONS = {
+    "diff_drive_controller {left_wheel_names: [a, b], right_wheel_names: [c]}": (
+        "error diff_drive_controller: left_wheel_names has 2, and right_wheel_names 1: "
+        "they go in pairs"
+    ),
+    "diff_drive_controller {left_wheel_names: [a, b], right_wheel_names: [c, d]}": "",
+    # Both are the same where only one is given.
+    "pid_controller {dof_names: [a, b]}": "",
+    "pid_controller {dof_names: [a, b], reference_and_state_dof_names: [a]}": (
+        "error pid_controller: dof_names has 2, and reference_and_state_dof_names 1: "
+        "they go in pairs"
+    ),
     "amcl {initial_pose.x: 1.0, set_initial_pose: false}": (
         "warning amcl: initial_pose.x has no effect with set_initial_pose: false"
     ),
@@ -218,9 +229,7 @@ MISSING = {
         "warning twist_mux: topics.a.priority is missing"
     ),
     "twist_mux {use_stamped: true, topics.a: {topic: cmd, timeout: 0.5, priority: 9}}": "",
-    "twist_mux {topics.a: {topic: cmd, timeout: 0.5, priority: 9}}": (
-        "warning twist_mux: use_stamped is missing"
-    ),
+    "twist_mux {topics.a: {topic: cmd, timeout: 0.5, priority: 9}}": "",
     "ekf_filter_node {frequency: 30.0}": (
         "warning ekf_filter_node: there is none of odom0, pose0, twist0, imu0"
     ),

@@ -200,5 +200,5 @@ def test_the_command_ends_with_the_level_of_the_fault(
 
 @pytest.mark.deep
 def test_the_page_is_that_of_today() -> None:
-    page = (ROOT / "docs" / "measurements.md").read_text()
+    page = (ROOT / "docs" / "contributing" / "measurements.md").read_text()
     assert "#" + "\n".join(lines()).strip() in page

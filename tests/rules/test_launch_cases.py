@@ -43,7 +43,7 @@ from multibot_rewrite.system.records import Node, Place, Robot, System
 
 START = (
     "start ros2_control_node there, load gz_ros2_control in the description, or name the launch file "
-    "that starts it beside this one"
+    "that starts it in addition to this one"
 )
 TF = ("tf2_ros", "static_transform_publisher", "s")
 STATE = ("robot_state_publisher", "robot_state_publisher", "rsp")
@@ -267,8 +267,8 @@ def described(text: str = "<robot name='r'><link name='a'/></robot>") -> Launche
 
 
 CREATE = ("ros_gz_sim", "create", "create")
-BESIDE = "name the launch file that does beside this one, if there is one"
-UNSURE = "a node that is not known may; see what is incomplete"
+BESIDE = "name the launch file that starts it in addition to this one, if there is one"
+UNSURE = "an unknown node may do it: see what is reported as incomplete"
 
 
 def test_a_spawner_without_its_manager(known: Knowledge) -> None:
@@ -342,7 +342,7 @@ def test_joints_without_a_description(known: Knowledge) -> None:
     assert judged(known, "MG724", joints, described()) == []
 
 
-LEFT = "no node of its stack or file is started here: name the launch file that does, too"
+LEFT = "no node of its node set or file is started here: name the launch file that does, too"
 
 
 @pytest.mark.parametrize(
@@ -686,3 +686,27 @@ def test_a_placeholder_that_a_node_gets_as_it_is(
     found = judged(known, "MB105", started("nav2_amcl", "amcl", "amcl", **more))
     assert [(it.level, it.line) for it in found] == ([("error", line)] if left else [])
     assert all(left in it.message for it in found)
+
+
+@pytest.mark.parametrize(
+    ("node", "sections", "said_of_it"),
+    [
+        (AMCL, ("amlc", "foo"), ["write /amcl: amlc is nearly its name"]),
+        (AMCL, ("foo",), ["write /amcl: it has foo"]),
+        (AMCL, ("foo", "/**"), []),
+        (AMCL, ("amcl", "foo"), []),
+        # Of a program that nobody knows only the launch file says the name.
+        (("acme", "driver", "lidar"), ("foo",), ["write /lidar: it has foo"]),
+        (("acme", "driver", ""), ("foo",), []),
+        # A node that runs inside it is meant.
+        (("nav2_controller", "controller_server", "controller_server"),
+         ("local_costmap/local_costmap",), []),
+    ],
+)  # fmt: skip
+def test_a_file_of_which_nothing_matches(
+    known: Knowledge, node: tuple[str, str, str], sections: tuple[str, ...], said_of_it: list[str]
+) -> None:
+    text = yaml.safe_dump({it: {"ros__parameters": {"a": 1}} for it in sections})
+    found = judged(known, "MB244", started(*node, parameters=of_file(text)))
+    assert [it.hint for it in found] == said_of_it
+    assert all(it.file == "/ws/own.yaml" and it.level == "error" for it in found)

@@ -211,7 +211,7 @@ local_costmap:
 """
 SQUARE = 'footprint: "[[{0}, {0}], [{0}, -{0}], [-{0}, -{0}], [-{0}, {0}]]"'
 SIZED = "local_costmap/local_costmap"
-BESIDE = f"{SIZED}: robot_radius has no effect beside a footprint, and is another size"
+BESIDE = f"{SIZED}: robot_radius has no effect with a footprint, and is another size"
 
 
 @pytest.mark.parametrize(

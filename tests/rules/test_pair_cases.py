@@ -94,14 +94,12 @@ TWO = "planned: /robot1/arm\nplanned: /robot1/driver\nplanned: /robot2/driver\n"
         (
             f"planned: {ORDER}\nrunning: {ORDER}Stamped",
             [f"MG306 uses /robot1/cmd_vel as {TWIST}Stamped, but the plan has it as {TWIST};"
-             " enable_stamped_cmd_vel, use_stamped_vel or stamped is set on one side? If this type"
-             " is right, correct the plan"],
+             " velocities are stamped on one side? If this type is right, correct the plan"],
         ),
         (
             f"planned: {ORDER}Stamped\nrunning: {ORDER}",
             [f"MG306 uses /robot1/cmd_vel as {TWIST}, but the plan has it as {TWIST}Stamped;"
-             " enable_stamped_cmd_vel, use_stamped_vel or stamped is set on one side? If this type"
-             " is right, correct the plan"],
+             " velocities are stamped on one side? If this type is right, correct the plan"],
         ),
         (
             f"planned: {ORDER}\nrunning: {ORDER}X",
@@ -126,7 +124,7 @@ TWO = "planned: /robot1/arm\nplanned: /robot1/driver\nplanned: /robot2/driver\n"
         (
             ALONE.format("robot1/laser, "),
             ["MG208 2 of the 3 frames of robot1 are in no transform: robot1/base_link, robot1/laser;"
-             " no planned node sends its description: is what sends it started?"],
+             " no planned node publishes its description: is the node that does it running?"],
         ),
         (
             ALONE.format("robot1/laser, ") + DESCRIBED,
@@ -141,7 +139,7 @@ TWO = "planned: /robot1/arm\nplanned: /robot1/driver\nplanned: /robot2/driver\n"
         (
             TWO + "running: /robot1/arm\nrunning: /robot1/driver",
             ["MG109 none of the 1 nodes of robot2 is in the graph; is the robot started, and with"
-             " this ROS_DOMAIN_ID? Only this machine is looked at: range LOCALHOST, no"
+             " this ROS_DOMAIN_ID? Only this machine is checked: range LOCALHOST, no"
              " ROS_STATIC_PEERS"],
         ),
         (

@@ -185,14 +185,14 @@ OWN = f"/robot1/driver subscribes /robot1/cmd_vel {TWIST}"
         (
             (OWN, f"/robot1/a publishes /robot1/cmd_vel {TWIST}",
              f"/robot1/b publishes /robot1/cmd_vel {TWIST}"),
-            ["MG312 warning /robot1/b: publishes /robot1/cmd_vel beside /robot1/a, and"
+            ["MG312 warning /robot1/b: publishes /robot1/cmd_vel, and so does /robot1/a;"
              " /robot1/driver obeys both"],
         ),
         (
             (OWN, f"/robot1/a publishes /robot1/cmd_vel {TWIST}",
              f"/teleop_twist_keyboard publishes /robot1/cmd_vel {TWIST}"),
-            ["MG312 warning /teleop_twist_keyboard: publishes /robot1/cmd_vel beside /robot1/a,"
-             " and /robot1/driver obeys both"],
+            ["MG312 warning /teleop_twist_keyboard: publishes /robot1/cmd_vel, and so does /robot1/a;"
+             " /robot1/driver obeys both"],
         ),
         # A bridge in both directions orders nothing itself.
         (
@@ -282,8 +282,8 @@ DOOR = "acme_msgs/srv/Door"
 MANAGER = f"/robot1/lifecycle_manager calls /robot1/amcl/change_state {CHANGE}"
 LISTED = (
     "MG304 calls /robot1/amcl/change_state, which no node serves: /robot1/amcl is in its list, and"
-    " does not run{}; it waits for /robot1/amcl and activates nothing after it: start it, or leave"
-    " it out of node_names"
+    " does not run{}; it waits for /robot1/amcl and activates nothing after it:"
+    " start it, or leave /robot1/amcl out of node_names of /robot1/lifecycle_manager"
 )
 SENDS = {it: f"{it} publishes /tf {TF}" for it in ("/robot1/a", "/robot1/b", "/robot2/b")}
 TWICE = (
@@ -323,7 +323,7 @@ ELSEWHERE = (
         (
             (f"/robot1/rsp publishes /robot1/tf {TF}", f"/robot1/base publishes /old/tf {TF}"),
             ["MG405 /robot1/base sends tf on /old/tf, but the tf of robot1 is on /robot1/tf; pass"
-             " -r /old/tf:=tf -r /old/tf_static:=tf_static: to the whole process, where the node"
+             " -r /tf:=tf -r /tf_static:=tf_static: to the whole process, where the node"
              " shares one"],
         ),
         (
@@ -355,12 +355,12 @@ ELSEWHERE = (
             (f"/robot1/lidar publishes /robot1/scan {SCAN}",
              "transform robot1/a -> robot1/laser on /tf",
              "frame_id robot1/laser on /robot1/scan 9 s old"),
-            ["MG417 the stamps on /robot1/scan are 9 s old; see the clock of /robot1/lidar:"
-             " use_sim_time, or that of its machine"],
+            ["MG417 the stamps on /robot1/scan are 9 s old; see the clock of /robot1/lidar,"
+             " or that of its machine"],
         ),
         (
             (WAITS, "/robot1/amcl subscribes /robot1/imu sensor_msgs/msg/Imu as imu"),
-            ["MG316 no known node sends /robot1/imu, /robot1/scan; name a stack or nodes that do, if"
+            ["MG316 no known node sends /robot1/imu, /robot1/scan; name a node set or nodes that do, if"
              " no driver of its own does"],
         ),
         (
@@ -420,7 +420,7 @@ ELSEWHERE = (
             ("/robot1/manager controls a/position by arm",
              "/robot1/manager controls a/position by hand"),
             ["MG512 a/position is commanded by arm of /robot1/manager and hand of /robot1/manager;"
-             " spawn one of them with --inactive"],
+             " spawn hand with --inactive"],
         ),
         # Two interfaces of the same two are told once; each robot has its own.
         (
@@ -430,7 +430,7 @@ ELSEWHERE = (
              "/robot1/manager controls b/position by hand",
              "/robot2/manager controls a/position by arm"),
             ["MG512 a/position is commanded by arm of /robot1/manager and hand of /robot1/manager;"
-             " spawn one of them with --inactive"],
+             " spawn hand with --inactive"],
         ),
         (
             ("/robot1/manager keeps arm inactive", "/robot1/manager keeps hand unconfigured"),
@@ -498,7 +498,8 @@ ELSEWHERE = (
             (*TREE, f"/robot1/driver publishes /robot2/tf {TF}",
              f"/robot1/driver publishes /robot1/tf {TF}"),
             ["MG405 /robot1/driver sends tf on /robot2/tf, but the tf of robot1 is on /robot1/tf; a"
-             " namespace or remap rule of robot1 names robot2"],
+             " namespace or remap rule of robot1 names robot2; pass -r /tf:=tf -r"
+             " /tf_static:=tf_static: to the whole process, where the node shares one"],
         ),
         (
             (*TREE, f"/robot1/amcl subscribes /tf {TF}"),
@@ -512,7 +513,8 @@ ELSEWHERE = (
             (*TREE, f"/robot1/amcl subscribes /robot2/tf {TF}",
              f"/robot2/state publishes /robot2/tf {TF}"),
             ["MG405 /robot1/amcl hears tf on /robot2/tf, but the tf of robot1 is on /robot1/tf;"
-             " a namespace or remap rule of robot1 names robot2"],
+             " a namespace or remap rule of robot1 names robot2; pass -r /tf:=tf -r"
+             " /tf_static:=tf_static: to the whole process, where the node shares one"],
         ),
         (
             (*TREE, f"/rviz2 subscribes /tf {TF}"),
@@ -524,7 +526,7 @@ ELSEWHERE = (
             ("/robot1/a has use_sim_time true", "/robot1/b has use_sim_time false",
              "/robot1/c has use_sim_time false", "/robot1/rviz2 has use_sim_time true"),
             ["MG514 use_sim_time is true for /robot1/a, and not for /robot1/b, /robot1/c;"
-             " use_sim_time has to be the same for all nodes of a robot"],
+             " set use_sim_time: false of /robot1/a: it is the same for all nodes of a robot"],
         ),
     ],
 )  # fmt: skip
@@ -563,7 +565,7 @@ SERVER = f"/robot1/controller_server publishes /robot1/cmd_vel {TWIST}"
 TWO_DRIVES = (DRIVE, SERVER, DRIVE.replace("1", "2"), SERVER.replace("1", "2"))
 NAMES_ROBOT1 = "a namespace, remap rule or parameter of robot2 names robot1"
 CHOOSE = "put twist_mux before the robot's driver, each sender with a topic of its own"
-PLAY = "play it in another ROS_DOMAIN_ID, or give its topics other names with --remap"
+PLAY = "play it in another ROS_DOMAIN_ID, or with --remap {0}:={0}_of_bag"
 
 
 def unread(name: str, meant: str = "/robot1/cmd_vel", beside: str = "") -> str:
@@ -610,7 +612,7 @@ NAV = "/robot1/controller_server"
         (
             (DRIVE, DRIVE.replace("1", "2"), f"/robot2/teleop publishes /robot1/cmd_vel {TWIST}"),
             ["MG311 error /robot2/teleop: publishes /robot1/cmd_vel, a name of robot1;"
-             f" {NAMES_ROBOT1}"],
+             f" {NAMES_ROBOT1}; pass the rule /robot1/cmd_vel:=cmd_vel to /robot2/teleop"],
         ),
         # Who sends to both coordinates them.
         (
@@ -626,7 +628,8 @@ NAV = "/robot1/controller_server"
         (
             (f"/robot1/a serves /robot1/stop {STOP}", f"/robot2/a serves /robot2/stop {STOP}",
              f"/robot2/boss calls /robot1/stop {STOP}"),
-            [f"MG311 error /robot2/boss: calls /robot1/stop, a name of robot1; {NAMES_ROBOT1}"],
+            [f"MG311 error /robot2/boss: calls /robot1/stop, a name of robot1; {NAMES_ROBOT1};"
+             " pass the rule /robot1/stop:=stop to /robot2/boss"],
         ),
         # Its own robot does not have it.
         (
@@ -639,7 +642,8 @@ NAV = "/robot1/controller_server"
             (f"/robot1/a subscribes /robot1/halt {STRING}",
              f"/robot2/a subscribes /robot2/halt {STRING}",
              f"/robot2/button publishes /robot1/halt {STRING}"),
-            [f"MG311 error /robot2/button: publishes /robot1/halt, a name of robot1; {NAMES_ROBOT1}"],
+            [f"MG311 error /robot2/button: publishes /robot1/halt, a name of robot1; {NAMES_ROBOT1};"
+             " pass the rule /robot1/halt:=halt to /robot2/button"],
         ),
         (
             (DRIVE, SERVER, f"/robot1/teleop publishes /robot1/cmd_vel {TWIST}"),
@@ -664,11 +668,13 @@ NAV = "/robot1/controller_server"
             (f"/robot1/lidar publishes /robot1/scan {SCAN}",
              f"/rosbag2_player publishes /robot1/scan {SCAN}",
              f"/rosbag2_player publishes /robot1/imu {IMU}"),
-            [f"MG313 error /rosbag2_player: plays /robot1/scan into the running system; {PLAY}"],
+            ["MG313 error /rosbag2_player: plays /robot1/scan into the running system; "
+             + PLAY.format("/robot1/scan")],
         ),
         (
             (DRIVE, f"/rosbag2_player publishes /robot1/cmd_vel {TWIST}"),
-            [f"MG313 error /rosbag2_player: plays /robot1/cmd_vel into the running system; {PLAY}"],
+            ["MG313 error /rosbag2_player: plays /robot1/cmd_vel into the running system; "
+             + PLAY.format("/robot1/cmd_vel")],
         ),
         # What bags are for.
         (
@@ -756,7 +762,7 @@ def reads(frame: str, rest: str, node: str = "planner", level: str = "warning") 
             (STILL, "/robot1/planner looks up odom", f"/robot1/planner subscribes /robot1/tf {TF}"),
             reads(
                 "odom",
-                "no known node sends it; name the node or stack that sends it",
+                "no known node sends it; name the node or node set that sends it",
                 level="note",
             ),
         ),
@@ -898,7 +904,8 @@ PARTS = {
 }
 LACKS_SCAN = (
     "/robot2/lidar: lacks /robot2/scan, which /robot1/lidar has; it is used by"
-    " /robot2/odometer in vain; see its log; a remap rule, a parameter or a version of its own?"
+    " /robot2/odometer in vain; see its log;"
+    " does it have other remap rules, parameters or another version?"
 )
 NO_LIDAR = (
     "robot2: robot2 has no lidar, as robot1 has (/robot1/lidar); /robot2/scan is used by"

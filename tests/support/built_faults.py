@@ -11,16 +11,13 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from fault_changes import Fault
-from fault_sources import SOURCES
 from fleet_folder import planned_fleet
-from graph_faults import needed
 from paths import ROOT
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.fleet.build import Outputs, make_outputs
 from multibot_rewrite.fleet.checks.read_back import read_back
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.rules.check import ABSENCE
 
 LAUNCH, OUT = "fleet.launch.py", "/anywhere/out"
 EXAMPLE = ROOT / "examples" / "namespace_and_prefix"
@@ -98,14 +95,6 @@ def _for_one(function: str, robot: str, given: str) -> str:
 def in_a_build(fault: Fault) -> tuple[str, ...]:
     """The codes that the build has for a fault."""
     return tuple(sorted({it.code for it in read(BUILT[fault.name])}))
-
-
-def why_not(fault: Fault) -> str:
-    """Why no file of a fleet shows it."""
-    lacking = next((it for it in needed(fault) if it in SOURCES["check-launch"].lacks), "")
-    if lacking:
-        return f"no {lacking}"
-    return "others may start it" if fault.code in ABSENCE else "not of a fleet"
 
 
 def in_file(path: str, old: str, new: str) -> Edit:

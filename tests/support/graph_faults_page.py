@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
-from built_faults import BUILT, in_a_build, why_not
+from built_faults import BUILT
 from fault_changes import Fault, nav, shared_tf, simulation
 from fault_sources import SOURCES
 from graph_faults import FAULTS, LIVE, needed
@@ -92,37 +92,26 @@ def lines() -> Iterator[str]:
     yield f"{len(SYSTEMS)} healthy systems: 0 findings each, in each source."
     yield ""
     others = [name for name in SOURCES if name != "file"]
-    columns = (
-        "fault",
-        "no plan",
-        "level",
-        "exit",
-        "cause",
-        "live",
-        "with the plan",
-        *others,
-        "build",
-    )
+    columns = ("code", "faults", "errors", "live", "with the plan", *others, "build")
     yield f"| {' | '.join(columns)} |"
-    yield "|---" * 3 + "|--:" + "|---" * (len(columns) - 4) + "|"
-    for fault, cells in rows.items():
-        yield f"| {' | '.join((fault.name, *_words(fault, cells)))} |"
+    yield "|---" + "|--:" * (len(columns) - 1) + "|"
+    for code in dict.fromkeys(it.code for it in FAULTS):
+        own = [it for it in FAULTS if it.code == code]
+        yield f"| {' | '.join((code, *map(str, _counts(own, others))))} |"
     yield ""
-    yield "Healthy systems:"
-    yield ""
-    yield from (f"- {name}" for name in SYSTEMS)
+    yield f"Healthy systems: {', '.join(SYSTEMS)}."
 
 
-def _words(fault: Fault, cells: Mapping[str, Cell]) -> Iterator[str]:
-    seen, planned = cells["file"], planned_cell(fault)
-    yield seen.text or "not found"
-    yield fault.level
-    yield str(int(fault.level == ERROR))
-    yield "yes" if seen.cause else "no"
-    yield "yes" if fault.name in LIVE else ""
-    yield planned.text if planned else ""
-    yield from (it.text or "not found" for name, it in cells.items() if name != "file")
-    yield ", ".join(in_a_build(fault)) if fault.name in BUILT else why_not(fault)
+def _counts(faults: list[Fault], others: list[str]) -> Iterator[int]:
+    """Count the faults of one code, and those that each source shows."""
+    yield len(faults)
+    yield sum(it.level == ERROR for it in faults)
+    yield sum(it.name in LIVE for it in faults)
+    planned = [planned_cell(it) for it in faults]
+    yield sum(bool(it and it.codes) for it in planned)
+    for name in others:
+        yield sum(bool(cell(it, name).codes) for it in faults)
+    yield sum(it.name in BUILT for it in faults)
 
 
 if __name__ == "__main__":

@@ -2,8 +2,8 @@
 """Vendors' own descriptions of two arms, against what ``multibot join`` makes of one of them.
 
 ``MULTIBOT_SOURCES=FOLDER python tests/support/joined_duals.py`` prints the table of
-docs/measurements.md. FOLDER has the checkouts; xacro expands the vendor's description of two arms, and
-that of one. What is of neither arm, such as a table, is taken from the vendor's for two.
+docs/contributing/measurements.md. FOLDER has the checkouts; xacro expands the vendor's description
+of two arms, and that of one. What is of neither arm, such as a table, is taken from the vendor's.
 """
 
 from __future__ import annotations

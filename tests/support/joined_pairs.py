@@ -3,8 +3,8 @@
 
     python tests/support/joined_pairs.py
 
-prints the table of docs/measurements.md. linkforge-core and urdf-compose are asked where they are
-installed; MuJoCo takes no meshes here, since there are none beside the files.
+prints the table of docs/contributing/measurements.md. linkforge-core and urdf-compose are asked where
+they are installed; MuJoCo takes no meshes here, since there are none beside the files.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What launch authors write, each as a launch file of its own: docs/launch-idioms.md.
+"""What launch authors write, each as a launch file of its own: docs/contributing/launch-idioms.md.
 
     python tests/support/launch_idioms.py            try each in the launch that is here, print the page
     python tests/support/launch_idioms.py --write    write the page
@@ -19,7 +19,7 @@ from typing import NamedTuple
 from launched_programs import launched
 from paths import FIXTURES, ROOT, fixture_text
 
-PAGE = ROOT / "docs" / "launch-idioms.md"
+PAGE = ROOT / "docs" / "contributing" / "launch-idioms.md"
 SOURCES = FIXTURES / "launch_idioms"
 ROVER, ARM = FIXTURES / "robots" / "rover.urdf", FIXTURES / "robots" / "two_finger_arm.urdf"
 # The programs that a launch file may start here, by name.
@@ -103,7 +103,7 @@ def page(outcomes: dict[str, str]) -> str:
     """The page, with what became of each by file name."""
     every = idioms()
     rows = [
-        f"| [{it.about}](../fixtures/launch_idioms/{it.file.name}) | {it.before} | "
+        f"| [{it.about}](../../fixtures/launch_idioms/{it.file.name}) | {it.before} | "
         f"{outcomes[it.file.name]} |"
         for it in every
     ]

@@ -2,7 +2,7 @@
 """Nav2 for two robots in the real launch, and the graph and parameters that come of it.
 
     python tests/support/nav2_cells.py [WORD ...]     the table; only cells that have these words
-    python tests/support/nav2_cells.py --write [WORD ...]     write these into docs/nav2.md
+    python tests/support/nav2_cells.py --write [WORD ...]     write these into docs/contributing/nav2.md
 
 MULTIBOT_SOURCES names a folder with sources by release: RELEASE/*navigation2*, RELEASE/*slam_toolbox*.
 Needs launch, launch_ros, nav2_common's sources and rclpy. launch decides what is started and with
@@ -44,7 +44,7 @@ from multibot_rewrite.system.records import SIM_TIME, System
 
 HERE = Path(__file__).parent
 ROOT = HERE.parent.parent
-PAGE = ROOT / "docs" / "nav2.md"
+PAGE = ROOT / "docs" / "contributing" / "nav2.md"
 RECORDER, STAND_INS = HERE / "launch_recorder.py", HERE / "nav2_stand_ins.py"
 LAUNCH = ROOT / "share" / "launch" / "nav2.launch.py"
 ROBOTS = ("robot1", "robot2")

@@ -12,7 +12,7 @@ from multibot_rewrite import MultibotError, RewriteRefused
 
 
 class Outcome(NamedTuple):
-    """What became of one file: refused with ``reason``, or ``problem`` (empty: proved)."""
+    """What became of one file: refused with ``reason``, or ``problem`` (empty: verified)."""
 
     reason: str
     problem: str

@@ -20,7 +20,7 @@ from vendor_live import Told, look, said, told
 from vendor_sources import install, packages_below
 
 ARMS = {"ur": "UR5e", "franka": "FR3", "xarm": "xArm 6", "kinova": "Gen3"}
-# Their sections of docs/arms.md.
+# Their sections of docs/contributing/arms.md.
 TITLES = {
     "ur": "Two UR arms",
     "franka": "Two Franka FR3",
@@ -84,6 +84,6 @@ def _next(name: str, value: str) -> str:
 
 
 def text_of(page: str) -> str:
-    """The section of docs/arms.md."""
-    text = (ROOT / "docs" / "arms.md").read_text()
+    """The section of docs/contributing/arms.md."""
+    text = (ROOT / "docs" / "contributing" / "arms.md").read_text()
     return text.partition(f"\n## {TITLES[page]}\n")[2].partition("\n## ")[0]

@@ -2,7 +2,7 @@
 """What vendors' launch files start, against what a plan has: by their own files, and by launch files.
 
     python tests/support/vendor_systems.py [SYSTEM ...]      print each node
-    python tests/support/vendor_systems.py --write           write the figures into docs/vendors.md
+    python tests/support/vendor_systems.py --write  write the figures into docs/contributing/vendors.md
 
 MULTIBOT_SOURCES names a folder with checkouts of the repositories that ``vendors/*.yaml`` names, under
 these names. Needs launch and launch_ros. The judge is ``launch_recorder.py``: the real launch with
@@ -31,7 +31,7 @@ from multibot_rewrite.fleet.fleet import Fleet, expected
 from multibot_rewrite.system.records import RUNS, System
 
 HERE = Path(__file__).parent
-PAGE = HERE.parent.parent / "docs" / "vendors.md"
+PAGE = HERE.parent.parent / "docs" / "contributing" / "vendors.md"
 RECORDER = HERE / "launch_recorder.py"
 ROBOT, OTHER = "robot1", "robot2"
 HEAD = fixture_text("vendor_systems_head.txt")

@@ -215,7 +215,7 @@ STARTED = "is the robot started, and with this ROS_DOMAIN_ID?"
         ),
         (
             seen(range="LOCALHOST"),
-            f"{STARTED} Only this machine is looked at: range LOCALHOST, no ROS_STATIC_PEERS",
+            f"{STARTED} Only this machine is checked: range LOCALHOST, no ROS_STATIC_PEERS",
         ),
         (seen(range="LOCALHOST", static_peers=("h",)), STARTED),
         (seen(ONE, TWO), f"{STARTED} 2 machines are seen"),

@@ -158,6 +158,27 @@ def test_a_bridge_is_there_if_its_topics_are_bridged() -> None:
     assert (second.where, second.differs) == ("once", ())
 
 
+def test_of_a_bringup_of_several_robots_the_first_is_compared() -> None:
+    """The vendor calls his robots as he likes; what the second one has more is missing."""
+    publisher = Process("robot_state_publisher", "robot_state_publisher")
+    theirs = [
+        it._replace(namespace=f"/tb{number}", parameters={"map_topic": f"/tb{number}/map"})
+        for number in (1, 2)
+        for it in (publisher, DRIVER)
+    ]
+    more = Process("acme", "lamp", namespace="/tb2")
+    fleet = [
+        it._replace(namespace=f"/{robot}", parameters={"map_topic": f"/{robot}/map"})
+        for robot in ROBOTS
+        for it in (publisher, DRIVER)
+    ]
+    found = compare([*theirs, more], fleet, ROBOTS)
+    assert where(found) == ["each"] * 4 + ["missing"]
+    assert not any(it.differs for it in found.matches)
+    sides = [publisher._replace(namespace=f"/{side}") for side in ("left", "right")]
+    assert where(compare(sides, of_each(publisher), ROBOTS)) == ["each", "missing"]
+
+
 def test_an_include_may_be_there_as_its_nodes() -> None:
     include = Process("twist_mux", "launch/twist_mux_launch.py", "include")
     found = compare([include], of_each(Process("twist_mux", "twist_mux")), ROBOTS)
@@ -279,7 +300,7 @@ def test_a_bringup_is_what_no_other_file_includes(tmp_path: Path) -> None:
 
 
 def test_the_list_has_each_once_and_no_stranger() -> None:
-    names = [it.name for half in ("work", "kept", "fresh", "six") for it in chosen(half)]
+    names = [it.name for half in ("work", "kept", "fresh", "third", "six") for it in chosen(half)]
     assert len(names) == len(set(names))
     assert not {it.name for it in strangers()} & set(names)
 

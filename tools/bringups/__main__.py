@@ -90,7 +90,8 @@ def found_in(checkout: Path, sources: Sequence[Path], folder: Path) -> str:
     for it in files:
         one = ran(checkout / it, (), sources, folder)
         counts[it] = 0 if one.fault else len(one.processes)
-    return max(counts, key=lambda it: (counts[it], it), default="")
+    best = max(counts, key=lambda it: (counts[it], it), default="")
+    return best if counts.get(best) else ""
 
 
 def judged(choice: Choice, checkout: Path, given: argparse.Namespace, folder: Path) -> Verdict:
@@ -98,6 +99,8 @@ def judged(choice: Choice, checkout: Path, given: argparse.Namespace, folder: Pa
     sources = [checkout, *(it.resolve() for it in given.sources)]
     if choice.file == "-":
         choice = choice._replace(file=found_in(checkout, sources, folder / "one"))
+        if not choice.file:
+            return Verdict(choice, Comparison((), ()), Made("no launch file of it starts a robot"))
     bringup = ran(checkout / choice.file, choice.arguments, sources, folder / "one")
     if bringup.fault:
         fault = f"the bringup does not start: {bringup.fault}"
@@ -230,7 +233,7 @@ def main(words: Sequence[str]) -> int:
     """Judge the repositories that were asked for; returns the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
-    parser.add_argument("--half", choices=("work", "kept", "fresh", "six"), default="work")
+    parser.add_argument("--half", choices=("work", "kept", "fresh", "third", "six"), default="work")
     parser.add_argument("--only", nargs="*", default=[""], help="parts of the names")
     parser.add_argument("--sources", type=Path, nargs="*", default=[])
     parser.add_argument("--keep", type=Path, required=True, help="where to write")

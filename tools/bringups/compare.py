@@ -79,12 +79,52 @@ class Comparison(NamedTuple):
 def compare(
     bringup: Sequence[Process], fleet: Sequence[Process], robots: Sequence[str]
 ) -> Comparison:
-    """Return where each process of the bringup is in the fleet."""
-    left = list(fleet)
-    matches = [_match(process, left, robots) for process in bringup]
+    """Return where each process of the bringup is in the fleet. A bringup of several robots is that of
+    the first; what starts for the others is where the same of the first is."""
+    left, vendors = list(fleet), _several(bringup)
+    first, others = vendors[:1], vendors[1:]
+    own = [it for it in bringup if owner(it, vendors) not in others]
+    matches = [_match(_of_any(it, *first), left, robots) for it in own]
+    free = [it for it in matches if owner(own[matches.index(it)], vendors)]
+    for process in (it for it in bringup if owner(it, vendors) in others):
+        matches.append(_as_first(_of_any(process, owner(process, vendors)), free))
     # Bridges are merged: each is there if its topics are bridged.
     left = [it for it in left if it.program not in BRIDGES and it.name not in POSES]
     return Comparison(tuple(matches), tuple(left))
+
+
+def _several(bringup: Sequence[Process]) -> list[str]:
+    """Return the namespaces of state publishers that differ by a number alone, where there are some."""
+    publishers = (it for it in bringup if it.program == "robot_state_publisher")
+    homes = {it.namespace.strip("/").partition("/")[0] for it in publishers} - {""}
+    is_one = len({re.sub(r"\d+", "", it) for it in homes}) != 1
+    return [] if is_one or len(homes) < 2 else sorted(homes)
+
+
+def _of_any(process: Process, robot: str = "") -> Process:
+    """Return a process without the name of a robot."""
+    values = process.parameters.items()
+    return (
+        process._replace(
+            name=bare(process.name, robot),
+            namespace=f"/{bare(process.namespace, robot)}",
+            rules=tuple((bare(old, robot), bare(new, robot)) for old, new in process.rules),
+            words=tuple(bare(it, robot) if robot in it else it for it in process.words),
+            parameters={k: bare(it, robot) if isinstance(it, str) else it for k, it in values},
+        )
+        if robot
+        else process
+    )
+
+
+def _as_first(process: Process, free: list[Match]) -> Match:
+    """Return where a process is of which the first robot has the same, and take that out."""
+    same = (it for it in free if _key(it.process, "") == _key(process, ""))
+    found = next((it for it in same if _may_be(process, it.process, "")), None)
+    if found is None:
+        return Match(process, "missing")
+    free.remove(found)
+    return found._replace(process=process)
 
 
 def _match(process: Process, left: list[Process], robots: Sequence[str]) -> Match:

@@ -47,6 +47,15 @@ WORDS = {
         True,
     ),
 }
+# gz-sensors, and imu.sdf for the last two, which it refuses.
+LOCALIZATION = """
+[words imu.orientation_reference_frame/localization] gazebosim/gz-sensors src/ImuSensor.cc
+ENU 172
+NED 175
+NWU 177
+CUSTOM 179
+GRAV_UP 182
+GRAV_DOWN 182"""
 CONVERTER = "src/parser_urdf.cc"
 _TAKEN = re.compile(r'strcmp\(childElem->Name\(\), "(\w+)"\) == 0')
 _BLOBS = ("visual", "collision", "material")
@@ -189,6 +198,8 @@ def _line(tag: str, row: Row, span: str) -> str:
 def _words(folder: Path) -> Iterator[str]:
     """The words of enumerations, from arrays and from what a variable is compared with."""
     for name, (path, variables, folded) in WORDS.items():
+        if name == "light/@type":
+            yield LOCALIZATION
         text = (folder / path).read_text(encoding="utf-8")
         yield f"\n[words {name}] {path}{' folded' * folded}"
         found: dict[str, int] = {}

@@ -30,7 +30,7 @@ def schema() -> Schema:
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "$id": address(editors.NODES),
-        "title": "Nodes and stacks: multibot plan --nodes, nodes: of a fleet file",
+        "title": "Nodes and node sets: multibot plan --nodes, nodes: of a fleet file",
         **_keys(FILE_KEYS, parts=_named("part"), nodes=_named("node"), stacks=_named("stack")),
         "$defs": {
             "part": _keys(ROLES, **_roles()),

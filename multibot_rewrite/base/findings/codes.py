@@ -19,13 +19,13 @@ def known_beginnings(rules: Mapping[str, Rule]) -> set[str]:
 
 
 def find_rules(word: str, rules: Mapping[str, Rule]) -> list[Rule]:
-    """The rules with that code or name, or whose codes begin with the word."""
+    """Return the rules with that code or name, or with codes that begin with the word."""
     by_name = [it for it in rules.values() if it.name == word]
     return by_name or [it for it in rules.values() if it.code.startswith(word.upper())]
 
 
 def no_rule(word: str, rules: Mapping[str, Rule]) -> str:
-    """The message that no rule has that code."""
+    """Return the message that no rule has that code, with the nearest one."""
     known = known_beginnings(rules)
     # The longest code that the word begins with, or the code or name most like it.
     begun = (word[:size].upper() for size in range(len(word), 2, -1))
@@ -58,7 +58,7 @@ def near_name(word: str, rules: Mapping[str, Rule]) -> str:
 
 
 def explained(rule: Rule) -> str:
-    """A rule with its examples, for a terminal."""
+    """Return a rule with its examples as a text for a terminal."""
     head = f"{rule.code} {rule.name} ({rule.level})"
     parts = [head, "", rule.what, "", f"Why: {rule.why}", "", f"Fix: {rule.fix}"]
     for title, example in examples(rule):
@@ -72,9 +72,9 @@ def listed(rules: Iterable[Rule]) -> Iterator[tuple[str, str, str, str]]:
 
 
 def examples(rule: Rule) -> list[tuple[str, str]]:
-    """Titles and texts of its examples, and of the files beside them."""
+    """Titles and texts of its examples, and of the files next to them."""
     page = rule.page
     good = "" if page.good == page.fixed else page.good
     texts = (("Bad", page.bad), ("Fixed by --fix", page.fixed), ("Good", good))
-    beside = ((f"Beside it, {name}", text) for name, text in page.beside.items())
+    beside = ((f"With it, {name}", text) for name, text in page.beside.items())
     return [(title, text) for title, text in (*texts, *beside) if text.strip()]

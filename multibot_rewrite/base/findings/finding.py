@@ -5,7 +5,7 @@ the rule that it is of: its code, level and check. A rule's words and examples a
 
 A page says what is found, why that hurts, the fix, and has examples. Below the title are three
 paragraphs, the second begins with ``**Why.**``, the third with ``**Fix.**``. Then come fenced blocks,
-each below its title: ``Bad``, ``Fixed`` (what ``--fix`` makes), ``Good``, and ``Beside it, `NAME` ``
+each below its title: ``Bad``, ``Fixed`` (what ``--fix`` makes), ``Good``, and ``With it, `NAME` ``
 for each other file. ``Bad (line N)`` says where the finding is.
 """
 
@@ -60,7 +60,7 @@ def _characters(text: bytes) -> int:
 
 
 class Remap(NamedTuple):
-    """A remap rule ``old:=new`` for a node of a graph; all are full names."""
+    """A remap rule ``old:=new`` for a node of a graph: full names, or `__ns` or `__node` as old."""
 
     node: str
     old: str
@@ -125,7 +125,7 @@ class Finding(NamedTuple):
 
 
 def by_place(finding: Finding) -> tuple[str, int, int, str, str, str]:
-    """What findings are sorted by: file, line, column, code and text."""
+    """Return the sort key of a finding: file, line, column, code and text."""
     it = finding
     return it.file, it.line, it.column, it.code, it.message, it.arguments
 
@@ -195,8 +195,8 @@ class Rule(NamedTuple):
         return rule_page(self.examples or self.code)
 
     def finding(self, message: str, hint: str = "", **place: Any) -> Finding:
-        """A finding of this rule; ``place`` are the other fields of ``Finding``; one of a line alone
-        is at its first column."""
+        """Return a finding of this rule. ``place`` are other fields of ``Finding``; one with a line and
+        no column is at its first column."""
         if "line" in place:
             place.setdefault("column", 1)
         level = place.pop("level", self.level)
@@ -234,8 +234,8 @@ def rule(code: str, name: str, level: str, **about: Any) -> Callable[[_Check], R
 
 FOLDER = os.path.join(os.path.dirname(__file__), "..", "..", "rules", "pages")
 _WHY, _FIX = "**Why.** ", "**Fix.** "
-_BESIDE = "Beside it, "
-_TITLE = lazy_compile(r"(Bad|Fixed|Good|Beside it, `[^`]+`)(?: \(line ([0-9]+)\))?:")
+_BESIDE = "With it, "
+_TITLE = lazy_compile(r"(Bad|Fixed|Good|With it, `[^`]+`)(?: \(line ([0-9]+)\))?:")
 
 
 class RulePage(NamedTuple):

@@ -42,7 +42,7 @@ class Selection(NamedTuple):
 
 
 def selected(findings: Iterable[Finding], selection: Selecting) -> list[Finding]:
-    """The findings of rules that are on, each with the level that the selection gives it."""
+    """Return the findings of rules that are on, with the level that the selection gives each."""
     return [
         it._replace(level=level_of(selection, it.code, it.level))
         for it in findings
@@ -57,7 +57,7 @@ def fails(findings: Iterable[Finding], fail_on: str) -> bool:
 
 
 def matched(codes: Sequence[str], code: str) -> int:
-    """The length of the longest of ``codes`` that ``code`` begins with; -1 for none."""
+    """Return the length of the longest of ``codes`` that ``code`` begins with; -1 for none."""
     return max([len(it) for it in codes if code.startswith(it)], default=-1)
 
 
@@ -69,7 +69,7 @@ def is_on(selection: Selecting, code: str) -> bool:
 
 
 def level_of(selection: Selecting, code: str, default: str) -> str:
-    """The level that the selection gives a rule, by the longest beginning of its code."""
+    """Return the level that the selection gives a rule, by the longest beginning of its code."""
     level = selection.levels.get(_level_key(selection, code), OFF)
     return default if level == OFF else level
 
@@ -81,10 +81,10 @@ def _level_key(selection: Selecting, code: str) -> str:
 
 
 def grouped(findings: Iterable[Finding], names: Mapping[str, str]) -> list[Finding]:
-    """The findings in their order; of those that differ only in the robot the first, with all their
-    ``robots``.
+    """Return the findings in order, with one for all ``robots`` in place of those that differ only in
+    the robot.
 
-    ``names`` maps each word that stands for a robot in texts (its name, its prefix) to the robot.
+    ``names`` maps each name of a robot in texts (its name, its prefix) to the robot.
     """
     return [first for first, _ in with_members(findings, names)]
 
@@ -117,7 +117,7 @@ def with_members(
 
 
 def _without(finding: Finding, robot: str, names: Mapping[str, str]) -> Finding:
-    """The finding with a slot for the robot; as it is without one."""
+    """Return the finding with a placeholder for the robot; unchanged without a robot."""
     words = sorted((word for word, of in names.items() if of == robot), key=len, reverse=True)
     if not robot or not words:
         return finding
@@ -136,7 +136,7 @@ def _without(finding: Finding, robot: str, names: Mapping[str, str]) -> Finding:
 
 
 def said_of(text: str, finding: Finding, robot: str) -> str:
-    """A text of a finding as it is of another of its ``robots``; of any other robot the text itself."""
+    """Return a text of a finding for another of its ``robots``; unchanged for other robots."""
     first, *others = finding.robots or ("",)
     return _pattern(first).sub(robot, text) if robot in others else text
 

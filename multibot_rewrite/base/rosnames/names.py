@@ -38,10 +38,10 @@ class NameFault(NamedTuple):
 
 
 def check_topic_name(name: str) -> NameFault | None:
-    """What is wrong with a topic or service name as code gives it, before expansion.
+    """Return the fault of a topic or service name in code, before expansion, or None.
 
-    ``~`` and ``{node}`` are allowed here. Doubled slashes and any length pass too, as in rcl: those
-    are faults of the expanded name (``check_full_name``).
+    ``~`` and ``{node}`` are allowed here. Doubled slashes and any length pass too, as in rcl: those are
+    faults of the expanded name (``check_full_name``).
     """
     if _PLAIN.fullmatch(name):
         return None
@@ -55,24 +55,24 @@ def check_topic_name(name: str) -> NameFault | None:
 
 
 def check_name_in_code(name: str) -> NameFault | None:
-    """What is wrong with a topic or service name as code gives it, or with what it expands to."""
+    """Return the fault of a topic or service name in code, or of its expansion, or None."""
     return check_topic_name(name) or check_full_name(expand(name, "/", "node"))
 
 
 def check_full_name(name: str) -> NameFault | None:
-    """What is wrong with a fully qualified topic or service name."""
+    """Return the fault of a fully qualified topic or service name, or None."""
     return _full_form(name) or _too_long(name, MAX_TOPIC)
 
 
 def check_namespace(namespace: str) -> NameFault | None:
-    """What is wrong with a node's namespace: absolute, ``/`` alone or without a slash at its end."""
+    """Return the fault of a namespace, or None: ``/``, or absolute without a slash at the end."""
     if namespace == "/":
         return None
     return _full_form(namespace) or _too_long(namespace, MAX_NAMESPACE)
 
 
 def check_node_name(name: str) -> NameFault | None:
-    """What is wrong with a node's name: one token of at most 255 characters."""
+    """Return the fault of a node's name, or None: it is one token of at most 255 characters."""
     if name.isascii() and name.isidentifier():
         return _too_long(name, MAX_NODE)
     if not name:
@@ -107,7 +107,7 @@ def _braces_and_letters(name: str) -> NameFault | None:
 def _first_letters(name: str) -> NameFault | None:
     # Two characters, as "~a", pass: rcl never looks at the last one here.
     if name[0] == "~" and len(name) > 2 and name[1] != "/":
-        return _at(name, 1, "follows '~', after which only a slash may stand")
+        return _at(name, 1, "follows '~', which only a slash may follow")
     for at, (letter, following) in enumerate(pairwise(name), 1):
         if letter == "/" and following in _DIGITS:
             return _digit_first(name, at)
@@ -165,7 +165,7 @@ def _too_long(name: str, limit: int) -> NameFault | None:
 
 
 def expand(name: str, namespace: str, node: str) -> str:
-    """The fully qualified name of ``name`` used by ``node`` in ``namespace``, before any rule.
+    """Return the fully qualified name of ``name`` used by ``node`` in ``namespace``, before any rule.
 
     ``{node}``, ``{ns}`` and ``{namespace}`` are filled in, other substitutions stay: rcl knows no
     other. The namespace may lack its leading slash. Nothing is checked here.
@@ -208,7 +208,7 @@ def numbered_names(count: int, stem: str = "robot") -> tuple[str, ...]:
 
 
 def check_robot_names(names: Iterable[str]) -> tuple[str, ...]:
-    """The names of several robots, each once; raises UsageError as ``check_robot_name``."""
+    """Return the names of several robots; raises UsageError for an invalid or repeated one."""
     seen: dict[str, str] = {}
     for name in names:
         if check_robot_name(name) in seen:
@@ -218,7 +218,7 @@ def check_robot_names(names: Iterable[str]) -> tuple[str, ...]:
 
 
 def propose_token(name: str) -> str:
-    """A valid token as near to ``name`` as can be."""
+    """Return a valid token that is similar to ``name``."""
     kept = "".join(c if c in _TOKEN else "_" for c in name)
     while "__" in kept:
         kept = kept.replace("__", "_")

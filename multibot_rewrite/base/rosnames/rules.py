@@ -12,6 +12,7 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
+from multibot_rewrite.base.conventions import ROWS
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.rosnames.names import (
@@ -32,17 +33,7 @@ _TOKEN = lazy_compile(_ONE)
 _PATH = lazy_compile(rf"(?:~?/)?{_ONE}(?:/{_ONE})*")
 _NAMESPACE = lazy_compile(rf"/(?:{_ONE}(?:/{_ONE})*/?)?")
 _FORMS = {_PATH: "a name", _TOKEN: "a node's name", _NAMESPACE: "a namespace that starts with '/'"}
-_HINTS = {
-    "*": "a wildcard, which rcl does not have",
-    "\\": "a back reference, which rcl does not have",
-    "{": "a substitution, which no rule can hold",
-    "__": "two underscores in a row, which no rule can hold",
-    "~": "a '~', which must lead and have a slash and a name after it",
-    "/": "a slash out of place",
-    ":=": "':='",
-    "rostopic://": "a scheme, which only the left side can have",
-    "rosservice://": "a scheme, which only the left side can have",
-}
+_HINTS = {mark: said for (mark,), said in ROWS["no rules"]}
 
 
 class RemapRule(NamedTuple):
@@ -71,13 +62,13 @@ class BoundNode(NamedTuple):
 
 
 def parse_remap(text: str) -> RemapRule | None:
-    """The rule that rcl makes of ``text``, what follows ``-r``; None where rcl refuses it."""
+    """Return the rule that rcl makes of ``text``, the word after ``-r``; None if rcl refuses it."""
     rule = read_remap(text)
     return None if isinstance(rule, NameFault) else rule
 
 
 def read_remap(text: str) -> RemapRule | NameFault:
-    """The rule that rcl makes of ``text``, or why it refuses it and at which character."""
+    """Return the rule that rcl makes of ``text``, or the reason and place of its refusal."""
     token = _TOKEN.match(text)
     # A colon may be that of ``:=`` or of a scheme, not that of a node's name.
     colon = token.end() if token and not text.startswith(SCHEMES) else len(text)
@@ -98,7 +89,8 @@ def read_remap(text: str) -> RemapRule | NameFault:
 def _sides(
     text: str, node: str, scheme: str, source: tuple[int, int], form: re.Pattern[str]
 ) -> RemapRule | NameFault:
-    """The rule whose left side ends at ``source[1]`` and whose right side has ``form``."""
+    """Return the rule with a left side up to ``source[1]`` and a right side of ``form``, or its
+    fault."""
     start, end = source
     if not text.startswith(":=", end):
         return _refused(text, end, "':='")
@@ -137,11 +129,11 @@ def split_remap(text: str) -> RemapRule | None:
 
 
 def remapped_node(node: str, namespace: str, rules: Iterable[RemapRule]) -> tuple[str, str]:
-    """The name and namespace that ``node`` ends up with; UsageError where rcl refuses to start it.
+    """Return the final name and namespace of ``node``; raises UsageError if rcl refuses to start it.
 
-    ``rules`` are the node's own ones followed by the process's (remap.c: local before global, the
-    first match wins). A rule for one node's namespace asks for the node's *new* name, since rcl
-    changes the name first (node.c). An empty namespace is ``/``, a missing first slash is added.
+    ``rules`` are the node's own ones followed by the process's (remap.c: local before global, the first
+    match wins). A rule for one node's namespace asks for the node's *new* name, since rcl changes the
+    name first (node.c). An empty namespace is ``/``, a missing first slash is added.
     """
     rules = tuple(rules)
     namespace = namespace if namespace.startswith("/") else f"/{namespace}"

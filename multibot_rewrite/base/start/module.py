@@ -17,7 +17,7 @@ _ROOT = os.path.dirname(
 
 
 def safe_path(paths: list[str], here: str) -> list[str]:
-    """The folders of a search path without the current one; this package's own is among them."""
+    """Return the folders of a search path without the current one, with that of this package."""
     whole = [os.path.abspath(os.path.join(here, it)) for it in paths]
     left = [it for it in whole if it not in (here, os.path.dirname(os.path.abspath(__file__)))]
     return left if _ROOT in left else [_ROOT, *left]

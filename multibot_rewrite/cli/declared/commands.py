@@ -84,20 +84,20 @@ def _page(name: str) -> Iterator[_Part]:
 
 
 def _parts(lines: Sequence[str]) -> Iterator[_Part]:
-    """The lines that are not indented, each with those below it, two characters less indented."""
+    """Yield each line without indent, with the lines below it, two spaces less indented."""
     starts = [at for at, it in enumerate(lines) if it.strip() and not it.startswith(" ")]
     for start, end in pairwise((*starts, len(lines))):
         yield lines[start], [it[2:] for it in lines[start + 1 : end]]
 
 
 def _group(title: str, lines: Sequence[str]) -> OptionGroup:
-    """A group of options; one that is only named is shared."""
+    """Return a group of options; one with a title only is the shared group."""
     options = tuple(_option(" ".join((it, *more))) for it, more in _parts(lines))
     return OptionGroup(title, options) if options else _shared()[title]
 
 
 def _option(text: str) -> Option:
-    """An option as a page has it; one without a kind is shared."""
+    """Return the option that a line declares; one without a kind is shared."""
     head, _, about = " ".join(text.split()).partition(": ")
     kind, *words = head.split()
     if words or kind in KINDS:

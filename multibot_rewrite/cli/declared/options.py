@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Options and commands as data, and the kinds of options that the pages beside this module have.
+"""Options and commands as data, and the kinds of options that the pages next to this module have.
 
 A kind is a function: first what the option is for, then the words behind its kind in the page. This
 module and the reader of the pages import nothing heavy: a help text is made of them alone.
@@ -65,36 +65,36 @@ class Command(NamedTuple):
 
 
 def argument(about: str, name: str, metavar: str, nargs: str = "", default: str = "") -> Option:
-    """A word without a name; ``nargs`` as argparse has it."""
+    """Return a positional argument; ``nargs`` is that of argparse."""
     more = {"nargs": nargs} if nargs else {}
     return _option(name, about, metavar, **more, **({"default": default} if default else {}))
 
 
 def value(about: str, name: str, metavar: str, read: str = "") -> Option:
-    """An option with one value, read by a function of ``values``."""
+    """Return an option with one value, which a function of ``values`` reads."""
     more = {"type": getattr(values, read)} if read else {}
     return _option(name, about, metavar, **more)
 
 
 def path(about: str, name: str, metavar: str) -> Option:
-    """An option with the name of a file or folder."""
+    """Return an option with the name of a file or folder."""
     return value(about, name, metavar, "path")
 
 
 def switch(about: str, name: str) -> Option:
-    """An option without a value."""
+    """Return an option without a value."""
     return Option(tuple(name.split(",")), about, {"action": "store_true"})
 
 
 def choice(about: str, name: str, metavar: str, known: str, default: str = "") -> Option:
-    """An option with one of the values that are known, ``a|b``."""
+    """Return an option with one of the known values, ``a|b``."""
     words = tuple(known.split("|"))
     more = {"default": default} if default else {}
     return _option(name, about, metavar, type=values.one_of(words), choices=words, **more)
 
 
 def several(about: str, name: str, metavar: str, read: str = "names", unset: str = "") -> Option:
-    """An option with a list: commas and repetition mean the same. ``unset``: None if not given."""
+    """Return an option with a list, by commas or repetition; with ``unset`` its default is None."""
     default: list[str] | None = None if unset else []
     return _option(
         name, about, metavar, action="extend", type=getattr(values, read), default=default
@@ -102,13 +102,13 @@ def several(about: str, name: str, metavar: str, read: str = "names", unset: str
 
 
 def some(about: str, name: str, metavar: str, known: str) -> Option:
-    """An option with a list of some of the values that are known, ``a|b``."""
+    """Return an option with a list of some of the known values, ``a|b``."""
     read = values.some_of(tuple(known.split("|")))
     return _option(name, about, metavar, action="extend", type=read, default=[])
 
 
 def each(about: str, name: str, metavar: str) -> Option:
-    """An option that is written once for each of several things, in their order; it may be empty."""
+    """Return an option that is written once for each of several things, in order; it may be empty."""
     return _option(name, about, metavar, action="append", default=[])
 
 
@@ -120,13 +120,13 @@ def sources(about: str, name: str, metavar: str) -> Option:
 
 
 def launch(about: str, name: str, metavar: str) -> Option:
-    """A launch file with its arguments as one value, for each time that it is written."""
+    """Return an option with a launch file and its arguments in one value; it may be repeated."""
     words = metavar.replace("_", " ")
     return _option(name, about, words, action="append", type=values.path, default=[])
 
 
 def launch_words(about: str, name: str, metavar: str) -> Option:
-    """A launch file with its arguments as words."""
+    """Return an option with a launch file and its arguments as words."""
     return _option(name, about, metavar.replace("_", " "), nargs="+", default=[])
 
 

@@ -46,7 +46,7 @@ class _Trees(NamedTuple):
 
 @cache
 def port_data() -> Mapping[str, Any]:
-    """The data of ``behavior_tree.yaml``."""
+    """Return the data of ``behavior_tree.yaml``."""
     return dict(load_own_yaml(__file__, "behavior_tree.yaml"))
 
 
@@ -99,7 +99,7 @@ def _model_default(
 
 
 def _kind(element: _Element, attribute: str, trees: _Trees) -> str:
-    """The kind of name that a literal is; empty if that is not known."""
+    """Return the kind of name that a literal is; empty if that is not known."""
     if element.tag == "SetBlackboard" and attribute == "value":
         tree = next((it for it in element.iterancestors("BehaviorTree")), None)
         entries = _entry_kinds(trees, str(tree.get("ID", "")) if tree is not None else "", ())
@@ -122,7 +122,7 @@ def node_name(element: _Element) -> str:
 
 
 def _blackboard_entry(element: _Element, value: str, trees: _Trees) -> str:
-    """The blackboard entry that a value stands for; empty for a literal."""
+    """Return the blackboard entry that a value refers to; empty for a literal."""
     if value.startswith("{") and value.endswith("}"):
         return value[1:-1]
     # A plain SubTree of BT.CPP 3 maps entries by their bare names.
@@ -130,7 +130,7 @@ def _blackboard_entry(element: _Element, value: str, trees: _Trees) -> str:
 
 
 def _entry_kinds(trees: _Trees, name: str, above: tuple[str, ...]) -> dict[str, str]:
-    """The kind of name in each entry that a tree reads, by its use there and in subtrees."""
+    """Return the kind of name in each entry that a tree reads, by its use there and in subtrees."""
     tree = trees.by_id.get(name)
     if tree is None or name in above:
         return {}
@@ -149,10 +149,7 @@ def _entry_kinds(trees: _Trees, name: str, above: tuple[str, ...]) -> dict[str, 
 
 
 def rewrite_behavior_tree(data: bytes, file: str, context: Context) -> Companion:
-    """A behavior tree with slots for a robot.
-
-    Raises InputError for a file that is not a behavior tree.
-    """
+    """Return a behavior tree with slots for a robot; raises InputError for another file."""
     document = read_tree(data, file)
     # Written out even if a rule would do: rules do not reach the navigator's helper nodes.
     return with_slots(named_ports(document, context), {}, _default_splices(document, context))
@@ -172,7 +169,7 @@ def _default_splices(document: Document, context: Context) -> Iterator[Splice]:
 
 
 def read_tree(data: bytes, file: str) -> Document:
-    """The document; InputError for a file that is not a behavior tree."""
+    """Return the document; raises InputError for a file that is not a behavior tree."""
     if not data.strip():
         raise InputError(f"{file}:1: the file is empty; a behavior tree starts with <root>")
     document = read_document(data, file)
@@ -183,12 +180,12 @@ def read_tree(data: bytes, file: str) -> Document:
 
 
 def named_tree(data: bytes, file: str, context: Context) -> NamedFile:
-    """The names of a tree; raises as ``read_tree``."""
+    """Return the names of a tree; raises as ``read_tree``."""
     return named_ports(read_tree(data, file), context)
 
 
 def named_ports(document: Document, context: Context) -> NamedFile:
-    """What was found in a tree."""
+    """Return the names in the ports of a tree."""
     every = list(ports_of(document))
     free = [it for element, it in every if element.tag != "include"]
     included = tuple(it for element, it in every if element.tag == "include")

@@ -124,7 +124,7 @@ def _below(node: yaml.Node, rule: Shape, walk: _Walk) -> None:
 
 
 def _named(node: yaml.ScalarNode, kind: str) -> Iterator[Site]:
-    """The names in a value: those in ``joints(a, b)``, else its text."""
+    """Yield the names in a value: those in ``joints(a, b)``, otherwise its text."""
     slot = slot_of(node)
     found = _EVALUATOR.fullmatch(slot.value) if kind == "words" else None
     if found is None:
@@ -137,7 +137,7 @@ def _named(node: yaml.ScalarNode, kind: str) -> Iterator[Site]:
 def _resolved(
     word: str, at: int, value: yaml.Node, rules: Shapes, names: CompanionNames
 ) -> _Match | None:
-    """The names in a key: nested maps and keys with dots are the same parameter."""
+    """Return the names in a key: nested maps and keys with dots are the same parameter."""
     found = _exact(word, at, value, rules, names)
     if found:
         return found
@@ -163,7 +163,7 @@ def _rest(
 def _exact(
     word: str, at: int, value: yaml.Node | None, rules: Shapes, names: CompanionNames
 ) -> _Match | None:
-    """A literal key, a declared name, or a name by what is below it."""
+    """Return the match of a literal key, of a declared name, or of a name known by its contents."""
     if word in rules and word[:1] not in ("<", "*"):
         return (), rules[word]
     for kind, telling, rule in _wild(rules):
@@ -181,12 +181,12 @@ def _exact(
 
 
 def _declared(names: CompanionNames, kind: str, word: str) -> bool:
-    """Does the description declare it, without what a launch file puts in front (``$(var prefix)``)?"""
+    """Return whether the description declares it, without a launch file's ``$(var prefix)``."""
     return is_declared(names, kind, without_robot(word))
 
 
 def _open(word: str, at: int, value: yaml.Node | None, rules: Shapes) -> _Match | None:
-    """A key that may be any name."""
+    """Return the match of a key that may be any name."""
     for kind, telling, rule in _wild(rules):
         if not telling or (value is None and "declared" not in telling):
             return ((at, word, kind),), rule
@@ -248,7 +248,7 @@ def file_kind(document: YamlText) -> str:
 
 
 def find_kind(document: YamlText) -> MoveitKind | None:
-    """The kind of a file, None if it is empty; InputError if it is not a MoveIt file."""
+    """Return the kind of a file, None if it is empty; raises InputError if it is not a MoveIt file."""
     root = document.root
     if root is None or root.tag == "tag:yaml.org,2002:null":
         return None
@@ -279,7 +279,7 @@ def pipeline_of(path: str) -> str:
 
 
 def parameter_above(kind: MoveitKind, document: YamlText) -> str:
-    """What stands before the names of a file's parameters: ``ompl.``, or nothing."""
+    """Return the prefix of a file's parameters: ``ompl.``, or nothing."""
     keys = {str(key.value) for key, _ in entries(document.root)}
     above = ABOVE.get(kind.name, "")
     if kind.name == PLANNING:
@@ -299,7 +299,7 @@ def _refuse_params(document: YamlText, node: yaml.Node, depth: int) -> None:
 
 
 def _paths(root: yaml.Node) -> Iterator[str]:
-    """The keys of the first two levels, the second with ``*`` for the first as well."""
+    """Yield the keys of the first two levels, the second also with ``*`` for the first."""
     for key, value in entries(root):
         first, _, rest = str(key.value).partition(".")
         yield from (str(key.value), first)

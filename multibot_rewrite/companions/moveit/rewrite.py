@@ -31,11 +31,11 @@ from multibot_rewrite.knowledge.records import NodeFacts
 def rewrite_moveit(
     document: YamlText, context: Context, facts: Iterable[NodeFacts] = ()
 ) -> Companion:
-    """A MoveIt file with slots for a robot.
+    """Return a MoveIt file with slots for a robot.
 
     Groups of an SRDF are known if they are declared (``with_srdf``); ``facts`` are those of the robot's
-    nodes, whose remap rules move topics too. Raises InputError for a file that is not MoveIt's, and
-    for an alias whose value would need two new names.
+    nodes, whose remap rules move topics too. Raises InputError for a file that is not MoveIt's, and for
+    an alias whose value would need two new names.
     """
     try:
         file = read_moveit(document, context)
@@ -53,7 +53,7 @@ _ROS_CONTROL, _CONTROL_NAMESPACE = "moveit_ros_control_interface/", "ros_control
 
 
 def inserted_namespace(document: YamlText, context: Context) -> Iterator[Splice]:
-    """The namespace of the controller manager, if it is not set: the default is the root."""
+    """Yield the line with the controller manager's namespace, if the file does not set it."""
     key = asks_below_root(document)
     default = SPELLERS["namespace"](context, "/")
     flow = isinstance(document.root, yaml.MappingNode) and document.root.flow_style
@@ -69,7 +69,7 @@ def inserted_namespace(document: YamlText, context: Context) -> Iterator[Splice]
 
 
 def asks_below_root(document: YamlText) -> yaml.ScalarNode | None:
-    """The key that selects ros2_control, if the file does not set the manager's namespace."""
+    """Return the key that selects ros2_control, if the file does not set the manager's namespace."""
     keys = {str(key.value): (key, value) for key, value in entries(document.root)}
     if _MANAGER not in keys or _CONTROL_NAMESPACE in keys:
         return None
@@ -87,7 +87,7 @@ def node_of(kind: MoveitKind | None) -> str:
 
 
 def read_moveit(document: YamlText, context: Context) -> NamedFile:
-    """The names of a file; raises InputError for one that is not MoveIt's."""
+    """Return the names of a file; raises InputError for one that is not MoveIt's."""
     kind = find_kind(document)
     node = node_of(kind)
     names, others, twice = find_names(document.root, kind.names if kind else {}, context.names)

@@ -37,7 +37,7 @@ def is_filled(value: str) -> bool:
 
 
 def joint(context: Context, value: str) -> str:
-    """A joint, or a joint of another controller: ``controller/joint``."""
+    """Return the robot's name of a joint, or of a joint below a controller: ``controller/joint``."""
     if is_declared(context.names, "joint", value):
         return spell(context.names, "joint", value)
     above, slash, name = value.rpartition("/")
@@ -62,12 +62,12 @@ def interface(context: Context, value: str) -> str:
 
 
 def is_component(context: Context, value: str) -> bool:
-    """Does the description declare a joint, sensor or gpio of this name?"""
+    """Return whether the description declares a joint, sensor or gpio of this name."""
     return is_declared(context.names, "component", value)
 
 
 def _chain(context: Context, value: str) -> str:
-    """What is before a name: parts of the robot, and controllers that export interfaces."""
+    """Return the robot's version of the path before a name: its parts and chained controllers."""
     parts = (
         component(context, it) if is_component(context, it) else controller(context, it)
         for it in value.split("/")
@@ -76,18 +76,18 @@ def _chain(context: Context, value: str) -> str:
 
 
 def component(context: Context, value: str) -> str:
-    """A joint, a sensor or a gpio that the description declares."""
+    """Return the robot's name of a joint, sensor or gpio that the description declares."""
     return spell(context.names, "component", value) if is_component(context, value) else value
 
 
 def controller(context: Context, value: str) -> str:
-    """A controller is a node: without namespaces each robot's has a different name."""
+    """Return the robot's name of a controller, which differs only without namespaces."""
     naming = context.topics.naming
     return spelled(naming, NAMESPACE_SLOT, "node", value) if is_plain(value) else value
 
 
 def node(context: Context, value: str) -> str:
-    """A node's name as others use it; a node that serves all robots keeps its name."""
+    """Return a node's name as the robot's nodes use it; a node for all robots keeps its name."""
     bare = value.strip("/")
     place = context.nodes.get(bare, "")
     if place and NAMESPACE_SLOT not in place:
@@ -103,7 +103,7 @@ def node(context: Context, value: str) -> str:
 
 
 def namespace(context: Context, value: str) -> str:
-    """An absolute namespace; a relative one is below the robot's already."""
+    """Return the robot's version of an absolute namespace; a relative one is below the robot's."""
     naming = context.topics.naming
     if not value.startswith("/") or naming.topics != NAMESPACE:
         return value
@@ -111,33 +111,33 @@ def namespace(context: Context, value: str) -> str:
 
 
 def stem(context: Context, value: str) -> str:
-    """The beginning of frame names: only a prefix can be added."""
+    """Return the robot's version of a beginning of frame names: only a prefix can be added."""
     return spell(context.names, "frame", value) if _prefixes(context) else value
 
 
 def link_prefix(context: Context, value: str) -> str:
-    """What the node adds before links; it may be empty."""
+    """Return the prefix that the node puts before links; it may be empty."""
     return _prefix(context, "link", value)
 
 
 def joint_prefix(context: Context, value: str) -> str:
-    """What the node adds before joints; it may be empty."""
+    """Return the prefix that the node puts before joints; it may be empty."""
     return _prefix(context, "joint", value)
 
 
 def gpio_prefix(context: Context, value: str) -> str:
-    """What the node adds before gpios; it may be empty."""
+    """Return the prefix that the node puts before gpios; it may be empty."""
     return _prefix(context, "gpio", value)
 
 
 def joint_stem(context: Context, value: str) -> str:
-    """What the node adds before joints, with _ behind it if it is not empty."""
+    """Return the prefix that the node puts before joints, with _ after it, unless it is empty."""
     whole = joint_prefix(context, f"{value}{STEM_END}" if value else "")
     return whole.removesuffix(STEM_END) if whole.endswith(STEM_END) else value
 
 
 def before_frames(between: str) -> Speller:
-    """What a node puts before frames: where that names the robot's frames, the robot's name."""
+    """Return a function for the prefix that a node puts before frames at run time."""
 
     def speller(context: Context, value: str) -> str:
         at_run_time = context.names.naming.layout.at_run_time
@@ -173,7 +173,7 @@ def _prefix(context: Context, kind: str, value: str) -> str:
 
 
 def _own_prefix(context: Context, kind: str) -> str:
-    """What an argument of the xacro puts before names of this kind; empty for nothing."""
+    """Return the prefix that a xacro argument puts before names of this kind; empty for none."""
     texts = (
         text.removesuffix(plain)
         for (of, plain), text in context.names.own.items()
@@ -183,12 +183,12 @@ def _own_prefix(context: Context, kind: str) -> str:
 
 
 def port(_: Context, value: str) -> str:
-    """A port that one node on a computer can have; 0 is any."""
+    """Return the slot for a port that only one node on a computer can have; 0 stays."""
     return number_slot(int(value)) if value.isdecimal() and int(value) else value
 
 
 def output(_: Context, value: str) -> str:
-    """A file or folder that a node writes: ``/tmp/pose.txt`` is ``/tmp/pose_robot1.txt``."""
+    """Return a file or folder that a node writes: ``/tmp/pose.txt`` is ``/tmp/pose_robot1.txt``."""
     head, slash, name = value.rstrip("/").rpartition("/")
     stem, dot, ending = name.rpartition(".")
     if not name.strip(".~") or not is_filled(value):

@@ -36,7 +36,7 @@ class TopicText(NamedTuple):
 
 @lru_cache
 def built_in_facts(release: str) -> Facts:
-    """Node -> facts, as in the stacks; nodes with their own remap rules first."""
+    """Node -> facts, as in the node sets; nodes with their own remap rules first."""
     library = built_in(release)
     facts = [node for stack in library.stacks.values() for node in stack.nodes]
     facts.sort(key=lambda it: not any(endpoint.remapped for endpoint in it.endpoints))
@@ -47,14 +47,14 @@ def built_in_facts(release: str) -> Facts:
 
 
 def facts_by_name(facts: Iterable[NodeFacts], release: str) -> Facts:
-    """The facts of the robots' nodes, or the built-in ones of a release if none are given."""
+    """Return the facts of the robots' nodes by name, or the built-in ones of a release."""
     return {it.name: it for it in facts} or built_in_facts(release)
 
 
 def spell_topic(
     context: Context, node: str, kind: str, value: str, reach: str, facts: Facts
 ) -> TopicText:
-    """What a topic or service named by a parameter of ``node`` (the stack's name) becomes."""
+    """Return the robot's version of a topic or service in a parameter of ``node``."""
     if not is_plain(value) or value.startswith("~") or check_name_in_code(value):
         return TopicText(value)
     meant = value
@@ -74,7 +74,7 @@ def spell_topic(
 
 
 def _spelled(context: Context, kind: str, value: str, absolute: bool) -> str:
-    """The name for a robot; ``absolute`` if it is not resolved in the robot's namespace."""
+    """Return the name for a robot; ``absolute`` if it is not resolved in the robot's namespace."""
     naming = context.topics.naming
     lead = "" if value.startswith("/") else "/"
     if value.strip("/") in naming.shared_topics:
@@ -90,7 +90,7 @@ def _spelled(context: Context, kind: str, value: str, absolute: bool) -> str:
 
 
 def _ruled_node(node: NodeFacts | None, value: str, context: Context) -> NodeFacts | None:
-    """The node with only those endpoints whose rules could match the name."""
+    """Return the node with only those endpoints whose rules could match the name."""
     if node is None or node.shared:
         return None
     bare, naming = value.strip("/"), context.topics.naming
@@ -104,7 +104,7 @@ def _ruled_node(node: NodeFacts | None, value: str, context: Context) -> NodeFac
 def _ruled_text(
     context: Context, kind: str, texts: tuple[str, str], reach: str, node: NodeFacts
 ) -> TopicText:
-    """The new name if it resolves correctly, else the old one if a rule moves that."""
+    """Return the new name if it resolves correctly, or the old one if a rule moves that."""
     naming = context.topics.naming
     table = run_of(NAMESPACE_SLOT, node, naming, context.nodes)
     bound = bind(table.name, table.namespace, parsed(table.rules))

@@ -22,13 +22,13 @@ _ANYWHERE = re.compile(_STANDS)
 
 
 def is_robot(value: str) -> bool:
-    """Does a value stand for the robot, and nothing else is in it?"""
+    """Return whether a value is only a placeholder for the robot."""
     return _ALONE.fullmatch(value) is not None
 
 
 def without_robot(value: str, lead: str = "") -> str:
-    """A name without what stands for the robot in front of it; ``lead`` comes before what is below a
-    namespace. It stays if nothing else is in it, or if another placeholder is left."""
+    """Return a name without the placeholder for the robot in front of it; ``lead`` comes before a name
+    below a namespace. It stays if nothing else is in it, or if another placeholder is left."""
     found = _FIRST.fullmatch(value)
     if found is None or "<" in found["name"] or not NOT_PLAIN.isdisjoint(found["name"]):
         return value
@@ -36,10 +36,10 @@ def without_robot(value: str, lead: str = "") -> str:
 
 
 def of_one_robot(value: str) -> str:
-    """A value of a parameter as it is for one robot without a prefix."""
+    """Return a value of a parameter as it is for one robot without a prefix."""
     return "" if _PREFIX_ALONE.fullmatch(value) else without_robot(value)
 
 
 def filled(value: str, robot: str) -> str:
-    """A text that is no name of a known kind, with the robot in every place that stands for it."""
+    """Return a text with the robot in place of each placeholder for it."""
     return _ANYWHERE.sub(lambda _: robot, value)

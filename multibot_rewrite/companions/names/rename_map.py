@@ -6,25 +6,14 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 from typing import NamedTuple
 
+from multibot_rewrite.base.conventions import ROWS
 from multibot_rewrite.base.naming import NAMESPACE, NOT_PLAIN, Naming, spelled
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.made_topics import NO_WORDS, Stems
 from multibot_rewrite.description.rewriters.spelling import resolve
 
 # Kinds of names in a description that a kind of value may refer to, tried in order.
-KINDS = {
-    "frame": ("link", "frame"),
-    "link": ("link",),
-    "joint": ("joint",),
-    "sensor": ("sensor",),
-    "gpio": ("gpio",),
-    "hardware": ("hardware",),
-    "group": ("group",),
-    "topic": ("topic",),
-    "service": ("service",),
-    # The left part of ``elbow/position``: a joint, a sensor or a gpio.
-    "component": ("joint", "sensor", "gpio"),
-}
+KINDS = {kind: tuple(meant) for (kind, *meant), _ in ROWS["referred"]}
 TOPIC = "topic"
 NO_OWN: Mapping[tuple[str, str], str] = {}
 
@@ -51,7 +40,7 @@ class CompanionNames(NamedTuple):
 
 
 def spell(names: CompanionNames, word: str, value: str, namespaced: bool = True) -> str:
-    """The robot's version of ``value``, a name of the kind ``word``; other values stay.
+    """Return the robot's version of ``value``, a name of the kind ``word``; other values stay.
 
     ``namespaced`` is true if a relative topic is resolved in the robot's namespace.
     """
@@ -69,7 +58,7 @@ def spell(names: CompanionNames, word: str, value: str, namespaced: bool = True)
 
 
 def with_srdf(declared: Declared, semantics: Declared) -> Declared:
-    """What a description declares, and the groups and virtual joints of its SRDF."""
+    """Return the names that a description declares, with the groups and virtual joints of its SRDF."""
     more = {
         kind: {**declared.get(kind, {}), **semantics.get(kind, {})} for kind in ("group", "joint")
     }
@@ -115,5 +104,5 @@ def _without_argument(
 
 
 def is_declared(names: CompanionNames, word: str, value: str) -> bool:
-    """Does the description declare this link, joint, sensor, gpio or hardware?"""
+    """Return whether the description declares this link, joint, sensor, gpio or hardware."""
     return any(value in names.declared.get(kind, ()) for kind in KINDS[word])

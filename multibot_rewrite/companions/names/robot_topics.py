@@ -24,7 +24,7 @@ def is_topic(value: str) -> bool:
 
 
 def robot_topic(names: CompanionNames, value: str, known: Mapping[str, str] = NOTHING) -> str:
-    """The robot's absolute topic; ``value`` itself if it is shared or not a topic name.
+    """Return the robot's absolute topic; ``value`` itself if it is shared or not a topic name.
 
     ``known`` is ``fleet_topics`` of the robot, for topics that do not follow the general rule.
     """

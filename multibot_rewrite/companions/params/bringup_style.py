@@ -49,7 +49,7 @@ NO_MORE: Values = {}
 def for_bringup(
     document: YamlText, namespace: str, more: Values = NO_MORE
 ) -> tuple[str, tuple[Finding, ...]]:
-    """The text of a file as it was made for the robot in ``namespace``, without that namespace.
+    """Return the text of a file made for the robot in ``namespace``, without that namespace.
 
     ``more`` are further values of nodes that have a section in it: there is one file for all that is
     started. Raises InputError for a file that rcl rejects.
@@ -66,7 +66,7 @@ def for_bringup(
 
 
 def _changed(document: YamlText, section: RawSection, namespace: str) -> Iterator[Splice | Finding]:
-    """The new key of a section, which is the first below that key."""
+    """Yield the new key of a section, with more values if it is the first below that key."""
     key = section.keys[0]
     below = below_namespace(key.value, namespace)
     if PLACEHOLDER.search(key.value):
@@ -86,7 +86,7 @@ def _changed(document: YamlText, section: RawSection, namespace: str) -> Iterato
 
 
 def below_namespace(key: str, namespace: str) -> str | None:
-    """What is left of the name of a section below a namespace; None if no node there has it.
+    """Return the rest of a section's name below a namespace; None if no node there has it.
 
     below_namespace("/robot1/amcl", "robot1") == "amcl"
     below_namespace("/**", "robot1") == "**"

@@ -59,7 +59,7 @@ _State = tuple[Branch, tuple[_Mark, ...]]
 
 
 class _Job(NamedTuple):
-    """A section that is looked at: what is known, the release, and what was found."""
+    """A section that is checked: what is known, the release, and what was found."""
 
     document: YamlText
     section: ParamSection
@@ -85,7 +85,7 @@ def find_names(
 
 
 def params_at(node: NodeParameters, name: str, key: yaml.ScalarNode) -> list[Param]:
-    """What is known of a parameter by its dotted name, in this release or another."""
+    """Return the known parameters with this dotted name, in this release or another."""
     return [param for branch, _ in _below([(node.tree, ())], name, key) for param in branch.params]
 
 
@@ -128,7 +128,7 @@ def _below(states: list[_State], word: str, key: yaml.ScalarNode, at: int = 0) -
 def _claim(
     job: _Job, key: yaml.ScalarNode, value: yaml.Node, states: list[_State], layer: yaml.MappingNode
 ) -> None:
-    """What one parameter holds: known, guessed from its name, or unclaimed."""
+    """Note the names in one parameter: known, guessed from its name, or unclaimed."""
     names = job.names
     if value.tag == NULL and not value.value:
         names.empty.append(key)
@@ -184,14 +184,14 @@ def _values(
 
 
 def _without_robot(text: str, kind: str) -> str:
-    """A name that stands for the robot in front is that of one robot; a prefix of that kind is none."""
+    """Return a name as it is for one robot, without a placeholder; empty for a prefix of the robot."""
     if kind in _PREFIXES and is_robot(text):
         return ""
     return without_robot(text, "/" if kind in _BELOW else "")
 
 
 def name_in(scalar: yaml.ScalarNode) -> str:
-    """The text of a scalar if rcl reads it as a string; otherwise empty."""
+    """Return the text of a scalar if rcl reads it as a string; otherwise empty."""
     text = str(scalar.value)
     if scalar.tag != STRING or (text in _BOOLEANS and not scalar.style):
         return ""

@@ -36,17 +36,17 @@ _ESCAPED = {code: f"\\u{code:04x}" for code in (*range(0x7F, 0xA0), 0x2028, 0x20
 
 
 def parameters_text(nodes: Mapping[str, Mapping[str, Any]]) -> str:
-    """The parameter file of nodes, by full name or pattern, as JSON: rcl reads that as YAML, and never
-    takes its strings for another type."""
+    """Return the parameter file of nodes, by full name or pattern, as JSON: rcl reads that as YAML, and
+    never takes its strings for another type."""
     data = {full: {"ros__parameters": dict(values)} for full, values in nodes.items()}
     return json.dumps(data, ensure_ascii=False).translate(_ESCAPED)
 
 
 def node_parameters(document: YamlText, full: str) -> dict[str, Value]:
-    """The parameters of the node with this full name, by their dotted names.
+    """Return the parameters of the node with this full name, by their dotted names.
 
-    Wildcard sections count as in rcl: in the order of their first appearance, a later one wins.
-    Raises InputError for a value that rcl rejects.
+    Wildcard sections count as in rcl: in the order of their first appearance, a later one wins. Raises
+    InputError for a value that rcl rejects.
     """
     sections: dict[str, dict[str, Value]] = {}
     for found in raw_sections(document):
@@ -96,7 +96,7 @@ def _scalar(document: YamlText, node: yaml.ScalarNode) -> Scalar:
 
 
 def typed(text: str) -> Scalar:
-    """The value that rcl reads from an unquoted scalar."""
+    """Return the value that rcl reads from an unquoted scalar."""
     if text in _TRUE or text in _FALSE:
         return text in _TRUE
     whole = _INTEGER.fullmatch(text)

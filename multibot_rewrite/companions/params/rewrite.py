@@ -53,16 +53,15 @@ def rewrite_params(
     clock: bool | None = None,
     is_first: bool = False,
 ) -> Companion:
-    """A parameter file with slots for a robot, and the findings about it.
+    """Return a parameter file with slots for a robot, and the findings about it.
 
-    ``known`` are the known nodes, ``beside`` the other parameter files that the robot's nodes get:
-    what they set is not inserted here. ``facts`` are those of the robot's nodes, whose remap rules
-    move topics too.
-    A file for one robot may have its sections below one of ``own``. ``at_run_time`` are the nodes that
-    put the robot's name before their frames themselves. ``clock`` is the ``use_sim_time`` of all its
-    nodes, None if they keep their own. The robot's first file gets sections of nodes of the stack that
-    no file has one for. Raises InputError for a file that
-    is not a parameter file or that rcl rejects.
+    ``known`` are the known nodes, ``beside`` the other parameter files that the robot's nodes get: what
+    they set is not inserted here. ``facts`` are those of the robot's nodes, whose remap rules move
+    topics too. A file for one robot may have its sections below one of ``own``. ``at_run_time`` are the
+    nodes that put the robot's name before their frames themselves. ``clock`` is the ``use_sim_time`` of
+    all its nodes, None if they keep their own. The robot's first file gets sections of nodes of the
+    node set that no file has one for. Raises InputError for a file that is not a parameter file or that
+    rcl rejects.
     """
     with gc_paused():
         check_no_slots(document.text, document.file)
@@ -109,7 +108,7 @@ def rewrite_values(job: ParamsJob) -> Companion:
 
 
 def _once(made: Iterable[Splice | Finding]) -> tuple[Finding, ...]:
-    """What is the same at many places is reported at the first; its slots read ``<robot>``."""
+    """Return the findings, one for those that are the same at many places; slots read ``<robot>``."""
     findings = [it for it in made if isinstance(it, Finding)]
     first: dict[tuple[str, str], Finding] = {}
     for found in sorted(findings, key=lambda it: (it.line, it.column, it.code)):
@@ -124,8 +123,8 @@ def _once(made: Iterable[Splice | Finding]) -> tuple[Finding, ...]:
 def read_params(
     document: YamlText, context: Context, known: KnownNodes, own: Collection[str] = ()
 ) -> NamedFile:
-    """The names of a file; ``own`` are words for the one robot that it is for. Raises InputError for a
-    file that is not a parameter file or that rcl rejects."""
+    """Return the names of a file; ``own`` are words for the one robot that it is for. Raises InputError
+    for a file that is not a parameter file or that rcl rejects."""
     found = without_own(raw_sections(document), own)
     sections = identify_sections(found, context, known)
     pages = tuple(
@@ -160,8 +159,8 @@ def read_params(
 
 
 def _keys(section: ParamSection, own: Collection[str]) -> Iterator[Site]:
-    """The keys above a section, without what its path has not: the robot that the file is for. A
-    namespace that is the root's or the robot's alone is no name of a node."""
+    """Yield the keys above a section, without the robot that the file is for. A namespace that is the
+    root's or the robot's alone is no name of a node."""
     first, *rest = section.keys
     bare = first.value.strip("/")
     words = (it for it in own if f"{bare}/".startswith(f"{it}/"))
@@ -177,7 +176,7 @@ MIXED_KEY = declare("MF101", "mixed-section-key", ERROR, formats=("params",))
 
 
 def key_splices(document: YamlText, sections: Sequence[ParamSection]) -> list[Splice | Finding]:
-    """The new keys above the sections."""
+    """Return the new keys above the sections, and findings for keys that cannot change."""
     new: dict[int, tuple[yaml.ScalarNode, str]] = {}
     made: list[Splice | Finding] = []
     for section in sections:
@@ -199,7 +198,7 @@ def key_splices(document: YamlText, sections: Sequence[ParamSection]) -> list[Sp
 
 
 def _texts(section: ParamSection) -> list[str]:
-    """The full name, divided over the keys as before; the namespace goes into the first key."""
+    """Return the full name, divided over the keys as before; the namespace goes into the first key."""
     tokens = section.full.strip("/").split("/")
     texts = []
     for key in reversed(section.keys[1:]):

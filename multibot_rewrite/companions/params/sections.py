@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import yaml
 
-from multibot_rewrite.base.conventions import PLACEHOLDER, WORLD_NODES
+from multibot_rewrite.base.conventions import PLACEHOLDER, ROWS, WORLD_NODES
 from multibot_rewrite.base.model import FOR_ROS_1, InputError
 from multibot_rewrite.base.naming import spelled
 from multibot_rewrite.companions.context import NAMESPACE_SLOT, Context, full_name
@@ -32,17 +32,7 @@ NO_NAME = "a key is a mapping or a list; use a name as key"
 # Helper nodes of old releases: they have sections, but no names of their own.
 INNER = ("_rclcpp_node", "_client")
 # A key that only one kind of file has -> what that file is.
-_OTHER_FILES = {
-    "Visualization Manager": "it is an RViz config; list it under rviz",
-    "Panels": "it is an RViz config; list it under rviz",
-    "image": "it is a map file for map_server, which holds no robot's name; leave it out",
-    "joint_limits": "it holds MoveIt joint limits; list it under moveit",
-    "controller_names": "it holds MoveIt controllers; list it under moveit",
-    "moveit_simple_controller_manager": "it holds MoveIt controllers; list it under moveit",
-    "planner_configs": "it holds MoveIt planners; list it under moveit",
-    "initial_positions": "it holds initial joint positions for xacro; leave it out",
-    "robots": "it is a fleet file",
-}
+_OTHER_FILES = {" ".join(key): said for key, said in ROWS["other files"]}
 
 
 class ParamSection(NamedTuple):
@@ -87,7 +77,7 @@ def raw_sections(document: YamlText) -> list[RawSection]:
 
 
 def without_own(found: Iterable[RawSection], own: Collection[str]) -> list[RawSection]:
-    """The sections of a file that is for one robot, without the words that stand for it."""
+    """Return the sections of a file for one robot, without the words for that robot."""
     made = []
     for it in found:
         above = next((f"{word}/" for word in own if it.path.startswith(f"{word}/")), "")
@@ -153,7 +143,7 @@ def _below(
 def identify_sections(
     found: Iterable[RawSection], context: Context, known: KnownNodes
 ) -> list[ParamSection]:
-    """The sections with their known nodes, and the names these run under."""
+    """Return the sections with their known nodes, and the names these run under."""
     found = list(found)
     types = controller_types(found)
     made = [_section(it, context, known, types) for it in found]
@@ -203,7 +193,7 @@ def _section(
 def identify_node(
     name: str, body: yaml.Node | None, known: KnownNodes, types: Mapping[str, str]
 ) -> NodeParameters | None:
-    """The known node of a section: by its controller type, its name, or its parameters."""
+    """Return the known node of a section: by its controller type, its name, or its parameters."""
     top = {key.value: value for key, value in pairs(body)}
     own = top.get("type")
     type_ = types.get(name, own.value if isinstance(own, yaml.ScalarNode) else "")
@@ -220,7 +210,7 @@ def identify_node(
 
 
 def controller_types(found: Iterable[RawSection]) -> dict[str, str]:
-    """Controller -> type, as the controller managers in the file set it."""
+    """Return the type of each controller, as the controller managers in the file set it."""
     types = {}
     for it in found:
         if it.path.rpartition("/")[2] != MANAGER:
@@ -259,7 +249,7 @@ def meant_for(
 
 
 def _skipped(filled: set[int], parts: Sequence[str]) -> set[int]:
-    """The same, and those behind each ``**``, which may stand for nothing."""
+    """Return the positions with those after each ``**``, which may match nothing."""
     for at, part in enumerate(parts):
         if at in filled and part == "**":
             filled.add(at + 1)
@@ -268,7 +258,7 @@ def _skipped(filled: set[int], parts: Sequence[str]) -> set[int]:
 
 def settings(node: yaml.Node, above: str = "") -> Iterator[tuple[str, yaml.ScalarNode, yaml.Node]]:
     """Every parameter by its dotted name, with its key and value; nested and dotted keys are the same.
-    ``above`` stands before all names."""
+    ``above`` is before all names."""
     for key, value in pairs(node):
         name = f"{above}{key.value}"
         if below := names_below(value):

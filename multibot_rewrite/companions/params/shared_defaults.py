@@ -92,14 +92,14 @@ def default_lines(
 
 
 def bare_frames(node: NodeParameters) -> set[str]:
-    """The parameters of a node that hold frames, and have a default."""
+    """Return the parameters of a node that hold frames and have a default."""
     return {it.path for it in node.defaults if it.kind == "frame"}
 
 
 def missing_defaults(
     context: Context, node: NodeParameters, here: set[str]
 ) -> Iterator[DefaultLine]:
-    """The parameters of a node whose default must differ from robot to robot."""
+    """Yield the parameters of a node whose default must differ from robot to robot."""
     for param in node.defaults:
         if param.path in here:
             continue
@@ -122,7 +122,7 @@ NOT_INSERTED = declare("MF124", "default-not-inserted", WARNING, formats=("param
 def inserted(
     document: YamlText, body: yaml.MappingNode, lines: Sequence[DefaultLine]
 ) -> Splice | Finding:
-    """The lines before the first parameter, with its indentation."""
+    """Return the splice with lines before the first parameter, with its indentation."""
     if not body.value:
         text = ", ".join(f"{line.path}: {line.value}" for line in lines)
         at = body.start_mark.index + 1
@@ -144,7 +144,7 @@ def inserted(
 def not_inserted(
     document: YamlText, node: yaml.Node, lines: Sequence[DefaultLine], of: str = ""
 ) -> Finding:
-    """That there is no place for lines in a node of a document, ``of`` a ROS node without a section."""
+    """Return the finding that lines cannot be inserted; ``of`` is a ROS node without a section."""
     names = ", ".join(line.path for line in lines)
     whose = f"{of} has no section: " if of else ""
     message = (
@@ -156,8 +156,9 @@ def not_inserted(
 def lacking_sections(
     job: ParamsJob, found: Sequence[RawSection], beside: Iterable[RawSection], is_first: bool
 ) -> Iterator[Splice | Finding]:
-    """The sections that a file lacks, behind its end; ``found`` are those it has, ``beside`` those of
-    the robot's other files. The first file gets those of the stack's nodes as well."""
+    """Yield the sections that a file lacks, to be added at its end. ``found`` are those it has,
+    ``beside`` those of the robot's other files. The first file gets those of the node set's nodes as
+    well."""
     every, lacking = [*found, *beside], []
     named = {it.path.rpartition("/")[2] for it in every}
     for manager in (it for it in found if it.path.rpartition("/")[2] == MANAGER):
@@ -179,7 +180,7 @@ def lacking_sections(
 
 
 def all_sections(context: Context, known: KnownNodes, at_run_time: Collection[str]) -> str:
-    """The sections of a robot without a parameter file, with slots; empty if its nodes need none."""
+    """Return the sections of a robot without a parameter file, with slots; possibly empty."""
     lacking = _of_nodes(context, known, at_run_time, ())
     return "".join(f"{line}\n" for it in lacking for line in _section(*it))
 
@@ -195,7 +196,7 @@ def takes_sections(document: YamlText) -> bool:
 def _of_nodes(
     context: Context, known: KnownNodes, at_run_time: Collection[str], every: Sequence[RawSection]
 ) -> Iterator[tuple[str, list[DefaultLine]]]:
-    """The full names of nodes of the stack that no section is for, and what they need."""
+    """Yield the full names of nodes of the node set without a section, and the lines they need."""
     types = controller_types(every)
     found = identify_sections(every, context, known)
     # Those for nodes of any name are nobody's own.
@@ -213,7 +214,7 @@ def _of_nodes(
 
 
 def _set_by_all(path: str, every: Iterable[RawSection]) -> set[str]:
-    """What sections of many nodes set for it, too."""
+    """Return the parameters that sections of several nodes set for this node, too."""
     fitting = (it for it in every if is_for(it.path, f"/{path.strip('/')}"))
     return {name for it in fitting for name, _ in flattened(it.body)}
 

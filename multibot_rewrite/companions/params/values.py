@@ -37,7 +37,7 @@ def is_guessed(section: ParamSection) -> bool:
 def in_doubt(
     context: Context, section: ParamSection, names: SectionNames
 ) -> dict[str, yaml.ScalarNode]:
-    """The kinds of names that stay in a section, each with a value that may be one of them."""
+    """Return the kinds of names that stay in a section, each with a value that may be one of them."""
     found: dict[str, yaml.ScalarNode] = {}
     # ``odom`` alone may be a topic.
     has_frame = any(it.kind in FRAMES for it in names.sites)
@@ -78,8 +78,8 @@ class ParamsJob(NamedTuple):
 
 
 def clock_splices(job: ParamsJob, section: ParamSection) -> Iterator[Splice]:
-    """The clock that the fleet file says, where a section says one: from Jazzy on a file counts more
-    than the launch argument of nav2_bringup, and nodes of one robot need one clock."""
+    """Yield the fleet file's clock in place of a section's own. From Jazzy on a file counts more than
+    the launch argument of nav2_bringup, and nodes of one robot need one clock."""
     if job.clock is None or section.shared:
         return
     text = "true" if job.clock else "false"
@@ -92,7 +92,7 @@ def clock_splices(job: ParamsJob, section: ParamSection) -> Iterator[Splice]:
 def name_splices(
     job: ParamsJob, section: ParamSection, names: SectionNames
 ) -> Iterator[Splice | Finding]:
-    """A splice for every name of a section that changes, and a finding where that is not possible."""
+    """Yield a splice for each name of a section that changes, or a finding if it cannot."""
     stay = frames_stay(job, section)
     doubt = in_doubt(job.context, section, names)
     found = [it for it in names.sites if it.kind not in doubt]
@@ -113,12 +113,12 @@ def name_splices(
 
 
 def is_filled(site: Site) -> bool:
-    """Does a value stand for the robot alone? A switch for a prefix has an answer of its own."""
+    """Return whether a value is only the robot's name. A switch for a prefix is handled on its own."""
     return is_robot(site.text) and site.kind not in SWITCH_KINDS
 
 
 def _spelled(job: ParamsJob, site: Site, stays: bool) -> TopicText:
-    """What a name becomes; ``stays`` if the node puts the robot's name before its frames."""
+    """Return the new name; ``stays`` if the node puts the robot's name before its frames."""
     if stays and site.kind == "frame":
         return TopicText(site.text)
     if is_filled(site) and not site.in_key:
@@ -135,12 +135,12 @@ def _spelled(job: ParamsJob, site: Site, stays: bool) -> TopicText:
 
 
 def frames_stay(job: ParamsJob, section: ParamSection) -> bool:
-    """Does the node of a section put the robot's name before its frames?"""
+    """Return whether the node of a section puts the robot's name before its frames."""
     return section.path.rpartition("/")[2] in job.at_run_time
 
 
 def renamed(context: Context, site: Site) -> str:
-    """The name of a site for a robot; topics and services also depend on the node's remap rules."""
+    """Return the name of a site for a robot; for topics the node's remap rules count, too."""
     # A value that is a frame only by its parameter's name may be a word such as enu.
     guessed = not site.is_sure and site.kind in _UNSURE
     if site.kind == "interface":
@@ -193,8 +193,8 @@ UNCLEAR_SWITCH = declare(
 
 
 def _switched(job: ParamsJob, site: Site) -> Iterator[Splice | Finding]:
-    """A switch or a prefix of a node for frames that are renamed already: it is turned off. A default
-    says what an empty prefix stands for."""
+    """Yield the change that turns off a node's switch or prefix for frames that are renamed already. A
+    default says what an empty prefix means."""
     is_off, text = site.kind == "off", site.text
     wanted = "false" if is_off else NO_PREFIX
     if is_off and text.lower() in ("true", "yes", "on", "y"):

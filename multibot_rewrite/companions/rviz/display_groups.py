@@ -73,7 +73,7 @@ def make_rviz_job(
 
 
 def leaves(shown: Iterable[RvizItem]) -> Iterator[RvizItem]:
-    """Displays that are not groups, and empty groups."""
+    """Yield displays that are not groups, and empty groups."""
     for one in shown:
         if one.children:
             yield from leaves(one.children)
@@ -82,7 +82,7 @@ def leaves(shown: Iterable[RvizItem]) -> Iterator[RvizItem]:
 
 
 def for_one_process(one: RvizItem) -> bool:
-    """Does it serve only the robot that the rviz2 process is set up for?"""
+    """Return whether it works only for the robot that the rviz2 process is set up for."""
     return one.flag in (PROCESS, ABSOLUTE)
 
 
@@ -102,7 +102,7 @@ def is_for_one(it: RvizItem) -> bool:
 
 
 def robot_groups(job: RvizJob) -> Iterator[Splice]:
-    """The splices that put each robot's displays into a group, after the shared ones."""
+    """Yield the splices that put each robot's displays into a group, after the shared ones."""
     document, shown = job.config.document, job.config.displays
     if not shown:
         return
@@ -120,7 +120,7 @@ def robot_groups(job: RvizJob) -> Iterator[Splice]:
 def _kept(
     one: RvizItem, wanted: Wanted, made: Callable[[RvizItem], Iterable[Splice]]
 ) -> Iterator[Splice]:
-    """The splices that keep the wanted parts of a display and change them."""
+    """Yield the splices that keep the wanted parts of a display and change them."""
     if not any(map(wanted, leaves([one]))):
         yield Splice(one.block.start, one.block.end, "")
     elif one.children:
@@ -131,7 +131,7 @@ def _kept(
 
 
 def _group(job: RvizJob, at: int) -> str:
-    """The group of one robot: copies of the displays with its names; empty if it has none."""
+    """Return the group of one robot: copies of the displays with its names; empty if it has none."""
     document, robot = job.config.document, job.robots[at]
 
     def own(one: RvizItem) -> bool:
@@ -157,7 +157,7 @@ def _group(job: RvizJob, at: int) -> str:
 
 
 def group_text(document: YamlText, name: str, column: int, displays: Iterable[str]) -> str:
-    """A group of displays, whose texts have the ``column`` of their list."""
+    """Return a group of displays, whose texts have the ``column`` of their list."""
     end, lead = newline(document), " " * column
     head = f"{lead}- Class: {GROUP}{end}{lead}  Displays:{end}"
     body = "".join(moved(it, 4) for it in displays)
@@ -165,14 +165,14 @@ def group_text(document: YamlText, name: str, column: int, displays: Iterable[st
 
 
 def titled(one: RvizItem, robot: RvizRobot) -> str:
-    """The name of a robot's window."""
+    """Return the name of a robot's window."""
     return f"{robot.name} {one.name}"
 
 
 def entry_blocks(
     document: YamlText, node: yaml.Node | None
 ) -> Iterator[tuple[tuple[yaml.ScalarNode, yaml.Node], Block]]:
-    """The entries of a block map with their lines."""
+    """Yield the entries of a block map with their lines."""
     found = pairs(node)
     if node is None or not is_block(node) or len(found) != len(node.value):
         return
@@ -180,7 +180,7 @@ def entry_blocks(
 
 
 def entries(document: YamlText, one: RvizItem, robots: Robots) -> Iterator[Splice]:
-    """A shared display lists the frames of all robots; its tree comes from tf anyway."""
+    """Yield the splices that list the frames of all robots in a shared display, and empty its tree."""
     for place_map, deep in (("Frames", False), ("Tree", True)):
         node = value(one.node, place_map)
         changed = (place.key for robot in robots for place, _ in changed_values(one, robot))
@@ -201,7 +201,7 @@ def entries(document: YamlText, one: RvizItem, robots: Robots) -> Iterator[Splic
 
 
 def tools(job: RvizJob) -> Iterator[Splice]:
-    """A tool for each robot where it publishes; a tool that serves one process is left out."""
+    """Yield a tool for each robot it publishes to; a tool that works in one process is left out."""
     document = job.config.document
     for tool in job.config.tools:
         start, end, _ = tool.block
@@ -214,7 +214,7 @@ def tools(job: RvizJob) -> Iterator[Splice]:
 
 
 def tool_edits(document: YamlText, tool: RvizItem, robot: RvizRobot) -> Iterator[Splice]:
-    """The splices that make a tool publish for the robot, even if the file leaves the topic out."""
+    """Yield the splices that make a tool publish for the robot, with or without a topic."""
     yield from item_splices(document, tool, robot, None)
     default = rviz_data()["tools"].get(tool.cls, "")
     if value(tool.node, "Topic") is not None or not default:
@@ -258,7 +258,7 @@ def panels(job: RvizJob) -> Iterator[Splice]:
 
 
 def _docks(job: RvizJob) -> list[RvizItem]:
-    """The displays with a window that each robot has for itself."""
+    """Return the displays with a window that each robot has for itself."""
     own = (one for one in leaves(job.config.displays) if one.block.start in job.own)
     return [one for one in own if one.flag == DOCK]
 
@@ -272,7 +272,7 @@ def _gone(job: RvizJob) -> re.Pattern[str]:
 
 
 def windows(job: RvizJob) -> Iterator[Splice]:
-    """The places of windows, for the copies too; Qt's hex state cannot be edited and is removed."""
+    """Yield the places of windows, for the copies too; Qt's hex state is removed."""
     document = job.config.document
     docks = _docks(job)
     titles = {one.name: one for one in docks}
@@ -288,7 +288,7 @@ def windows(job: RvizJob) -> Iterator[Splice]:
 
 
 def remark(document: YamlText, one: RvizItem) -> str:
-    """The comment in place of what is left out."""
+    """Return the comment in place of an item that is left out."""
     title = f" {one.name!r}" if one.name else ""
     why = "it serves the robot of its rviz2 process"
     return f"{' ' * one.block.column}# left out: {one.cls}{title}: {why}{newline(document)}"

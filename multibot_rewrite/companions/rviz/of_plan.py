@@ -14,25 +14,13 @@ from typing import Any
 from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
 from multibot_rewrite.base.naming import LAYOUTS, PREFIX, TF_TOPICS, make_naming
 from multibot_rewrite.companions.rviz.display_groups import leaves
-from multibot_rewrite.companions.rviz.read_config import TOPIC, palette, read_config
+from multibot_rewrite.companions.rviz.read_config import TOPIC, palette, read_config, rviz_data
 from multibot_rewrite.companions.rviz.rewrite import RvizText, rewrite_rviz
 from multibot_rewrite.companions.rviz.values import TF_PREFIX, RvizRobot
 from multibot_rewrite.companions.yaml_text import YamlText, found_at, quoted
 from multibot_rewrite.spelling.shown import Shown, shown_by_robot, world_of_plan
 from multibot_rewrite.system.records import Robot, System
 
-# The display of a type.
-_DISPLAYS = {
-    "sensor_msgs/msg/LaserScan": "LaserScan",
-    "sensor_msgs/msg/PointCloud2": "PointCloud2",
-    "sensor_msgs/msg/Range": "Range",
-    "nav_msgs/msg/OccupancyGrid": "Map",
-    "nav_msgs/msg/Path": "Path",
-    "geometry_msgs/msg/PolygonStamped": "Polygon",
-    "geometry_msgs/msg/PoseArray": "PoseArray",
-    "visualization_msgs/msg/Marker": "Marker",
-    "visualization_msgs/msg/MarkerArray": "MarkerArray",
-}
 _BEST_EFFORT = {"Reliability Policy": "Best Effort"}
 _LATCHED = {"Durability Policy": "Transient Local"}
 _QOS = {"LaserScan": _BEST_EFFORT, "PointCloud2": _BEST_EFFORT, "Map": _LATCHED}
@@ -78,7 +66,7 @@ def _tf_topics(robot: Robot, namespaced: bool) -> tuple[tuple[str, str], ...]:
 
 
 def _group(shown: Shown, at: int, prefixed: bool) -> dict[str, Any]:
-    """The displays of a robot, in its colour."""
+    """Return the displays of a robot, in its colour."""
     robot = shown.robot
     model = {
         **_display("RobotModel", "RobotModel", {**_LATCHED, "Value": shown.description}, True),
@@ -92,8 +80,9 @@ def _group(shown: Shown, at: int, prefixed: bool) -> dict[str, Any]:
 
 
 def _displays(shown: Shown, colour: str) -> Iterator[dict[str, Any]]:
-    for topic in sorted(shown.of_type(_DISPLAYS)):
-        kind = _DISPLAYS[shown.sent[topic]]
+    kinds = rviz_data()["shown"]
+    for topic in sorted(shown.of_type(kinds)):
+        kind = kinds[shown.sent[topic]]
         enabled = kind != "Map" or shown.is_called(topic, _MAP)
         made = _display(kind, topic, {**_QOS.get(kind, {}), "Value": topic}, enabled)
         if colour and kind in _COLOURED:
@@ -135,7 +124,7 @@ def _plain(kind: str) -> dict[str, Any]:
 
 
 def _lines(value: Any) -> Iterator[str]:
-    """A mapping as lines of YAML. PyYAML takes longer than the rest of a build."""
+    """Yield a mapping as lines of YAML. PyYAML takes longer than the rest of a build."""
     for key, there in value.items():
         if isinstance(there, dict):
             yield f"{key}:"
@@ -163,7 +152,7 @@ BARE_HEADERS = declare("MF216", "rviz-bridged-messages", WARNING, formats=("flee
 def bridged_window(
     document: YamlText, robots: Sequence[RvizRobot], world: str
 ) -> tuple[RvizText, tuple[Finding, ...]]:
-    """The config for all robots, and what it cannot show; raises as ``rewrite_rviz``."""
+    """Return the config for all robots, and its limits as findings; raises as ``rewrite_rviz``."""
     shared = [world] if world else []
     naming = make_naming(layout=AT_RUN_TIME, affix=PREFIX, shared_frames=shared)
     bridged = []
@@ -182,7 +171,8 @@ def _bare_headers(document: YamlText) -> Iterator[Finding]:
     if found:
         names = ", ".join(it.name or it.cls for it in found)
         message = (
-            f"in the window for all robots nothing is shown by {names}: headers have bare frames"
+            f"the window for all robots shows nothing of {names}: "
+            "frames in headers are without the robot's name"
         )
         hint = "each robot has a window for it; or take layout both"
         yield found_at(document, found[0].node, BARE_HEADERS, message, hint)

@@ -62,13 +62,13 @@ class RvizConfig(NamedTuple):
 
 @lru_cache(maxsize=1)
 def rviz_data() -> Mapping[str, Any]:
-    """The data of ``rviz.yaml``."""
+    """Return the data of ``rviz.yaml``."""
     data: Mapping[str, Any] = load_own_yaml(__file__, "rviz.yaml")
     return data
 
 
 def read_config(document: YamlText) -> RvizConfig:
-    """The config in a YAML text; InputError if it is not a config of RViz 2."""
+    """Return the config in a YAML text; raises InputError if it is not a config of RViz 2."""
     manager = value(document.root, MANAGER)
     if not isinstance(manager, yaml.MappingNode):
         raise InputError(
@@ -122,7 +122,7 @@ def _shown(document: YamlText, node: yaml.Node | None, what: str) -> Iterator[Rv
 
 
 def _found(node: yaml.Node | None, path: Sequence[str]) -> Iterator[yaml.ScalarNode]:
-    """The scalars at a path; ``*`` gives keys."""
+    """Yield the scalars at a path; ``*`` gives keys."""
     if not path:
         node = value(node, "Value") if isinstance(node, yaml.MappingNode) else node
         if isinstance(node, yaml.ScalarNode) and node.tag != _NULL:
@@ -138,36 +138,36 @@ def _found(node: yaml.Node | None, path: Sequence[str]) -> Iterator[yaml.ScalarN
 
 
 def value(node: yaml.Node | None, key: str) -> yaml.Node | None:
-    """The value of a key of a map, the last one if the key is repeated; None if it is missing."""
+    """Return the value of a key of a map, the last one of a repeated key; None if it is missing."""
     return next((there for name, there in reversed(pairs(node)) if name.value == key), None)
 
 
 def text_of(node: yaml.Node | None, key: str) -> str:
-    """The value of a key as text; empty if it is missing or not a scalar."""
+    """Return the value of a key as text; empty if it is missing or not a scalar."""
     there = value(node, key)
     return str(there.value) if isinstance(there, yaml.ScalarNode) else ""
 
 
 def every(shown: Sequence[RvizItem]) -> Iterator[RvizItem]:
-    """Displays and those in groups."""
+    """Yield displays and those in groups."""
     for one in shown:
         yield one
         yield from every(one.children)
 
 
 def fixed_frame(config: RvizConfig) -> yaml.Node | None:
-    """The frame that everything is shown in."""
+    """Return the frame that everything is shown in."""
     return value(value(config.manager, "Global Options"), "Fixed Frame")
 
 
 def views_of(config: RvizConfig) -> tuple[yaml.Node | None, yaml.Node | None]:
-    """The current view, and the list of saved ones."""
+    """Return the current view, and the list of saved ones."""
     views = value(config.manager, "Views")
     return value(views, "Current"), value(views, "Saved")
 
 
 def targets(config: RvizConfig) -> Iterator[yaml.Node]:
-    """The frames that views follow."""
+    """Yield the frames that views follow."""
     current, saved = views_of(config)
     listed = saved.value if isinstance(saved, yaml.SequenceNode) else []
     for view in (current, *listed):
@@ -182,7 +182,7 @@ _STEP = 0.618034
 
 
 def read_colour(given: str | tuple[int, ...], robot: str = "") -> Colour:
-    """A colour from a name, ``#rrggbb`` or three numbers; InputError for anything else."""
+    """Return a colour from a name, ``#rrggbb`` or three numbers; raises InputError."""
     if not isinstance(given, str):
         red, green, blue = given
         return red, green, blue
@@ -203,7 +203,7 @@ def read_colour(given: str | tuple[int, ...], robot: str = "") -> Colour:
 
 
 def palette(at: int) -> Colour:
-    """The colour of the robot at this place, different from all others."""
+    """Return the colour of the robot at this place, different from all others."""
     first = rviz_data()["palette"]
     if at < len(first):
         red, green, blue = first[at]

@@ -82,13 +82,13 @@ class RvizText(NamedTuple):
 def rewrite_rviz(
     document: YamlText, robots: Sequence[RvizRobot], *, world: str = "", relayed: bool = False
 ) -> tuple[tuple[RvizText, ...], tuple[Finding, ...]]:
-    """The configs of a fleet, and the findings about them.
+    """Return the configs of a fleet, and the findings about them.
 
     One window reads one tf topic: a layout with a tf topic for each robot gives a config for each,
     unless the frames differ and the topics are ``relayed`` to ``/tf``. Displays that work for one
-    process are in a config for each robot, beside that for all. ``world`` is the frame that
-    all robots are in (default: ``world_frame``). Raises InputError for a file that is not a config
-    of RViz 2 and for an unknown colour, UsageError if there is no robot.
+    process are in a config for each robot, in addition to that for all. ``world`` is the frame that all
+    robots are in (default: ``world_frame``). Raises InputError for a file that is not a config of RViz
+    2 and for an unknown colour, UsageError if there is no robot.
     """
     if not robots:
         raise UsageError("there is no robot to show; name at least one")
@@ -117,13 +117,13 @@ def rewrite_rviz(
 
 
 def world_frame(naming: Naming) -> str:
-    """The frame that all robots share: map, else another of the world, else any other."""
+    """Return the frame that all robots share: map, or another frame of the world, or any other."""
     shared = sorted(naming.shared_frames)
     return next((frame for frame in (*WORLD_FRAMES, *shared) if frame in shared), "")
 
 
 def start_command(made: RvizText, file: str) -> list[str]:
-    """The command that starts rviz2 with a config written to ``file``."""
+    """Return the command that starts rviz2 with a config written to ``file``."""
     words = [f"__ns:={made.namespace}"] if made.namespace else []
     words += [f"{source}:={target}" for source, target in made.remaps]
     given = [text for word in words for text in ("-r", word)]
@@ -131,14 +131,14 @@ def start_command(made: RvizText, file: str) -> list[str]:
 
 
 def _colour(robot: RvizRobot, at: int, count: int) -> Colour | None:
-    """The robot's colour; one of several robots without a colour gets one of the palette."""
+    """Return the robot's colour; one of several robots without a colour gets one of the palette."""
     if robot.colour:
         return read_colour(robot.colour, robot.name)
     return palette(at) if count > 1 else None
 
 
 def _tf_topics(robot: RvizRobot) -> tuple[tuple[str, str], ...]:
-    """The remappings to the robot's tf topics, with absolute targets."""
+    """Return the remappings to the robot's tf topics, with absolute targets."""
     name, naming = robot.topics.robot, robot.topics.naming
     found = []
     for topic in TF_TOPICS:
@@ -171,7 +171,7 @@ def _for_all(
 
 
 def _for_one(config: RvizConfig, robot: RvizRobot, colour: Colour | None) -> RvizText:
-    """The config of a window for one robot; it runs in the robot's namespace if there is one."""
+    """Return the config of a window for one robot, which runs in its namespace if there is one."""
     document = config.document
     gone = (ABSOLUTE,) if robot.has_process else (ABSOLUTE, PROCESS)
     splices: list[Splice] = []
@@ -194,13 +194,13 @@ def _for_one(config: RvizConfig, robot: RvizRobot, colour: Colour | None) -> Rvi
 
 
 def frame_splices(node: yaml.Node | None, robot: RvizRobot) -> list[Splice]:
-    """The change of a frame in a scalar, if it has another name for the robot."""
+    """Return the change of a frame in a scalar, if it has another name for the robot."""
     new = frame_of(node, robot)
     return [replaced(node, new)] if isinstance(node, yaml.ScalarNode) and new != node.value else []
 
 
 def _views(config: RvizConfig, robots: Sequence[RvizRobot]) -> Iterator[Splice]:
-    """The current view follows the first robot; each robot has a saved view that follows it."""
+    """Yield the splices of views: the current one for the first robot, a saved one for each."""
     document = config.document
     current, saved = views_of(config)
     copies = ""
@@ -245,7 +245,7 @@ _TITLES = ("Name", "Class")
 
 
 def read_rviz(document: YamlText, context: Context) -> NamedFile:
-    """The names of a config; raises InputError for one that is not for RViz 2."""
+    """Return the names of a config; raises InputError for one that is not for RViz 2."""
     config = read_config(document)
     shown = (*leaves(config.displays), *config.tools)
     frames = (
@@ -276,7 +276,7 @@ def read_rviz(document: YamlText, context: Context) -> NamedFile:
 
 
 def read_for(document: YamlText, robots: Sequence[RvizRobot], release: str) -> NamedFile:
-    """The names of a config that shows these robots: what one of them declares is there."""
+    """Return the names of a config for these robots, with the names that any of them declares."""
     every = [it.names.declared for it in robots]
     declared = {
         kind: {name: it for own in every for name, it in own.get(kind, {}).items()}
@@ -287,7 +287,7 @@ def read_for(document: YamlText, robots: Sequence[RvizRobot], release: str) -> N
 
 
 def _scalars(node: yaml.Node) -> Iterator[yaml.ScalarNode]:
-    """The values of a display and its maps, without titles."""
+    """Yield the values of a display and its maps, without titles."""
     for key, there in pairs(node):
         if key.value in (*_TITLES, "Displays"):
             continue

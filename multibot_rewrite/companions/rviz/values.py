@@ -54,12 +54,12 @@ class RvizRobot(NamedTuple):
 
 
 def is_name(site: Site) -> bool:
-    """Does this place hold a name? Blocks of text do not."""
+    """Return whether this place holds a name. Blocks of text do not."""
     return site.kind in NAMED and not site.slot.is_block
 
 
 def robot_value(site: Site, robot: RvizRobot) -> str:
-    """The value of a place for the robot."""
+    """Return the value of a place for the robot."""
     if site.kind == TF_PREFIX:
         # Where frames have no prefix, one that stands for the robot is none.
         own = robot.names.naming.layout.frames or is_robot(site.slot.value)
@@ -73,7 +73,7 @@ def robot_value(site: Site, robot: RvizRobot) -> str:
 
 
 def changed_values(one: RvizItem, robot: RvizRobot) -> Iterator[tuple[Site, str]]:
-    """The places of a display or tool whose value differs for the robot, and the new value."""
+    """Yield the places of a display or tool with another value for the robot, and that value."""
     made = ((it, robot_value(it, robot)) for it in filter(is_name, one.places))
     yield from ((it, new) for it, new in made if new != it.slot.value)
 
@@ -81,7 +81,7 @@ def changed_values(one: RvizItem, robot: RvizRobot) -> Iterator[tuple[Site, str]
 def item_splices(
     document: YamlText, one: RvizItem, robot: RvizRobot, colour: Colour | None
 ) -> list[Splice]:
-    """The splices that make a display or tool show the robot."""
+    """Return the splices that make a display or tool show the robot."""
     made = [*splices_of(document.text, document.file, changed_values(one, robot))]
     if colour:
         # As RViz writes it, if the display has one colour for all its data.
@@ -94,6 +94,6 @@ def item_splices(
 
 
 def frame_of(node: yaml.Node | None, robot: RvizRobot) -> str:
-    """The robot's version of the frame in a scalar; empty for any other node."""
+    """Return the robot's version of the frame in a scalar; empty for any other node."""
     given = str(node.value) if isinstance(node, yaml.ScalarNode) else ""
     return spell(robot.names, FRAME, without_robot(given, ""))

@@ -62,9 +62,7 @@ def _left_out(config: RvizConfig, robots: Robots) -> Iterator[Finding]:
             message = (
                 f"{title} is left out: it works only for the robot whose namespace rviz2 runs in"
             )
-            hint = (
-                "name the stack rviz_moveit or rviz_nav2: each robot gets an rviz2 with its rules"
-            )
+            hint = "name the node set rviz_moveit or rviz_nav2: each robot gets an rviz2 with its rules"
             if one.flag == ABSOLUTE:
                 hint = (
                     "its topics are absolute: delete it here, and open it in an rviz2 that has a rule"
@@ -79,7 +77,7 @@ VISIBILITY_RESET = declare("MF212", "rviz-camera-visibility-reset", WARNING, for
 def config_findings(
     config: RvizConfig, robots: Robots, world: str, together: bool
 ) -> Iterator[Finding]:
-    """The findings, in the order of the file.
+    """Yield the findings in the order of the file.
 
     ``together``: one window shows all ``robots``, in the frame ``world``.
     """

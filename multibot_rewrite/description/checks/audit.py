@@ -52,7 +52,7 @@ def audit(inventory: Inventory, renames: RenameMap, tree: Tree) -> list[Finding]
 
 
 def leftover_xacro(inventory: Inventory) -> Iterator[Problem]:
-    """The first element or substitution that only xacro understands."""
+    """Yield the first element or substitution that only xacro understands."""
     document = inventory.document
     hint = "expand it first: name the file ….xacro, or run xacro"
     elements = document.elements if uses_xacro(document) else ()
@@ -89,7 +89,7 @@ def uses_xacro(document: Document) -> bool:
 
 
 def worlds(inventory: Inventory) -> Iterator[Problem]:
-    """A world holds several models: it is not known which one is the robot."""
+    """Yield a problem for each world: it holds several models, and the robot's is not known."""
     root = inventory.document.root
     for element in root.iter("world") if root.tag == "sdf" else ():
         message = f"world {element.get('name', '')!r} cannot be rewritten for one robot"
@@ -98,7 +98,7 @@ def worlds(inventory: Inventory) -> Iterator[Problem]:
 
 
 def undeclared(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
-    """Uses of a link or joint that nothing declares: they are not renamed."""
+    """Yield uses of a link or joint that nothing declares, so that they are not renamed."""
     loose = references.loose_ends(
         references.doubtful(inventory), inventory.declared, naming.shared_frames
     )
@@ -152,7 +152,7 @@ _MENDS = {
 
 
 def loosely_written(document: Document) -> Iterator[Problem]:
-    """The first of each kind, at the element that is next, and of each prefix that nothing declares."""
+    """Yield the first XML fault of each kind, at the next element, and each undeclared prefix."""
     if not document.is_mended:
         return
     source, starts = document.source, document.starts

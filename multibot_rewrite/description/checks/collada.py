@@ -36,7 +36,7 @@ class _File(NamedTuple):
 
 
 def collada_box(data: bytes) -> Extent | None:
-    """The box around the scene of a file, in metres; None where it cannot be told."""
+    """Return the box around the scene of a file, in metres; None if it cannot be computed."""
     corners = {}
     stream = iterparse(BytesIO(data), tag=_READ_AT_ONCE, resolve_entities=False)
     try:
@@ -58,7 +58,7 @@ def collada_box(data: bytes) -> Extent | None:
 
 
 def _corners(geometry: _Element) -> tuple[Sequence[float], ...]:
-    """The columns x, y and z; none for what is no mesh."""
+    """Return the columns x, y and z of a mesh; none for another geometry."""
     inputs = geometry.iterfind("{*}mesh/{*}vertices/{*}input")
     wanted = [_target(it.get("source", "")) for it in inputs if it.get("semantic") == "POSITION"]
     sources = {it.get("id", ""): it for it in geometry.iterfind("{*}mesh/{*}source")}
@@ -76,7 +76,7 @@ def _corners(geometry: _Element) -> tuple[Sequence[float], ...]:
 
 
 def _boxes(file: _File, node: _Element, above: _Rows, visits: Iterator[int]) -> Iterator[Extent]:
-    """The boxes around what a node and all below it show."""
+    """Yield the boxes around the shapes of a node and of all nodes below it."""
     if next(visits) > _MOST_NODES or node.find("{*}instance_controller") is not None:
         raise ValueError("too many nodes, or a skin, which its bones move")
     rows = reduce(_product, filter(None, map(_transform, node)), above)
@@ -104,7 +104,7 @@ def _ends(row: Sequence[float], columns: Sequence[Sequence[float]]) -> tuple[flo
 
 
 def _transform(element: _Element) -> _Rows | None:
-    """What a child of a node does to what is in it; None where it is no transform."""
+    """Return the transform that a child of a node applies to it; None for another child."""
     name = str(element.tag).rpartition("}")[2]
     if name in ("lookat", "skew"):
         raise ValueError("a transform of cameras")
@@ -151,7 +151,7 @@ def _attribute(root: _Element, path: str, name: str) -> str:
 
 
 def _target(url: str) -> str:
-    """The id that a reference within the file has; raises ValueError for one to another file."""
+    """Return the id that a reference within the file has; raises ValueError for another file."""
     if not url.startswith("#"):
         raise ValueError(url)
     return url[1:]

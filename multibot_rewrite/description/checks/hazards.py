@@ -97,7 +97,7 @@ def leading_slashes(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
 
 
 def moved_tf(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
-    """A rule of the file that takes a plugin off the one /tf which the layout wants."""
+    """Yield rules of the file that remap a plugin's /tf, although the layout has one /tf."""
     for claim in inventory.claims if not naming.layout.tf_per_robot else ():
         rule = split_remap(claim.value) if claim.site.form == "remap" else None
         if rule and rule.source.strip("/") in TF_TOPICS and rule.target != rule.source:
@@ -135,7 +135,7 @@ def bare_lookups(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
         without = kind != "" and element.tag == "ros2_control" and element.find(kind) is None
         if kind in declared and kind not in naming.separators and not without:
             message = (
-                f"{section.names[0]} looks {kind}s up by bare name in the whole world: "
+                f"{section.names[0]} looks up {kind}s in the whole world without the robot's name: "
                 "it may find that of another robot"
             )
             hint = f"use --layout both, which renames {kind}s for each robot"
@@ -194,7 +194,7 @@ def world_systems(inventory: Inventory) -> Iterator[Problem]:
 
 
 def system_key(plugin: _Element) -> str:
-    """What a system is called, as messages say it."""
+    """Return the name of a system as messages have it."""
     return library_key(plugin.get("filename", "").rpartition("/")[2]) or plugin.get("name", "")
 
 
@@ -216,7 +216,7 @@ def hardwired(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
 
 
 def of_px4(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
-    """The airframes of PX4: it takes Gazebo's topics below the names of the model, link and sensor."""
+    """Yield a problem for airframes of PX4, whose topics contain names of model, link and sensor."""
     links, sensors = (inventory.declared[kind] for kind in ("link", "sensor"))
     if "base_link" not in links or not all(it in sensors for it in OF_PX4):
         return
@@ -238,7 +238,7 @@ def _known_hosts(inventory: Inventory) -> Iterator[tuple[VocabularySection, Host
 
 
 def outside_frames(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
-    """A frame that an SRDF fixes its robot to, and that is renamed for each robot."""
+    """Yield renamed frames that an SRDF fixes its robot to."""
     for claim, spelling in zip(inventory.claims, renames.values, strict=True):
         if claim.site.path != "virtual_joint@parent_frame" or claim.element.get("type") != "fixed":
             continue

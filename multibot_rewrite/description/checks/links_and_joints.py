@@ -75,7 +75,7 @@ class Robot(NamedTuple):
 
 
 def read_robot(root: _Element) -> Robot:
-    """The robot of a document; what is not a ``<robot>`` has no links."""
+    """Return the robot of a document, without links if it is no ``<robot>``."""
     tops = list(root) if root.tag == "robot" else []
     links = tuple(_link(it) for it in tops if it.tag == "link")
     joints = tuple(_joint(it) for it in tops if it.tag == "joint")
@@ -102,7 +102,7 @@ def _link(element: _Element) -> Link:
 
 
 def _firsts(things: Sequence[_Named]) -> dict[str, _Named]:
-    """The first thing of each name, in document order."""
+    """Return the first item of each name, in document order."""
     first: dict[str, _Named] = {}
     for it in things:
         first.setdefault(it.name, it)
@@ -145,12 +145,12 @@ def weighs(robot: Robot) -> bool:
 
 
 def roots(robot: Robot) -> list[Link]:
-    """The links that are no joint's child; of two with one name the first."""
+    """Return the links that are no joint's child; of two with one name the first."""
     return [it for name, it in robot.link.items() if name and name not in robot.above]
 
 
 def reached(robot: Robot, starts: Iterable[str], seen: set[str]) -> list[str]:
-    """``starts`` and the names below them; those in ``seen`` are left out, and new ones added."""
+    """Return ``starts`` and the names below them that are not in ``seen``, and add them there."""
     found = [it for it in starts if it not in seen]
     seen.update(found)
     for name in found:  # grows
@@ -187,7 +187,7 @@ def loops(robot: Robot) -> list[list[Joint]]:
 
 
 def _not_of_a_tree(robot: Robot) -> dict[str, None]:
-    """The links in loops and below them, in document order."""
+    """Return the links in loops and below them, in document order."""
     open_ = {name: sum(map(_ties, joints)) for name, joints in robot.above.items()}
     ready = [it for it in robot.below if not open_.get(it)]
     for name in ready:  # grows
@@ -203,7 +203,7 @@ def _ties(joint: Joint) -> bool:
 
 
 def joints_with(robot: Robot, tag: str) -> Iterator[tuple[Joint, _Element]]:
-    """The joints that have such an element."""
+    """Yield the joints that have an element of this tag, with the element."""
     for joint in robot.joints:
         if tag in joint.parts:
             yield joint, joint.parts[tag]

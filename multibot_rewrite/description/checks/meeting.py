@@ -39,11 +39,11 @@ ROBOT = "ROBOT"
 def shared_by_all(
     document: Document, pieces: list[bytes], naming: Naming, vocabulary: Vocabulary
 ) -> Iterator[Problem]:
-    """The names that every robot of a description would have, each at its element in the source.
+    """Yield the names that every robot of a description would have, each at its element in the source.
 
-    ``pieces`` are the text between the robot's names: a name in the running system that does not
-    hold the robot's is the same for all. Raises ProofError for a text that is no XML, and for a frame
-    that was left below the name of the model.
+    ``pieces`` are the text between the robot's names: a name in the running system that does not hold
+    the robot's is the same for all. Raises ProofError for a text that is no XML, and for a frame that
+    was left below the name of the model.
     """
     robot = _unused(document)
     return shared_with(document, fill(pieces, robot), robot, naming, vocabulary)
@@ -63,8 +63,8 @@ def shared_by_both(
     naming: Naming,
     vocabulary: Vocabulary,
 ) -> Iterator[Problem]:
-    """The names that these two robots would have, but not every robot, as ``arm_left`` of ``b`` and
-    ``arm`` of ``left_b``."""
+    """Yield the names that these two robots would share, but not every robot, as ``arm_left`` of ``b``
+    and ``arm`` of ``left_b``."""
     twin = _unused(document)
     named = {it: read(fill(pieces, it), document.file, vocabulary).names for it in (*robots, twin)}
     every = {(it.kind, it.name) for it in meeting.same_for_all(named.pop(twin), twin, naming)}
@@ -79,7 +79,7 @@ def shared_by_both(
 def shared_with(
     document: Document, text: bytes, robot: str, naming: Naming, vocabulary: Vocabulary
 ) -> Iterator[Problem]:
-    """The same for the text of a ``robot`` that nothing else is called like."""
+    """Yield the names in the text of ``robot``, a unique name, that every robot would have."""
     try:
         reading = read(text, document.file, vocabulary)
     except InputError as error:
@@ -108,8 +108,8 @@ def shared_with(
 
 
 def _same_text(document: Document, naming: Naming, vocabulary: Vocabulary) -> Iterator[Problem]:
-    """A description that all robots get as it is, though something runs in it that no namespace keeps
-    apart."""
+    """Yield a problem if all robots get the same text, and something in it is not kept apart by a
+    namespace."""
     parts = list(active_parts(document.root, vocabulary))
     for part in parts:
         if part.opens_something and not (naming.topics == NAMESPACE and part.is_apart):
@@ -122,7 +122,7 @@ def _same_text(document: Document, naming: Naming, vocabulary: Vocabulary) -> It
 def _changed(
     document: Document, reading: Reading, robot: str, naming: Naming, vocabulary: Vocabulary
 ) -> Iterator[Problem]:
-    """What met or matched before the rewrite, and does not after it."""
+    """Yield the names that were shared or matched before the rewrite, and are not after it."""
     images = any(meeting.CAMERA_INFO in it.name for it in reading.names)
     if b":=" not in document.source and not images and not _alike(reading, robot):
         return
@@ -146,7 +146,7 @@ def _changed(
         yield Problem(it.element_in(document.root), message, None, hint, (), PARTED)
     for it, *pair in meeting.undescribed(before, reading):
         image, asked, info = (name.replace(robot, ROBOT) for name in (it.name, *pair))
-        message = f"image_transport and RViz look for {asked!r} beside {image!r}: it is {info!r}"
+        message = f"image_transport and RViz look for {asked!r} next to {image!r}: it is {info!r}"
         hint = f'start what shows it with --ros-args -r "{asked}:={info}", or {BESIDE}'
         yield Problem(it.element_in(document.root), message, None, hint, (), ELSEWHERE)
 
@@ -162,7 +162,7 @@ def _alike(reading: Reading, robot: str) -> bool:
 def _of_controllers(
     element: _Element, names: Sequence[RuntimeName], naming: Naming, release: str
 ) -> Problem:
-    """What the controllers of a plugin would share, though the plugin has rules for it."""
+    """Return the problem of names that a plugin's controllers share, although the plugin has rules."""
     shared = [it.name for it in names]
     message = (
         f"{ALL} have {', '.join(shared)} of their controllers, which take no rules of this plugin "

@@ -73,7 +73,7 @@ def find_mentions(
     tree: Tree,
     usual: Collection[str] = (),
 ) -> list[Finding]:
-    """A warning for each of ``unclaimed_mentions``, at the value itself."""
+    """Return a warning for each of ``unclaimed_mentions``, at the value itself."""
     document = inventory.document
     found = []
     for it in unclaimed_mentions(inventory, values, names, tree, usual):
@@ -142,14 +142,14 @@ def _is_meant(element: etree._Element, attribute: str, value: str) -> bool:
 
 
 def usual_names(naming: Naming) -> frozenset[str]:
-    """The frames and topics of tf that no description declares and that a rewrite makes others."""
+    """Return the frames and topics of tf that no description declares and that a rewrite renames."""
     topics = (f"/{it}" for it in TF_TOPICS if naming.layout.tf_per_robot)
     frames = (it for it in USUAL_FRAMES if spelled(naming, "robot", "frame", it) != it)
     return frozenset((*topics, *frames))
 
 
 def _telling(values: list[str], names: frozenset[str]) -> dict[str, str]:
-    """The values that are names or hold one, and the name."""
+    """Return the values that are or hold one of the names, with that name."""
     different = set(values)
     telling = {value: value for value in names & different}
     others = [value for value in different - names if value.strip(_NUMERIC)]
@@ -160,14 +160,14 @@ def _telling(values: list[str], names: frozenset[str]) -> dict[str, str]:
 
 
 def mentioned(value: str, names: frozenset[str]) -> str:
-    """The name that a value is or holds; empty if it has none."""
+    """Return the name that a value is or holds; empty if it has none."""
     if value in names:
         return value
     return _held(_without_files(value), names) if value.strip(_NUMERIC) else ""
 
 
 def _held(text: str, names: frozenset[str]) -> str:
-    """A name that a text holds; empty if it has none."""
+    """Return a name that a text holds; empty if it has none."""
     for it in _looks(names):
         words = it.split(text)
         if not names.isdisjoint(words):
@@ -177,12 +177,12 @@ def _held(text: str, names: frozenset[str]) -> str:
 
 @lru_cache(maxsize=4)
 def _looks(names: frozenset[str]) -> tuple[re.Pattern[str], ...]:
-    """The finest look finds every name but those that it would cut itself."""
+    """Return the patterns that split a text into words without cutting one of the names."""
     return _BETWEEN if any(map(_PARTED.search, names)) else _BETWEEN[-1:]
 
 
 def _without_files(value: str) -> str:
-    """A value without the words that are names of files or addresses."""
+    """Return a value without the words that are names of files or addresses."""
     if "." not in value and "://" not in value:
         return value
     words = _SPACED.split(value)
@@ -213,7 +213,7 @@ def _unclaimed(
 
 
 def _has_one(element: etree._Element, suspects: set[str]) -> bool:
-    """A quick look at an element: is one of its values or texts suspect?"""
+    """Return whether one of an element's values or texts is suspect; a quick test."""
     if not suspects.isdisjoint(element.values()):
         return True
     texts = [element.text, *[it.tail for it in element]] if len(element) else [element.text]
@@ -221,13 +221,13 @@ def _has_one(element: etree._Element, suspects: set[str]) -> bool:
 
 
 def kept(element: etree._Element, attribute: str, tree: Tree, known: Nodes) -> SiteRow | None:
-    """The ``keep`` site for a value, if the vocabulary has one; ``known`` serves the next call."""
+    """Return the ``keep`` site for a value, if there is one; ``known`` serves the next call."""
     node = node_of(element, tree, known)
     return node.keeps.get(attribute) if node else None
 
 
 def node_of(element: etree._Element, tree: Tree, known: Nodes) -> TreeNode | None:
-    """The node of the tree that serves an element."""
+    """Return the node of the tree that serves an element."""
     if element not in known:
         parent = element.getparent()
         above = None if parent is None else node_of(parent, tree, known)
@@ -241,12 +241,12 @@ def node_of(element: etree._Element, tree: Tree, known: Nodes) -> TreeNode | Non
 
 
 def as_problem(mention: Mention) -> Problem:
-    """The problem of a mention."""
+    """Return the problem of a mention."""
     element, _, attribute, value, name = mention
     where = f"{element.tag}@{attribute}" if attribute else f"<{element.tag}>"
     text = f"{where} holds {value!r}" if value == name else f"{where} holds {name!r} in {value!r}"
     message = f"{text}, but its use here is not known: it is not renamed"
-    hint = "add a line to a vocabulary file: a uses/declares site, or keep"
+    hint = "add a line to a file of plugin definitions: uses or declares for a name, or keep"
     if any(it.tag == PLUGIN and not is_loaded(it) for it in element.iterancestors()):
         message = f"{text}, in a <plugin> that nothing loads here: it is not renamed"
         hint = "move the <plugin> into a <gazebo>"

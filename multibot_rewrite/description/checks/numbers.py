@@ -12,7 +12,7 @@ Vector = tuple[float, float, float]
 
 
 def number(text: str | None) -> float | None:
-    """The finite number that a text is; ``1_0``, which only Python reads, is not one."""
+    """Return the finite number in a text, or None; ``1_0``, which only Python reads, is none."""
     if text is None or "_" in text:
         return None
     try:
@@ -23,14 +23,14 @@ def number(text: str | None) -> float | None:
 
 
 def value_of(element: _Element, name: str, default: float | None = None) -> float | None:
-    """An attribute's number, ``default`` where the attribute is missing."""
+    """Return an attribute's number, ``default`` if the attribute is missing."""
     text = element.get(name)
     return default if text is None else number(text)
 
 
 @lru_cache(maxsize=4096)  # values come again, and several rules read the same ones
 def numbers(text: str) -> tuple[float, ...] | None:
-    """The finite numbers of a text; None if a part of it is not a number."""
+    """Return the finite numbers of a text; None if a part of it is not a number."""
     if "_" in text:
         return None
     try:
@@ -41,7 +41,7 @@ def numbers(text: str) -> tuple[float, ...] | None:
 
 
 def vector(text: str | None) -> Vector | None:
-    """The three numbers of a text."""
+    """Return the three numbers of a text, or None."""
     values = numbers(text or "")
     if values is None or len(values) != 3:
         return None

@@ -16,7 +16,7 @@ FREE_FLYER = "root_joint"
 
 
 def text_of(element: _Element, attribute: str = "name") -> str:
-    """The value of an attribute as srdfdom takes it: without white space around it."""
+    """Return the value of an attribute as srdfdom takes it: without white space around it."""
     return element.get(attribute, "").strip()
 
 
@@ -31,7 +31,7 @@ def is_pinocchios(root: _Element) -> bool:
 
 
 def groups_of(root: _Element) -> Groups:
-    """The groups by name; of two with one name MoveIt takes the first."""
+    """Return the groups by name; of two with one name MoveIt takes the first."""
     found: dict[str, _Element] = {}
     for group in root.iterchildren("group"):
         found.setdefault(text_of(group), group)
@@ -39,7 +39,7 @@ def groups_of(root: _Element) -> Groups:
 
 
 def way_up(robot: Robot, link: str) -> Iterator[Joint]:
-    """The joints from a link to the root; a circle ends where it began."""
+    """Yield the joints from a link to the root; a circle ends where it began."""
     seen = {link}
     while robot.above.get(link):
         joint = robot.above[link][0]
@@ -51,7 +51,7 @@ def way_up(robot: Robot, link: str) -> Iterator[Joint]:
 
 
 def chain(robot: Robot, base: str, tip: str) -> list[str] | None:
-    """The joints between two links; None where they are not connected."""
+    """Return the joints between two links; None if they are not connected."""
     down = list(way_up(robot, tip))
     links = [tip, *(joint.parent for joint in down)]
     # How many joints each link is above the tip.
@@ -69,7 +69,7 @@ def chain(robot: Robot, base: str, tip: str) -> list[str] | None:
 
 
 def joints_of(name: str, groups: Groups, robot: Robot) -> Collection[str]:
-    """The joints of a group, those of its subgroups included; a group may hold itself."""
+    """Return the joints of a group and of its subgroups; a group may hold itself."""
     members = (it for group in _within(name, groups) for it in _members(groups, group))
     return {joint for member in members for joint in _joints(member, robot)}
 
@@ -80,7 +80,7 @@ def is_whole(name: str, groups: Groups) -> bool:
 
 
 def _within(name: str, groups: Groups) -> list[str]:
-    """The names of a group and its subgroups, declared or not."""
+    """Return the names of a group and its subgroups, declared or not."""
     found = [name]
     for group in found:  # grows
         inner = (text_of(it) for it in _members(groups, group) if it.tag == "group")
@@ -109,7 +109,7 @@ def _joints(member: _Element, robot: Robot) -> Collection[str]:
 
 
 def links_of(name: str, groups: Groups, robot: Robot) -> Collection[str]:
-    """The links of a group: those that its joints move, and those it names itself."""
+    """Return the links of a group: those that its joints move, and those it names itself."""
     joints = joints_of(name, groups, robot)
     moved = {robot.joint[it].child for it in joints if it in robot.joint}
     return moved.union(text_of(it) for it in _members(groups, name) if it.tag == "link")

@@ -28,12 +28,12 @@ SAME = 1e-12
 
 
 def length_of(quaternion: Sequence[float]) -> float:
-    """The length; 0 or infinite where the squares are too small or too large for a double."""
+    """Return the length; 0 or infinite if the squares are too small or too large for a double."""
     return sqrt(sum(it * it for it in quaternion))
 
 
 def unit(quaternion: Quaternion) -> Quaternion:
-    """The quaternion as urdfdom keeps it."""
+    """Return the quaternion as urdfdom keeps it."""
     length = length_of(quaternion)
     if not length or not isfinite(length):
         return NO_ROTATION
@@ -42,7 +42,7 @@ def unit(quaternion: Quaternion) -> Quaternion:
 
 
 def matrix_of_quaternion(quaternion: Quaternion) -> Matrix:
-    """The matrix of a quaternion of any length."""
+    """Return the matrix of a quaternion of any length."""
     x, y, z, w = unit(quaternion)
     return (
         (1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)),
@@ -52,7 +52,7 @@ def matrix_of_quaternion(quaternion: Quaternion) -> Matrix:
 
 
 def quaternion_of_rpy(rpy: Vector) -> Quaternion:
-    """The quaternion of roll, pitch and yaw."""
+    """Return the quaternion of roll, pitch and yaw."""
     (a, b, c), (d, e, f) = ([half(it / 2) for it in rpy] for half in (sin, cos))
     return (
         a * e * f - d * b * c,
@@ -77,21 +77,21 @@ def is_same(one: Matrix, other: Matrix) -> bool:
 
 
 def turned(matrix: Matrix, vector: Vector) -> Vector:
-    """A vector after the rotation."""
+    """Return a vector after the rotation."""
     (a, b, c), (d, e, f), (g, h, i) = matrix
     x, y, z = vector
     return a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z
 
 
 def product(outer: Matrix, inner: Matrix) -> Matrix:
-    """The rotation ``inner``, and then ``outer``."""
+    """Return the rotation ``inner`` followed by ``outer``."""
     columns = inverse(inner)
     first, second, third = outer
     return turned(columns, first), turned(columns, second), turned(columns, third)
 
 
 def inverse(matrix: Matrix) -> Matrix:
-    """The rotation back."""
+    """Return the inverse rotation."""
     (a, b, c), (d, e, f), (g, h, i) = matrix
     return (a, d, g), (b, e, h), (c, f, i)
 
@@ -113,7 +113,7 @@ HERE = Pose((0.0, 0.0, 0.0), STRAIGHT)
 
 
 def pose_of(origin: _Element | None) -> Pose | None:
-    """The pose of an ``<origin>``, none of which is no pose; None where its values are not numbers.
+    """Return the pose of an ``<origin>``, the identity without one; None if its values are not numbers.
 
     Of two rotations the quaternion counts.
     """
@@ -123,7 +123,7 @@ def pose_of(origin: _Element | None) -> Pose | None:
 
 
 def quaternion(origin: _Element | None) -> Quaternion | None:
-    """The four numbers of ``quat_xyzw``; None where it is missing or something else."""
+    """Return the four numbers of ``quat_xyzw``; None if it is missing or something else."""
     found = None if origin is None else numbers(origin.get("quat_xyzw", ""))
     if found is None or len(found) != 4:
         return None
@@ -132,7 +132,7 @@ def quaternion(origin: _Element | None) -> Quaternion | None:
 
 
 def rolled(origin: _Element) -> Matrix | None:
-    """The rotation of ``rpy`` alone."""
+    """Return the rotation of ``rpy`` alone."""
     turn = _rolled(origin)
     return None if turn is None else matrix_of_quaternion(turn)
 
@@ -158,12 +158,12 @@ def link_poses(robot: Robot) -> Mapping[str, Pose]:
 
 
 def origin_of(element: _Element) -> Pose | None:
-    """The pose that the first ``<origin>`` in an element says."""
+    """Return the pose in the first ``<origin>`` of an element."""
     return pose_in(next(element.iterchildren("origin"), None))
 
 
 def pose_in(origin: _Element | None) -> Pose | None:
-    """The pose that an ``<origin>`` says."""
+    """Return the pose in an ``<origin>``."""
     if origin is None:
         return HERE
     if origin.get("quat_xyzw") is not None:
@@ -181,7 +181,7 @@ def _pose(xyz: str, rpy: str) -> Pose | None:
 
 
 def sdf_pose(text: str) -> Pose | None:
-    """The pose in a ``<pose>`` of six numbers; an empty one is none."""
+    """Return the pose in a ``<pose>`` of six numbers, the identity for an empty one."""
     values = numbers(text)
     if values == ():
         return HERE
@@ -189,13 +189,13 @@ def sdf_pose(text: str) -> Pose | None:
 
 
 def pose_of_six(values: Sequence[float]) -> Pose:
-    """The pose of x, y, z, roll, pitch and yaw."""
+    """Return the pose of x, y, z, roll, pitch and yaw."""
     x, y, z, roll, pitch, yaw = map(float, values)
     return Pose((x, y, z), matrix_of_quaternion(quaternion_of_rpy((roll, pitch, yaw))))
 
 
 def placed(outer: Pose, inner: Pose) -> Pose:
-    """A pose that is given in another one."""
+    """Return a pose that is relative to another one, in that one's frame."""
     if outer.matrix is STRAIGHT:
         return Pose(plus(outer.at, inner.at), inner.matrix)
     turn = outer.matrix if inner.matrix is STRAIGHT else product(outer.matrix, inner.matrix)
@@ -203,39 +203,39 @@ def placed(outer: Pose, inner: Pose) -> Pose:
 
 
 def point_in(pose: Pose, point: Vector) -> Vector:
-    """A point of a frame, in the frame that its pose is given in."""
+    """Return a point of a frame, in the frame that its pose is given in."""
     return plus(pose.at, turned(pose.matrix, point))
 
 
 def axis_of(joint: Joint) -> Vector | None:
-    """A joint's axis in its child's frame, of length 1; None where it has no direction."""
+    """Return a joint's axis in its child's frame, of length 1; None if it has no direction."""
     written = joint.parts.get("axis")
     axis = X if written is None else vector(written.get("xyz"))
     return None if axis is None or not any(axis) else scaled(axis, 1 / length(axis))
 
 
 def plus(one: Vector, other: Vector) -> Vector:
-    """The sum."""
+    """Return the sum."""
     return one[0] + other[0], one[1] + other[1], one[2] + other[2]
 
 
 def minus(one: Vector, other: Vector) -> Vector:
-    """The difference."""
+    """Return the difference."""
     return one[0] - other[0], one[1] - other[1], one[2] - other[2]
 
 
 def scaled(vector_: Vector, factor: float) -> Vector:
-    """A vector of another length."""
+    """Return a vector times a factor."""
     return vector_[0] * factor, vector_[1] * factor, vector_[2] * factor
 
 
 def dot(one: Vector, other: Vector) -> float:
-    """The scalar product."""
+    """Return the scalar product."""
     return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
 
 
 def cross(one: Vector, other: Vector) -> Vector:
-    """The vector product."""
+    """Return the vector product."""
     (a, b, c), (x, y, z) = one, other
     return b * z - c * y, c * x - a * z, a * y - b * x
 

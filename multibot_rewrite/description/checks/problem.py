@@ -39,19 +39,19 @@ def fault(
     hint: str = "",
     level: str = "",
 ) -> Problem:
-    """A problem for the rule that asks for those of a ``word``."""
+    """Return a problem for the rule that asks for those of a ``word``."""
     return Problem(element, message, attribute, hint, (), word, level)
 
 
 def about(claim: Claim, code: str, message: str, hint: str = "") -> Problem:
-    """A problem of a claimed value."""
+    """Return a problem of a claimed value."""
     return Problem(claim.element, message, claim.attribute, hint, (), code)
 
 
 def to_findings(
     document: Document, problems: Iterable[Problem], level: str, *, of_file: bool = False
 ) -> Iterator[Finding]:
-    """The problems as findings at their elements, or at the start of the file with ``of_file``."""
+    """Yield the problems as findings at their elements, or ``of_file`` at its start."""
     found = list(problems)
     pairs = zip(document.elements, document.starts, strict=True)
     starts = dict(pairs) if found and not of_file else {}

@@ -32,7 +32,7 @@ class Loose(NamedTuple):
 
 
 def doubtful(inventory: Inventory) -> list[Claim]:
-    """The uses that are more than one look: not a link or joint which is there as it is written."""
+    """Return the uses of names that are not declared literally as a link or joint."""
     declared = inventory.declared
     return [
         claim
@@ -45,7 +45,7 @@ def doubtful(inventory: Inventory) -> list[Claim]:
 def loose_ends(
     claims: Iterable[Claim], declared: Declared, shared: Collection[str]
 ) -> Iterator[Loose]:
-    """Uses of a link, joint, model or group that nothing declares."""
+    """Yield uses of a link, joint, model or group that nothing declares."""
     for claim in claims:
         site = claim.site
         if not must_be_declared(site):
@@ -59,7 +59,7 @@ def loose_ends(
 
 
 def undeclared_names(loose: Iterable[Loose], declared: Declared) -> Iterator[Problem]:
-    """A problem for each, with the code for where it is."""
+    """Yield a problem for each undeclared name, with the code for its place."""
     guesses = Guesses()
     for claim, part in loose:
         site = claim.site
@@ -96,7 +96,7 @@ def where(claim: Claim) -> str:
 
 
 def repeated(inventory: Inventory) -> Iterator[tuple[Claim, Claim]]:
-    """Declarations of a name that is there already in their model, and the first one.
+    """Yield each repeated declaration of a name in a model, with the first one.
 
     A <gazebo> block may repeat a URDF joint (PR2).
     """
@@ -111,7 +111,7 @@ def repeated(inventory: Inventory) -> Iterator[tuple[Claim, Claim]]:
 
 
 def duplicates(inventory: Inventory) -> Iterator[Problem]:
-    """The same as problems."""
+    """Yield repeated declarations as problems."""
     source = inventory.document.source
     for claim, first in repeated(inventory):
         code = "MB806" if claim.site.section == SRDF_ROBOT else "MB201"
@@ -121,7 +121,7 @@ def duplicates(inventory: Inventory) -> Iterator[Problem]:
 
 
 def _scope(element: _Element) -> _Element | None:
-    """The model that a declaration is in: names of nested SDF models are their own."""
+    """Return the model that a declaration is in: names of nested SDF models are their own."""
     parent = element.getparent()
     if parent is not None and parent.tag == "robot":
         return parent
@@ -129,7 +129,7 @@ def _scope(element: _Element) -> _Element | None:
 
 
 def ambiguous(inventory: Inventory) -> Iterator[Problem]:
-    """A ``<gazebo reference>`` that is the name of a link and of a joint: the link is taken."""
+    """Yield each ``<gazebo reference>`` to a link and a joint of one name: the link is taken."""
     links, joints = inventory.declared["link"], inventory.declared["joint"]
     # Few robots have such a pair, so few look at every claim.
     both = links.keys() & joints.keys()

@@ -63,8 +63,8 @@ def _shared_names(
 
 
 def _kept(inventory: Inventory, renames: RenameMap) -> Iterator[tuple[str, str, Claim]]:
-    """Declared names that stay as they are, those of the URDF beside an SRDF included, and names
-    that are used and declared nowhere."""
+    """Yield declared names that stay as they are, with those of an SRDF's URDF, and names that are used
+    and declared nowhere."""
     for kind, declared in inventory.declared.items():
         same = (pair for pair in declared.items() if not renames.changes(kind, pair[0]))
         yield from ((kind, name, claim) for name, claim in same)
@@ -119,7 +119,7 @@ def not_rewritten(inventory: Inventory, renames: RenameMap, robot: str) -> list[
 def other_urdf(
     inventory: Inventory, renames: RenameMap, robot: str, urdf: Declared
 ) -> list[Finding]:
-    """A name of the URDF without that affix: it is not the one the SRDF was rewritten with."""
+    """Return a finding for a name of the URDF that the SRDF was not rewritten with."""
     naming = renames.naming
     for kind, names in urdf.items():
         for name, claim in names.items():
@@ -136,7 +136,7 @@ def _other_robot(inventory: Inventory, offset: int, message: str, hint: str) -> 
 
 
 def other_options(inventory: Inventory, robot: str) -> Finding:
-    """The stripped text, rewritten again, is not the file."""
+    """Return the finding that the stripped text, rewritten again, is not the file."""
     message = f"a rewrite for {robot} with these options does not give this file"
     hint = "give --undo the options the file was made with"
     return finding(inventory.document, 0, strip_other_options.code, ERROR, message, hint)

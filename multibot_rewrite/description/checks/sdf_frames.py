@@ -40,11 +40,11 @@ class Named(NamedTuple):
         return str(self.element.tag)
 
     def text(self, path: str) -> str:
-        """The text of an element below, without spaces around."""
+        """Return the text of an element below, without spaces around."""
         return (self.element.findtext(path) or "").strip()
 
     def within(self, name: str) -> str:
-        """A name of its model, from the top."""
+        """Return the full name, from the top, of a name in its model."""
         if name == MODEL:
             return self.scope.removesuffix("::")
         return name if name == "world" else f"{self.scope}{name}"
@@ -73,16 +73,16 @@ class Frames(NamedTuple):
             raise InputError(f"{self.source}: the pose of {name!r} depends on itself")
         written = it.element.find("pose")
         relative = "" if written is None else written.get("relative_to", "")
-        base = it.within(relative or self._base(it))
+        base = it.within(relative or self._attached_to(it))
         return placed(self.pose(base, (*below, name)), written_pose(written))
 
-    def _base(self, it: Named) -> str:
+    def _attached_to(self, it: Named) -> str:
         if it.tag == "joint":
             return it.text("child")
         return it.element.get("attached_to", "") or MODEL
 
     def link(self, name: str) -> str:
-        """The link that a frame or joint belongs to."""
+        """Return the link that a frame or joint is attached to."""
         for _ in self.named:
             it = self.named.get(name)
             if it is None or it.tag == "link":
@@ -92,12 +92,12 @@ class Frames(NamedTuple):
                 canonical = it.element.get("canonical_link", "")
                 name = f"{name}::{canonical}" if canonical else first.name
             else:
-                name = it.within(self._base(it))
+                name = it.within(self._attached_to(it))
         return name
 
 
 def written_pose(written: _Element | None) -> Pose:
-    """A ``<pose>``; one that is no pose counts as none, the lint reports it."""
+    """Return the pose in a ``<pose>``; an invalid one counts as none, and the lint reports it."""
     if written is None:
         return HERE
     values = numbers(written.text or "") or ()
@@ -118,7 +118,7 @@ class JointEnds(NamedTuple):
 
 
 def ends_of(frames: Frames) -> dict[str, JointEnds]:
-    """The joint above each link. A second joint of a link closes a loop, a tree has the first."""
+    """Return the joint above each link; a second one closes a loop and is left out."""
     found: dict[str, JointEnds] = {}
     for it in frames.named.values():
         if it.tag == "joint":

@@ -42,7 +42,7 @@ class Extent(NamedTuple):
 
 
 def extent_of(shape: _Element, pose: Pose) -> Extent | None:
-    """The box around a box, cylinder or sphere at a pose; None for other shapes and odd sizes."""
+    """Return the box around a box, cylinder or sphere at a pose; None for other shapes."""
     half = _half(shape)
     if half is None:
         return None
@@ -52,7 +52,7 @@ def extent_of(shape: _Element, pose: Pose) -> Extent | None:
 
 
 def placed_box(box: Extent, pose: Pose) -> Extent:
-    """The box around a box at a pose."""
+    """Return the box around a box at a pose."""
     centre = point_in(pose, box.middle)
     x, y, z = minus(box.high, box.middle)
     reach = _three(abs(a) * x + abs(b) * y + abs(c) * z for a, b, c in pose.matrix)
@@ -79,7 +79,7 @@ def _said(shape: _Element, key: str) -> str | None:
 
 
 def shapes_of(link: _Element, tag: str) -> Iterator[tuple[_Element, _Element]]:
-    """The ``<visual>`` or ``<collision>`` elements of a link, each with its shape."""
+    """Yield the ``<visual>`` or ``<collision>`` elements of a link, each with its shape."""
     for element in link.iterchildren(tag):
         geometry = next(element.iterchildren("geometry"), None)
         shape = None if geometry is None else next(geometry.iterchildren("*"), None)
@@ -88,7 +88,7 @@ def shapes_of(link: _Element, tag: str) -> Iterator[tuple[_Element, _Element]]:
 
 
 def around(extents: Iterable[Extent]) -> Extent | None:
-    """The box around some boxes; None around nothing."""
+    """Return the box around some boxes; None around nothing."""
     every = list(extents)
     if not every:
         return None
@@ -130,9 +130,8 @@ def _round_way(start: Vector, along: Vector, radius: float) -> float:
 
 
 def reach_of(root: _Element) -> float:
-    """The radius in metres of the upright cylinder around the root link that holds the robot's
-    collisions, else its visuals, with every joint at 0; 0 where nothing of it has a size,
-    and for an SDF."""
+    """Return the radius in metres of the upright cylinder around the root link with the robot's
+    collisions, or its visuals, with every joint at 0; 0 if nothing has a size, and for an SDF."""
     robot = read_robot(root)
     poses = link_poses(robot)
     return _reach(
@@ -141,8 +140,8 @@ def reach_of(root: _Element) -> float:
 
 
 def filled_by(root: _Element) -> float:
-    """What a robot surely fills, however it is turned: half of how far it reaches, in SDF from the
-    origin of its model. Two overlap where they are nearer than both fill."""
+    """Return the radius that a robot surely fills, however it is turned: half of its reach, in SDF from
+    the origin of its model. Two robots overlap if they are nearer than both radii."""
     if reach := reach_of(root):
         return reach / 2
     # The first model of an SDF, but for links whose pose another frame decides.
@@ -155,7 +154,7 @@ _Placed = tuple[_Element, Pose, Callable[[_Element], Pose | None]]
 
 
 def _sdf_pose(element: _Element) -> Pose | None:
-    """The ``<pose>`` in what is around an element; None where another frame or unit is said."""
+    """Return the ``<pose>`` of an element; None if it is in another frame or unit."""
     written = element.find("pose")
     if written is None:
         return HERE
@@ -171,7 +170,7 @@ def _reach(links: Sequence[_Placed]) -> float:
 
 
 def _corners(links: Iterable[_Placed], tag: str) -> Iterator[Vector]:
-    """The corners of the boxes around all shapes."""
+    """Yield the corners of the boxes around all shapes."""
     for link, pose, pose_of_shape in links:
         for element, shape in shapes_of(link, tag):
             own = pose_of_shape(element)

@@ -72,7 +72,7 @@ def already_rewritten(
 
 
 def rewritten_before(inventory: Inventory) -> Iterator[Problem]:
-    """The robots for which a rewrite inserted something: what is made of it keeps their names."""
+    """Yield the robots for which an earlier rewrite inserted something into the text."""
     for robot in dict.fromkeys(it.robot for it in markers(inventory.document)):
         message = f"it was rewritten for {robot}, and its names stay in it"
         hint = "rewrite the source file, or undo that with --undo"
@@ -91,10 +91,10 @@ def _names(inventory: Inventory, kinds: Collection[str]) -> list[UsedName]:
 
 
 def carrying(known: list[UsedName], robot: str, own: OwnNames = NO_OWN_NAMES) -> list[UsedName]:
-    """The names that carry a robot's name in any layout, with any separator, ``own`` aside.
+    """Return the names with a robot's name in any layout, with any separator, without ``own``.
 
-    Where it is called like a part, such as ``left`` or ``arm``, only if more than half of the links,
-    joints, namespaces or topics do: a few have the word without any rewrite.
+    If it is a usual word for a part, such as ``left`` or ``arm``, only if more than half of the links,
+    joints, namespaces or topics have it: a few have the word without any rewrite.
     """
     kept = {text for _, text in own}
     found = [name for name in known if name.text not in kept and _carries_name(name, robot)]

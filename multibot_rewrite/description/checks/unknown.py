@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What runs in a description and nobody knows what it opens: of these a rewrite is not proved."""
+"""What runs in a description and nobody knows what it opens: of these a rewrite is not verified."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from multibot_rewrite.description.steps.collect import SRDF, Inventory
 ANOTHER_RELEASE = (
     "name the release that the description is for with --distro, or distro: in a fleet file"
 )
-SAY_IT = "say it in a vocabulary file: a line for each topic and service, or opens: nothing"
+SAY_IT = "define it in a file of plugin definitions, with its topics and services or opens: nothing"
 NOT_LOADED = "MB112"
 CODES = {PLUGIN: "MB902", HARDWARE: "MB903", INCLUDE: "MB906"}
 
@@ -81,7 +81,7 @@ def _said(part: ActivePart, vocabulary: Vocabulary, guesses: Guesses) -> tuple[s
     if part.kind == INCLUDE:
         return (
             f"the included {part.name!r} is not read: its topics and frames stay as they are",
-            "put its folder beside the model's, or name that above it in GZ_SIM_RESOURCE_PATH; "
+            "put its folder next to the model's, or name the one above it in GZ_SIM_RESOURCE_PATH; "
             "what is older than SDF 1.7, in a world or a <gazebo>, write it here",
         )
     who = f"{part.kind} {part.name!r}"
@@ -93,10 +93,10 @@ def _said(part: ActivePart, vocabulary: Vocabulary, guesses: Guesses) -> tuple[s
         where = not_here(vocabulary, others)
         return f"{who} {where}: its own parameters are not renamed", ANOTHER_RELEASE
     near = guesses.hint(name, vocabulary.names(kind), SLIP)
-    message = f"{who} is not in the vocabulary: its own parameters are not renamed"
+    message = f"{who} has no plugin definition: its own parameters are not renamed"
     return message, near or SAY_IT
 
 
 def not_here(vocabulary: Vocabulary, releases: Iterable[str]) -> str:
-    """That something is in other releases only."""
+    """Return the words for something that is in other releases only."""
     return f"is not in {vocabulary.release}, only in {', '.join(releases)}"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a rewrite may be called: proved, or rewritten and not proved, and why."""
+"""What a rewrite may be called: verified, or rewritten and not verified, and why."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from multibot_rewrite.description.checks.meeting import ELSEWHERE, NO_LINK, PART
 from multibot_rewrite.description.readback import meeting
 
 SHARED = "shared by all robots"
-# Code -> what is counted and what is said of it. A rewrite with one of these findings is not proved.
+# Code -> what is counted and what is said of it. A rewrite with one of these findings is not verified.
 REASONS = {
     "MB901": ("name", "not understood"),
     "MB219": ("model", "not known"),
@@ -40,7 +40,7 @@ REASONS = {
     "MB429": ("model namespace", "that not every Gazebo reads"),
 }
 
-# What is proved of a description and hangs on what starts it: a code, and how the summary says it.
+# What is verified of a description and hangs on what starts it: a code, and how the summary says it.
 GIVEN = {
     meeting.NOT_TAKEN: "where each controller is spawned with its rules",
     ELSEWHERE: "where what shows an image has the rule for its camera_info",
@@ -49,16 +49,16 @@ GIVEN = {
 
 
 def given(findings: Iterable[Finding], of_world: Iterable[str] = ()) -> str:
-    """What the word ``proved`` takes for granted: of controllers, and of the systems that were left to
-    the world; empty where that is nothing."""
+    """Return the conditions of ``verified``: of controllers, and of systems that were left to the
+    world; empty without any."""
     codes = {it.code for it in findings}
     said = [words for code, words in GIVEN.items() if code in codes]
     systems = ", ".join(sorted(set(of_world)))
     return " and ".join([*said, *([f"where the world loads {systems}"] if systems else [])])
 
 
-def not_proved(findings: Iterable[Finding]) -> tuple[str, ...]:
-    """Why a rewrite with these findings is not proved, with counts; empty where it is."""
+def not_verified(findings: Iterable[Finding]) -> tuple[str, ...]:
+    """Why a rewrite with these findings is not verified, with counts; empty where it is."""
     counts = Counter(it.code for it in findings)
     found = ((counts[code], *words) for code, words in REASONS.items() if counts[code])
     return tuple(f"{plural(count, what)} {why}" for count, what, why in found)

@@ -44,7 +44,7 @@ class Once(NamedTuple):
 
 
 def said_once(joined: Inventory, part: Inventory) -> Once:
-    """What of a part's blocks for the whole robot is left out, as an earlier part says it."""
+    """Return a part's blocks for the whole robot that are left out: an earlier part has them."""
     managers, others = _managers(joined), _managers(part)
     said = {plain(it) for block in _blocks(joined) for it in _inside(block)}
     spans, before = Spans(part.document), Spans(joined.document)
@@ -61,7 +61,7 @@ def said_once(joined: Inventory, part: Inventory) -> Once:
             if first is None:
                 name, where = plugin.get("filename", ""), f"{file}:{plugin.sourceline}"
                 what = f"{name!r} makes a controller manager"
-                notes.append(f"{where}: {what}, and another plugin before it does, too")
+                notes.append(f"{where}: {what}, and so does an earlier plugin")
                 continue
             doubles.append(plugin)
             more += _more_files(before, first, plugin, spans)
@@ -87,7 +87,7 @@ def _inside(element: _Element) -> list[_Element]:
 
 
 def _managers(inventory: Inventory) -> dict[_Element, tuple[str, ...]]:
-    """The plugins that make a controller manager, with the names of what is known of them."""
+    """Return the plugins that make a controller manager, with the names of their definitions."""
     return {element: section.names for element, section in inventory.served if section.process_wide}
 
 
@@ -96,7 +96,7 @@ def _files(plugin: _Element) -> list[_Element]:
 
 
 def _more_files(before: Spans, plugin: _Element, other: _Element, spans: Spans) -> Iterator[Edit]:
-    """The parameter files of a plugin that is left out, put into the one that stays."""
+    """Yield the edits that move parameter files of a removed plugin into the one that stays."""
     known = {text_of(it) for it in _files(plugin)}
     texts = [spans.text_of(it) for it in _files(other) if text_of(it) not in known]
     if last := _inside(plugin)[-1:]:
@@ -122,7 +122,7 @@ _SYSTEM, _HARDWARE = "ros2_control", "hardware"
 
 
 def one_system(joined: Inventory, part: Inventory) -> Once:
-    """A part's systems put into earlier ones; one that has no like stays, and a note says so."""
+    """Return a part's systems merged into earlier ones; one without a match stays, with a note."""
     spans, before = Spans(part.document), Spans(joined.document)
     gone: list[Edit] = []
     more: list[Edit] = []
@@ -143,13 +143,13 @@ def one_system(joined: Inventory, part: Inventory) -> Once:
 
 
 def like(system: _Element, root: _Element) -> Iterator[_Element]:
-    """The systems with the type and hardware of another one."""
+    """Yield the systems with the type and hardware of another one."""
     wanted = _hardware(system)
     yield from (it for it in root.iterchildren(_SYSTEM) if _hardware(it) == wanted)
 
 
 def driven(system: _Element) -> Sequence[_Element]:
-    """What a system has besides its hardware."""
+    """Return the elements of a system except its hardware."""
     return [it for it in system.iterchildren("*") if it.tag != _HARDWARE]
 
 
@@ -171,7 +171,7 @@ _TAG = "material"
 
 
 def looks(root: _Element) -> dict[str, _Look]:
-    """What each material that is described anywhere looks like; those below the root count first."""
+    """Return the appearance of each material that is described; those below the root count first."""
     found: dict[str, _Look] = {}
     below = root.iterfind(f"link/visual/{_TAG}")
     for it in (*root.iterchildren(_TAG), *below):
@@ -191,7 +191,7 @@ def _look(material: _Element) -> _Look | None:
 
 
 def other_looks(joined: _Element, part: ReadPart) -> tuple[str, ...]:
-    """The materials of a part that look otherwise before it."""
+    """Return the materials of a part that earlier parts define differently."""
     known, own = looks(joined), looks(part.inventory.document.root)
     # One without a look below the root is another one, too.
     bare_names = {it.get("name", "") for it in joined.iterchildren(_TAG)} - known.keys()
@@ -200,18 +200,18 @@ def other_looks(joined: _Element, part: ReadPart) -> tuple[str, ...]:
 
 
 def word_of(name: str, prefix: str) -> str:
-    """What goes before materials of a part: its prefix, else its name."""
+    """Return the text before materials of a part: its prefix, or its name."""
     return prefix or f"{name}_"
 
 
 def prefixed(text: bytes, file: str, prefix: str, names: Collection[str]) -> bytes:
-    """The text with a prefix before these materials."""
+    """Return the text with a prefix before these materials."""
     starts = _starts(read_document(text, file), names)
     return b"".join(cut(text, (Edit(it, it, prefix.encode(), None) for it in starts)))
 
 
 def bare(text: bytes, file: str, prefix: str, names: Collection[str]) -> bytes:
-    """The text with the prefix taken off these materials."""
+    """Return the text with the prefix removed from these materials."""
     starts = _starts(read_document(text, file), [prefix + it for it in names])
     return b"".join(cut(text, (Edit(it, it + len(prefix), b"", None) for it in starts)))
 

@@ -44,12 +44,12 @@ _EXAMPLE = "join: [{description: arm.urdf}, {description: hand.urdf, at: {parent
 
 
 def parts_of(path: str) -> tuple[Part, ...]:
-    """The parts that a file lists; raises InputError with its line."""
+    """Return the parts that a file lists; raises InputError with its line."""
     return listed_in(path)[0]
 
 
 def listed_in(path: str) -> tuple[tuple[Part, ...], int]:
-    """The parts, and in how many random poses their links are tried; raises as ``parts_of``."""
+    """Return the parts, and the number of random poses to try; raises as ``parts_of``."""
     try:
         text = read_file(path).decode()
         keys = table(read_yaml_with_lines(text, path), "the file", ("join", SAMPLES))
@@ -68,7 +68,7 @@ def listed_in(path: str) -> tuple[tuple[Part, ...], int]:
 
 
 def read_joined(path: str, trust: bool) -> SourceText:
-    """The joined description of a file, without comments of the join; raises as ``join_texts``."""
+    """Return the joined description of a file, without comments; raises as ``join_texts``."""
     given, read = plain_texts(parts_of(path), trust)
     try:
         made = join_texts(given, builtin_tree((), release_here()))
@@ -78,7 +78,7 @@ def read_joined(path: str, trust: bool) -> SourceText:
 
 
 def plain_texts(parts: Sequence[Part], trust: bool) -> tuple[list[GivenPart], tuple[str, ...]]:
-    """The texts of parts for a description that others read, and the files that were read."""
+    """Return the texts of parts for a description that others read, and the files that were read."""
     texts = [read_alone(it.description, it.xacro_args, trust) for it in parts]
     both = zip(parts, texts, strict=True)
     given = [GivenPart(it, _without_banner(text), text.file) for it, text in both]
@@ -86,7 +86,7 @@ def plain_texts(parts: Sequence[Part], trust: bool) -> tuple[list[GivenPart], tu
 
 
 def plain_text(made: JoinedText, place: str) -> bytes:
-    """The joined text without comments of the join; raises InputError where a name has no prefix."""
+    """Return the joined text without comments; raises InputError for a name without prefix."""
     if missed := next((it for it in made.findings if it.code in MISSED), None):
         what = f"{place}: a name has no prefix: {missed.file}:{missed.line}: {missed.message}"
         raise InputError(f"{what}; make the description with multibot join, and correct it")
@@ -94,8 +94,7 @@ def plain_text(made: JoinedText, place: str) -> bytes:
 
 
 def _without_banner(text: SourceText) -> bytes:
-    """The text without the comment of xacro that has the path of a file: it is not the same from every
-    working directory."""
+    """Return the text without xacro's comment, whose path depends on the working directory."""
     at = text.data.find(b"<robot") if text.known is not None else 0
     return b'<?xml version="1.0"?>\n' + text.data[at:] if at > 0 else text.data
 
@@ -128,8 +127,8 @@ def _part(item: YamlItem, folder: str) -> Part:
 
 
 def part_of(keys: Mapping[str, Any]) -> Part:
-    """A part of checked data with the keys of a list of parts; raises UsageError for one that is a list
-    of parts itself."""
+    """Return a part of checked data with the keys of a list of parts; raises UsageError for one that is
+    a list of parts itself."""
     described, at = keys["description"], keys.get("at", {})
     if described.endswith(JOIN):
         raise UsageError(f"{described} is a list of parts; name a URDF or xacro")

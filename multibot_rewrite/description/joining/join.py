@@ -68,7 +68,7 @@ class Fixed(NamedTuple):
 
 
 def fixed(part: ReadPart, spec: Part, spans: Spans) -> Fixed:
-    """A part fixed to ``spec.at``; raises InputError for one that its link ``world`` prevents."""
+    """Return a part fixed to ``spec.at``; raises InputError if its link ``world`` prevents that."""
     robot = read_robot(spans.document.root)
     if part.root != WORLD:
         name = f"{part.name}_mount"
@@ -95,7 +95,7 @@ def fixed(part: ReadPart, spec: Part, spans: Spans) -> Fixed:
 
 
 def _moved(part: ReadPart, joint: Joint, spec: Part, spans: Spans) -> Edit:
-    """A joint on the world, on the part's link in its place."""
+    """Return the edit that puts a joint of the world onto the part's link instead."""
     element = joint.element
     start, end = spans.start_of(element), spans.end_of(element)
     parent = joint.parts["parent"]
@@ -109,7 +109,7 @@ def _moved(part: ReadPart, joint: Joint, spec: Part, spans: Spans) -> Edit:
 
 
 def _turned(part: ReadPart, joint: Joint, pose: Sequence[float], spans: Spans) -> Iterator[Edit]:
-    """The origin of a joint as it is from the part's link."""
+    """Yield the edits of a joint's origin, which becomes relative to the part's link."""
     if tuple(pose) == ZERO:
         return
     old = joint.parts.get("origin")
@@ -197,7 +197,7 @@ def _check_given(given: Sequence[GivenPart], parts: Sequence[ReadPart]) -> None:
 def _added(
     data: bytes, spec: Part, part: ReadPart, first: ReadPart, tree: Tree
 ) -> tuple[bytes, Mounted, Sequence[str]]:
-    """The text with one part more."""
+    """Return the text with one more part, the part, and notes."""
     joined = collect(read_document(data, JOINED), tree)
     robot = read_robot(joined.document.root)
     _check_link(spec.at, part, robot)
@@ -239,7 +239,7 @@ def _check_link(at: str, part: ReadPart, robot: Robot) -> None:
 
 
 def own_spaces(joined: Document, spans: Spans, others: Collection[Edit]) -> list[Edit]:
-    """The edits that declare them; elements that the ``others`` leave out need none."""
+    """Return the edits that declare missing XML prefixes, if the ``others`` keep their elements."""
     edited = {it.start for it in others if it.start < it.end}
     edits: list[Edit] = []
     lacking = _declared(spans.document) - _declared(joined)

@@ -67,23 +67,23 @@ def is_joined_whole(text: bytes) -> bool:
 
 
 def without_marks(text: bytes) -> bytes:
-    """The text without the comments of a join: its parts cannot be told any more."""
+    """Return the text without the comments of a join, so that it cannot be split any more."""
     return _MARKS.sub(b"", text)
 
 
 def was(start: int, end: int, old: bytes, new: bytes = b"") -> Edit:
-    """The edit that puts ``new``, an element or nothing, where ``old`` was, and keeps that."""
+    """Return the edit that replaces ``old`` by ``new``, and keeps ``old`` in a comment."""
     kept = b"<!-- multibot was %d %s -->" % (bool(new), _hidden(old))
     return Edit(start, end, kept + new, None)
 
 
 def left_out(spans: Spans, element: _Element) -> Edit:
-    """The edit that takes an element out, and keeps it."""
+    """Return the edit that removes an element and keeps it in a comment."""
     return was(spans.start_of(element), spans.end_of(element), spans.text_of(element))
 
 
 def section(it: KeptText, start: int, end: int) -> bytes:
-    """A part for a joined text; ``start`` and ``end`` are those of what is in its root."""
+    """Return a part for a joined text; ``start`` and ``end`` delimit the content of its root."""
     names = ",".join(quote(name, safe="") for name in it.materials).replace("--", "-%2D")
     words = _words(it.name, prefix=it.prefix, materials=names)
     first = b"  <!-- multibot part %s %s -->" % (words, _hidden(it.text[:start]))
@@ -96,7 +96,7 @@ def _words(name: str, **more: str) -> bytes:
 
 
 def placed(text: bytes, name: str, prefix: str, more: bytes) -> bytes:
-    """The text of the first part, or of parts joined so far, with one more section."""
+    """Return the text of the first part, or of parts joined so far, with one more section."""
     last = text.rfind(_LAST) if is_joined_whole(text) else -1
     if last >= 0:
         at = text.index(b" -->\n", last) + len(b" -->\n")
@@ -107,7 +107,7 @@ def placed(text: bytes, name: str, prefix: str, more: bytes) -> bytes:
 
 
 def sections(text: bytes, file: str) -> list[KeptText]:
-    """The parts of a joined text, the first one first; raises InputError."""
+    """Return the parts of a joined text, the first one first; raises InputError."""
     # The text with what was left out or changed in its old place.
     spans = Spans(read_document(text, file))
     edits = [

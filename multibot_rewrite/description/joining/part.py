@@ -68,7 +68,7 @@ class Part(NamedTuple):
 
 
 def files_of(part: Part) -> Iterator[str]:
-    """The files that a part names."""
+    """Yield the files that a part names."""
     for it in (part.description, part.srdf, *part.controllers, *part.moveit, part.rviz or None):
         if isinstance(it, str | os.PathLike) and not str(it).lstrip().startswith("<"):
             yield os.fspath(it)
@@ -94,14 +94,14 @@ class ReadPart(NamedTuple):
 
 
 def prefixing(kinds: Iterable[str] = PREFIXED, topics: str | None = None) -> Naming:
-    """The naming that puts a prefix, as it is written, before names of these kinds."""
+    """Return the naming that puts a literal prefix before names of these kinds."""
     named = make_naming("frames-per-robot", PREFIX, topics)
     return named._replace(separators=dict.fromkeys(kinds, ""))
 
 
 @contextmanager
 def in_one_line() -> Iterator[None]:
-    """What refuses a rewrite, as an InputError with its first error."""
+    """Turn a refused rewrite in the block into an InputError with its first error."""
     try:
         yield
     except RewriteRefused as refused:
@@ -110,7 +110,7 @@ def in_one_line() -> Iterator[None]:
 
 
 def name_of(part: Part, file: str, robot: str) -> str:
-    """What a part is called; one that is no file has the name of its ``robot``."""
+    """Return the name of a part; one that is no file has the name of its ``robot``."""
     last = re.split(r"[/\\]", file.removesuffix(" (expanded)"))[-1]
     stem = robot if file.startswith("<") else last
     for ending in (".xacro", ".urdf", ".xml"):
@@ -120,7 +120,7 @@ def name_of(part: Part, file: str, robot: str) -> str:
 
 
 def read_part(part: Part, data: bytes, file: str, tree: Tree, first: bool) -> ReadPart:
-    """The part with its prefix; raises UsageError and InputError for one that cannot be joined."""
+    """Return the part with its prefix; raises UsageError, InputError if it cannot be joined."""
     if not _PREFIX.fullmatch(part.prefix):
         what = "write a word of letters, digits and _, such as left_"
         raise UsageError(f"{file}: prefix {part.prefix!r} cannot start a name; {what}")

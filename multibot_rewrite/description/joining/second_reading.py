@@ -98,7 +98,7 @@ def _stands_for_it(it: _Element, mounted: Mounted, root: _Element) -> bool:
 
 
 def _is_said(block: _Element, root: _Element) -> bool:
-    """Does the whole say all of a block; of a plugin that is there, all of its parameter files?"""
+    """Return whether the whole text has all of a block, and of a plugin all parameter files."""
     blocks = [it for it in root.iterchildren("gazebo") if not it.get("reference")]
     said = [it for block in blocks for it in block.iterchildren("*")]
     for it in block.iterchildren("*"):
@@ -151,8 +151,8 @@ def _check_tree(root: _Element) -> None:
 
 
 def taken_out(it: KeptText, file: str, tree: Tree) -> bytes:
-    """A part of a joined text as it was before; raises InputError where the text
-    was edited by hand."""
+    """Return a part of a joined text as it was before; raises InputError if the text was edited by
+    hand."""
     word = word_of(it.name, it.prefix)
     text = bare(it.text, file, word, it.materials) if it.materials else it.text
     if not it.prefix:
@@ -162,7 +162,7 @@ def taken_out(it: KeptText, file: str, tree: Tree) -> bytes:
 
 
 def split_text(data: bytes, file: str, tree: Tree) -> dict[str, bytes]:
-    """The parts of a joined description by name, as they were."""
+    """Return the parts of a joined description by name, as they were."""
     return {it.name: taken_out(it, file, tree) for it in sections(data, file)}
 
 

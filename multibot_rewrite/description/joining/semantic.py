@@ -56,7 +56,7 @@ class JoinedSemantics(NamedTuple):
 
 
 def spelled_srdf(part: ReadPart, data: bytes, file: str, tree: Tree) -> PartSemantics:
-    """The SRDF of a part with its prefix; raises InputError."""
+    """Return the SRDF of a part with its prefix; raises InputError."""
     declared = declarations(part.data, part.file, tree)
     found = collect(read_document(data, file), tree, declared)
     if found.format != SRDF:
@@ -118,7 +118,7 @@ def without_virtual_joints(own: _Element) -> None:
 
 
 def xml_text(root: _Element) -> bytes:
-    """A description as it is written, a line an element."""
+    """Return a description as indented XML."""
     etree.indent(root)
     return etree.tostring(root, xml_declaration=True, encoding="utf-8") + b"\n"
 
@@ -154,7 +154,7 @@ def _near(link: str, beside: dict[str, set[str]], shaped: Collection[str]) -> It
 
 
 def _between(described: _Element, parts: Sequence[PartSemantics]) -> Iterator[tuple[str, str]]:
-    """The pairs of links of two parts that have shapes."""
+    """Yield the pairs of links of two parts that have shapes."""
     shaped = _shaped(described)
     own = [sorted(shaped & set(it.part.robot.link)) for it in parts]
     for some, more in combinations(own, 2):

@@ -44,10 +44,10 @@ class Touching(NamedTuple):
 def touching(
     described: _Element, pairs: Iterable[Pair], files: Mapping[str, str], samples: int
 ) -> Touching:
-    """What ``samples`` random poses say of pairs of links; ``files`` are where links are described.
+    """Return which pairs of links always or never touch in ``samples`` random poses, the same on each
+    run; ``files`` are the descriptions of links.
 
-    The same for the same description. Raises UsageError without pinocchio, InputError for a
-    description that it does not read.
+    Raises UsageError without pinocchio, InputError for a description that it does not read.
     """
     root = etree.fromstring(etree.tostring(described))
     unknown = dict(_with_files(root, files))
@@ -71,14 +71,14 @@ def _pinocchio() -> Any:
     try:
         return import_module("pinocchio")
     except ImportError as error:
-        what = "random poses are looked at by pinocchio, which is not installed"
+        what = "random poses need pinocchio, which is not installed"
         raise UsageError(f"{what}; pip install pin, or leave out samples ({error})") from None
 
 
 def _scene(
     pin: Any, text: str, pairs: Sequence[Pair]
 ) -> Callable[[Random, Sequence[Pair]], Mapping[Pair, bool]]:
-    """What tells, for a random pose, which of some pairs touch."""
+    """Return a function that tells which of some pairs touch in a random pose."""
     try:
         model = pin.buildModelFromXML(text)
         shapes = pin.buildGeomFromUrdfString(model, text, pin.GeometryType.COLLISION)
@@ -99,7 +99,7 @@ def _scene(
 
 
 def _numbered(pin: Any, model: Any, shapes: Any, pairs: Iterable[Pair]) -> dict[Pair, list[int]]:
-    """The numbers of the pairs of shapes of each pair of links, which are added to the shapes."""
+    """Return the numbers of the shape pairs of each pair of links, and add them to the shapes."""
     every = enumerate(shapes.geometryObjects)
     own = lists_by_key((model.frames[it.parentFrame].name, at) for at, it in every)
     numbers: dict[Pair, list[int]] = {}
@@ -111,7 +111,7 @@ def _numbered(pin: Any, model: Any, shapes: Any, pairs: Iterable[Pair]) -> dict[
 
 
 def _pose(pin: Any, model: Any, random: Random) -> Any:
-    """A random pose within the limits."""
+    """Return a random pose within the limits."""
     pose = pin.neutral(model)
     for joint in list(model.joints)[1:]:
         at = joint.idx_q
@@ -145,7 +145,7 @@ def _with_files(root: _Element, files: Mapping[str, str]) -> Iterator[tuple[str,
 
 
 def _path(name: str, file: str) -> str:
-    """The file of a mesh, as the description ``file`` names it; empty where it is not known."""
+    """Return the file of a mesh that the description ``file`` names; empty if it is not known."""
     scheme, is_url, rest = name.partition("://")
     folder = os.path.dirname(file.removesuffix(" (expanded)"))
     if not is_url:

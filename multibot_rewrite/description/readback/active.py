@@ -34,7 +34,7 @@ WITH_ROS = "any_with_ros"
 def plugin_section(
     plugin: _Element, vocabulary: Vocabulary
 ) -> tuple[VocabularySection | None, bool]:
-    """The section of a plugin, None where it has none, and whether the plugin itself is known."""
+    """Return the definition of a plugin, or None, and whether the plugin itself is known."""
     with_ros = plugin.find("ros") is not None
     for key in _keys(plugin):
         found = vocabulary.find("plugin", key)
@@ -76,14 +76,15 @@ def _of_release(found: Sequence[VocabularySection], plugin: _Element) -> Vocabul
 
 
 def hardware_class(system: _Element) -> str:
-    """The class that a ros2_control system loads, empty without one: of its last ``<hardware>``
-    (ros2_control component_parser.cpp parse_resource_from_xml: each one replaces the one before)."""
+    """Return the class that a ros2_control system loads, empty without one: that of its last
+    ``<hardware>`` (ros2_control component_parser.cpp parse_resource_from_xml: each one replaces the one
+    before)."""
     blocks = system.findall("hardware")
     return child_text(blocks[-1], "plugin") or "" if blocks else ""
 
 
 def hardware_section(system: _Element, vocabulary: Vocabulary) -> VocabularySection | None:
-    """The section of the class that a ros2_control system loads."""
+    """Return the definition of the class that a ros2_control system loads."""
     return next(iter(vocabulary.find("hardware", hardware_class(system))), None)
 
 
@@ -166,13 +167,13 @@ def active_parts(root: _Element, vocabulary: Vocabulary) -> Iterator[ActivePart]
 
 
 def is_loaded(plugin: _Element) -> bool:
-    """Does a simulator look for a plugin at this place? In a URDF in its <gazebo> and in those of other
-    simulators (sdformat parser_urdf.cc, webots_ros2_driver WebotsNode.cpp)."""
+    """Return whether a simulator looks for a plugin at this place. In a URDF these are its <gazebo> and
+    the tags of other simulators (sdformat parser_urdf.cc, webots_ros2_driver WebotsNode.cpp)."""
     return not _PARTS.issuperset(str(it.tag) for it in plugin.iterancestors())
 
 
 def plugin_name(plugin: _Element) -> str:
-    """What is loaded, as the file says it."""
+    """Return the name of what a plugin loads, as the file has it."""
     return plugin.get("filename") or plugin.get("type") or plugin.get("name") or ""
 
 
@@ -186,7 +187,7 @@ def _is_simulated(sensor: _Element) -> bool:
 
 
 def says_what_it_opens(section: VocabularySection) -> bool:
-    """Does a section say it by fields?"""
+    """Return whether a definition says what the plugin opens."""
     if section.opens:
         return UNKNOWN not in section.opens
     own = (it for it in section.sites if it.role != "keep" and it.section[:9] != "block ros")

@@ -80,7 +80,7 @@ class Meeting(NamedTuple):
 
 
 def same_for_all(names: Iterable[RuntimeName], word: str, naming: Naming) -> Iterator[RuntimeName]:
-    """The names without ``word``, which stands for the robot: every robot would have them.
+    """Yield the names without ``word``, the robot's name: every robot would have them.
 
     Each name once, at its first place.
     """
@@ -92,7 +92,7 @@ def same_for_all(names: Iterable[RuntimeName], word: str, naming: Naming) -> Ite
 
 
 def meetings(named: Mapping[str, Iterable[RuntimeName]], naming: Naming) -> Iterator[Meeting]:
-    """The names that two of these robots have, each once."""
+    """Yield the names that two of these robots have, each once."""
     first: dict[tuple[str, str], tuple[str, RuntimeName]] = {}
     seen: set[tuple[str, str]] = set()
     for robot, names in named.items():
@@ -105,7 +105,7 @@ def meetings(named: Mapping[str, Iterable[RuntimeName]], naming: Naming) -> Iter
 
 
 def _own(names: Iterable[RuntimeName], naming: Naming) -> Iterator[RuntimeName]:
-    """The names that each robot must have for itself."""
+    """Yield the names that each robot must have for itself."""
     for it in names:
         bare = it.name.strip("/")
         if it.kind == FRAME:
@@ -124,7 +124,7 @@ def _own(names: Iterable[RuntimeName], naming: Naming) -> Iterator[RuntimeName]:
 
 
 def code_of(name: RuntimeName) -> str:
-    """The rule that a shared name is about."""
+    """Return the code of the rule for a shared name."""
     if name.of_controllers:
         return NOT_TAKEN
     if name.kind in (SERVICE, ACTION):
@@ -137,19 +137,19 @@ def code_of(name: RuntimeName) -> str:
 
 
 def said(who: str, *names: RuntimeName) -> str:
-    """That these robots would (both) have a name, and who of them has it."""
+    """Return the message that these robots share a name, and which of their parts have it."""
     name, by = names[0], " and ".join(dict.fromkeys(it.path for it in names))
     if code_of(name) == LOOKUP:
         return (
-            f"the {name.kind} {name.name!r} is looked up by bare name in the whole world: "
+            f"the {name.kind} {name.name!r} is looked up in the whole world without the robot's name: "
             "it may find that of another robot"
         )
     return f"{who} have the {name.kind} {name.name!r} ({by})"
 
 
 def advice(name: RuntimeName, together: bool = False) -> str:
-    """What to do about a shared name, but for those of controllers; ``together`` where its robots were
-    rewritten in one call, so that each has a number of its own where it can have one."""
+    """Return the hint for a shared name, except those of controllers. With ``together`` the robots were
+    rewritten in one call, so that each has a number of its own if possible."""
     if name.kind in _OF_KIND:
         return _OF_KIND[name.kind]
     if name.kind == active.NUMBER and not together:
@@ -203,10 +203,10 @@ def lost_rules(before: Reading, after: Reading) -> Iterator[LostRule]:
 
 
 def _applied(node: ReadNode, end: RuntimeName) -> tuple[str, int | None]:
-    """The full name of an endpoint without rules for topics, and the number of the one that gives it
-    another; None where it keeps its own.
+    """Return the full name of an endpoint without rules for topics, and the number of the rule that
+    changes it, or None.
 
-    Those of ``<remapping>`` are counted from the end: what is inserted stands before them.
+    Those of ``<remapping>`` are counted from the end, because inserted ones come first.
     """
     bound = itself(node)
     name = full_name(end.code_name, end.kind, bound)
@@ -219,7 +219,7 @@ def _applied(node: ReadNode, end: RuntimeName) -> tuple[str, int | None]:
 
 def parted(before: Reading, after: Reading) -> Iterator[tuple[RuntimeName, RuntimeName]]:
     """Each end that lost the first of those that it met, with that one, as they are now: what is left
-    as it was by the vocabulary counts as well."""
+    as it was by the plugin definitions counts as well."""
     now = _by_place((*after.names, *after.other_ends))
     was = _by_place((*before.names, *before.other_ends))
     of_topic = lists_by_key(((it.kind, it.name), at) for at, it in was.items() if at in now)
@@ -229,7 +229,7 @@ def parted(before: Reading, after: Reading) -> Iterator[tuple[RuntimeName, Runti
 
 
 def undescribed(before: Reading, after: Reading) -> Iterator[tuple[RuntimeName, str, str]]:
-    """Each image that had its camera_info beside it and has not now, with the name that is asked for
+    """Each image that had its camera_info next to it and has not now, with the name that is asked for
     and the one that it has.
 
     Who shows an image replaces the last segment of its topic (image_common camera_common.cpp
@@ -259,6 +259,7 @@ def _by_place(names: Iterable[RuntimeName]) -> Mapping[Place, RuntimeName]:
     for it in names:
         if it.kind in (TOPIC, SERVICE) and not it.of_controllers:
             place = it.tag, it.number, it.path, it.kind
-            found[(*place, seen[place])] = it
+            numbered = (*place, seen[place])
+            found[numbered] = it
             seen[place] += 1
     return found

@@ -17,7 +17,7 @@ PLACEHOLDER = "{name}"
 
 
 def reads_it(section: VocabularySection, release: str) -> bool:
-    """Does this system put the namespace of its model in front, in ``release``?"""
+    """Return whether this system puts the namespace of its model in front, in ``release``."""
     return bool(section.model_namespace) and has_release(section.model_namespace, release)
 
 

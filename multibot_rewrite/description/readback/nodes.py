@@ -189,13 +189,13 @@ def _turns_on(joint: _Element | None) -> bool:
 
 
 def itself(node: ReadNode) -> BoundNode:
-    """The node under those of its rules that are for its name and namespace."""
+    """Return the node after its rules for name and namespace."""
     rules = (it.rule for it in node.rules if it.rule.source.startswith("__"))
     return _bound(node.name, node.namespace, rules)
 
 
 def _node_name(plugin: _Element, section: VocabularySection) -> str:
-    """A Gazebo Classic plugin's own name, or that of the controller manager it loads."""
+    """Return a Gazebo Classic plugin's own name, or that of the controller manager it loads."""
     if _has_own_name(section):
         return plugin.get("name", "").strip()
     sites = (site for site in section.sites if site.kinds[:1] == ("node",) and site.default)
@@ -208,12 +208,12 @@ def _has_own_name(section: VocabularySection) -> bool:
 
 
 def rules_of(plugin: _Element) -> Iterator[RemapRule]:
-    """The remap rules in the ``<ros>`` of a plugin."""
+    """Yield the remap rules in the ``<ros>`` of a plugin."""
     yield from (it.rule for home in plugin.iterchildren("ros") for it in _rules(home))
 
 
 def _rules(home: _Element) -> Iterator[ReadRule]:
-    """The rules in <argument>, which come first, and those in <remapping>."""
+    """Yield the rules in <argument>, which come first, and those in <remapping>."""
     for element in (*_remap_arguments(home), *home.iterfind("remapping")):
         rule = parse_remap(text_of(element))
         if rule is not None:
@@ -222,8 +222,8 @@ def _rules(home: _Element) -> Iterator[ReadRule]:
 
 
 def _remap_arguments(home: _Element) -> Iterator[_Element]:
-    """What follows -r or --remap between --ros-args and --, and rules outside, which rcl takes as well
-    (rcl arguments.c: "This syntax is deprecated")."""
+    """Yield the words after -r or --remap between --ros-args and --, and rules outside, which rcl takes
+    as well (rcl arguments.c: "This syntax is deprecated")."""
     ros, flag = False, ""
     for element in home.iterfind("argument"):
         text = text_of(element)
@@ -236,7 +236,7 @@ def _remap_arguments(home: _Element) -> Iterator[_Element]:
 
 
 def _bound(name: str, namespace: str, rules: Iterable[RemapRule]) -> BoundNode:
-    """The node under its rules; without them where rcl refuses to start it."""
+    """Return the node after its rules, or without them if rcl refuses to start it."""
     try:
         return bind(name, namespace, rules)
     except UsageError:
@@ -244,7 +244,7 @@ def _bound(name: str, namespace: str, rules: Iterable[RemapRule]) -> BoundNode:
 
 
 def full_name(name: str, kind: str, bound: BoundNode) -> str:
-    """The full name, as text where rcl refuses it: a placeholder may be filled before it runs."""
+    """Return the full name, also if rcl refuses it: a placeholder may be filled before it runs."""
     try:
         return resolve_bound(name, kind, bound)
     except UsageError:
@@ -306,7 +306,7 @@ def is_of_others(site: SiteRow) -> bool:
 
 
 def frames_of(plugin: _Element, section: VocabularySection) -> Iterator[tuple[str, str]]:
-    """The frames in its parameters, each with the parameter."""
+    """Yield the frames in the parameters of a plugin, each with the parameter."""
     for site in section.sites:
         if site.form == "whole" and site.kinds[:1] == ("frame",):
             for value in values_of(plugin, site):

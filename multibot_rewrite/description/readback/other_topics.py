@@ -76,7 +76,7 @@ def resolved(
 
 def of_others(host: _Element, section: VocabularySection) -> Iterator[tuple[str, str]]:
     """Name and parameter of the topics that are the world's or left as they are, below the namespace
-    that the plugin puts in front. Where that is the model's name it also stands before a slash
+    that the plugin puts in front. Where that is the model's name it also is before a slash
     (rotors_simulator gazebo_mavlink_interface.cpp, as PX4's)."""
     # One without a name gets it from its spawner.
     model = around(host).get("name") or "~"
@@ -92,8 +92,8 @@ def of_others(host: _Element, section: VocabularySection) -> Iterator[tuple[str,
 def _full(
     host: _Element, section: VocabularySection, site: SiteRow, above: str | None
 ) -> Iterator[str]:
-    """The full names that a site holds, below what is put in front of relative ones; without those that
-    are below a node or model which the simulator names."""
+    """Yield the full names at a site, below the namespace of relative ones, without those that are
+    below a node or model which the simulator names."""
     of_gz = section.names[0].startswith("gz") or host.tag in OF_GZ
     names = values_of(host, site)
     for name in map(as_valid_topic, names) if of_gz else names:
@@ -104,13 +104,13 @@ def _full(
 
 
 def as_valid_topic(name: str) -> str:
-    """The topic that gz-transport makes of a text: it has no ``~``, and takes out what it does not know
-    (gz-transport TopicUtils.cc AsValidTopic, which gz-sim's validTopic and gz-sensors call)."""
+    """Return the topic that gz-transport makes of a text: it has no ``~``, and unknown characters are
+    removed (gz-transport TopicUtils.cc AsValidTopic, which gz-sim's validTopic and gz-sensors call)."""
     return _NOT_VALID.sub("", name.replace(" ", "_"))
 
 
 def _namespace(host: _Element, section: VocabularySection) -> str | None:
-    """What the plugin puts in front of relative names; None where that is the model's name."""
+    """Return the text that the plugin puts before relative names; None for the model's name."""
     named = (it for it in section.sites if it.kinds[:1] == ("namespace",) and it.form == "whole")
     # What is below a <ros> is a node's of ROS 2.
     sites = [it for it in named if it.path[:4] != "ros/" or host.find("ros") is not None]

@@ -39,7 +39,7 @@ def values_of(host: _Element, site: SiteRow) -> list[str]:
 
 
 def _applies(host: _Element, site: SiteRow) -> bool:
-    """Has the sibling that decides this text? It stands beside the last step of the path."""
+    """Has the sibling that decides this text? It is next to the last step of the path."""
     sibling, _, wanted = site.when.partition("=")
     above = site.path.rpartition("/")[0]
     texts = set(wanted.split("|"))
@@ -77,14 +77,14 @@ def _holds(host: _Element, condition: str) -> bool:
 
 
 def given_at(host: _Element, path: str) -> list[str]:
-    """The values at a path below an element, or, after ``../``, below the one around it."""
+    """Return the values at a path below an element, or, after ``../``, below its parent."""
     below = path.removeprefix("../")
     start = host if below == path else host.getparent()
     return [] if start is None else list(values_at(start, below))
 
 
 def switched_off(host: _Element, section: VocabularySection) -> dict[str, str]:
-    """The wired topics that no parameter of theirs turns on, and which would."""
+    """Return the topics that no parameter turns on, with the parameters that would."""
     found = list(_switches(host, section))
     on = {topic for _, topic, is_set in found if is_set}
     off = lists_by_key((topic, parameter) for parameter, topic, _ in found if topic not in on)
@@ -127,7 +127,7 @@ def _first_link(host: _Element) -> str:
 
 
 def around(host: _Element) -> _Element:
-    """The model or URDF that a plugin stands in."""
+    """Return the model or URDF that contains a plugin."""
     return next(host.iterancestors("model", "robot"), host)
 
 
@@ -142,7 +142,7 @@ def wired_of(plugin: _Element, section: VocabularySection) -> Iterator[tuple[Wir
 
 
 def filled(plugin: _Element, section: VocabularySection, name: str) -> Iterator[str]:
-    """The name for each value of the first path in it, and so on."""
+    """Yield the name with each value of the paths in its braces."""
     head, slot, rest = name.partition("{")
     if not slot:
         yield name

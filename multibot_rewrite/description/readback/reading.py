@@ -61,7 +61,7 @@ def read(data: bytes, file: str, vocabulary: Vocabulary) -> Reading:
 
 
 def read_tree(root: _Element, vocabulary: Vocabulary) -> Reading:
-    """The same of one that is parsed already. Raises nothing."""
+    """Return the names of a parsed description; raises nothing."""
     hosts, unknown = _hosts(root, vocabulary)
     nodes = _nodes(hosts, vocabulary.release)
     with_node = {it.number for it in nodes}
@@ -86,7 +86,7 @@ def read_tree(root: _Element, vocabulary: Vocabulary) -> Reading:
 
 
 def transforms_sent(root: _Element, vocabulary: Vocabulary) -> Iterator[tuple[_Element, str, str]]:
-    """The plugins that send a transform of odometry, with the frames of parent and child."""
+    """Yield the plugins that send a transform of odometry, with the frames of parent and child."""
     hosts, _ = _hosts(root, vocabulary)
     senders = {it.number: it for it in hosts if "/tf" in it.section.publishes}
     for node in _nodes(senders.values(), vocabulary.release):
@@ -96,7 +96,7 @@ def transforms_sent(root: _Element, vocabulary: Vocabulary) -> Iterator[tuple[_E
 
 
 def _hosts(root: _Element, vocabulary: Vocabulary) -> tuple[list[_Host], list[tuple[int, str]]]:
-    """The plugins that have a section, and those that the vocabulary does not have."""
+    """Return the plugins with a definition, and those without one."""
     hosts: list[_Host] = []
     unknown: list[tuple[int, str]] = []
     for number, plugin in enumerate(root.iter("plugin")):
@@ -157,8 +157,8 @@ def _of_nodes(nodes: tuple[ReadNode, ...]) -> Iterator[RuntimeName]:
 def _without_rules(
     root: _Element, hosts: list[_Host], with_node: Container[int]
 ) -> Iterator[RuntimeName]:
-    """The nodes of plugins for ROS 2 that read no <ros>: they have the plugin's name, and no namespace
-    (Plankton ThrusterROSPlugin.cpp, gazebo_ros node.hpp CreateWithArgs)."""
+    """Yield the nodes of ROS 2 plugins that read no <ros>: they have the plugin's name, and no
+    namespace (Plankton ThrusterROSPlugin.cpp, gazebo_ros node.hpp CreateWithArgs)."""
     for host in hosts if root.find(".//plugin/ros") is not None else ():
         is_named = any(it.path == "@name" and "node" in it.kinds for it in host.section.sites)
         if is_named and host.number not in with_node:
@@ -212,7 +212,7 @@ def _of_elements(root: _Element, vocabulary: Vocabulary) -> Iterator[RuntimeName
 
 
 def _links(root: _Element) -> Iterator[RuntimeName]:
-    """The links of the robot and of its models: frames that robot_state_publisher sends."""
+    """Yield the links of the robot and of its models: frames that robot_state_publisher sends."""
     for number, link in enumerate(root.iter("link")):
         parent = link.getparent()
         if parent is not None and parent.tag in ("robot", "model") and link.get("name"):

@@ -21,7 +21,7 @@ _PARSER = etree.XMLParser(resolve_entities=False, huge_tree=True, remove_blank_t
 
 
 def read_xml(data: bytes, file: str) -> _Element:
-    """The root element; raises InputError."""
+    """Return the root element; raises InputError."""
     try:
         return etree.fromstring(well_formed(data).text if is_loose(data) else data, _PARSER)
     except etree.XMLSyntaxError:
@@ -32,7 +32,7 @@ def read_xml(data: bytes, file: str) -> _Element:
 
 
 def text_of(element: _Element) -> str:
-    """The text of an element, white space around it aside."""
+    """Return the text of an element, without white space around it."""
     text = (element.text or "").strip()
     for child in element:
         if text or not isinstance(child, etree._Comment):
@@ -42,13 +42,13 @@ def text_of(element: _Element) -> str:
 
 
 def child_text(element: _Element, tag: str) -> str | None:
-    """The text of the first child with this tag; None where there is none."""
+    """Return the text of the first child with this tag; None without one."""
     child = element.find(tag)
     return None if child is None else text_of(child)
 
 
 def values_at(element: _Element, path: str) -> Iterator[str]:
-    """The values at a path of the vocabulary, empty ones too: each attribute or text that is there."""
+    """Yield the values at a path of a plugin definition, empty ones too: each attribute or text."""
     steps, attribute = split_path(path)
     for found in elements_at(element, steps):
         value = found.get(attribute) if attribute else text_of(found)
@@ -57,7 +57,7 @@ def values_at(element: _Element, path: str) -> Iterator[str]:
 
 
 def elements_at(element: _Element, steps: tuple[str, ...]) -> Iterator[_Element]:
-    """The elements at the steps of a path below an element."""
+    """Yield the elements at the steps of a path below an element."""
     if not steps:
         yield element
         return
@@ -68,14 +68,14 @@ def elements_at(element: _Element, steps: tuple[str, ...]) -> Iterator[_Element]
 
 
 def plain(element: _Element) -> tuple[object, ...]:
-    """An element as its readers see it: without comments, blanks between elements and the order of
-    attributes."""
+    """Return an element as its readers see it: without comments, blanks between elements and the order
+    of attributes."""
     parts = tuple(plain(it) for it in element.iterchildren("*"))
     return element.tag, frozenset(element.items()), text_of(element), parts
 
 
 def is_on(text: str | None, usual: bool) -> bool:
-    """A boolean parameter: case does not count; any other text leaves the default."""
+    """Return the value of a boolean parameter: case does not count; any other text gives ``usual``."""
     known = {"true": True, "1": True, "false": False, "0": False}
     return known.get((text or "").strip().lower(), usual)
 

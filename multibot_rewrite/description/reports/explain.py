@@ -51,14 +51,14 @@ def _step(element: _Element) -> str:
 
 
 def short_name(name: str, prefix: str | None = None) -> str:
-    """A tag or attribute as the vocabulary writes it; ``prefix`` is for a namespace it lacks."""
+    """Return a tag or attribute as definitions write it; ``prefix`` is for unknown namespaces."""
     uri, brace, local = name.removeprefix("{").partition("}")
     short = _PREFIXES.get(uri, prefix) if brace else None
     return f"{short}:{local}" if short else name
 
 
 def plugin_name(element: _Element) -> str:
-    """What a ``<plugin>`` is called: its library without folders, else its class."""
+    """Return the name of a ``<plugin>``: its library without folders, or its class."""
     library = element.get("filename", "").strip().rpartition("/")[2]
     return library or element.get("name", "").strip()
 
@@ -97,7 +97,7 @@ def explain_line(
 
 
 def _source(tree: Tree, site: SiteRow) -> str:
-    """The source of the section that has the site."""
+    """Return the source of the section that has the site."""
     type_, name, *_ = site.section.split(" ")
     sections = tree.vocabulary.find(type_, name)
     return next((it.source for it in sections if it.source and site in it.sites), "")
@@ -123,7 +123,7 @@ def _claimed(
 def _reasons(
     inventory: Inventory, claim: Claim, names: Iterable[ResolvedName], naming: Naming
 ) -> Iterator[str]:
-    """What each name in the value is, and why it stays where it does."""
+    """Yield the kind of each name in the value, and the reason why it is not renamed."""
     declared = inventory.declared
     if claim.site.form == "collision":
         yield "a collision, named after its link by the conversion to SDF"
@@ -218,9 +218,9 @@ def explain_source(
     trust: bool,
     explaining: Callable[[str], tuple[Document, OnLine]],
 ) -> list[Explanation]:
-    """The values that ``line`` of the file ``path`` makes: of elements that are written on it, and
-    those with a piece of it, as of a macro's call; else in a description that includes the file.
-    Raises InputError where none of them can be read."""
+    """Return the values that ``line`` of the file ``path`` makes: elements on it, and values with a
+    piece of it, as of a macro's call; for a file that is included, in a description that includes it.
+    Raises InputError if none of them can be read."""
     reach = TRUSTED if trust else BOUNDED
     failed: list[InputError] = []
     wholes = (path, *whole_robots(path))
@@ -259,7 +259,7 @@ class _Line(NamedTuple):
 
 
 def _made_on(it: _Line, document: Document, explain: OnLine) -> Iterator[Explanation]:
-    """What a line makes, each at its place there."""
+    """Yield the values that a line makes, each at its place there."""
     for number, element in enumerate(document.elements):
         origin = it.read.origins.of(number)
         written = None

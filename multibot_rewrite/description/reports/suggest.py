@@ -89,8 +89,8 @@ class Loaded(NamedTuple):
 
 
 def suggest(inventory: Inventory) -> list[SuggestedSection]:
-    """A section for each plugin that is unknown, and each unknown hardware class with parameters,
-    in the order of the file."""
+    """Return a section for each unknown plugin, and each unknown hardware class with parameters, in the
+    order of the file."""
     hosts: dict[tuple[str, str, str], list[Host]] = {}
     for host in inventory.hosts:
         thing = loaded_by(host)
@@ -110,7 +110,7 @@ def suggest(inventory: Inventory) -> list[SuggestedSection]:
 
 
 def loaded_by(host: Host) -> Loaded | None:
-    """What an element loads; None where it loads nothing (a sensor is no plugin)."""
+    """Return what an element loads; None if it loads nothing (a sensor is no plugin)."""
     section = host.node.section
     assert section is not None
     type_ = section.select or section.type
@@ -121,7 +121,7 @@ def loaded_by(host: Host) -> Loaded | None:
 
 
 def _section_name(type_: str, element: _Element) -> str:
-    """The first name by which the element would be looked up and a section can be called."""
+    """Return the first name by which the element is looked up and that a section can have."""
     keys = tree.plugin_keys(element) if type_ == "plugin" else tree.hardware_keys(element)
     return next((key for key in keys if key != tree.ANY_WITH_ROS and _can_head(type_, key)), "")
 
@@ -134,7 +134,7 @@ def _can_head(type_: str, name: str) -> bool:
 
 
 def _values(element: _Element, node: tree.TreeNode | None, path: str) -> Iterator[tuple[str, str]]:
-    """Path and value of every attribute and text below an element that no row speaks of."""
+    """Path and value of every attribute and text below an element that no row is about."""
     known = {""} if node is not None and node.text is not None else set()
     if node is not None:
         known |= {attribute for attribute, _ in node.attributes} | node.keeps.keys()
@@ -154,14 +154,14 @@ def _below(node: tree.TreeNode | None, child: _Element) -> tree.TreeNode | None:
 
 
 def _step(element: _Element) -> str:
-    """A step of a vocabulary's path; of parameters the name tells which one is meant."""
+    """Return a step of a path for an element; parameters are told apart by their name."""
     tag, name = short_name(str(element.tag)), element.get("name", "")
     step = f"{tag}[@name={name}]"
     return step if tag in ("param", "parameter") and _is_path(step) else tag
 
 
 def _is_path(path: str) -> bool:
-    """A path that a row can start with: XML allows more in a name than the vocabulary does."""
+    """Return whether a row can start with this path: XML allows more in a name."""
     try:
         _, sites = read_section("", 0, ["plugin x]", f"{path} keep it"])
     except VocabularyError:
@@ -170,7 +170,7 @@ def _is_path(path: str) -> bool:
 
 
 def _row(path: str, values: Sequence[str], declared: Declared) -> SuggestedRow:
-    """The best guess of all values seen at one path, with the kinds that others of them add."""
+    """Return the best guess of all values at one path, with the kinds that others of them add."""
     word = tag_kind(path)
     guesses = [_guess(value, word, declared) for value in values]
     made = [it for it in guesses if it is not None]
@@ -186,7 +186,7 @@ def _row(path: str, values: Sequence[str], declared: Declared) -> SuggestedRow:
 
 
 def tag_kind(path: str) -> str:
-    """What the words of a path say its value names: ``left/jointName`` a joint; empty if nothing."""
+    """Return the kind that the words of a path suggest: ``left/jointName`` a joint; empty for none."""
     steps, attribute = split_path(path)
     names = [split_step(step)[2] or split_step(step)[0] for step in steps]
     for name in reversed([*names, attribute]):
@@ -211,7 +211,7 @@ def _guess(value: str, word: str, declared: Declared) -> Guess | None:
 
 
 def _by_value(value: str, declared: Declared) -> Guess | None:
-    """What a value says by holding a declared name, or by being a remap rule."""
+    """Return the guess for a value that holds a declared name, or is a remap rule."""
     if split_remap(value) is not None:
         return Guess(("topic",), "remap", f"{shown(value)} is a remap rule")
     for form, names in _readings(value):
@@ -245,7 +245,7 @@ def _readings(value: str) -> Iterator[tuple[str, Sequence[str]]]:
 
 
 def _by_tag(value: str, word: str) -> Guess | None:
-    """What the tag says, where the value can be a name at all."""
+    """Return the guess by the tag, if the value can be a name at all."""
     if not word or _NO_NAME.match(value):
         return None
     several = len(value.replace(",", " ").split()) > 1
@@ -256,12 +256,12 @@ def _by_tag(value: str, word: str) -> Guess | None:
 
 
 def shown(value: str) -> str:
-    """A value in quotes, on one line and not too long."""
+    """Return a value in quotes, on one line and not too long."""
     return repr(clip(value))
 
 
 def vocabulary_text(sections: Iterable[SuggestedSection], file: str) -> str:
-    """A vocabulary file that can be used as it is; only comments where there is no section."""
+    """Return a usable file of plugin definitions; without sections only comments."""
     name = " ".join(file.split())
     parts = [_text(section, name.rpartition("/")[2]) for section in sections]
     if not parts:

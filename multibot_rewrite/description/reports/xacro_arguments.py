@@ -143,8 +143,8 @@ def find_arguments(
     reach: Reach = BOUNDED,
     wanted: Callable[[str], bool] = bool,
 ) -> XacroArguments:
-    """The arguments of a xacro file; ``given`` are values for some, and only those of ``wanted`` names
-    are tried. Raises InputError where the file does not expand with these."""
+    """Return the arguments of a xacro file; ``given`` are values for some, and only those of ``wanted``
+    names are tried. Raises InputError if the file does not expand with these."""
     end = clock() + SECONDS
     read = expand_traced(path, read_file(path), given, None, reach)
     declared = {**_declared(read.sources), **given}
@@ -173,14 +173,14 @@ def find_arguments(
 
 
 def declared_arguments(path: str, given: Mapping[str, str], reach: Reach) -> Mapping[str, str]:
-    """The arguments that a xacro declares with their defaults; none where it does not expand."""
+    """Return the arguments that a xacro declares with their defaults; none if it does not expand."""
     with suppress(InputError):
         return _declared(expand_traced(path, read_file(path), given, None, reach).sources)
     return {}
 
 
 def _declared(sources: Mapping[str, bytes]) -> dict[str, str]:
-    """The ``<xacro:arg>`` of all files with their defaults: the first one counts, as for xacro."""
+    """Return the ``<xacro:arg>`` of all files with their defaults; the first one counts."""
     found: dict[str, str] = {}
     for file, data in sources.items():
         for element in read_document(data, file).root.iter("{*}arg"):
@@ -190,7 +190,7 @@ def _declared(sources: Mapping[str, bytes]) -> dict[str, str]:
 
 
 def _parts(inventory: Inventory) -> frozenset[str]:
-    """The links and joints that are declared."""
+    """Return the declared links and joints."""
     return frozenset(it for kind in PARTS for it in inventory.declared.get(kind, ()))
 
 
@@ -205,7 +205,7 @@ def _uses(inventory: Inventory) -> Iterator[Use]:
 
 
 def _how(text: str) -> tuple[str, str]:
-    """Where in a name the argument is, and the separator beside it."""
+    """Where in a name the argument is, and the separator next to it."""
     before, _, after = text.strip("/").partition(_MARK)
     if not before and not after:
         return WHOLE, ""
@@ -216,7 +216,7 @@ def _how(text: str) -> tuple[str, str]:
 
 
 def as_json(found: XacroArguments) -> dict[str, object]:
-    """The report as ``--form json`` writes it."""
+    """Return the report as ``--form json`` writes it."""
     rows = [(it, [use._asdict() for use in it.uses]) for it in found.arguments]
     arguments = [it._asdict() | {"uses": uses, "for_robots": it.value} for it, uses in rows]
     return {

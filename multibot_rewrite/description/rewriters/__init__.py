@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The tree of rewriters: vocabulary sections hung where they apply, and code for the odd ones."""
+"""The tree of rewriters: plugin definitions hung where they apply, and code for the odd ones."""

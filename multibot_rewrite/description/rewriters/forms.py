@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where inside a value the names are: one function per ``form=`` word of the vocabulary.
+"""Where inside a value the names are: one function per ``form=`` word of the plugin definitions.
 
 A form maps a value to its parts. Because a part is a position and not a new text, lists, scopes
 and remap rules need no writer of their own.
@@ -44,19 +44,19 @@ Form = Callable[[str, Kinds, Declared], tuple[NamePart, ...]]
 
 
 def whole(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
-    """The value is one name, white space around it aside."""
+    """Return the value as one name, without white space around it."""
     name = value.strip()
     return (NamePart(value.index(name), name, kinds),) if name else ()
 
 
 def prefixed(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
-    """What the consumer puts in front of names, nothing at all included."""
+    """Return the prefix that the consumer puts before names; it may be empty."""
     name = value.strip()
     return (NamePart(value.index(name), name, kinds, False, kinds[:1]),)
 
 
 def lettered(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
-    """A prefix behind a letter that the consumer drops."""
+    """Return a prefix after a letter that the consumer drops."""
     name = value.strip()
     at = value.index(name) + 1
     return (NamePart(at, name[1:], kinds, False, kinds[:1]),) if name else ()
@@ -93,7 +93,7 @@ def scoped(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]
 
 
 def is_included(model: str, declared: Declared) -> bool:
-    """Does another file describe this model? Its ``<include>`` only names it."""
+    """Return whether another file describes this model. Its ``<include>`` only names it."""
     claim = declared["model"].get(model)
     return claim is not None and not claim.attribute
 
@@ -140,9 +140,10 @@ def member(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]
 
 
 def _owner(value: str, kinds: Kinds, declared: Declared) -> tuple[list[NamePart], int]:
-    """The models before ``::`` and the longest declared name behind them; where the rest starts.
+    """Return the models before ``::`` and the longest declared name after them, and the start of the
+    rest.
 
-    What is before the first declared model is a world.
+    Text before the first declared model is a world.
     """
     at = len(value) - len(value.lstrip())
     parts = []
@@ -163,7 +164,7 @@ def _owner(value: str, kinds: Kinds, declared: Declared) -> tuple[list[NamePart]
 
 
 def regex(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
-    """A regular expression for whole names: each alternative is affixed inside its anchors."""
+    """Return the alternatives of a regular expression for whole names, each inside its anchors."""
     found = ((at, text, _matched(text, kinds, declared)) for at, text in _alternatives(value))
     return tuple(
         NamePart(at, text, kinds, True, matched[:1]) for at, text, matched in found if text
@@ -171,7 +172,7 @@ def regex(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
 
 
 def _alternatives(value: str) -> Iterator[tuple[int, str]]:
-    """The pieces between top-level bars, anchors and white space aside, and where they start."""
+    """Yield the pieces between top-level bars, without anchors and white space, and their starts."""
     depth, begin = 0, 0
     bars = []
     from multibot_rewrite.description.rewriters.patterns import pieces_of  # few values are patterns
@@ -188,7 +189,7 @@ def _alternatives(value: str) -> Iterator[tuple[int, str]]:
 
 
 def _matched(pattern: str, kinds: Kinds, declared: Declared) -> tuple[str, ...]:
-    """The kinds of which the pattern matches a name: none for one that cannot be understood."""
+    """Return the kinds with a name that the pattern matches: none if it is not understood."""
     if _LITERAL.fullmatch(pattern):
         return tuple(kind for kind in kinds if pattern in declared.get(kind, ()))
     from multibot_rewrite.description.rewriters.patterns import Pattern, PatternError
@@ -201,7 +202,7 @@ def _matched(pattern: str, kinds: Kinds, declared: Declared) -> tuple[str, ...]:
 
 
 def transport(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
-    """A topic of Gazebo Classic's own: ``~/`` is the world, ``~/model/`` the model that follows."""
+    """Return the names in a topic of Gazebo Classic: ``~/`` is the world, ``~/model/`` a model."""
     name = value.strip()
     at = value.index(name)
     world = 2 if name.startswith("~/") else 0
@@ -231,7 +232,7 @@ def below(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
 
 
 def of_names(form: Form) -> Form:
-    """The form for values as long as names are; a longer one is one name, which nothing declares."""
+    """Return the form for values as long as names are; a longer one is an undeclared name."""
 
     def bounded(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
         if len(value) > LONGEST:
@@ -242,7 +243,7 @@ def of_names(form: Form) -> Form:
 
 
 def nothing(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
-    """Handled by code of its own (contact collisions)."""
+    """Return no names: contact collisions are handled by code of their own."""
     return ()
 
 

@@ -81,8 +81,8 @@ def insertions(hosts: Hosts, declared: Declared, naming: Naming) -> list[Inserti
 def _of_ros_1(
     host: etree._Element, section: VocabularySection, naming: Naming
 ) -> Iterator[Insertion]:
-    """The namespace of a ROS 1 plugin that is the root, or the model's name, which the text does not
-    say; with namespaces both, else the first alone."""
+    """Yield the namespace of a ROS 1 plugin that is the root or the model's name, which the text does
+    not have. With namespaces both are inserted, otherwise only the first."""
     for site in section.sites if has_own_names(section) else ():
         if site.kinds != ("namespace",) or site.default or site.form != "whole":
             continue
@@ -102,8 +102,8 @@ def _apart(
     naming: Naming,
     home: etree._Element | None,
 ) -> Iterator[Insertion]:
-    """A namespace for a node that takes no rules, and one rule that keeps the plugin's own node where
-    it is: rules for all nodes would be those of the first robot in the process."""
+    """Yield a namespace for a node that takes no rules, and one rule that keeps the plugin's own node
+    in its place. Rules for all nodes would be those of the first robot in the process."""
     if any(it.source == "__ns" and it.node for it in rules_in(home)):
         return
     parent, wrap = (host, "ros") if home is None else (home, "")
@@ -132,7 +132,7 @@ def lacks_namespace(
 
 
 def without(item: Insertion, release: str) -> str:
-    """What would be wrong without it, before the name."""
+    """Return the start of a comment: what would be wrong without the insertion."""
     if item.of_controllers and not controller_way(release).of_manager:
         return "all but controllers, whose rules are their spawner's, would share"
     if item.shared:
@@ -180,7 +180,7 @@ def _defaults(
 
 
 def query(step: str) -> str:
-    """The step as lxml's find takes it."""
+    """Return the step as lxml's find takes it."""
     tag, attribute, value = split_step(step)
     return f"{tag}[@{attribute}='{value}']" if attribute else tag
 
@@ -202,7 +202,7 @@ def _insertion(host: etree._Element, path: str, kind: str, old: str, new: str) -
 
 
 def _filling(made: Insertion, there: etree._Element, path: str) -> Insertion:
-    """The same for an element that is ``there`` and empty: its text alone."""
+    """Return the insertion for an existing empty element: its text alone."""
     parent = there.getparent()
     assert parent is not None, "a path has a step"
     step = split_path(path)[0][-1]
@@ -214,7 +214,7 @@ def _filling(made: Insertion, there: etree._Element, path: str) -> Insertion:
 def _remaps(
     host: etree._Element, section: VocabularySection, naming: Naming, home: etree._Element | None
 ) -> Iterator[Insertion]:
-    """A rule for each topic that only a remap can move, unless the file has one."""
+    """Yield a rule for each topic that only a remap can move, unless the file has one."""
     rules = rules_in(home)
     node, namespace = named(host, section)
     of_node = ("", "" if section.process_wide else node)

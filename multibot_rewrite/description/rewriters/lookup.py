@@ -13,8 +13,8 @@ from multibot_rewrite.description.rewriters.vocabulary.values import ROLES, Wire
 
 
 def look_up(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> list[VocabularySection]:
-    """The sections of these types that ``name`` means: a library file in any spelling, a class, an
-    element (``sensor`` also finds ``robot.sensor``, behind it), a sensor type or a block."""
+    """Return the sections of these types that ``name`` means: a library file in any spelling, a class,
+    an element (``sensor`` also finds ``robot.sensor``, after it), a sensor type or a block."""
     keys = spellings(name)
     found = [
         section
@@ -28,7 +28,7 @@ def look_up(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> list[Voc
 
 
 def spellings(name: str) -> set[str]:
-    """The keys under which a section for ``name`` may stand, as the loaders read it."""
+    """Return the keys under which a section for ``name`` may be found, as the loaders read it."""
     library = library_key(name.strip().rpartition("/")[2])
     return {name.strip(), library, name.strip().replace("ignition::gazebo::", "gz::sim::")}
 
@@ -43,23 +43,23 @@ def near_names(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> list[
 
 
 def block_of(site: SiteRow) -> str:
-    """The block that a row comes from, shared by several sections; empty for an own row."""
+    """Return the block that a row comes from, shared by several sections; empty for an own row."""
     type_, _, name = site.section.partition(" ")
     return name if type_ == "block" else ""
 
 
 def facts(section: VocabularySection) -> dict[str, str]:
-    """What each setting means -> its value, those that say nothing left out."""
+    """Return the meaning of each setting with its value, without empty ones."""
     found = {
         "about": section.about,
         "in": section.releases,
         "also called": " ".join(section.names[1:]),
-        "stands in": " ".join(section.at),
+        "is allowed in": " ".join(section.at),
         "chosen by": section.select,
         "shares": " ".join(f"[block {name}]" for name in section.blocks),
         "only a remap moves": " ".join(section.topics),
         **{role: _wired(it for it in section.wired if it.role == role) for role in ROLES},
-        "finds by bare name in the whole world": section.unique,
+        "looks up in the whole world": section.unique,
         "looks for": " ".join(section.hardwired),
         "remaps hold for": "the whole process" if section.process_wide else "",
         "never inserted into": "" if section.inserts else "it throws on unknown children",

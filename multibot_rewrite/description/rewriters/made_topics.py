@@ -30,8 +30,8 @@ STEM = ("stem",)
 
 
 def names_in_topics(claims: Iterable[Claim], declared: Declared, of_models: bool) -> Rules:
-    """The names in each topic of Gazebo that is made of some, by the number of the claim; ``of_models``
-    tells whether models get other names."""
+    """Return the names in each Gazebo topic that is built from names, by the number of the claim.
+    ``of_models`` tells whether models get other names."""
     stems: Stems | None = None
     found: dict[int, tuple[NamePart, ...]] = {}
     for at, claim in enumerate(claims):
@@ -56,12 +56,12 @@ def _is_topic(claim: Claim) -> bool:
 
 
 def given_topics(claims: Iterable[Claim]) -> frozenset[str]:
-    """The topics of Gazebo that a description gives in full, without the slash in front."""
+    """Return the topics of Gazebo that a description gives in full, without the slash in front."""
     return frozenset(it.value.strip().lstrip("/") for it in claims if _is_topic(it))
 
 
 def words_of(claims: Iterable[Claim]) -> Stems:
-    """The words that systems make topics of, each with the joints that are named beside it."""
+    """Return the words that systems build topics from, each with the joints that are named with it."""
     beside: dict[object, list[str]] = defaultdict(list)
     words: list[tuple[str, object]] = []
     for claim in claims:
@@ -78,7 +78,7 @@ def words_of(claims: Iterable[Claim]) -> Stems:
 
 
 def parts_of(value: str, stems: Stems, declared: Declared) -> Iterator[NamePart]:
-    """The names in a topic, in order; none where it begins with no model or word of this file."""
+    """Yield the names in a topic, in order; none if it begins with no model or word of this file."""
     bare = len(value) - len(value.lstrip().lstrip("/"))
     head = _HEAD.match(value, bare)
     at = head.end() if head else bare
@@ -108,6 +108,6 @@ def parts_of(value: str, stems: Stems, declared: Declared) -> Iterator[NamePart]
 
 
 def _longest(value: str, at: int, names: Iterable[str]) -> str:
-    """The longest of these names that stands at this place as whole words of the path."""
+    """Return the longest of these names that is at this place as whole words of the path."""
     there = (it for it in names if it and value.startswith(it, at))
     return max((it for it in there if _ENDS.match(value, at + len(it))), key=len, default="")

@@ -3,7 +3,7 @@
 
 A release whose Gazebo does not read them leaves them out, and so does a rewrite. Where they are read,
 they get the robot's name, and relative topics of the systems that stand below them are left alone:
-they would have the name twice. Which systems do is ``model_namespace:`` in the vocabulary.
+they would have the name twice. Which systems do is ``model_namespace:`` in the plugin definitions.
 
 Sources: gazebosim/sdformat 43fa4a69 (#1663, in sdformat17_17.0.0-pre1) sdf/1.12/model.sdf, world.sdf;
 gazebosim/gz-sim #3777 (scopedNamespace: those of nested models are joined, one with a leading slash
@@ -33,13 +33,13 @@ PLACES = {("element sdf.model", "@namespace"), ("element sdf.include", "namespac
 
 
 def is_model_namespace(site: SiteRow) -> bool:
-    """Does this site hold the namespace of a model?"""
+    """Return whether this site holds the namespace of a model."""
     return (site.section, site.path) in PLACES
 
 
 def below_models(claims: list[Claim], source: bytes, release: str) -> list[Claim]:
-    """The claims of a document as they are in ``release``: without the namespaces of models where these
-    are not read, else with relative topics below them as what they are, subtopics."""
+    """Return the claims of a document for ``release``: without the namespaces of models if these are
+    not read, otherwise with relative topics below them as subtopics."""
     if b"namespace" not in source:
         return claims
     made = []
@@ -56,16 +56,16 @@ def below_models(claims: list[Claim], source: bytes, release: str) -> list[Claim
 
 @cache
 def _subtopic(site: SiteRow) -> SiteRow:
-    """The same one each time: the proof knows sites by identity."""
+    """Return the site as a subtopic, the same object each time: the check knows sites by identity."""
     return site._replace(kinds=("subtopic",))
 
 
 def own_namespaces(
     claims: list[Claim], hosts: Iterable[tuple[_Element, VocabularySection]]
 ) -> list[Claim]:
-    """The claims as they are in a layout without namespaces: that of a plugin is a word like any other
-    where nothing else keeps robots apart, which is so of relative names in the code of a ROS 1 plugin
-    (a node of gzserver has no rules of its own, roscpp names.cpp) and of a ``helper``."""
+    """Return the claims for a layout without namespaces. A plugin's namespace is then a word like any
+    other if nothing else keeps robots apart: relative names in the code of a ROS 1 plugin (a node of
+    gzserver has no rules of its own, roscpp names.cpp) and a ``helper``."""
     fixed = {it for it, section in hosts if section.helper or has_own_names(section)}
     return [_word_of(it, fixed) for it in claims] if fixed else claims
 
@@ -107,7 +107,7 @@ def stands_below(claim: Claim) -> bool:
 
 
 def namespace_of(model: _Element) -> str:
-    """The namespace that a ``<model>`` or ``<include>`` is given, empty where it is none."""
+    """Return the namespace that a ``<model>`` or ``<include>`` is given, empty for none."""
     if model.tag == INCLUDE:
         return text_at(model, "namespace").strip()
     return model.get("namespace", "").strip()

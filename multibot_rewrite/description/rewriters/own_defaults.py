@@ -30,7 +30,7 @@ Hosts = Iterable[tuple[etree._Element, VocabularySection]]
 
 
 def default_of(host: etree._Element, default: str, naming: Naming) -> str:
-    """The value in force where the site is absent: a literal, or made from another topic."""
+    """Return the value in force if the site is absent: a literal, or made from another topic."""
     conditions, asked, default = default.rpartition("?")
     if asked and not all(_holds(host, condition) for condition in conditions.split(",")):
         return ""
@@ -51,8 +51,8 @@ def _holds(host: etree._Element, condition: str) -> bool:
 
 
 def filled(host: etree._Element, default: str) -> str:
-    """The default with its names in place, ``MODEL`` for that of the model; empty where one is not
-    there."""
+    """Return the default with its names filled in, ``MODEL`` for that of the model; empty if one is
+    missing."""
     words = {it: _own(host, it) for it in _SLOT.findall(default)}
     return _SLOT.sub(lambda slot: words[slot[1]], default) if all(words.values()) else ""
 
@@ -77,15 +77,15 @@ def _own(host: etree._Element, word: str) -> str:
 
 
 def model_of(host: etree._Element) -> etree._Element:
-    """The model that a plugin stands in: the root, of a URDF."""
+    """Return the model that contains a plugin: the root, in a URDF."""
     return next(host.iterancestors("model"), host.getroottree().getroot())
 
 
 def second_senders(hosts: Hosts, naming: Naming) -> frozenset[etree._Element]:
-    """The systems that would send a transform which another one of their model sends, and those of
-    nested models, of which robot_state_publisher knows nothing.
+    """Return the systems that would send a transform which another one of their model sends, and those
+    of nested models, which robot_state_publisher does not know.
 
-    Their frames stay below the model's name, where they are in nobody's way.
+    Their frames stay below the model's name, where they do not collide.
     """
     sections = dict(hosts)
     senders = [it for it, section in sections.items() if frame_sites(it, section, naming)]

@@ -55,11 +55,11 @@ _Piece: TypeAlias = "Callable[[list[_State], int], int]"
 
 
 class PatternError(ValueError):
-    """Not a pattern, or more than is looked at: back references, assertions, great size."""
+    """Not a pattern, or more than is checked: back references, assertions, great size."""
 
 
 def pieces_of(pattern: str) -> Iterator[re.Match[str]]:
-    """The characters, escapes, classes and counts of a pattern."""
+    """Return the characters, escapes, classes and counts of a pattern."""
     return _PIECES.finditer(pattern)
 
 
@@ -67,7 +67,7 @@ class Pattern:
     """A pattern for whole names. What is found out for one name serves the next."""
 
     def __init__(self, pattern: str) -> None:
-        """Raises PatternError."""
+        """Read the pattern; raises PatternError."""
         if len(pattern) > _LENGTH:
             raise PatternError(f"longer than {_LENGTH} characters")
         pieces = deque(piece[0] for piece in pieces_of(_bytes(pattern)))
@@ -96,7 +96,7 @@ class Pattern:
         return 0 in self._reached(here, {_END})
 
     def _reached(self, states: Iterable[int], places: Container[str]) -> frozenset[int]:
-        """These and all that follow without a character."""
+        """Return these states and all that follow without a character."""
         found = set(states)
         waiting = list(found)
         while waiting:
@@ -109,7 +109,7 @@ class Pattern:
 
 
 def _bytes(text: str) -> str:
-    """The bytes of a text, as characters: ``std::regex`` knows no others."""
+    """Return the bytes of a text, as characters: ``std::regex`` knows no others."""
     return text.encode("utf-8", "surrogateescape").decode("latin-1")
 
 

@@ -59,14 +59,14 @@ class _Node(NamedTuple):
         return f"/{bare}/" if bare else "/"
 
     def full(self, name: str) -> str:
-        """A name as rcl expands it for this node."""
+        """Return a name as rcl expands it for this node."""
         return expand(name, self.namespace, self.name)
 
 
 def names_in_rules(
     claims: Iterable[Claim], served: Iterable[tuple[etree._Element, VocabularySection]]
 ) -> Rules:
-    """The names in each claimed rule, by the number of the claim."""
+    """Return the names in each claimed rule, by the number of the claim."""
     rules = [(at, claim) for at, claim in enumerate(claims) if claim.site.form in FORMS]
     sections = dict(served) if rules else {}
     nodes: dict[etree._Element, _Node] = {}
@@ -98,7 +98,7 @@ def ros_home(host: etree._Element, section: VocabularySection) -> etree._Element
 
 
 def rules_in(home: etree._Element | None) -> list[RemapRule]:
-    """The remap rules in a plugin's ROS settings that rcl applies, in its order."""
+    """Return the remap rules in a plugin's ROS settings that rcl applies, in its order."""
     if home is None:
         return []
     arguments = (it for it in home.iterchildren("argument") if _flag(it) in ("", *_REMAPS))
@@ -107,7 +107,7 @@ def rules_in(home: etree._Element | None) -> list[RemapRule]:
 
 
 def named(host: etree._Element, section: VocabularySection) -> tuple[str, str]:
-    """The name and namespace of a plugin's node, under the rules for these."""
+    """Return the name and namespace of a plugin's node, after the rules for these."""
     home = ros_home(host, section)
     # Beside a helper in the plugin's namespace the node is where a rule for its own name places it.
     sites = section.sites if section.helper else ()
@@ -122,14 +122,14 @@ def named(host: etree._Element, section: VocabularySection) -> tuple[str, str]:
 
 
 def _flag(argument: etree._Element) -> str:
-    """The flag that an ``<argument>`` is the value of, as ``-p``; empty where there is none."""
+    """Return the flag before an ``<argument>`` that is its value, as ``-p``; empty without one."""
     before = next(argument.itersiblings("argument", preceding=True), None)
     text = "" if before is None else text_of(before)
     return text if text.startswith("-") and text not in _ALONE else ""
 
 
 def _asked(host: etree._Element, section: VocabularySection) -> Iterator[_Asked]:
-    """The names in its code that hold no parameter, and the parameters that hold names."""
+    """Yield the names in its code without a parameter, and the parameters that hold names."""
     yield from (_Asked(name, "") for name in section.topics)
     for site in section.sites:
         if site.role == "uses" and site.form == "whole" and site.kinds[0] in HELD:
@@ -153,8 +153,8 @@ def _names(claim: Claim, node: _Node, process_wide: bool) -> Iterator[NamePart]:
 
 
 def _left(source: str, at: int, node: _Node) -> Iterator[NamePart]:
-    """The names in a left side that starts at character ``at``: none in a relative one for an absolute
-    name, since robots' names may be put into these at different places."""
+    """Yield the names in a left side that starts at character ``at``: none in a relative one for an
+    absolute name, since robots' names may be put into these at different places."""
     full = node.full(source)
     asked = node.asked.get(full)
     if asked is not None and asked.name.startswith("/"):
@@ -179,8 +179,8 @@ def _left(source: str, at: int, node: _Node) -> Iterator[NamePart]:
 
 
 def _moves(full: str, asked: _Asked | None, stem: str, node: _Node) -> bool:
-    """Does the name go with the namespace of its node? One of an unknown node does, most names being
-    relative."""
+    """Return whether the name goes with the namespace of its node. One of an unknown node does, since
+    most names are relative."""
     if not full.startswith(node.root):
         return False
     if asked is not None or stem or not node.known:

@@ -59,8 +59,8 @@ Spelling = tuple[Renamed, ...]
 def resolved_names(
     claims: Iterable[Claim], declared: Declared, apart: bool = False, rules: Rules = NO_RULES
 ) -> list[tuple[ResolvedName, ...]]:
-    """The names in each claimed value, resolved; claims of equal values share theirs. ``apart`` as
-    for ``resolve``; ``rules`` are the names in remap rules of plugins."""
+    """Return the names in each claimed value, resolved; claims of equal values share theirs. ``apart``
+    as for ``resolve``; ``rules`` are the names in remap rules of plugins."""
     known: dict[tuple[object, str], tuple[ResolvedName, ...]] = {}
     result = []
     for at, claim in enumerate(claims):
@@ -97,8 +97,8 @@ def _of_parts(
 
 
 def names_in(claim: Claim, declared: Declared) -> tuple[NamePart, ...]:
-    """The names in a claimed value; none where it is in the scope of another model. The kind of a
-    scoped one is decided where the file has it as several."""
+    """Return the names in a claimed value; none if it is in the scope of another model. The kind of a
+    scoped one is decided if the file has it as several."""
     site = claim.site
     parts = FORMS[site.form](claim.value, site.kinds, declared)
     if site.form != "scoped" or not parts:
@@ -123,13 +123,13 @@ def is_reached(claim: Claim, naming: Naming) -> bool:
 
 
 def takes_empty(site: SiteRow) -> bool:
-    """An empty text is a value too: the prefix of names that have none yet."""
+    """Return whether an empty text is a value too: the prefix of names that have none yet."""
     is_one = site.form == "prefix" and site.role == "uses" and site.empty == "itself"
     return is_one and "@" not in site.path.rpartition("]")[2]
 
 
 def spell_default(site: SiteRow, value: str, declared: Declared, naming: Naming) -> Spelling:
-    """What changes in a value that would be at a site if the file had it."""
+    """Return the changes in a value that would be at a site if the file had it."""
     if site.form in IN_FRONT and naming.affix != PREFIX:
         return ()
     result = []
@@ -142,12 +142,12 @@ def spell_default(site: SiteRow, value: str, declared: Declared, naming: Naming)
 
 
 def renamed_at(at: int, kind: str, text: str, namespaced: bool, there: Affix) -> Renamed:
-    """A name that starts at character ``at`` of its value and has the affix ``there``."""
+    """Return a name that starts at character ``at`` of its value and has the affix ``there``."""
     return Renamed(kind, text, namespaced, there._replace(at=at + there.at) if at else there)
 
 
 def must_be_declared(site: SiteRow) -> bool:
-    """A use of a name that this file must declare."""
+    """Return whether this file must declare the names that are used at this site."""
     if site.form in ("scoped", "member"):
         return True
     return site.kinds[0 if site.form == "suffixed" else -1] in CLOSED_KINDS
@@ -188,14 +188,14 @@ def resolve(
 
 
 def respelled(value: str, spelling: Spelling, robot: str) -> str:
-    """The value with every affix in place."""
+    """Return the value with every affix in place."""
     for name in reversed(spelling):
         value = name.affix.spell(value, robot)
     return value
 
 
 def spelled_names(declared: Declared, naming: Naming, robot: str) -> Declared:
-    """Declarations by the names they have after a rewrite for ``robot``."""
+    """Return declarations by the names they have after a rewrite for ``robot``."""
     return {
         kind: {spelled(naming, robot, kind, name): claim for name, claim in names.items()}
         for kind, names in declared.items()
@@ -203,7 +203,7 @@ def spelled_names(declared: Declared, naming: Naming, robot: str) -> Declared:
 
 
 def stripped_names(declared: Declared, naming: Naming, robot: str) -> Declared:
-    """Declarations by the names they had before a rewrite for ``robot``."""
+    """Return declarations by the names they had before a rewrite for ``robot``."""
     return {
         kind: {unspelled(naming, kind, name, robot): claim for name, claim in names.items()}
         for kind, names in declared.items()
@@ -217,7 +217,7 @@ def unspelled(naming: Naming, kind: str, name: str, robot: str) -> str:
 
 
 def scope_of(element: etree._Element) -> etree._Element | None:
-    """The model (or robot) whose names a value of ``element`` is looked up among.
+    """Return the model (or robot) in which names of ``element`` are looked up.
 
     A model's own pose is looked up among its siblings.
     """

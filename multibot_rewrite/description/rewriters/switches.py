@@ -17,17 +17,17 @@ if TYPE_CHECKING:
 # As sdformat reads booleans (Param.cc, ValueFromStringImpl): case and white space around do not
 # count, any other text leaves the default.
 def is_true(text: str) -> bool:
-    """Does this text of a parameter turn it on?"""
+    """Return whether this text of a parameter turns it on."""
     return text.strip().lower() in ("true", "1")
 
 
 def is_false(text: str) -> bool:
-    """Does this text of a parameter turn it off?"""
+    """Return whether this text of a parameter turns it off."""
     return text.strip().lower() in ("false", "0")
 
 
 def switched_off(plugin: _Element, section: VocabularySection) -> dict[str, str]:
-    """The topics that no switch of theirs turns on, and what would."""
+    """Return the topics that none of their switches turns on, with the parameters that would."""
     found = [it.split("=") for it in section.switches]
     on = set()
     for parameter, topic, *usual in found:

@@ -12,7 +12,7 @@ from lxml import etree
 
 
 def text_of(element: etree._Element) -> str:
-    """The text in force, white space around it aside; empty where there is none."""
+    """Return the text in force, without white space around it; empty without one."""
     text = (element.text or "").strip()
     if text or not len(element):
         return text
@@ -25,7 +25,7 @@ def text_of(element: etree._Element) -> str:
 
 
 def text_at(element: etree._Element, path: str) -> str:
-    """The text of the first element at ``path``; empty where there is none."""
+    """Return the text of the first element at ``path``; empty without one."""
     # For a single tag this takes a third of the time of find, which reads its path anew.
     found = element.find(path) if "/" in path else next(element.iterchildren(path), None)
     return "" if found is None else text_of(found)
@@ -36,7 +36,7 @@ _KEEPING = etree.XPath("gazebo[preserveFixedJoint or disableFixedJointLumping]")
 
 
 def kept_joints(root: etree._Element) -> frozenset[str]:
-    """The fixed joints that a block keeps from being merged (sdformat, parser_urdf.cc)."""
+    """Return the fixed joints that a block keeps from being merged (sdformat, parser_urdf.cc)."""
     blocks: list[etree._Element] = _KEEPING(root)  # type: ignore[assignment]
     return frozenset(
         block.get("reference", "")
@@ -47,6 +47,6 @@ def kept_joints(root: etree._Element) -> frozenset[str]:
 
 
 def end_of(joint: etree._Element, tag: str) -> str:
-    """The link at an end of a URDF's joint, its ``parent`` or ``child``; empty without one."""
+    """Return the link at an end of a URDF's joint, its ``parent`` or ``child``; empty without one."""
     found = joint.find(tag)
     return "" if found is None else found.get("link", "")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The tree of rewriters: the vocabulary's sections, nested the way documents nest.
+"""The tree of rewriters: the sections of plugin definitions, nested the way documents nest.
 
 A ``Node`` answers, for one element, which of its attributes and text are sites and which node
 serves each child tag. Which plugin or hardware class an element is decides its node; those nodes
@@ -36,7 +36,7 @@ _GZ_SIM, _GZ_CLASSES = "gz-sim", "gz::sim::systems::"
 
 
 def qualified(name: str) -> str:
-    """A tag or attribute of the vocabulary as lxml writes it."""
+    """Return a tag or attribute of plugin definitions as lxml writes it."""
     prefix, colon, local = name.partition(":")
     return f"{{{NAMESPACES[prefix]}}}{local}" if colon and prefix in NAMESPACES else name
 
@@ -81,7 +81,7 @@ class TreeNode:
 
     @classmethod
     def later(cls, element_name: str, make: Callable[[str], TreeNode]) -> TreeNode:
-        """A node that becomes what ``make`` gives for its name when something asks for more."""
+        """Return a node that becomes the result of ``make`` for its name when more of it is needed."""
         node = cls.__new__(cls)
         node.element_name, node._make = element_name, make
         return node
@@ -163,10 +163,10 @@ class Tree:
             assert node.section is not None
 
     def format_of(self, root: _Element, likely: str = "") -> str:
-        """The section of a root element, empty where there is none.
+        """Return the section of a root element, empty without one.
 
-        Of those with its tag it is the one that knows most of its children, else the ``likely`` one
-        or the plain one.
+        Of those with its tag it is the one that knows most of its children, or the ``likely`` one or
+        the plain one.
         """
         found = [name for name in self.formats if _tag(name) == root.tag]
         found.sort(key=lambda name: (name != likely, len(name)))
@@ -233,7 +233,7 @@ def _is_another(element: _Element, key: str, section: VocabularySection) -> bool
 
 
 def _tag(name: str) -> str:
-    """The tag that a section is for: ``srdf.group`` is about ``<group>``."""
+    """Return the tag that a section is for: ``srdf.group`` is about ``<group>``."""
     return qualified(name.rpartition(".")[2])
 
 
@@ -242,13 +242,13 @@ def _wrong(section: VocabularySection, message: str) -> VocabularyError:
 
 
 def plugin_keys(element: _Element) -> list[str]:
-    """The names a ``<plugin>`` may be known by: its library, else its class (gz-sim accepts both)."""
+    """Return the names a ``<plugin>`` may be known by: its library, or its class."""
     known = library_and_class(element.get("filename", ""), element.get("name", ""))
     return known if element.find("ros") is None else [*known, ANY_WITH_ROS]
 
 
 def library_and_class(filename: str, name: str) -> list[str]:
-    """The same without what stands in it.
+    """Return the names for a library and a class, without the plugin's contents.
 
     gz-sim's loader reads ``ignition-gazebo`` as ``gz-sim`` and takes versioned library names.
     """
@@ -262,10 +262,10 @@ def library_and_class(filename: str, name: str) -> list[str]:
 def values_of_plugin(
     element: _Element, vocabulary: Vocabulary, of_ros_1: bool = False
 ) -> Values | None:
-    """What is known of a plugin, by its library, else by its class.
+    """Return the known values of a plugin, by its library, or by its class.
 
-    A class of gz-sim in a library of another name is another class: asv_wave_sim has a Hydrodynamics
-    of its own.
+    A class of gz-sim in a library of another name is another class: asv_wave_sim has a Hydrodynamics of
+    its own.
     """
     library, *others = plugin_keys(element)
     forked = library and not library.startswith(_GZ_SIM)
@@ -283,13 +283,13 @@ def library_key(library: str) -> str:
 
 
 def hardware_keys(element: _Element) -> list[str]:
-    """The class a ``<ros2_control>`` loads."""
+    """Return the class a ``<ros2_control>`` loads."""
     class_ = text_at(element, "hardware/plugin")
     return [class_] if class_ else []
 
 
 def sensor_keys(element: _Element) -> list[str]:
-    """The type of a ``<sensor>``."""
+    """Return the type of a ``<sensor>``."""
     return [element.get("type", "").strip()]
 
 
@@ -304,7 +304,7 @@ def _flavour(found: Sequence[VocabularySection], element: _Element) -> Vocabular
     """ROS 1 and ROS 2 plugins share file names; the children tell them apart, ROS 2 where none do.
 
     A ``ros`` child is ROS 2, whatever was left from before: nothing in ROS 1 reads one. What decides
-    for the whole document is in the vocabulary already (``sources/dialect.py``).
+    for the whole document is in the plugin definitions already (``sources/dialect.py``).
     Source: gazebo_ros_pkgs branches noetic-devel (camelCase, robotNamespace), ros2 (snake_case).
     """
     if element.find("ros") is not None:
@@ -317,8 +317,8 @@ def _flavour(found: Sequence[VocabularySection], element: _Element) -> Vocabular
 
 @lru_cache(maxsize=16)
 def builtin_tree(vocabulary: tuple[str, ...], release: str, ros: str = "") -> Tree:
-    """The tree of a release: of the vocabulary built in, installed, and named in ``vocabulary``; made
-    once. ``ros`` is "1" or "2" where it is known which of them loads the plugins."""
+    """Return the tree of a release, made once: built-in and installed definitions, and the files
+    ``vocabulary``. ``ros`` is "1" or "2" if it is known which of them loads the plugins."""
     sections = load_vocabulary(vocabulary, release, ros=ros)
     try:
         tree = Tree(sections)

@@ -60,7 +60,7 @@ class Access:
         self.sourced = [os.path.abspath(it) for it in (*_prefixes(), *_listed("ROS_PACKAGE_PATH"))]
 
     def readable(self, name: str) -> str:
-        """The path to open for ``name``; raises NotAllowedError."""
+        """Return the path to open for ``name``; raises NotAllowedError."""
         if self.reach.trust or name == self.path:
             return name
         # A workspace that was sourced is trusted, with the links that colcon makes in it.
@@ -77,7 +77,7 @@ class Access:
         return real
 
     def package(self, name: str) -> str:
-        """The folder for $(find NAME), which may be read from now on; raises LookupError."""
+        """Return the folder for $(find NAME), which may be read from now on; raises LookupError."""
         if os.path.basename(name) != name or name in ("", os.curdir, os.pardir):
             raise LookupError(f"{name!r} is no name of a package")
         folder = (self.find and self.find(name)) or _installed(name) or self._beside(name)
@@ -88,7 +88,7 @@ class Access:
         return folder
 
     def _beside(self, name: str) -> str:
-        """A package of the same repository, or beside the file's own: no ROS has to be sourced."""
+        """Return a package of the same repository or workspace: no ROS has to be sourced."""
         repository = _repository(os.path.dirname(_real(self.path)[0]))
         # A workspace has its repositories side by side in src.
         above = os.path.dirname(repository)
@@ -100,7 +100,7 @@ class Access:
         return folder if os.path.isfile(os.path.join(folder, "package.xml")) else ""
 
     def variable(self, name: str) -> str | None:
-        """The value of a variable of the environment; raises NotAllowedError for one that is set."""
+        """Return a variable of the environment; raises NotAllowedError for a forbidden one."""
         value = variable(name)
         if value is not None and not self.reach.trust and not name.startswith(VARIABLES):
             hint = "is set, but xacro sees ROS's variables alone"
@@ -108,7 +108,7 @@ class Access:
         return value
 
     def matching(self, pattern: str) -> list[str]:
-        """The files that a pattern with ``*``, ``?`` or ``[`` names, sorted; raises NotAllowedError."""
+        """Return the sorted files for a pattern with ``*``, ``?`` or ``[``; raises NotAllowedError."""
         found, seen = [os.sep if os.path.isabs(pattern) else ""], 0
         for part in pattern.split(os.sep):
             if not any(it in part for it in "*?["):
@@ -126,7 +126,8 @@ class Access:
         return sorted(it for it in found if self.readable(it) and _is_there(it))
 
     def read(self, name: str) -> bytes:
-        """The bytes of a file, one more than may be if it has more; raises NotAllowedError, OSError.
+        """Return the bytes of a file, one more than allowed if it is larger; raises NotAllowedError,
+        OSError.
 
         Of a package that is not built its sources count: a build may install files elsewhere.
         """
@@ -154,7 +155,7 @@ def check_file(path: str) -> None:
 
 @outside
 def _content(path: str, trust: bool) -> bytes | None:
-    """The bytes of a file, one more than may be; None for a device or pipe that is not trusted."""
+    """Return the bytes of a file, one more than allowed; None for an untrusted device or pipe."""
     if (text := open_text(path)) is not None:
         return text
     flags = os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC
@@ -170,7 +171,7 @@ def _is_there(path: str) -> bool:
 
 @outside
 def _real(path: str) -> tuple[str, str]:
-    """A file without links in its folder, and the file that it is a link to."""
+    """Return a file with the links of its folder resolved, and the file that it is a link to."""
     folder, name = os.path.split(os.path.abspath(path))
     return os.path.join(os.path.realpath(folder), name), os.path.realpath(path)
 
@@ -193,13 +194,14 @@ def _homes(path: str) -> tuple[str, ...]:
 
 
 def _marked(folder: str, mark: str) -> str:
-    """The nearest folder above that holds ``mark``; empty if there is none."""
+    """Return the nearest folder above that holds ``mark``; empty if there is none."""
     return next((it for it in _above(folder) if os.path.lexists(os.path.join(it, mark))), "")
 
 
 def _repository(folder: str) -> str:
-    """The repository that a folder is in; in a copy without ``.git`` the nearest folder above the
-    package that has what only a repository has, else one that is called src. Empty if there is none."""
+    """Return the repository that a folder is in. In a copy without ``.git`` it is the nearest folder
+    above the package with a file that only repositories have, or one called src. Empty if there is
+    none."""
     if known := _marked(folder, ".git"):
         return known
     package = _marked(folder, "package.xml")
@@ -229,7 +231,7 @@ def _listed(name: str) -> list[str]:
 
 @outside
 def _installed(name: str) -> str:
-    """The folder of an installed package, as ament_index_python finds it; empty if there is none."""
+    """Return the folder of an installed package, as ament_index_python finds it, or ""."""
     for prefix in _prefixes():
         if os.path.isfile(os.path.join(prefix, "share/ament_index/resource_index/packages", name)):
             return os.path.join(prefix, "share", name)

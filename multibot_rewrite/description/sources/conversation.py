@@ -72,7 +72,7 @@ class Sources:
         self.left = MOST_READ
 
     def read(self, name: str) -> bytes:
-        """The bytes of a file, the same each time; raises NotAllowedError and OSError."""
+        """Return the bytes of a file, the same each time; raises NotAllowedError and OSError."""
         if name not in self.texts:
             path = self.access.readable(name)
             other = self.changed.get(real_path(path)) if self.changed else None
@@ -153,7 +153,7 @@ def _answer(data: bytes, sources: Sources) -> bytes:
 
 
 def _result(it: XacroChild, data: bytes) -> Result:
-    """The rest of what a child tells; raises what converse catches."""
+    """Return the rest of a child's answer; raises the errors that converse catches."""
     report = load_json(data)
     if "missing" in report:
         raise InputError(f"{_text(report['missing'])}; pip install xacro, or source ROS 2")
@@ -205,7 +205,7 @@ def _numbers(data: bytes, together: int) -> array[int]:
 
 
 def _ended(path: str, died_of: int, seconds: float) -> str:
-    """The message for a child that gave no answer."""
+    """Return the message for a child that gave no answer."""
     unrepeatable()
     if died_of in (signal.SIGALRM, signal.SIGXCPU):
         why = f"it took more than {seconds:g} s; does a macro call itself? --trust lifts the limit"

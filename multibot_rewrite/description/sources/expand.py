@@ -81,9 +81,9 @@ def once_kept(key: object, expanded: Callable[[], _T]) -> _T:
 def expand(
     path: str, arguments: Mapping[str, str], find: Find | None = None, reach: Reach = BOUNDED
 ) -> bytes:
-    """The URDF text of a xacro file, UTF-8; raises InputError with xacro's reason.
+    """Return the URDF text of a xacro file, UTF-8; raises InputError with xacro's reason.
 
-    ``find`` is asked for packages before a sourced ROS is; ``reach`` says what the file may use.
+    ``find`` is asked for packages before a sourced ROS; ``reach`` limits what the file may use.
     """
     return expand_whole(path, arguments, find, reach).data
 
@@ -91,7 +91,7 @@ def expand(
 def expand_whole(
     path: str, arguments: Mapping[str, str], find: Find | None = None, reach: Reach = BOUNDED
 ) -> Expanded:
-    """The same with the files that were read."""
+    """Return the URDF text of a xacro file, and the files that were read."""
 
     def expanded() -> Expanded:
         check_file(path)
@@ -112,8 +112,8 @@ def expand_traced(
     in_pieces: bool = False,
     changed: Mapping[str, bytes] = MappingProxyType({}),
 ) -> Expansion:
-    """The same for a file that holds ``data``, with the origins of the elements, and of the pieces of
-    their values where they are asked for. Files that are ``changed`` have these texts, by real path."""
+    """Return the URDF text of a file with ``data``, with the origins of the elements, and of the pieces
+    of their values if requested. Files that are ``changed`` have these texts, by real path."""
 
     def expanded() -> Expansion:
         sources = Sources(Access(path, reach, find), {path: data}, changed)
@@ -194,7 +194,7 @@ def _message(path: str, failure: Failure, reason: str, trace: Trace) -> str:
 
 
 def _macros(trace: Trace, failure: Failure, reason: str) -> str:
-    """The macro that failed, and the line of its call."""
+    """Return the macro that failed, and the line of its call."""
     calls = trace.calls(failure.call)
     if not calls or "unknown macro" in reason:
         return ""

@@ -25,7 +25,7 @@ _FIND = lazy_compile(r"\$\(find(?:-pkg-share)?\s+([\w.-]+)\)/*")
 
 
 def whole_robots(file: str) -> list[str]:
-    """The xacros of its package that include a file, at any depth, and that no other one includes."""
+    """Return the xacros of its package that include a file and are not included themselves."""
     path = os.path.abspath(file)
     home = (package_of(path) or ("", os.path.dirname(path)))[1]
     above = includers(((it, data_of_file(it)) for it in _xacros(home)), composed=True)
@@ -38,7 +38,7 @@ def whole_robots(file: str) -> list[str]:
 
 @outside
 def robot_instead(file: str) -> str:
-    """What to give in place of a description without a link; ``file`` may be its name for messages."""
+    """Return the hint for a description without a link; ``file`` may be its shown name."""
     path = file.removesuffix(" (expanded)")
     data = data_of_file(path)
     users = whole_robots(path) if has_xacro(data) else []
@@ -80,7 +80,7 @@ def parts_among(paths: Iterable[str], above: Mapping[str, Collection[str]]) -> s
 
 
 def data_of_file(path: str) -> bytes:
-    """The bytes of a file, none of one that is too large or cannot be read."""
+    """Return the bytes of a file, none if it is too large or cannot be read."""
     with suppress(OSError, ValueError):
         return read_bytes(path, MOST_BYTES)
     return b""

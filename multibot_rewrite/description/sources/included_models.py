@@ -38,9 +38,9 @@ _END = lazy_compile(COMMENT + rb"|</include\s*>|<include\b[^<>]*/>")
 
 
 def with_includes(data: bytes, file: str, above: tuple[str, ...] = ()) -> bytes:
-    """The text of a model with every included model in it that is found; others stay as they are.
+    """Return the text of a model with each included model in it that is found; others stay.
 
-    ``above``: the files that include this one. Raises InputError where a model includes itself.
+    ``above``: the files that include this one. Raises InputError if a model includes itself.
     """
     document = _document(data, file) if b"<include" in data and len(above) <= _DEEPEST else None
     if document is None or document.root.tag != "sdf" or document.root.find("world") is not None:
@@ -61,7 +61,7 @@ def with_includes(data: bytes, file: str, above: tuple[str, ...] = ()) -> bytes:
 
 
 def _made(include: _Element, file: str, above: tuple[str, ...]) -> bytes:
-    """What stands in place of an include; nothing where its model is not found or not as new."""
+    """Return the text in place of an include; nothing if its model is not found or too new."""
     uri = text_at(include, "uri")
     path = model_file(uri, os.path.dirname(os.path.abspath(file)))
     if not path:
@@ -105,7 +105,7 @@ def _root(data: bytes, path: str) -> _Element | None:
 
 
 def _nested(include: _Element, model: _Element) -> _Element:
-    """The model with the name, pose and plugins of its include."""
+    """Return the model with the name, pose and plugins of its include."""
     model.set("name", _name(include, model))
     if text_at(include, "placement_frame"):
         model.set("placement_frame", text_at(include, "placement_frame"))
@@ -119,7 +119,7 @@ def _nested(include: _Element, model: _Element) -> _Element:
 
 
 def _merged(include: _Element, model: _Element) -> Iterator[_Element]:
-    """The parts of the model, placed from a frame that stands for it."""
+    """Yield the parts of the model, placed from a frame in its place."""
     proxy = f"_merged__{_name(include, model)}__model__"
     first = model.find("link")
     usual = first.get("name", "") if first is not None else ""
@@ -136,7 +136,7 @@ def _merged(include: _Element, model: _Element) -> Iterator[_Element]:
 
 
 def _placed(part: _Element, proxy: str) -> None:
-    """What a part says of its model it says of the frame for it."""
+    """Change the references of a part to its model into references to the frame for it."""
     if part.tag in ("link", "model") and part.find("pose") is None:
         etree.SubElement(part, "pose").text = "0 0 0 0 0 0"
     if part.tag == "frame" and part.get("attached_to", _OWN) == _OWN:
@@ -158,7 +158,7 @@ def _name(include: _Element, model: _Element) -> str:
 
 
 def model_file(uri: str, folder: str) -> str:
-    """The file of an included model, looked up as Gazebo does, then beside the file's folder."""
+    """Return the file of an included model, looked up as Gazebo does, then near the file's folder."""
     name = uri.removeprefix("model://").strip("/")
     if not name or "://" in name or name.startswith("/") or ".." in name.split("/"):
         return ""
@@ -172,7 +172,7 @@ def model_file(uri: str, folder: str) -> str:
 
 
 def _in_folder(path: str) -> str:
-    """The newest file that the model.config of a folder names, or a file itself."""
+    """Return the newest file that the model.config of a folder names, or the file itself."""
     if path.endswith(".sdf"):
         return path if is_file(path) else ""
     config = os.path.join(path, "model.config")

@@ -55,7 +55,7 @@ NO_FILES = FilesRead()
 
 
 def joined_reads(one: FilesRead, other: FilesRead) -> FilesRead:
-    """What was read for two descriptions of one robot: an argument is for one or for both."""
+    """Return the files and arguments read for two descriptions of one robot."""
     known = dict.fromkeys((*one.arguments, *other.arguments))
     unread = dict.fromkeys(it for it in (*one.unread, *other.unread) if it not in known)
     return FilesRead((*one.files, *other.files), tuple(known), tuple(unread))
@@ -63,7 +63,7 @@ def joined_reads(one: FilesRead, other: FilesRead) -> FilesRead:
 
 class Job(NamedTuple):
     """Bytes, options and file names; ``file`` is the name in messages, ``urdf`` the bytes and the
-    name of the URDF beside an SRDF; ``own`` says more where it is one robot's own; ``release`` is that
+    name of the URDF of an SRDF; ``own`` says more where it is one robot's own; ``release`` is that
     whose facts count, ``why`` what says it, ``ros`` the ROS that
     loads its plugins where that is known; ``aside`` are the systems that the world has to load,
     names and texts. It holds no parsed document, so it can be pickled."""
@@ -87,12 +87,12 @@ class Job(NamedTuple):
 
     @property
     def urdf_declarations(self) -> Declared:
-        """What the URDF beside an SRDF declares; raises InputError."""
+        """What the URDF of an SRDF declares; raises InputError."""
         return declarations(*self.urdf, self.tree) if self.urdf else NOTHING
 
     @property
     def inventories(self) -> list[Inventory]:
-        """What is in the description, and in the URDF beside an SRDF; raises InputError."""
+        """What is in the description, and in the URDF of an SRDF; raises InputError."""
         tree, layout = self.tree, self.naming.read_as
         own = collect(read_document(self.data, self.file), tree, self.urdf_declarations, layout)
         urdf = [collect(read_document(*self.urdf), tree, layout=layout)] if self.urdf else []
@@ -134,7 +134,7 @@ def read_jobs(
     release: str,
     aside: bool = False,
 ) -> dict[str, Job]:
-    """The job of each robot: one for all that the arguments do not name. Raises as ``read_job``."""
+    """Return the job of each robot, one for all unnamed in the arguments. Raises as ``read_job``."""
     given = xacro_args or {}
     read = reader(source, naming, urdf, tuple(vocabulary), file, trust, release, aside)
     named = [robot for robot in robots if name_robot(given, [robot])]
@@ -147,7 +147,7 @@ def read_jobs(
 
 
 def _check_meant(given: Arguments, own: Iterable[str], others: Sequence[str]) -> None:
-    """An argument that makes names of one robot is not for another one."""
+    """Raise UsageError if an argument that makes names of one robot is given for another one."""
     for robot in own:
         named = {name: text for name, text in given.items() if name_robot({name: text}, [robot])}
         values = " ".join(f"{name}:={text}" for name, text in named.items())
@@ -169,9 +169,10 @@ def reader(
     release: str,
     aside: bool = False,
 ) -> Reader:
-    """Reads the sources with xacro arguments, with the same ones once; raises as ``read_job``.
+    """Return a function that reads the sources with xacro arguments, the same ones once; raises as
+    ``read_job``.
 
-    Without a ``release`` it is the one that the sources say.
+    Without a ``release`` it is the one in the sources.
     """
 
     @cache
@@ -195,7 +196,7 @@ def reader(
 
 
 def _files_read(args: Arguments, texts: Sequence[SourceText]) -> FilesRead:
-    """An argument is for a URDF, its SRDF, or both."""
+    """Return the files and arguments that were read; an argument is for a URDF, its SRDF, or both."""
     each = [it.known for it in texts if it.known is not None]
     files = tuple(path for it in texts for path in it.read)
     if not each:
@@ -209,8 +210,8 @@ def _files_read(args: Arguments, texts: Sequence[SourceText]) -> FilesRead:
 def job_for(
     read: Reader, given: Arguments, words: Sequence[str], common: Collection[str] = ()
 ) -> Job:
-    """The job of the robot with these words, which arguments that are ``common`` to robots do not
-    name; raises as ``read_job``."""
+    """Return the job of the robot with these words. Arguments that are ``common`` to robots do not name
+    it; raises as ``read_job``."""
     job = read(filled(given, *words[:1]))
     if not name_robot(given, words, common):
         return job
@@ -247,8 +248,8 @@ def job_for(
 def _plain(
     read: Reader, given: Arguments, words: Sequence[str], common: Collection[str]
 ) -> Job | None:
-    """The sources without the arguments that name the robot: those that have no default are empty.
-    None where nothing is known of names without them."""
+    """Return the sources with empty values for the arguments that name the robot. None if the names
+    without them are not known."""
     named = [name for name, text in given.items() if name_robot({name: text}, words, common)]
     kept = {name: text for name, text in given.items() if name not in named}
     for empty in ([], *([it] for it in named), named):
@@ -268,7 +269,7 @@ def _check_links(job: Job, own: OwnNames, given: Arguments, words: Sequence[str]
 
 
 def _marked(read: Reader, given: Arguments, words: Sequence[str], common: Collection[str]) -> Job:
-    """The sources with marks for the robot's words in every argument that takes them."""
+    """Return the sources with marks for the robot's words in every argument that takes them."""
     with suppress(InputError):
         return read(marked(given, words, common))
     # Some file takes only words that it knows for one of them.

@@ -29,12 +29,12 @@ class KnownArguments(NamedTuple):
     any: bool = False
 
     def lacks(self, given: Iterable[str]) -> tuple[str, ...]:
-        """The names that are given and not known."""
+        """Return the given names that are not known."""
         return () if self.any else tuple(it for it in given if it not in self.names)
 
 
 def known_arguments(texts: Iterable[bytes]) -> KnownArguments:
-    """The arguments that files know."""
+    """Return the arguments that files know."""
     bare = [_without_comments(it) for it in texts]
     names = [name for text in bare for name in _DECLARED.findall(text)]
     names += [name for text in bare for name in _read(text)]
@@ -43,7 +43,7 @@ def known_arguments(texts: Iterable[bytes]) -> KnownArguments:
 
 
 def joined(known: Iterable[KnownArguments]) -> KnownArguments:
-    """What any of them knows."""
+    """Return the arguments that any of them knows."""
     its = list(known)
     names = dict.fromkeys(name for it in its for name in it.names)
     return KnownArguments(tuple(names), any(it.any for it in its))
@@ -66,6 +66,6 @@ def _read(text: bytes) -> Iterator[bytes]:
 
 
 def _without_comments(text: bytes) -> bytes:
-    """The text without comments; one that does not end goes on to the end."""
+    """Return the text without comments; one that does not end goes on to the end."""
     first, *others = re.split(b"<!--", text)
     return first + b"".join(it.partition(b"-->")[2] for it in others)

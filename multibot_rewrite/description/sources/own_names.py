@@ -46,7 +46,7 @@ OF_ALL = OwnSource()
 
 
 def filled(arguments: Arguments, robot: str = "") -> dict[str, str]:
-    """The arguments of one robot; raises UsageError for a placeholder other than ``{robot}``.
+    """Return the arguments of one robot; raises UsageError for a placeholder other than ``{robot}``.
 
     Without ``robot`` there is nothing to fill in, and every placeholder is an error.
     """
@@ -61,7 +61,7 @@ def filled(arguments: Arguments, robot: str = "") -> dict[str, str]:
 def marked(
     arguments: Arguments, words: Sequence[str], common: Collection[str] = ()
 ) -> dict[str, str]:
-    """The arguments with a mark for each word of a robot; the first word is what fills ``{robot}``.
+    """Return the arguments with a mark for each word of a robot; the first word fills ``{robot}``.
 
     Those that are ``common`` to robots name none of them.
     """
@@ -81,19 +81,19 @@ def _marked(text: str, words: Sequence[str]) -> str:
 
 
 def templates(arguments: Arguments, robot: str) -> dict[str, str]:
-    """The arguments with ``{robot}`` where they name the robot."""
+    """Return the arguments with ``{robot}`` in place of the robot's name."""
     texts = marked(arguments, [robot])
     return {name: text.replace(MARKS[0], ROBOT) for name, text in texts.items()}
 
 
 def name_robot(arguments: Arguments, words: Sequence[str], common: Collection[str] = ()) -> bool:
-    """Does any of the arguments hold a word of the robot?"""
+    """Return whether any of the arguments holds a word of the robot."""
     return marked(arguments, words, common) != dict(arguments)
 
 
 def common_to(robots: Sequence[tuple[Arguments, Sequence[str]]]) -> frozenset[str]:
-    """The arguments that all of several robots have alike, and in which a word of one is a part of a
-    name, as in ``left_finger``: the fingers of all robots are called so."""
+    """Return the arguments that several robots have alike, in which a word of one is part of a name, as
+    in ``left_finger``: the fingers of all robots have that name."""
     first = robots[0][0] if len(robots) > 1 else {}
     alike = {name for name in first if all(it.get(name) == first[name] for it, _ in robots)}
     words = {word for _, own in robots for word in own}
@@ -103,7 +103,7 @@ def common_to(robots: Sequence[tuple[Arguments, Sequence[str]]]) -> frozenset[st
 
 
 def own_names(inventory: Inventory, words: Sequence[str]) -> OwnNames:
-    """The names with a mark in them, as they are for the robot with these words.
+    """Return the names with a mark in them, as they are for the robot with these words.
 
     Raises UsageError for a name that has the robot's name twice in a row.
     """
@@ -158,7 +158,7 @@ def _by_kind(inventory: Inventory) -> dict[str, list[str]]:
 
 
 def own_texts(texts: NameTexts, words: Sequence[str]) -> NameTexts:
-    """The same for the robot with these words."""
+    """Return the texts for the robot with these words."""
     return {key: _unmarked(text, words) for key, text in texts.items()}
 
 
@@ -178,7 +178,7 @@ def _inserted(plain: str, marked: str) -> Affix | None:
 
 
 def as_twin(data: bytes) -> bytes:
-    """The text for a robot whose words are all ``TWIN``."""
+    """Return the text for a robot whose words are all ``TWIN``."""
     for mark in MARKS:
         data = data.replace(mark.encode(), TWIN.encode())
     return data

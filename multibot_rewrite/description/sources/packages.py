@@ -37,7 +37,7 @@ def package_folders(name: str, file: str, roots: tuple[str, ...]) -> tuple[str, 
 
 @outside
 def package_folder(name: str, file: str, roots: tuple[str, ...]) -> str:
-    """The folder that $(find NAME) stands for in ``file``; empty if there is none.
+    """Return the folder of $(find NAME) in ``file``; empty if there is none.
 
     Other packages in the same repository are found as well.
     """
@@ -93,8 +93,8 @@ def _own_package(folder: str) -> tuple[str, str] | None:
 
 @outside
 def sources_around(file: str) -> str:
-    """The folder with the packages beside that of a file: its repository, else the ``src`` of its
-    workspace, or what the package is in; empty for a file in no package."""
+    """Return the folder with the packages around a file: its repository, or the ``src`` of its
+    workspace, or the folder of the package; empty for a file in no package."""
     own = package_of(file)
     above = [own[1]] if own else []
     for _ in range(HIGHEST if own else 0):
@@ -107,8 +107,8 @@ def sources_around(file: str) -> str:
 
 @lru_cache(maxsize=64)
 def packages_below(roots: tuple[str, ...]) -> Mapping[str, tuple[str, ...]]:
-    """Packages below some folders by name, each with its folders; a folder of that name counts where no
-    manifest has it."""
+    """Return packages below some folders by name, each with its folders; a folder of that name counts
+    if no manifest has it."""
     folders = list(_folders(roots))
     named = lists_by_key((_package_name(it), it) for it, is_package in folders if is_package)
     called = lists_by_key(
@@ -145,7 +145,7 @@ def _inside(folder: str) -> list[os.DirEntry[str]]:
 @outside
 @lru_cache(maxsize=4096)
 def entries(folder: str) -> frozenset[str]:
-    """The names in a folder, as they are written; none where it cannot be read."""
+    """Return the names in a folder, as they are written; none if it cannot be read."""
     try:
         return frozenset(os.listdir(folder))
     except (OSError, ValueError):  # a path of a damaged file may hold a null character
@@ -168,13 +168,13 @@ def _package_name(folder: str) -> str:
 
 @lru_cache(maxsize=1024)
 def _by_lower_case(folder: str) -> Mapping[str, str]:
-    """The names in a folder, the first of those that differ in upper and lower case alone."""
+    """Return the names in a folder by lower case; the first of those that differ only in case."""
     return {it.lower(): it for it in sorted(entries(folder), reverse=True)}
 
 
 @outside
 def find_in(folder: str, path: str) -> str:
-    """The path below a folder as it is written on the disk, whatever the case; empty if absent."""
+    """Return the path below a folder as it is on the disk, whatever the case; empty if absent."""
     found: list[str] = []
     here = folder
     for step in os.path.normpath(path).split(os.sep):
@@ -239,7 +239,7 @@ def _of_install(folder: str, words: list[str]) -> Iterator[tuple[str, str]]:
 
 @lru_cache(maxsize=64)
 def _every_file(folder: str) -> tuple[str, ...]:
-    """The files of a package, as many as are looked at."""
+    """Return the files of a package, up to the limit of the search."""
     return tuple(islice(_files_below(folder), MOST_FOLDERS))
 
 

@@ -86,7 +86,7 @@ class XacroChild:
         self.ours.sendall(data)
 
     def read(self, count: int) -> bytes:
-        """That many bytes; raises EOFError where the child has ended, and TimeoutError."""
+        """Return that many bytes; raises EOFError if the child has ended, and TimeoutError."""
         parts = bytearray()
         while len(parts) < count:
             self.ours.settimeout(self._left())
@@ -114,7 +114,7 @@ class XacroChild:
 
 @contextmanager
 def child(seconds: float) -> Iterator[XacroChild]:
-    """A child that has that long; it has ended when the block has. Raises InputError."""
+    """Yield a child with a time limit, which ends with the block. Raises InputError."""
     ours, theirs = socket.socketpair()
     with theirs:
         server, pid = _started(theirs)
@@ -142,7 +142,7 @@ def start_server() -> None:
 
 @lru_cache(maxsize=1)
 def _server(pid: int) -> Server:
-    """The server of this process; a fork of it gets its own."""
+    """Return the server of this process; a fork of it gets its own."""
     return Server()
 
 

@@ -36,7 +36,7 @@ class SourceText(NamedTuple):
 
 
 def args_for(source: Source, other: Source | None, args: Mapping[str, str]) -> Mapping[str, str]:
-    """The xacro arguments for ``source``: they are for a URDF, its SRDF, or both."""
+    """Return the xacro arguments for ``source``: they are for a URDF, its SRDF, or both."""
     return {} if other is not None and _is_xacro(other) and not _is_xacro(source) else args
 
 
@@ -54,7 +54,7 @@ def is_xacro(path: str) -> bool:
 
 
 def has_xacro(data: bytes) -> bool:
-    """Does a text have elements of xacro, under whatever prefix?"""
+    """Return whether a text has elements of xacro, under any prefix."""
     if b"xacro" not in data:
         return False
     text = without_comments(data)
@@ -62,8 +62,8 @@ def has_xacro(data: bytes) -> bool:
 
 
 def read_alone(source: Source, xacro_args: Mapping[str, str], trust: bool = False) -> SourceText:
-    """The bytes of a source that is no list of parts, with what is known of the files that were read;
-    ``trust`` lets a xacro file do anything."""
+    """Return the bytes of a source that is no list of parts, with the files that were read; ``trust``
+    lets a xacro file do anything."""
     if isinstance(source, bytes):
         return SourceText(source, "<bytes>")
     if isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<"):
@@ -86,7 +86,7 @@ def read_alone(source: Source, xacro_args: Mapping[str, str], trust: bool = Fals
 
 
 def read_model(path: str) -> bytes:
-    """The bytes of a description that is no xacro, with the models that it includes; raises as
+    """Return the bytes of a description that is no xacro, with the models that it includes; raises as
     ``read_file``."""
     data = read_file(path)
     if b"<include" not in data:  # few have one
@@ -104,7 +104,7 @@ def _encoded(text: str) -> bytes:
 
 
 def read_file(path: str, limit: int = MAX_BYTES) -> bytes:
-    """The bytes of a file; raises InputError with the reason, which may be its size."""
+    """Return the bytes of a file; raises InputError with the reason, which may be its size."""
     try:
         return read_bytes(path, limit)
     except (OSError, ValueError) as error:

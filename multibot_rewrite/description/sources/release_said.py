@@ -37,8 +37,8 @@ class SaidRelease(NamedTuple):
 
 
 def release_said(told: str, text: bytes, file: str, who: str = "it") -> SaidRelease:
-    """The release that was ``told``, else that of a description's text, else of its repository;
-    ``who`` is what has the text."""
+    """Return the release that was ``told``, or that of a description's text, or of its repository;
+    ``who`` has the text."""
     if told:
         return SaidRelease(told)
     if built := release_of_build(file):
@@ -52,7 +52,7 @@ def release_said(told: str, text: bytes, file: str, who: str = "it") -> SaidRele
 def release_of_launch(
     told: str, packages: Iterable[str], texts: Iterable[str], file: str
 ) -> SaidRelease:
-    """The same for a launch file: by the packages that it starts and the texts that its nodes get."""
+    """Return the release of a launch file, also by its packages and its nodes' texts."""
     said = release_said(told, "\n".join(texts).encode(), file)
     old = next(filter(_STARTED.fullmatch, packages), "")
     if said.why or told or not old:
@@ -61,7 +61,7 @@ def release_of_launch(
 
 
 def release_of_all(told: str, files: Iterable[str]) -> SaidRelease:
-    """The same for several files: of what they say, where that is one release; the first says it."""
+    """Return the one release of several files, with the first reason."""
     if told:
         return SaidRelease(told)
     said: dict[str, SaidRelease] = {}
@@ -74,7 +74,7 @@ def release_of_all(told: str, files: Iterable[str]) -> SaidRelease:
 
 @outside
 def release_of_build(file: str) -> str:
-    """The release for which a build wrote a file; empty for a file of nobody's build."""
+    """Return the release for which a build wrote a file; empty for another file."""
     here = os.path.dirname(os.path.abspath(file))
     for path in (os.path.join(it, MANIFEST) for it in (here, os.path.dirname(here))):
         if os.path.isfile(path):
@@ -94,8 +94,8 @@ def _manifest(path: str) -> dict[str, object]:
 
 @outside
 def release_in_repository(file: str) -> str:
-    """The one release that the CI of a file's repository names, else that of what its package depends
-    on, a blank, and what says so; empty where none does, or several do."""
+    """Return the one release in the CI of a file's repository, or in its package's dependencies, a
+    blank, and the reason; empty for none or several."""
     if not os.path.isfile(file):
         return ""
     here = os.path.dirname(os.path.abspath(file))

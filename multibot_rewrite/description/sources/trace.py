@@ -57,12 +57,12 @@ class Trace:
         self.sources = {name: texts[asked] for name, (asked, _) in read if asked in texts}
 
     def place(self, file: int, element: int) -> tuple[str, int] | None:
-        """The name of a file, and the offset of the tag of an element in it; None if unknown."""
+        """Return the name of a file, and the offset of an element's tag in it; None if unknown."""
         known = 0 <= file < len(self.names) and 0 <= element < len(self.starts[file])
         return (self.names[file], self.starts[file][element]) if known else None
 
     def calls(self, number: int) -> tuple[Call, ...]:
-        """A macro call and those around it, the innermost first."""
+        """Return a macro call and those around it, the innermost first."""
         found: list[Call] = []
         numbers, macros = self.result.calls, self.result.macros
         while 0 <= number < len(numbers) // 4 and len(found) < DEEPEST:
@@ -80,20 +80,20 @@ class Origins(NamedTuple):
     trace: Trace
 
     def of(self, number: int) -> WrittenAt | None:
-        """The origin of an element; None where xacro itself made it."""
+        """Return the origin of an element; None if xacro itself made it."""
         file, element, call = self.trace.result.origins[3 * number : 3 * number + 3]
         place = self.trace.place(file, element)
         return WrittenAt(*place, self.trace.calls(call)) if place else None
 
 
 def _starts(source: bytes, count: int) -> Sequence[int]:
-    """The offsets of the tags of a file; none where they are not as many as its elements."""
+    """Return the offsets of the tags of a file; none if their number is not that of its elements."""
     found = start_offsets(source)
     return found if len(found) == count else ()
 
 
 def alike(path: str, given: str) -> str:
-    """A path, relative where ``given`` is and it leads no further up; $(find ...) makes whole ones."""
+    """Return a path, relative if ``given`` is relative and it leads no further up."""
     path = os.path.normpath(path)
     if os.path.isabs(given) or not os.path.isabs(path):
         return path
@@ -113,7 +113,7 @@ _KINDS = {"xacro:property": "property", "xacro:arg": "argument", "xacro:macro": 
 
 
 class Piece(NamedTuple):
-    """``text`` is a part of a value. It stands in ``file`` from byte ``start`` to ``end``, or what
+    """``text`` is a part of a value. It is in ``file`` from byte ``start`` to ``end``, or what
     makes it does: an expression. ``kind`` says what wrote it: literal, property, argument, default,
     parameter, YAML, expression, given argument (no file)."""
 
@@ -185,6 +185,6 @@ def _slot(source: bytes, start: int, attribute: str) -> tuple[int, int] | None:
 
 
 def _byte(source: bytes, slot: tuple[int, int], at: int) -> int:
-    """The offset of character ``at`` of a value, where nothing before it is escaped."""
+    """Return the offset of character ``at`` of a value, if nothing before it is escaped."""
     begin, end = slot
     return min(end, begin + len(source[begin:end].decode("utf-8", "replace")[:at].encode()))

@@ -9,8 +9,8 @@ from multibot_rewrite.description.sources.read import JOIN, Source, SourceText, 
 
 
 def read_whole(source: Source, xacro_args: Mapping[str, str], trust: bool = False) -> SourceText:
-    """The bytes of a source with what is known of the files that were read; ``trust`` lets a xacro file
-    do anything."""
+    """Return the bytes of a source with the files that were read; ``trust`` lets a xacro file do
+    anything."""
     if not isinstance(source, bytes) and str(source).endswith(JOIN) and not xacro_args:
         from multibot_rewrite.description.joining.from_file import read_joined
 

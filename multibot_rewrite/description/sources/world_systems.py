@@ -31,7 +31,7 @@ Systems = tuple[tuple[str, str], ...]
 
 
 def set_aside(source: bytes, file: str, tree: Tree) -> tuple[bytes, Systems]:
-    """The description with its systems of the world as comments; their names and texts. Raises
+    """Return the description with its world systems as comments, and their names and texts. Raises
     InputError."""
     if not any(_may_load(it, tree) for it in {*_TAGS.findall(source)}):
         return source, ()
@@ -60,8 +60,8 @@ def _may_load(tag: bytes, tree: Tree) -> bool:
 
 
 def left_to_world(document: Document, left: Systems) -> Iterator[Finding]:
-    """A note of what the world has to load. Raises InputError for a source with such a comment: a strip
-    would take it for its own."""
+    """Yield a note of the systems that the world has to load. Raises InputError for a source with such
+    a comment: a strip would take it for its own."""
     if len(_ASIDE.findall(document.source)) != len(left):
         what = "a comment 'left to the world' is that of an earlier rewrite"
         raise InputError(f"{document.file}: {what}: take that back by --undo")
@@ -74,7 +74,7 @@ def left_to_world(document: Document, left: Systems) -> Iterator[Finding]:
 
 
 def put_back(source: bytes, file: str, tree: Tree) -> bytes:
-    """The inverse, proved by doing it again; raises InputError where that makes another text."""
+    """Return the description with its world systems, verified; raises InputError if edited."""
     whole = _ASIDE.sub(lambda it: it[1].replace(_WRITTEN, _DASHES), source)
     if whole != source and set_aside(whole, file, tree)[0] != source:
         what = "a comment 'left to the world' is not what a rewrite writes"

@@ -18,7 +18,7 @@ from multibot_rewrite.description.steps.plan import Plan
 
 
 def cut(source: bytes, edits: Iterable[Edit]) -> list[bytes]:
-    """The source with all edits made, in pieces; the robot's name goes between them.
+    """Return the source with all edits applied, in pieces; the robot's name goes between them.
 
     ``edits`` are in source order and do not overlap.
     """
@@ -36,7 +36,7 @@ def cut(source: bytes, edits: Iterable[Edit]) -> list[bytes]:
 
 
 def fill(pieces: list[bytes], robot: str) -> bytes:
-    """The text for one robot."""
+    """Return the text for one robot."""
     return robot.encode().join(pieces)
 
 

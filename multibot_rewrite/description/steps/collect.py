@@ -71,7 +71,7 @@ def collect(
 ) -> Inventory:
     """Walk the document in order along the tree of rewriters.
 
-    ``urdf_declarations`` is what the URDF beside an SRDF declares. In a ``layout`` that names frames at
+    ``urdf_declarations`` is what the URDF of an SRDF declares. In a ``layout`` that names frames at
     run time these are not spelled as links are, and in one that keeps the names of models no topic is.
     """
     format_ = _format(document, tree, SRDF if urdf_declarations else "")
@@ -92,7 +92,7 @@ def collect(
 
 
 def _walk(document: Document, tree: Tree, format_: str) -> tuple[list[Claim], list[Host]]:
-    """The claims and hosts along the tree of one format."""
+    """Return the claims and hosts along the tree of one format."""
     claims: list[Claim] = []
     hosts: list[Host] = []
     nothing: dict[str, TreeNode] = {}
@@ -176,5 +176,5 @@ def _declared(claims: list[Claim], urdf_declarations: Declared) -> dict[str, dic
 
 
 def declarations(source: bytes, file: str, tree: Tree) -> Declared:
-    """What a description declares, by kind and name."""
+    """Return the names that a description declares, by kind and name."""
     return collect(read_document(source, file), tree).declared

@@ -88,7 +88,7 @@ def read_document(source: bytes, file: str, placed: bool = True) -> Document:
 
 
 def _parsed(source: bytes, file: str) -> tuple[etree._Element, bool]:
-    """The root of a text as TinyXML-2 reads it, so that what is no fault to it is none here, and
+    """Return the root of a text as TinyXML-2 reads it, so that its tolerated faults are none here, and
     whether the text had to be mended for that."""
     if not is_loose(source):
         with suppress(etree.XMLSyntaxError):
@@ -165,13 +165,13 @@ def _refuse_wide(document: Document) -> None:
 
 
 def start_offsets(source: bytes) -> list[int]:
-    """The byte offsets of the start tags of a well-formed text, in document order."""
+    """Return the byte offsets of the start tags of a well-formed text, in document order."""
     source = silenced(source)
     return [found.start() for found in _OPENING.finditer(source)]
 
 
 def silenced(source: bytes) -> bytes:
-    """The text with blanks, as many, for comments, CDATA and processing instructions."""
+    """Return the text with blanks, as many, for comments, CDATA and processing instructions."""
     after_declaration = 5 if source.startswith(b"<?xml ") else 0
     if b"<!--" in source or b"<![CDATA[" in source or source.find(b"<?", after_declaration) >= 0:
         return _SILENT.sub(lambda found: b" " * len(found[0]), source)
@@ -179,7 +179,7 @@ def silenced(source: bytes) -> bytes:
 
 
 def slot_values(root: etree._Element) -> list[str]:
-    """The value of every attribute and of every text that is more than white space."""
+    """Return the value of every attribute and of every text that is more than white space."""
     texts: list[str] = _TEXTS(root)  # type: ignore[assignment]
     attributes: list[str] = _ATTRIBUTES(root)  # type: ignore[assignment]
     return attributes + [text.strip() for text in texts]
@@ -204,7 +204,7 @@ def value_slot(source: bytes, start: int, attribute: str, value: str) -> tuple[i
 def value_places(
     source: bytes, start: int, attribute: str, value: str, characters: Iterable[int]
 ) -> list[int] | None:
-    """The byte offsets of ``characters`` of a value; None where escapes hide one of them."""
+    """Return the byte offsets of ``characters`` of a value; None if escapes hide one of them."""
     slot = value_slot(source, start, attribute, value)
     if slot is None:
         return None
@@ -214,7 +214,7 @@ def value_places(
 
 
 def place_in(source: bytes, slot: tuple[int, int], value: str, at: int) -> int | None:
-    """The byte offset of character ``at`` of the value in ``slot``; None where escapes hide it."""
+    """Return the byte offset of character ``at`` of the value in ``slot``; None if escapes hide it."""
     begin, end = slot
     # As many bytes as characters: nothing is escaped.
     if end - begin == len(value):
@@ -288,7 +288,7 @@ def fillable(source: bytes, start: int) -> tuple[int, int, bytes, bytes]:
 
 
 def emptied(source: bytes, slot: tuple[int, int]) -> Edit:
-    """The edit that takes the text of a filled element out again."""
+    """Return the edit that removes the text of a filled element again."""
     begin, end = slot
     if not source.startswith(b"</", end):
         return Edit(begin, end, b"", None)
@@ -304,19 +304,19 @@ def _reads_as(frame: bytes, raw: bytes, value: str) -> bool:
 
 
 def tag_end(source: bytes, start: int) -> int:
-    """The offset right after the ``>`` of the start tag at ``start``."""
+    """Return the offset right after the ``>`` of the start tag at ``start``."""
     tag = _TAG.match(source, start)
     assert tag is not None, "lxml read a start tag here"
     return tag.end()
 
 
 def path_of(element: etree._Element) -> str:
-    """The tags from the root to an element, as ``robot/gazebo/plugin``."""
+    """Return the tags from the root to an element, as ``robot/gazebo/plugin``."""
     return "/".join(str(it.tag) for it in (*[*element.iterancestors()][::-1], element))
 
 
 def finding(
     document: Document, offset: int, code: str, level: str, message: str, hint: str = ""
 ) -> Finding:
-    """A finding at a byte offset of the document."""
+    """Return a finding at a byte offset of the document."""
     return Finding(code, level, message, hint, document.file, *locate(document.source, offset))

@@ -83,7 +83,7 @@ def _parent_edits(source: bytes, start: int, items: list[Insertion], release: st
 
 
 def _why(items: list[Insertion], release: str) -> str:
-    """What would be without the inserted elements, as a comment can hold it."""
+    """Return what would be wrong without the inserted elements, as a text for a comment."""
     texts = lists_by_key((without(item, release), item) for item in items)
     parts = [f"{text} {_names(found)}" for text, found in texts.items()]
     # A comment may not hold "--", a YAML string may not hold a colon and a space.
@@ -104,7 +104,7 @@ def lead_of(source: bytes, end: int) -> str:
 
 
 def elements_of(items: list[Insertion], lead: str) -> list[str]:
-    """The texts of the elements, those of one new parent together."""
+    """Return the texts of the elements, those of one new parent together."""
     plain = [item.xml for item in items if not item.wrap]
     for wrap in dict.fromkeys(item.wrap for item in items if item.wrap):
         inner = "".join(f"{lead}{lead and '  '}{item.xml}" for item in items if item.wrap == wrap)
@@ -191,7 +191,7 @@ def _edited(document: Document, marker: Marker) -> InputError:
 
 
 def end_of(source: bytes, start: int) -> int:
-    """The end of an element that a rewrite put in: no child has its tag."""
+    """Return the end of an element that a rewrite put in: no child has its tag."""
     end = tag_end(source, start)
     if source[end - 2 : end] == b"/>":
         return end

@@ -60,7 +60,7 @@ def make_plan(inventory: Inventory, naming: Naming) -> Plan:
 def _unstable(
     inventory: Inventory, renames: RenameMap, collisions: list[tuple[Claim, str]]
 ) -> list[Finding]:
-    """Contacts whose collision is numbered by how the robot's name sorts: no plan holds for all."""
+    """Return findings for contacts whose number would change with the order of the robot's name."""
     document, claims, _, declared, *_ = inventory
     # ROBOT_SLOT sorts before every letter, this after.
     respell = respeller(renames, LAST)

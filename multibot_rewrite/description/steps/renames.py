@@ -27,11 +27,11 @@ class RenameMap(NamedTuple):
     values: list[Spelling]
 
     def changes(self, kind: str, name: str) -> bool:
-        """Does this declared name change?"""
+        """Return whether this declared name changes."""
         return (kind, name, False) in self.affixes
 
     def spelled(self, robot: str, kind: str, name: str, namespaced: bool = False) -> str:
-        """A name as it is spelled for ``robot``; unchanged where the map does not have it."""
+        """Return a name as it is for ``robot``; unchanged if the map does not have it."""
         there = self.affixes.get((kind, name, namespaced))
         return there.spell(name, robot) if there else name
 
@@ -60,5 +60,5 @@ def make_renames(inventory: Inventory, naming: Naming) -> RenameMap:
 
 
 def respeller(renames: RenameMap, robot: str) -> Respell:
-    """The new spelling of a declared link, joint or model for ``robot``."""
+    """Return a function for the new name of a declared link, joint or model for ``robot``."""
     return lambda kind, name: renames.spelled(robot, kind, name)

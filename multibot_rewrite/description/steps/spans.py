@@ -11,7 +11,7 @@ from multibot_rewrite.description.steps.document import Document, silenced, tag_
 
 
 class Spans:
-    """The place of each element; an element ends before the next one beside it, or before the end tag
+    """The place of each element; an element ends before its next sibling, or before the end tag
     of the one it is in."""
 
     def __init__(self, document: Document) -> None:
@@ -20,11 +20,11 @@ class Spans:
         self._starts = dict(zip(document.elements, document.starts, strict=True))
 
     def start_of(self, element: _Element) -> int:
-        """The offset of its start tag."""
+        """Return the offset of its start tag."""
         return self._starts[element]
 
     def end_of(self, element: _Element) -> int:
-        """The offset right after it."""
+        """Return the offset right after the element."""
         beside, above = next(element.itersiblings("*"), None), element.getparent()
         # Where something else starts: nothing of the element is there or later.
         if beside is not None:
@@ -40,7 +40,7 @@ class Spans:
         return self.start_of(element), self.end_of(element)
 
     def text_of(self, element: _Element) -> bytes:
-        """The bytes of it."""
+        """Return the bytes of the element."""
         return self.document.source[slice(*self.of(element))]
 
     def inside(self, element: _Element) -> tuple[int, int]:
@@ -50,6 +50,6 @@ class Spans:
         return (start, self._silent.rindex(b"</", 0, end)) if start < end else (end, end)
 
     def first_from(self, offset: int) -> _Element | None:
-        """The first element that starts there or later."""
+        """Return the first element that starts there or later."""
         at = bisect_left(self.document.starts, offset)
         return self.document.elements[at] if at < len(self.document.elements) else None

@@ -66,7 +66,7 @@ def strip_edits(
 
 
 def stripped(claim: Claim, names: tuple[ResolvedName, ...], naming: Naming, robot: str) -> str:
-    """A claimed value without its affixes."""
+    """Return a claimed value without its affixes."""
     value, namespaced = claim.value, claim.site.namespaced
     for name in reversed(names) if is_reached(claim, naming) else ():
         span = removal(naming, robot, name.kind, name.text, namespaced)
@@ -78,7 +78,7 @@ def stripped(claim: Claim, names: tuple[ResolvedName, ...], naming: Naming, robo
 def _without(
     inventory: Inventory, own: frozenset[Place], is_inserted: Callable[[Claim], bool]
 ) -> list[tuple[ResolvedName, ...]]:
-    """The names in each value but those at places of ``own``."""
+    """Return the names in each value, except those at places of ``own``."""
     at = 0
     found = []
     for claim, names in zip(inventory.claims, inventory.names, strict=True):

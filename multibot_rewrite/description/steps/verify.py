@@ -108,8 +108,8 @@ def verify(
 def _as_in(
     inventory: Inventory, result: Inventory, is_inserted: Callable[[Claim], bool], naming: Naming
 ) -> list[Names]:
-    """The names of the output. One that got the robot's name is read as below the name that an
-    argument of the xacro gives the robot, where both are the same word: it is a name of its site."""
+    """Return the names of the output. One that got the robot's name is read as below the name that a
+    xacro argument gives the robot, if both are the same word: it is a name of its site."""
     before = iter(inventory.names)
     found: list[Names] = []
     for claim, names in zip(result.claims, result.names, strict=True):
@@ -122,8 +122,8 @@ def _as_in(
 
 
 def _asks_places(plan: Plan, output: bytes, naming: Naming) -> bool:
-    """Does a check ask where in the bytes an element of the output is? Only where more than affixes
-    has to be taken out."""
+    """Return whether a check needs byte offsets of output elements. Only if more than affixes has to be
+    removed."""
     return MARKER in output or bool(naming.own) or _replaces(plan)
 
 
@@ -132,7 +132,7 @@ def _replaces(plan: Plan) -> bool:
 
 
 def same_names(it: Evidence) -> None:
-    """The same sites are there in the same order, each with the value that the naming says."""
+    """Raise ProofError unless the same sites are there in order, with the values by the naming."""
     claims, file = it.inventory.claims, it.inventory.document.file
     if len(it.found) != len(claims):
         raise ProofError(f"{file}: {len(claims)} names went in, {len(it.found)} came out")
@@ -143,7 +143,7 @@ def same_names(it: Evidence) -> None:
 
 
 def _expected(inventory: Inventory, naming: Naming) -> Iterator[str]:
-    """What each claimed value is to become; claims with the same names share one spelling."""
+    """Yield the expected text of each claimed value; claims with the same names share one."""
     collisions = _collisions(inventory, naming)
     known: dict[tuple[int, bool], str] = {}
     for claim, names in zip(inventory.claims, inventory.names, strict=True):
@@ -169,7 +169,7 @@ def _named(claim: Claim, names: Names, naming: Naming) -> str:
 
 
 def _collisions(inventory: Inventory, naming: Naming) -> dict[tuple[int, str], str]:
-    """The contact collisions that change, by the place of their elements."""
+    """Return the contact collisions that change, by the place of their elements."""
     document, claims, _, declared, *_ = inventory
 
     def respell(kind: str, name: str) -> str:
@@ -197,7 +197,7 @@ def same_targets(it: Evidence) -> None:
 
 
 def _kinds(names: Names, kept: Collection[int]) -> list[str]:
-    """The kinds of names; a frame that an argument of the xacro names may become that of a link."""
+    """Return the kinds of names; a frame from a xacro argument may become that of a link."""
     if not kept:
         return [*map(_KIND, names)]
     return [
@@ -207,7 +207,7 @@ def _kinds(names: Names, kept: Collection[int]) -> list[str]:
 
 
 def _left_behind(name: ResolvedName, inventory: Inventory) -> bool:
-    """Does this name lead nowhere now, though there was something called so?"""
+    """Return whether this name refers to nothing now, although it did before."""
     return not name.kind and any(name.text in inventory.declared.get(it, ()) for it in name.kinds)
 
 
@@ -222,7 +222,7 @@ def robots_own(it: Evidence) -> None:
 
 
 def _inserted_names(it: Evidence) -> Iterator[tuple[ResolvedName, bool]]:
-    """The names in inserted elements that the naming changes, and whether a namespace reaches them."""
+    """Yield the names in inserted elements that change, and whether a namespace reaches them."""
     for claim, names in it.added:
         if _is_own_namespace(claim, it):
             continue
@@ -258,13 +258,13 @@ def _once(it: Evidence, added: list[etree._Element], beside: list[etree._Element
 
 
 def _key(element: etree._Element) -> tuple[str, str | None, str]:
-    """What an element is about: a rule by the name it is for, any other by its tag and name."""
+    """Return the subject of an element: the name that a rule is for, otherwise tag and name."""
     rule, is_rule, _ = (element.text or "").strip().partition(":=")
     return str(element.tag), element.get("name"), rule if is_rule else ""
 
 
 def as_decided(it: Evidence) -> None:
-    """What the plan decided to insert is what its edits write."""
+    """Raise ProofError unless the edits write what the plan decided to insert."""
     output, robot, every = it.result.document.source, it.robot, it.plan.insertions
     inserted = b"".join(output[edit.start : edit.end] for edit in it.inserted)
     for item in every:
@@ -280,7 +280,7 @@ def as_decided(it: Evidence) -> None:
 
 
 def as_planned(it: Evidence) -> None:
-    """The text is the source with the planned edits."""
+    """Raise ProofError unless the text is the source with the planned edits."""
     source, file, *_ = it.inventory.document
     robot, last = it.robot.encode(), 0
     pieces = []

@@ -31,7 +31,13 @@ from multibot_rewrite.fleet.launch.starts import (
     launch_arguments,
 )
 from multibot_rewrite.fleet.outputs.relays import BRIDGE
-from multibot_rewrite.producers.launch.performed import END, Action, Launching, performed, share
+from multibot_rewrite.producers.launch.performed import (
+    END,
+    Action,
+    Launching,
+    performed,
+    share,
+)
 from multibot_rewrite.producers.launch.ros_arguments import ros2_run, ros_arguments
 from multibot_rewrite.spelling.start import (
     File,
@@ -58,6 +64,7 @@ _REST = "rest"
 # More of a value is not shown.
 _SHOWN = 100
 _NOTHING = object()
+_TRUE = ("true", "True", "1")
 # The programs of which each process has its line, unless it is a node of a stack.
 _TOLD = (
     ("tf2_ros", "static_transform_publisher"),
@@ -113,6 +120,7 @@ def _launches(starts: FleetStarts) -> list[Launching]:
     clock = str(not starts.use_sim_time).lower()
     off = {"use_sim_time": clock, "rviz": "false", "simulator": "false"}
     names = [it.name for it in starts.robots]
+    off |= {name: str(it.lower() != "true") for name, it in starts.switches.items()}
     other = {"headless": "true", "world": "other.sdf"}
     told = {name: it for name, it in other.items() if name in usual}
     launches = (
@@ -149,9 +157,10 @@ class _Planned(NamedTuple):
             yield from self.processes(it.starts, it.name, it.clock, it.not_bridged)
         yield from self.processes(self.starts.windows)
 
-    def is_on(self, argument: str) -> bool:
-        """Is a launch argument that switches something true?"""
-        return self.arguments.get(argument) in ("true", "1")
+    def is_on(self, condition: str) -> bool:
+        """Is each launch argument of a condition true, or false after ``!``?"""
+        words = ((it.lstrip("!"), it[0] != "!") for it in condition.split())
+        return all((self.arguments.get(it, "") in _TRUE) == wanted for it, wanted in words)
 
     def chosen(self) -> list[RobotStarts]:
         """Return the robots that are launched."""
@@ -256,7 +265,8 @@ class _Planned(NamedTuple):
     def value(self, it: Any) -> Any:
         """Return a value as the launch has it."""
         if isinstance(it, File):
-            return os.path.join(self.home, it.path)
+            path = os.path.join(self.home, it.path)
+            return {"param_file": path, "allow_substs": True} if it.substituted else path
         if isinstance(it, Text):
             return _text_of(it.path)
         if isinstance(it, Mapping):
@@ -314,7 +324,7 @@ def _as_commanded(it: Start) -> Start:
     return it._replace(
         namespace="" if it.namespace == "/" else it.namespace,
         name=names["__node"],
-        parameters=(*(one for one in it.parameters if isinstance(one, File)), values),
+        parameters=(*(File(one.path) for one in it.parameters if isinstance(one, File)), values),
         remappings=tuple(pair for pair in it.remappings if not pair[0].startswith("__")),
         arguments=tuple(map(path_of, it.arguments)),
     )

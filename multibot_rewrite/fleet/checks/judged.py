@@ -111,7 +111,7 @@ def left_open(
 def _apart(
     robot: RewrittenRobot, after: System, in_sources: Iterable[Finding], found: Iterable[Finding]
 ) -> Iterator[Finding]:
-    """Where the robot's frames are in pieces by its sources, and where only its rewrite cuts them."""
+    """Yield separate tf trees in the sources, and as errors those that only the rewrite has made."""
     known = {it.name: it.known for it in after.nodes}
     cut = [it for it in in_sources if it.code == tf_tree_in_pieces.code]
     told = {it.node.lstrip("/") for it in cut}

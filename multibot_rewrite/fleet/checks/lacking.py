@@ -73,7 +73,7 @@ def lacking(plan: FleetPlan) -> Iterator[Finding]:
             if need is None or is_named or node.when or node.shared or need.is_there(robot):
                 continue
             message = f"robot {robot.spec.name!r} runs {node.name} ({node.origin}) with {need.what}"
-            yield at_robot(LACKING, robot, message, f"{need.hint}, or leave the stack out")
+            yield at_robot(LACKING, robot, message, f"{need.hint}, or leave the node set out")
 
 
 def without_camera(plan: FleetPlan) -> Iterator[Finding]:
@@ -101,8 +101,8 @@ def without_camera(plan: FleetPlan) -> Iterator[Finding]:
 
 
 _NONE = "its description has no camera"
-_TAKE = "take a description with a camera that does, or leave the stack out"
-_HEAR = "say which one in `remaps` of a stack of your own (docs/stacks.md), or leave the stack out"
+_TAKE = "take a description with a camera that does, or leave the node set out"
+_HEAR = "name one in `remaps` of a node set of your own (docs/stacks.md), or leave the node set out"
 
 
 NOTHING_MOVES = declare("MF865", "commands-without-reader", WARNING, formats=("fleet",))

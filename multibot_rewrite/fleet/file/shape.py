@@ -99,7 +99,7 @@ def placed(robot: RewrittenRobot, shape: str) -> RewrittenRobot:
                 made[_plain_name(robot, source)] = f"{it}/{os.path.basename(source)}"
     for place, what in shapes()[shape].places.items():
         if place not in made.values():
-            free = (name for name in _names_of(robot, what) if name not in made)
+            free = (name for name in _files_with(robot, what) if name not in made)
             made |= dict.fromkeys(itertools.islice(free, 1), place)
     return robot._replace(spec=robot.spec._replace(places=tuple(made.items())))
 
@@ -107,10 +107,10 @@ def placed(robot: RewrittenRobot, shape: str) -> RewrittenRobot:
 def name_of(robot: RewrittenRobot, what: str) -> str:
     """The output of a robot without its place: its description, its SRDF, its bridge, or the first
     parameter file with a section of a node; empty if it has none."""
-    return next(_names_of(robot, what), "")
+    return next(_files_with(robot, what), "")
 
 
-def _names_of(robot: RewrittenRobot, what: str) -> Iterator[str]:
+def _files_with(robot: RewrittenRobot, what: str) -> Iterator[str]:
     spec = robot.spec
     described = {DESCRIPTION: spec.description, SRDF: spec.srdf}
     if what in described:

@@ -14,7 +14,7 @@ from multibot_rewrite.base.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.base.file_kinds import PLAN, recognised
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.naming import Policy
-from multibot_rewrite.base.releases import release_here, release_told
+from multibot_rewrite.base.releases import release_told
 from multibot_rewrite.description.sources.read import Source, read_file
 from multibot_rewrite.description.sources.release_said import release_of_launch
 from multibot_rewrite.fleet.checks.closed_plan import closed_plan
@@ -56,11 +56,8 @@ def system_of_description(
     ``policy`` are naming options of ``rewrite``. Raises as ``rewrite_all``, and UsageError for a stack
     that is not known.
     """
-    release = release_here(distro)
-    made = make_fleet(
-        source, robots, stacks, policy, xacro_args=xacro_args, trust=trust, release=release
-    )
-    return expected(made)
+    given = (source, robots, stacks, policy)
+    return expected(make_fleet(*given, xacro_args=xacro_args, trust=trust, release=distro))
 
 
 def system_of_fleet(path: Path, *, trust: bool = False, distro: str = "") -> System:

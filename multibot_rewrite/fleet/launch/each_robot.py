@@ -170,7 +170,9 @@ class _Merging(NamedTuple):
             if len(parts) > 1 and all(
                 one.join(parts) == other for one, other in zip(self.names, values, strict=True)
             ):
-                return Code(_NAME if parts == ["", ""] else _f_string(parts))
+                braced = (it.replace("{", "{{").replace("}", "}}") for it in parts)
+                made = f"{{{_NAME}}}".join(braced)
+                return Code(_NAME if parts == ["", ""] else f"f{made!r}")
         return self.parameter(values, label)
 
     def parameter(self, values: Sequence[str], label: str) -> Code:
@@ -187,11 +189,6 @@ class _Merging(NamedTuple):
 def _parts(text: str, robot: str) -> list[str]:
     """Return a text cut where the robot's name is a word of it."""
     return re.split(rf"(?<![A-Za-z0-9]){re.escape(robot)}(?![A-Za-z0-9])", text)
-
-
-def _f_string(parts: Sequence[str]) -> str:
-    text = f"{{{_NAME}}}".join(it.replace("{", "{{").replace("}", "}}") for it in parts)
-    return f"f{text!r}"
 
 
 def _is_number(text: str) -> bool:

@@ -97,10 +97,11 @@ _BRIDGE = ("ros_gz_bridge", "parameter_bridge")
 
 
 def of_robot(
-    one: FleetPlan, files: Collection[str], bridged: Collection[str], values: Values
+    one: FleetPlan, files: Mapping[str, bool], bridged: Collection[str], values: Values
 ) -> RobotStarts:
-    """What the one robot of a plan runs; ``files`` are the paths that the build writes, ``bridged`` the
-    topics that bridges bring from a simulator, ``values`` what launch files themselves set."""
+    """What the one robot of a plan runs; ``files`` are the paths that the build writes, each with
+    whether it has substitutions of launch, ``bridged`` the topics that bridges bring from a simulator,
+    ``values`` what launch files themselves set."""
     (robot,) = one.robots
     names = names_of(one.fleet.table, robot.spec.namespace)
     facts = {it.name: it for it in one.evidence_of(robot).nodes}
@@ -128,7 +129,7 @@ def of_robot(
         robot.spec.name,
         os.path.basename(robot.spec.description),
         f"namespace {min(spaces, key=len)}" if spaces else "the root namespace",
-        params_paths(robot, files),
+        tuple(File(it, files[it]) for it in params_paths(robot, files)),
         starts,
         (*given.left.items(), *idle),
         not_bridged(robot.spec.name) if any(it.needs for it in relayed) else "",
@@ -144,7 +145,7 @@ class _Given(NamedTuple):
     robot: RewrittenRobot
     names: NodeNames
     facts: Mapping[str, NodeFacts]
-    files: Collection[str]
+    files: Mapping[str, bool]
     bridged: Collection[str]
     values: Values
     readers: Mapping[str, Collection[str]]
@@ -386,7 +387,7 @@ def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
     robot, facts = given.robot, given.facts[name]
     is_launched = name in given.plan.evidence_of(robot).handed_on
     files = [
-        File(it)
+        File(it, given.files[it])
         for it in params_paths(robot, given.files)
         # Of those that launch files name a launched node has its own.
         if not is_launched or name in given.readers.get(it, (name,))
@@ -542,7 +543,7 @@ def _domain_bridge(robot: RewrittenRobot, files: Collection[str]) -> Iterator[St
 
 
 def of_all(
-    plan: FleetPlan, files: Collection[str], simulators: Collection[str], values: Values
+    plan: FleetPlan, files: Mapping[str, bool], simulators: Collection[str], values: Values
 ) -> tuple[Start, ...]:
     """What runs once for all robots: the bridge of the clock, and nodes that all of them share."""
     names = names_of(plan.fleet.table, "")
@@ -551,10 +552,11 @@ def of_all(
     found: list[Start] = []
     for robot in plan.robots:
         for it in (one for one in plan.evidence_of(robot).processes if one.once):
-            made = _process(it.node, robot.spec.name, "", None)
+            made, beside = _process(it.node, robot.spec.name, "", None), it.node.process.is_beside
             made = made._replace(number=-1, process=made.process._replace(after=-1))
-            found += [] if made in found else [made]
-    shared = (*_shared(plan, names, known, values), *found)
+            made = made._replace(condition=SIMULATOR if beside else "")
+            found += [] if made in found or (beside and not simulators) else [made]
+    shared = (*_shared(plan, names, known, values, files), *found)
     if BRIDGE_FILE not in files:
         return shared
     qos = {key: it for robot in plan.robots for key, it in _qos(plan, robot, "")}
@@ -565,7 +567,11 @@ def of_all(
 
 
 def _shared(
-    plan: FleetPlan, names: NodeNames, known: Mapping[str, NodeFacts], values: Values
+    plan: FleetPlan,
+    names: NodeNames,
+    known: Mapping[str, NodeFacts],
+    values: Values,
+    built: Mapping[str, bool],
 ) -> Iterator[Start]:
     """The shared nodes have their sections in the files of every robot, and they are alike."""
     first, started = plan.robots[0], []
@@ -577,7 +583,9 @@ def _shared(
         if program is None:
             continue
         paths = first.spec.companions.get("params", ())
-        files: list[Parameters] = [File(path_for(first, one)) for one in paths]
+        files: list[Parameters] = [
+            File(it, built.get(it, False)) for it in (path_for(first, one) for one in paths)
+        ]
         given = values.get((first.spec.name, name))
         files += [given] if given else []
         if facts.kind in NAV2:

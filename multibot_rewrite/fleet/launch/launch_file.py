@@ -7,6 +7,7 @@ import os
 from collections.abc import Collection, Sequence
 
 from multibot_rewrite.base.grouping import lists_by_key
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.releases import facts_of_release
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.fleet.file.robot_spec import REAL
@@ -14,7 +15,7 @@ from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch import launch_actions
 from multibot_rewrite.fleet.launch.launch_python import to_python
 from multibot_rewrite.fleet.launch.launched_simulator import launched_simulator
-from multibot_rewrite.fleet.launch.starts import GZ, RVIZ, FleetStarts, RobotStarts
+from multibot_rewrite.fleet.launch.starts import GZ, RVIZ, FleetStarts, RobotStarts, with_switches
 from multibot_rewrite.fleet.outputs import spawn, teleop, world_file
 from multibot_rewrite.fleet.outputs.companion_files import launched_values
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
@@ -22,6 +23,8 @@ from multibot_rewrite.producers.launch.handed_on import for_robot
 from multibot_rewrite.spelling.start import File, Start, shell_line
 
 LAUNCH = "fleet.launch.py"
+# Substitutions of launch that need no argument, and all others.
+_SUBSTITUTION = lazy_compile(rb"\$\((?:(find-pkg-share|env) |(\w))")
 
 
 def launch_file(starts: FleetStarts) -> OutputFile:
@@ -40,7 +43,7 @@ def fleet_starts(
     """What the launch file starts; ``each`` is every robot as a fleet of its own, ``files`` what else
     is built, ``bridged`` the topics that bridges bring, ``shown`` the windows of RViz, each with its
     robot; those of them that it ``opens``, somebody has asked for."""
-    paths = frozenset(it.path for it in files)
+    paths = {it.path: _is_substituted(it.data) for it in files}
     values = launched_values(plan).values
     robots = [launch_actions.of_robot(one, paths, bridged, values) for one in each]
     environment, robots = _environment(plan, robots)
@@ -56,7 +59,8 @@ def fleet_starts(
     opened = lists_by_key((name, it._replace(condition=RVIZ)) for name, it in opens)
     robots = [it._replace(starts=(*it.starts, *opened.pop(it.name, ()))) for it in robots]
     launched = launched_simulator(plan.file)
-    return FleetStarts(
+    idle = (one for it in plan.robots for one in plan.evidence_of(it).idle)
+    made = FleetStarts(
         f"Start {count} of {source}{facts_of_release(plan.file.distro)}.",
         simulators,
         launch_actions.of_all(plan, paths, simulators, values),
@@ -71,6 +75,13 @@ def fleet_starts(
         "".join(f"{it} " for it in launched.options),
         launched.headless,
     )
+    return with_switches(made, {name for it in idle for name, _ in it.asked})
+
+
+def _is_substituted(data: bytes) -> bool:
+    """Return whether the launch can replace all substitutions of a file, and there are some."""
+    found = [known for known, _ in _SUBSTITUTION.findall(data)]
+    return bool(found) and all(found)
 
 
 def _environment(

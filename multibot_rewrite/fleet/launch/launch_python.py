@@ -12,36 +12,10 @@ from textwrap import wrap
 from multibot_rewrite.fleet.launch.each_robot import Function, functions
 from multibot_rewrite.fleet.launch.python_actions import OF_ALL, actions, comment, lines, value
 from multibot_rewrite.fleet.launch.starts import FleetStarts, RobotStarts, launch_arguments
-from multibot_rewrite.spelling.start import File, in_order
+from multibot_rewrite.spelling.start import in_order
 
 # What ament_flake8 allows, and robots of which each has its line to drive.
 WIDTH, _DRIVING = 99, 4
-# The names that it imports where it uses them, in this order.
-_IMPORTS = {
-    "ament_index_python.packages": ("PackageNotFoundError", "get_package_prefix"),
-    "launch": ("LaunchDescription",),
-    "launch.actions": (
-        *("AppendEnvironmentVariable", "DeclareLaunchArgument", "EmitEvent", "ExecuteProcess"),
-        *("GroupAction", "IncludeLaunchDescription", "LogInfo", "OpaqueFunction"),
-        *("RegisterEventHandler", "SetEnvironmentVariable", "TimerAction"),
-    ),
-    "launch.conditions": ("IfCondition", "UnlessCondition"),
-    "launch.event_handlers": ("OnProcessExit", "OnProcessStart"),
-    "launch.events": ("matches_action",),
-    "launch.substitutions": (
-        *("EnvironmentVariable", "LaunchConfiguration", "PathJoinSubstitution"),
-        "PythonExpression",
-    ),
-    "launch_ros.actions": (
-        *("ComposableNodeContainer", "LifecycleNode", "Node", "PushRosNamespace", "SetRemap"),
-    ),
-    "launch_ros.descriptions": ("ComposableNode",),
-    "launch_ros.event_handlers": ("OnStateTransition",),
-    "launch_ros.events.lifecycle": ("ChangeState",),
-    "launch_ros.parameter_descriptions": ("ParameterValue",),
-    "launch_ros.substitutions": ("FindPackageShare",),
-    "lifecycle_msgs.msg": ("Transition",),
-}
 _STARTED = "[action for name in words or ROBOTS for action in ROBOTS[name]()]"
 _STARTED_APART = "[in_domain(name, ROBOTS[name]()) for name in words or ROBOTS]"
 
@@ -112,8 +86,8 @@ def _imports(body: str) -> Iterator[str]:
         yield "from functools import partial"
     yield from ("from pathlib import Path", "")
     used = frozenset(re.findall(r"\w+", body))
-    for module, every in _IMPORTS.items():
-        names = [name for name in every if name in used]
+    for module, every in (line.split(": ") for line in _part("imports")):
+        names = [name for name in every.split() if name in used]
         if module == "launch.actions" and names:
             yield from (f"from {module} import (", *(f"    {name}," for name in names), ")")
         elif names:
@@ -157,10 +131,9 @@ def _robot(it: RobotStarts) -> Iterator[str]:
             text = comment(f"Not started: {name} ({why})")
             rows = wrap(text, WIDTH - 6, break_long_words=False, break_on_hyphens=False)
             yield from (f"    # {row}" for row in rows)
-    files = tuple(File(path) for path in it.files)
-    if files:
-        yield from (f"    {line}" for line in lines("params = ", [*files]))
-    own = OF_ALL._replace(files=files)
+    if it.files:
+        yield from (f"    {line}" for line in lines("params = ", [*it.files]))
+    own = OF_ALL._replace(files=it.files)
     if it.clock is not None:
         own = own._replace(clock={"use_sim_time": it.clock})
     yield "    return ["

@@ -28,6 +28,7 @@ from multibot_rewrite.producers.launch.handed_on import handed_on
 from multibot_rewrite.producers.launch.of_robot import is_of_robot
 from multibot_rewrite.producers.launch.programs import once_for_all
 from multibot_rewrite.producers.launch.records import LaunchedNode, ParameterText
+from multibot_rewrite.producers.launch.several_robots import without
 from multibot_rewrite.system.records import Place
 
 PARAMS = "params"
@@ -38,11 +39,13 @@ NOT_REWRITTEN = declare("MF824", "launched-parameters-not-rewritten", NOTE, form
 
 
 class _Named(NamedTuple):
-    """A file that a launch names, what the node gets of it, and where the launch has that node."""
+    """A file that a launch names, what the node gets of it, where the launch has that node, and the
+    robot whose names are in it."""
 
     path: str
     text: str
     place: Place
+    robot: str
 
 
 class LaunchedFiles(NamedTuple):
@@ -70,10 +73,11 @@ def with_launched_files(file: FleetFile) -> LaunchedFiles:
 def _named(spec: RobotSpec) -> Iterator[_Named]:
     """The parameter files that are there without the launch, each once."""
     seen: set[str] = set()
-    nodes = launch_of(spec.launch, spec.words[0]).nodes
-    for given, place in ((it, node.place) for node in nodes for it in _given_to(node)):
+    graph = launch_of(spec.launch, spec.words[0])
+    robot = graph.robots[0] if graph.robots else ""
+    for given, place in ((it, node.place) for node in graph.nodes for it in _given_to(node)):
         if given.source and given.source not in seen and _sets_parameters(given.source):
-            yield _Named(given.source, given.text, place)
+            yield _Named(given.source, given.text, place, robot)
         seen.add(given.source)
 
 
@@ -128,14 +132,17 @@ def _with(spec: RobotSpec, named: Sequence[_Named]) -> tuple[RobotSpec, list[Fin
     taken = {os.path.basename(it): it for it in (*written, *beside)}
     for it in named:
         there = taken.setdefault(os.path.basename(it.path), it.path)
-        text, where = yaml_of(it.path).text, {"file": it.place.file, "line": it.place.line}
+        whole = yaml_of(it.path).text
+        text = without(whole, it.robot) if it.robot else whole
+        where = {"file": it.place.file, "line": it.place.line}
         if os.path.realpath(there) != it.path:
             message = f"the launch gives a node {it.path}; {there} is rewritten in its place"
             hint = "give the launch what is written for the robot, or give one of them another name"
             notes.append(NOT_REWRITTEN.finding(message, hint, **where))
         elif _SUBSTITUTED not in text or _is_filled(it, text, spec):
             own += [] if there in own else [there]
-            filled += [(there, it.text)] if _SUBSTITUTED in text else []
+            made = it.text if _SUBSTITUTED in text else text
+            filled += [(there, made)] if made != whole else []
         elif there not in own:
             message = f"the launch fills {_SUBSTITUTED}...) in {it.path}; it is not rewritten"
             hint = "write it out for one robot without a prefix, and list that file under params"

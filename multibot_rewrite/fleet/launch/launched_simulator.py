@@ -5,9 +5,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from typing import NamedTuple
 
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.launch.launched_robot import launch_of
 from multibot_rewrite.producers.launch.describe import CLASSIC, SIMULATOR, SIMULATORS
@@ -54,10 +57,11 @@ def with_launched_world(file: FleetFile) -> FleetFile:
     own = launched_simulator(file)
     if file.simulator_world or own.is_classic or not os.path.isfile(own.world):
         return file
-    if b"<world" not in read_file(own.world):
-        return file
     place = next((it.launch[0].file, 1) for it in file.robots if it.launch)
-    return file._replace(simulator_world=own.world, world_place=place)
+    with suppress(InputError):
+        if read_document(read_file(own.world), own.world).root.find("world") is not None:
+            return file._replace(simulator_world=own.world, world_place=place)
+    return file
 
 
 def _options(words: Sequence[str]) -> Iterator[str]:

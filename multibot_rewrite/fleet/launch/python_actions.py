@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import Any, NamedTuple
 
@@ -48,11 +48,9 @@ def actions(
         if condition:
             every = [*several]
             rest = [one for it in every for one in it.always]
-            for led, holds in ((every, "If"), (rest, "Unless")) if rest else ((every, "If"),):
-                inner = _processes(led, indent + 8, own)
-                yield from (f"{space}GroupAction(", f"{space}    [", *inner, f"{space}    ],")
-                asked = f"{holds}Condition(LaunchConfiguration({value(condition)}))"
-                yield from (f"{space}    condition={asked},", f"{space}),")
+            for words, led in ((condition.split(), every), ([f"!{condition}"], rest)):
+                inner = _processes(led, indent + 8 * len(words), own) if led else ()
+                yield from _grouped(words if led else (), inner, indent)
         elif needs:
             given = (f"{space}    {value(it)}," for it in (needs, otherwise))
             inner = _processes(several, indent + 8, own)
@@ -60,6 +58,18 @@ def actions(
             yield from (f"{space}    ],", f"{space}),")
         else:
             yield from _processes(several, indent, own)
+
+
+def _grouped(words: Sequence[str], inner: Iterable[str], indent: int) -> Iterator[str]:
+    """Yield what is started in a group below a group, one for each launch argument."""
+    if not words:
+        yield from inner
+        return
+    space, name = " " * indent, words[0].lstrip("!")
+    below = _grouped(words[1:], inner, indent + 8)
+    yield from (f"{space}GroupAction(", f"{space}    [", *below, f"{space}    ],")
+    asked = f"{'If' if name == words[0] else 'Unless'}Condition(LaunchConfiguration({value(name)}))"
+    yield from (f"{space}    condition={asked},", f"{space}),")
 
 
 def _processes(several: Iterable[Led], indent: int, own: OfRobot) -> Iterator[str]:
@@ -206,7 +216,8 @@ def value(it: Any) -> str:
     if isinstance(it, Code):
         return str(it)
     if isinstance(it, File):
-        return f"file({value(it.path)})"
+        path = f"file({value(it.path)})"
+        return f"ParameterFile({path}, allow_substs=True)" if it.substituted else path
     if isinstance(it, Text):
         return f"text({value(it.path)})"
     if isinstance(it, Mapping):

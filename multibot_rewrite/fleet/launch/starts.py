@@ -3,14 +3,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.spelling.start import NOTHING, File, Start, Text
 
 # The simulators that it can start.
 CLASSIC, GZ = "classic", "gz"
-# The launch arguments that switch something on.
+# The launch arguments of every build, or of some.
+OWN_ARGUMENTS = ("robots", "use_sim_time", "rviz", "simulator", "headless", "world")
+# Those that switch something on.
 SIMULATOR, RVIZ = "simulator", "rviz"
 TOGETHER: Mapping[str, int] = {}
 
@@ -25,7 +28,7 @@ class RobotStarts(NamedTuple):
     name: str
     description: str
     where: str
-    files: tuple[str, ...]
+    files: tuple[File, ...]
     starts: tuple[Start, ...]
     left: tuple[tuple[str, str], ...] = ()
     not_bridged: str = ""
@@ -40,7 +43,8 @@ class FleetStarts(NamedTuple):
     of all (empty name), where they are not in one. ``shown`` are all windows, those that a fleet
     without any config has among them: the launch file does not open these. ``environment`` is that of
     all processes; a value with ``:`` in front or at the end is added to what is there. ``options`` are
-    further ones of gz-sim, ``headless`` is whether it has no window by default."""
+    further ones of gz-sim, ``headless`` is whether it has no window by default. ``switches`` are
+    launch arguments of the robots' launch files, with the values by which they start all of it."""
 
     head: str
     simulators: Sequence[str]
@@ -55,6 +59,7 @@ class FleetStarts(NamedTuple):
     environment: Mapping[str, str] = NOTHING
     options: str = ""
     headless: bool = False
+    switches: Mapping[str, str] = NOTHING
 
     @property
     def every(self) -> Iterator[Start]:
@@ -86,3 +91,32 @@ def launch_arguments(it: FleetStarts) -> Iterator[tuple[str, str | File, str]]:
         yield SIMULATOR, "true", "whether to start the simulator and to spawn the robots in it"
         yield "headless", str(it.headless).lower(), "whether the simulator has no window"
         yield "world", it.world, "the world of the simulator"
+    for name, default in it.switches.items():
+        yield name, default, "as in the launch files of the robots: it turns something off"
+
+
+def with_switches(it: FleetStarts, others: Collection[str]) -> FleetStarts:
+    """Return the fleet with launch arguments that turn off what launch files start with them: those of
+    one value, by which these start nothing else as they do by ``others``. What waits for something
+    that has a condition of ours has no further one."""
+    values = lists_by_key(dict.fromkeys(pair for one in it.every for pair in one.process.switches))
+    taken = {*OWN_ARGUMENTS, *others}
+    own = {name: its[0] for name, its in values.items() if len(its) == 1 and name not in taken}
+    robots = [one._replace(starts=_switched(one.starts, own)) for one in it.robots]
+    made = it._replace(shared=_switched(it.shared, own), robots=robots)
+    used = {word.lstrip("!") for one in made.every for word in one.condition.split()}
+    return made._replace(switches={name: text for name, text in own.items() if name in used})
+
+
+def _switched(starts: Sequence[Start], own: Mapping[str, str]) -> tuple[Start, ...]:
+    numbered = {it.number: it for it in starts if it.number >= 0}
+
+    def terms(it: Start) -> str:
+        first: Start | None = it
+        while first is not None and not first.condition:
+            first = numbered.get(first.process.after)
+        named = [pair for pair in it.process.switches if pair[0] in own]
+        words = (name if value.lower() == "true" else f"!{name}" for name, value in named)
+        return it.condition if first else " ".join(words)
+
+    return tuple(it._replace(condition=terms(it)) for it in starts)

@@ -28,8 +28,7 @@ from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_ro
 PARAMETERS = "parameters"
 # A package and the path in it, as xacro, a resource or an installed file names them.
 IN_PACKAGE = lazy_compile(
-    r"(?:\$\(find(?:-pkg-share)?\s+([^)\s]+)\)|package://([^/]+)|.*/share/([^/]+))/(.+)",
-    re.DOTALL,
+    r"(?:\$\(find(?:-pkg-share)?\s+([^)\s]+)\)|package://([^/]+)|.*/share/([^/]+))/(.+)", re.DOTALL
 )
 
 OTHER_CONTROLLER_FILE = declare(

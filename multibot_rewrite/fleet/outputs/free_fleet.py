@@ -38,7 +38,7 @@ def configurations(plan: System, setup: FreeFleet) -> Iterator[tuple[str, bytes]
             raise UsageError(f"{FREE_FLEET}: {wanted}; take layout tf-per-robot or both")
         if not any((it.kind, it.role, it.name) == (ACTION, SERVES, served) for it in plan.ends):
             what = f"no node of {robot.name} serves {served}"
-            raise UsageError(f"{FREE_FLEET}: {what}; name the stack that does, as nav2")
+            raise UsageError(f"{FREE_FLEET}: {what}; name the node set that does, as nav2")
         yield f"{FREE_FLEET}/{robot.name}.json5", _bridge(robot, numbers[robot.name], setup)
     rows = [
         "# The robots of the fleet adapter: put them below rmf_fleet of its configuration.",

@@ -84,7 +84,7 @@ def in_style(plan: FleetPlan, files: Sequence[OutputFile]) -> FilesAndFindings:
 
 
 def _with_zones(it: OutputFile, spec: RobotSpec, file: FleetFile) -> OutputFile:
-    """The file with what the launch files of nav2_bringup write into it: a word is no boolean."""
+    """Return the file with true or false for the zone words, as nav2_bringup's launch files do."""
     if not any(word.encode() in it.data for word in ZONES):
         return it
     runs = {node.name for node in stack_nodes(spec, file)}

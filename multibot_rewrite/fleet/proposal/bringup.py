@@ -26,6 +26,7 @@ from multibot_rewrite.fleet.proposal.launches import (
     read_named,
     starts_simulator,
 )
+from multibot_rewrite.fleet.proposal.searching import known_names
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import (
     LaunchArgument,
@@ -36,31 +37,8 @@ from multibot_rewrite.producers.launch.records import (
 
 # Launch files that are read with their own arguments, and orders of one of them with a switch.
 _MOST, _MOST_SWITCHES = 16, 8
-_PUBLISHERS = ("robot_state_publisher", "robot_state_publisher::RobotStatePublisher")
-# What shows a description and moves nothing.
-_SHOWING = (
-    *_PUBLISHERS,
-    "joint_state_publisher",
-    "joint_state_publisher_gui",
-    "static_transform_publisher",
-)
 # Words in the names of launch files.
 _WORD = re.compile(r"[a-z0-9]+")
-_TRIALS = frozenset(("demo", "test", "example", "fake", "mock", "dummy", "multi"))
-_SIMULATIONS = frozenset(
-    (
-        "sim",
-        "simulation",
-        "simulator",
-        "gazebo",
-        "gz",
-        "ign",
-        "ignition",
-        "mujoco",
-        "isaac",
-        "webots",
-    )
-)
 
 
 class Robot(NamedTuple):
@@ -136,7 +114,7 @@ def processes_of_robot(it: Reading) -> int:
     """How many processes a launch file starts for a robot, those that show it as one; none where it is
     a trial, or neither publishes a description nor simulates one. Raises nothing."""
     starts = starts_simulator(it.graph) or any(map(_publishes, it.graph.nodes))
-    own = {one for one in _own(it.graph) if one.executable not in _SHOWING}
+    own = {one for one in _own(it.graph) if not _shows(one)}
     own |= {one for one in it.graph.nodes if one.package in programs().simulators}
     return 1 + len(own) if starts and not _tries(it, True) else 0
 
@@ -210,10 +188,10 @@ def _reads(graph: LaunchGraph) -> set[str]:
 
 def _is_bringup(graph: LaunchGraph, robot: Robot) -> bool:
     """Does it start more than what shows the description, and no second robot?"""
-    homes = {it.namespace for it in graph.nodes if it.executable in _PUBLISHERS}
+    homes = {it.namespace for it in graph.nodes if _is_called(it, "publishers")}
     # What is said of a file as a whole starts nothing by itself.
     unread = any(it.place.line > 1 and not it.parameters for it in graph.notes)
-    shows = not unread and all(it.executable in _SHOWING for it in _own(graph))
+    shows = not unread and all(map(_shows, _own(graph)))
     return len(homes) < 2 and (starts_simulator(graph) or not shows)
 
 
@@ -231,7 +209,16 @@ def _beside(roots: Sequence[Reading], robot: Robot, trust: bool) -> Bringup | No
 
 
 def _publishes(it: LaunchedNode) -> bool:
-    return it.executable in _PUBLISHERS or f"{it.package}/{it.executable}" in programs().spawners
+    return _is_called(it, "publishers") or f"{it.package}/{it.executable}" in programs().spawners
+
+
+def _is_called(it: LaunchedNode, kind: str) -> bool:
+    return it.executable in known_names()[kind]
+
+
+def _shows(it: LaunchedNode) -> bool:
+    """Does it show a description and move nothing?"""
+    return _is_called(it, "publishers") or _is_called(it, "showing")
 
 
 def _own(graph: LaunchGraph) -> list[LaunchedNode]:
@@ -241,7 +228,8 @@ def _own(graph: LaunchGraph) -> list[LaunchedNode]:
 def _tries(it: Reading, simulated: bool) -> bool:
     """Is a launch file called as a trial, or as one of a simulator that nothing here is known of?"""
     words = {*_WORD.findall(os.path.basename(it.file).lower())}
-    return bool(words & (_TRIALS if simulated else _TRIALS | _SIMULATIONS))
+    kinds = ("trials",) if simulated else ("trials", "simulations")
+    return any(not words.isdisjoint(known_names()[it]) for it in kinds)
 
 
 def _rank(it: Reading) -> tuple[object, ...]:

@@ -29,26 +29,13 @@ from multibot_rewrite.fleet.proposal.owners import (
     not_started,
     of_others,
 )
-from multibot_rewrite.fleet.proposal.searching import Found, without
+from multibot_rewrite.fleet.proposal.searching import Found, known_names, without
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 
 # Of these kinds a robot has one file, of the others any number.
 ONE = ("rviz", "bridge")
 KINDS = ("params", "rviz", "bridge", "moveit", "behavior_trees")
-_TWO_FILTERS = ("ekf_filter_node_odom", "ekf_filter_node_map", "navsat_transform")
-# A stack, and nodes in a parameter file that say so: all of them, then none of these.
-_STACKS = (
-    ("nav2", ("amcl", "controller_server"), ()),
-    ("nav2_slam", ("slam_toolbox", "controller_server"), ("amcl",)),
-    ("navigation", ("controller_server",), ("amcl", "slam_toolbox")),
-    ("localization", ("amcl",), ("controller_server",)),
-    ("slam_toolbox", ("slam_toolbox",), ("controller_server",)),
-    ("robot_localization", ("ekf_node",), ()),
-    ("robot_localization", ("ekf_filter_node",), ("ekf_node", *_TWO_FILTERS)),
-    ("robot_localization_gps", _TWO_FILTERS, ()),
-    ("teleop", ("teleop_twist_joy_node",), ()),
-)
 _MANAGER = "controller_manager"
 _CONTROL = {NO_SIMULATOR: "ros2_control", GZ: "gz_ros2_control", CLASSIC: "gazebo_ros2_control"}
 _WORD = re.compile(r"[a-z0-9]+")
@@ -248,7 +235,7 @@ def _loaded(robot: Looked) -> Iterator[str]:
 def _stacks(robot: Looked, nodes: Mapping[str, str], srdf: str) -> Iterator[tuple[str, str]]:
     """The stacks that a robot runs, each with what says so."""
     bare = {name.rpartition("/")[2]: path for name, path in nodes.items()}
-    for stack, with_, lacking in _STACKS:
+    for stack, with_, lacking in known_names()["stacks"]:
         if set(with_) <= bare.keys() and not set(lacking) & bare.keys():
             first = with_[0]
             yield stack, f"{os.path.basename(bare[first])} has parameters of {' and '.join(with_)}"

@@ -59,7 +59,7 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
     home = os.path.relpath(it.members[0].looked.path, folder)
     if left:
         yield ""
-        yield "# Found beside them and not taken:"
+        yield "# Other files in these folders, not taken:"
         rows = sorted(
             left.items(),
             key=lambda row: (row[0] not in first, os.path.relpath(row[0], home).count(".."), row),

@@ -89,7 +89,7 @@ def _nearer_to_others(robot: str, found: Found) -> Iterator[tuple[str, str]]:
         if _near(base, file) == len(os.path.abspath(base)):
             at = max(others, key=lambda it: _near(it, file), default=own)
             if _near(at, file) > _near(own, file):
-                yield file, f"it is beside {os.path.basename(others[at])}"
+                yield file, f"it is next to {os.path.basename(others[at])}"
 
 
 def _naming_others(robot: Looked, found: Found, files: Iterable[str]) -> Iterator[tuple[str, str]]:
@@ -227,7 +227,7 @@ def moveit_of_others(robot: Looked, srdf: str, found: Found) -> Mapping[str, str
             left[file] = f"it names no group of {os.path.basename(srdf)}"
         best = max(found.srdf, key=lambda it: _near(os.path.dirname(it), file))
         if _near(os.path.dirname(best), file) > _near(os.path.dirname(srdf), file):
-            left[file] = f"it is beside {os.path.basename(best)}"
+            left[file] = f"it is next to {os.path.basename(best)}"
     return left
 
 
@@ -250,7 +250,11 @@ def fitting(
     found = {
         value
         for kind, value in _named(nodes, known)
-        if (value not in own if kind in _OF_ROBOT else _is_strange(value, said))
+        if (
+            value not in own
+            if kind in _OF_ROBOT
+            else "/" in (word := value.strip("/")) and word not in said
+        )
     }
     names = frozenset(word for it in nodes for word in (it.node, it.fact.known) if word)
     return Fitting(path, names, frozenset(found))
@@ -280,27 +284,20 @@ def _named(nodes: Iterable[Run], known: KnownNodes) -> Iterator[tuple[str, str]]
                 yield from ((kind, it) for it in values if isinstance(it, str) and "$" not in it)
 
 
-def _is_strange(topic: str, said: str) -> bool:
-    words = topic.strip("/")
-    return "/" in words and words not in said
-
-
 def check_winner(its: Sequence[Fitting], robot: Looked, found: Found) -> None:
     """Raise Undecided where two files for one node go as badly with the robot: each has names that it
     has not. A file without any has no rival."""
     for at, best in enumerate(its):
         if any(best.nodes & it.nodes for it in its[:at]):
             continue
-        rivals = [it for it in its[at + 1 :] if it.nodes & best.nodes and _is_rival(it, best)]
+        most = _MORE * len(best.strange)
+        alike = (it for it in its[at + 1 :] if it.nodes & best.nodes)
+        rivals = [it for it in alike if len(it.strange) <= most]
         if best.strange and rivals:
             both = {it.path: _shown(it.strange) for it in (best, *rivals)}
             node = sorted(best.nodes & rivals[0].nodes)[0]
             what = f"{len(both)} files have parameters of {node}, and names that the robot has not"
             raise Undecided(what, both, found, robot.path)
-
-
-def _is_rival(it: Fitting, best: Fitting) -> bool:
-    return len(it.strange) <= _MORE * len(best.strange)
 
 
 def _shown(names: Iterable[str]) -> str:

@@ -159,11 +159,10 @@ def two_simulators(members: Sequence[Member]) -> str:
     )
 
 
-def worlds_of(members: Sequence[Member]) -> dict[str, Choice]:
+def worlds_of(members: Sequence[Member], is_real: bool) -> dict[str, Choice]:
     """Where descriptions fix their robots to the world, each real robot gets a world of its own, which
     stands at its pose in the map. A simulator needs the one world."""
-    simulated = any(it.looked.simulator != NO_SIMULATOR for it in members)
-    if simulated or not any(holds_the_world(it.looked) for it in members):
+    if not is_real or not any(holds_the_world(it.looked) for it in members):
         return {}
     why = "the description fixes the robot to a link `world`: each robot has its own, placed in map"
     return {"shared_frames": Choice(["map"], why)}
@@ -235,14 +234,16 @@ def propose(
     if wanted.layout:
         layout = Choice(wanted.layout, MEANT)
     affix = affix_of(layout.value)
+    simulator = Choice(wanted.simulator, MEANT) if wanted.simulator else simulator_of(members)
     keys: dict[str, Choice] = {
         "layout": layout,
         **({"affix": affix} if affix else {}),
         "distro": release,
-        "simulator": Choice(wanted.simulator, MEANT) if wanted.simulator else simulator_of(members),
-        **worlds_of(members),
+        "simulator": simulator,
+        **worlds_of(members, simulator.value == REAL),
     }
     poses = poses_of(members, wanted.apart)
+    taken = {path for it in robots for path in it.files}
     every = found.read
     bringups = [it.bringup for it in robots if it.bringup]
     other = (one for it in every for one in it.graph.nodes if not bringups)
@@ -253,7 +254,7 @@ def propose(
         members,
         poses,
         (),
-        _others(found, robots),
+        tuple(it for it in found.descriptions if it not in taken),
         refused,
         tuple(started(other)),
         tuple(unread),
@@ -274,11 +275,6 @@ def _member(it: Looked, beside: Companions, names: tuple[str, ...], reach: Reach
     own = with_controllers(it, beside.files.get("params", ()), reach)
     assert own.root is not None
     return Member(own, beside, names, reach_of(own.root) or UNKNOWN_RADIUS)
-
-
-def _others(found: Found, robots: Sequence[Looked]) -> tuple[str, ...]:
-    taken = {path for it in robots for path in it.files}
-    return tuple(it for it in found.descriptions if it not in taken)
 
 
 # The release that parameter files were written for, by the parameters and the classes of plugins that

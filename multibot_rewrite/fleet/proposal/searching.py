@@ -9,10 +9,12 @@ from __future__ import annotations
 import os
 import re
 import shlex
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
-from functools import lru_cache
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
+from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
+from multibot_rewrite import fleet
+from multibot_rewrite.base.bounded import load_own_yaml
 from multibot_rewrite.base.file_kinds import (
     DESCRIPTIONS,
     SDF,
@@ -41,19 +43,6 @@ from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder
 _BUILT = frozenset((MANIFEST, PLAN))
 # Files that are shown where nothing says which is meant.
 MOST_SHOWN = 6
-_ENDS = (
-    ".urdf",
-    ".sdf",
-    ".model",
-    ".world",
-    ".xacro",
-    ".srdf",
-    ".yaml",
-    ".yml",
-    ".rviz",
-    ".xml",
-    ".py",
-)
 # Files that go with a description, never one themselves.
 _BESIDE = (".yaml", ".yml", ".rviz", ".srdf")
 _ROBOT = re.compile(rb"<robot\b[^<>]*\sname\s*=")
@@ -65,17 +54,12 @@ _BRIDGE = re.compile(
 )
 # What launch files begin with, in a folder of theirs: many are called up.py.
 _LAUNCH = re.compile(rb"^def generate_launch_description|^[^\S\n]*<launch\b", re.MULTILINE)
-# MoveIt's own files, by the names that its setup assistant gives them.
-_MOVEIT = frozenset(
-    (
-        "kinematics",
-        "joint_limits",
-        "ompl_planning",
-        "moveit_controllers",
-        "sensors_3d",
-        "moveit_servo",
-    )
-)
+
+
+@cache
+def known_names() -> Mapping[str, Any]:
+    """Return the names of ``names.yaml``."""
+    return load_own_yaml(fleet.__file__, "names.yaml")  # type: ignore[no-any-return]
 
 
 class Found(NamedTuple):
@@ -157,17 +141,16 @@ def loaded_by(graph: LaunchGraph, found: Found) -> Mapping[str, str]:
     """The descriptions that a launch file loads, by their real paths: it reads the file, gives it to a
     node, or starts a world with the model."""
     known = {os.path.realpath(it): it for it in found.every}
-    words = (it for node in graph.nodes for it in node.arguments if it.endswith(_ENDS))
+    ends = tuple(known_names()["ends"])
+    words = (it for node in graph.nodes for it in node.arguments if it.endswith(ends))
     real = dict.fromkeys((*(it.file for it in graph.read), *map(os.path.realpath, words)))
     texts = [text_of(it) for it in real if it in map(os.path.realpath, found.worlds)]
     uris = {it: f"model://{os.path.basename(os.path.dirname(it))}<" for it in known}
     models = (it for it, uri in uris.items() if any(uri in text for text in texts))
     own = {it: known.get(it) or os.path.relpath(it) for it in (*real, *models)}
-    return {it: path for it, path in own.items() if it in known or _is_description(it)}
-
-
-def _is_description(path: str) -> bool:
-    return os.path.isfile(path) and _kind(path, data_of_file(path)) == "descriptions"
+    there = (it for it in own if it not in known and os.path.isfile(it))
+    read = {it for it in there if _kind(it, data_of_file(it)) == "descriptions"}
+    return {it: path for it, path in own.items() if it in known or it in read}
 
 
 class Undecided(UsageError):
@@ -210,6 +193,7 @@ def is_below(path: str, folder: str) -> bool:
 
 def _files(folder: str) -> Iterator[str]:
     seen = 0
+    ends = tuple(known_names()["ends"])
     for above, folders, names in os.walk(folder):
         # What a build has written is made of the robots that are meant.
         if above != folder and _BUILT.issubset(names):
@@ -222,7 +206,7 @@ def _files(folder: str) -> Iterator[str]:
                 hint = "name the folder of one package"
                 raise UsageError(f"{folder}: it has more than {MOST_FILES} files; {hint}")
             path = os.path.normpath(os.path.join(above, name))
-            if name.endswith(_ENDS) and name[0] != "." and _can_be_named(path):
+            if name.endswith(ends) and name[0] != "." and _can_be_named(path):
                 yield path
 
 
@@ -289,16 +273,12 @@ def _of_xacro(stem: str, data: bytes) -> str:
     return "srdf" if ".srdf" in stem or b"<group " in data else kind
 
 
-def _of_xml(_: str, data: bytes) -> str:
-    return "behavior_trees" if b"<BehaviorTree" in data else ""
-
-
 def _of_yaml(stem: str, data: bytes) -> str:
     if b"ros__parameters" in data:
         return "params"
     if _BRIDGE.search(data) and _is_list(data):
         return "bridge"
-    return "moveit" if stem in _MOVEIT else ""
+    return "moveit" if stem in known_names()["moveit"] else ""
 
 
 def _is_list(data: bytes) -> bool:
@@ -310,8 +290,9 @@ def _is_list(data: bytes) -> bool:
 
 _BY_NAME = {".srdf": "srdf", ".rviz": "rviz"}
 _BY_KIND = {WORLD: "worlds", SRDF: "srdf", **dict.fromkeys(DESCRIPTIONS, "descriptions")}
-_BY_TEXT = {
+_BY_TEXT: Mapping[str, Callable[[str, bytes], str]] = {
     **dict.fromkeys((".urdf", ".sdf", ".model", ".world"), _of_model),
     ".xacro": _of_xacro,
-    ".yaml": _of_yaml, ".yml": _of_yaml, ".xml": _of_xml,
+    ".yaml": _of_yaml, ".yml": _of_yaml,
+    ".xml": lambda _, data: "behavior_trees" if b"<BehaviorTree" in data else "",
 }  # fmt: skip

@@ -48,10 +48,6 @@ MOST = 60
 MOST_PARTNERS = 5
 
 
-def _silent(_: str) -> None:
-    """Nobody is told."""
-
-
 class Wanted(NamedTuple):
     """What is asked for: files and folders, robots of each description or their names, values of xacro
     arguments, the release and whether somebody named it, a layout if not the one that the files are
@@ -72,7 +68,7 @@ class Wanted(NamedTuple):
     launch: tuple[LaunchOrder, ...] | None = None
     stacks: tuple[str, ...] = ()
     file: str = "fleet.yaml"
-    tell: Callable[[str], None] = _silent
+    tell: Callable[[str], None] = lambda _: None
 
 
 class Seen(NamedTuple):

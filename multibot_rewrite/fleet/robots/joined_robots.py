@@ -129,13 +129,13 @@ def joined_arms(cell: Cell, world: str, arms: Sequence[Arm], tree: Tree) -> Mapp
             what = f"has a pose, but its description fixes it to {world!r}"
             raise InputError(f"{arm.where} {what}; set shared_frames: [map], or remove the pose")
         if read.root != world and arm.pose is None:
-            what = f"has no pose; write where it stands in {world!r}: pose: {{x: 0.5}}"
+            what = f"has no pose; write its place in {world!r}: pose: {{x: 0.5}}"
             raise InputError(f"{arm.where} {what}")
         # A virtual joint says where an arm stands; in a cell the URDF does.
         for it in read_xml(arm.srdf, arm.place).iterchildren("virtual_joint"):
             if it.get("type") != "fixed":
                 what = f"its virtual joint {it.get('name')!r} is {it.get('type')}"
-                raise InputError(f"{arm.where}: {what}; an arm of a cell stands: make it fixed")
+                raise InputError(f"{arm.where}: {what}; arms of a cell are fixed: make it fixed")
         semantics.append(PartSemantics(read, arm.srdf, arm.where))
     srdf = read_xml(joined_srdf(semantics, made.data, hint=_HINT).data, cell.place)
     _add_groups(srdf, cell)

@@ -68,6 +68,8 @@ def _by_trying(
     names = (
         it.get("name", "")
         for file, data in sources.items()
+        # A xacro reads YAML, too.
+        if data.lstrip().startswith(b"<")
         for it in read_document(data, file).root.iter("{*}arg")
     )
     alike = sorted(dict.fromkeys(names), key=lambda it: it != element.get("name"))

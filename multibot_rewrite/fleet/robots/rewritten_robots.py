@@ -295,7 +295,7 @@ def _texts(job: Job, group: Sequence[RobotSpec]) -> Iterator[Rewrite]:
 
 
 def _final(text: Rewrite, robot: RobotSpec, naming: Naming) -> bytes:
-    """The description of a robot; if its namespace and tag differ, two rewrites, each proved."""
+    """The description of a robot; if its namespace and tag differ, two rewrites, each verified."""
     if robot.tag == robot.namespace:
         return text.data
     template = text.template

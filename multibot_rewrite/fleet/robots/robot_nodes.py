@@ -358,5 +358,5 @@ def check_shared(file: FleetFile, run: Mapping[str, object]) -> None:
     """Raises InputError for a node of these keys that is not among the nodes that robots ``run``."""
     for key, names in (("shared_nodes", file.shared_nodes), ("own_nodes", file.own_nodes)):
         for name in (it for it in names if it not in run):
-            near = did_you_mean_one_of(name, tuple(run)) or "name a node of a robot's stack"
+            near = did_you_mean_one_of(name, tuple(run)) or "name a node of a robot's node set"
             raise InputError(f"{file.file}: {key}: no robot has a node {name!r}; {near}")

@@ -38,11 +38,7 @@ from multibot_rewrite.fleet.file.simulator_switch import (
     switch_for,
 )
 from multibot_rewrite.fleet.robots.member import has_parts_for_simulator, is_for_simulator
-from multibot_rewrite.fleet.robots.rewritten_robots import (
-    RewrittenRobot,
-    at_robot,
-    robot_with_text,
-)
+from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot, robot_with_text
 from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence, stack_nodes
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.producers.evidence.semantics import FIXED

@@ -261,7 +261,7 @@ def _alone(known: NodeKnowledge, name: str) -> NodeFacts | None:
     found = [it for it in sorted(identities(known.interfaces)) if name in (it.name, shown(it))]
     if len(found) > 1:
         both = " or ".join(map(shown, found))
-        raise UsageError(f"stack {name!r} may be {both}; name one of them")
+        raise UsageError(f"node set {name!r} may be {both}; name one of them")
     if not found:
         return None
     bare = NodeFacts(found[0].name, found[0].package, ())

@@ -83,7 +83,7 @@ class Mesh(NamedTuple):
 def mesh_shape(
     name: str, scale: tuple[float, ...], pose: Matrix, colour: tuple[float, ...], source: str
 ) -> Shape:
-    """A mesh of the file ``source``, or a small box in its place."""
+    """Return a mesh of the file ``source``, or a small box in its place."""
     path = find_mesh(name, source)
     if path:
         return Shape("mesh", scale, pose, colour, path)
@@ -91,7 +91,7 @@ def mesh_shape(
 
 
 def find_mesh(name: str, source: str) -> str:
-    """The file of a mesh's name; empty if there is none. Gazebo finds model:// where packages are."""
+    """Return the file of a mesh's name, or "". Gazebo finds model:// in the folders of packages."""
     scheme, _, below = name.partition("://")
     if scheme in ("package", "model"):
         package, _, rest = below.partition("/")
@@ -113,7 +113,7 @@ def prepare_meshes() -> None:
 
 
 def load_mesh(path: str) -> Mesh | str:
-    """A mesh file, or why it cannot be shown."""
+    """Return a mesh file, or the reason why it cannot be shown."""
     import numpy as np
     import trimesh
 
@@ -133,7 +133,7 @@ def load_mesh(path: str) -> Mesh | str:
 
 
 def _colours(mesh: Any) -> bytes:
-    """The colours that the file gives its vertices, by a material, a picture or one each."""
+    """Return the colours that the file gives its vertices, by a material, a picture or one each."""
     visual = mesh.visual
     with suppress(Exception):  # a picture that is not there, or of a format that nothing here reads
         if visual.kind == "texture" and visual.uv is None:
@@ -145,7 +145,7 @@ def _colours(mesh: Any) -> bytes:
 
 
 def matrix_of(pose: Pose) -> Matrix:
-    """The four rows of a pose."""
+    """Return the four rows of a pose."""
     rows = zip(pose.matrix, pose.at, strict=True)
     return [*([*(round(it, 9) for it in row), round(at, 9)] for row, at in rows), [0, 0, 0, 1]]
 
@@ -170,7 +170,7 @@ def three() -> str:
 
 
 def load_urdf(root: _Element, source: str) -> Model:
-    """The model of a URDF; ``source`` is the file it was made from. Raises nothing."""
+    """Return the model of a URDF; ``source`` is the file it was made from. Raises nothing."""
     named = {it.get("name", ""): _rgba(it) for it in root.iterchildren("material")}
     links = {
         it.get("name", ""): tuple(_shapes(it, named, source)) for it in root.iterchildren("link")

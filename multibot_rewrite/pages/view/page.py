@@ -22,8 +22,8 @@ Meshes = Mapping[str, Mesh | str]
 
 
 def meshes_of(scene: ShownScene, tell: Callable[[str], None] = lambda _: None) -> Meshes:
-    """The meshes of all robots, each read once, by a worker with bounds: a small file may stand for
-    more than memory holds, or take for ever. ``tell`` is told which one is read."""
+    """Return the meshes of all robots, each read once, by a worker with limits: a small file may need
+    too much memory or time. ``tell`` gets the name of the one being read."""
     shapes = (it for robot in scene.robots for its in robot.model.links.values() for it in its)
     paths = [path for path in dict.fromkeys(it.mesh for it in shapes) if path]
     prepare_meshes()
@@ -44,12 +44,12 @@ def meshes_of(scene: ShownScene, tell: Callable[[str], None] = lambda _: None) -
 
 
 def to_html(scene: ShownScene, meshes: Meshes, title: str) -> bytes:
-    """The page; raises Unusable without trimesh."""
+    """Return the page; raises Unusable without trimesh."""
     return to_frame(scene, meshes, title).html.encode()
 
 
 def to_frame(scene: ShownScene, meshes: Meshes, title: str) -> Framed:
-    """The page, to be put into another; raises Unusable without trimesh."""
+    """Return the page, to be put into another; raises Unusable without trimesh."""
     library, own = three(), _asset("viewer.js") + _asset("heard.js")
     style = _asset("viewer.css")
     scripts = f"{source_hash(library)} {source_hash(own)}"
@@ -84,12 +84,12 @@ _BAR = (
 
 
 def bare(model: Model) -> str:
-    """What is said of a robot that has nothing to show; empty for others."""
+    """Return a remark on a robot that has nothing to show; empty for others."""
     return "" if any(model.links.values()) else "its links have no <visual>: only frames are shown"
 
 
 def title_of(robots: Sequence[ViewedRobot], layout: str) -> str:
-    """The heading of a page."""
+    """Return the heading of a page."""
     return f"{plural(len(robots), 'robot')}, layout {layout}"
 
 

@@ -45,7 +45,7 @@ class Plugin(NamedTuple):
 
 
 class ViewedRobot(NamedTuple):
-    """A robot: where it stands (x, y, z, roll, pitch, yaw), its model, its names, what was changed.
+    """A robot: where it is (x, y, z, roll, pitch, yaw), its model, its names, what was changed.
 
     ``heard`` says of each link whether a snapshot of the graph has it on ``topic``; ``transforms`` are
     those of links that hang there as they do here. ``prefix`` is before a link's name there.
@@ -72,7 +72,7 @@ class ShownScene(NamedTuple):
 
 
 def scene_of(plan: FleetPlan, graph: System | None = None) -> ShownScene:
-    """The robots; raises as ``load_sdf``."""
+    """Return the robots of a plan; raises as ``load_sdf``."""
     templates = {sources: Prepared(job.description).template for sources, job in plan.jobs.items()}
     robots = tuple(_robot(it, templates[it.spec.sources], graph) for it in plan.robots)
     if graph is None:
@@ -127,8 +127,8 @@ def _robot(it: RewrittenRobot, template: Template, graph: System | None) -> View
 
 
 def _before(it: RewrittenRobot, model: Model) -> dict[tuple[str, str], tuple[str, int]]:
-    """What a link or joint was called, and the line that declares it. Names within nested models of an
-    SDF are told by their order, which a rewrite keeps."""
+    """Return the old name of each link and joint, and the line that declares it. Names within nested
+    models of an SDF are matched by their order, which a rewrite keeps."""
     root = it.member.source.root
     if root.tag == it.member.described.document.root.tag == "sdf":
         old, lines = load_sdf(root, ""), declared(root)
@@ -178,7 +178,7 @@ class LinkFrames(NamedTuple):
 def heard_trees(
     heard: Iterable[Edge], robots: Sequence[LinkFrames], shared: frozenset[str]
 ) -> tuple[HeardTree, ...]:
-    """The trees of a snapshot; a frame whose place was not heard is left out with those below it."""
+    """Return the trees of a snapshot, without frames that have no pose and those below them."""
     by_topic: dict[str, dict[str, Edge]] = defaultdict(dict)
     for it in heard:
         by_topic[tree_topic(it.topic)].setdefault(it.child, it)

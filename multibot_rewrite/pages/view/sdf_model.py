@@ -38,9 +38,9 @@ _LONGEST = 10.0
 
 
 def load_sdf(root: _Element, source: str) -> Model:
-    """The first model of an SDF; ``source`` is the file it was made from. A link's frame is that of the
-    joint above it, as in a URDF, and so on tf (sdformat_urdf README.md).
+    """Return the first model of an SDF; ``source`` is the file it was made from.
 
+    A link's frame is that of the joint above it, as in a URDF, and so on tf (sdformat_urdf README.md).
     Raises InputError for an SDF without a model, or with poses that depend on each other.
     """
     model = next(root.iter("model"), None)
@@ -64,7 +64,7 @@ def load_sdf(root: _Element, source: str) -> Model:
 
 
 def declared(root: _Element) -> dict[str, int]:
-    """The line of each link, joint, frame and nested model of the first model."""
+    """Return the line of each link, joint, frame and nested model of the first model."""
     model = next(root.iter("model"))
     return {it.name: line_of(it.element) for it in named_in(model, "")}
 

@@ -111,8 +111,8 @@ def _left_out(
         if sections[node.name] is None and node.host == MANAGER and controllers:
             beside = controllers[0]
             file, line, _ = beside.place
-            message = f"{node.name} of the stack is declared in no file; it is left out"
-            hint = f"declare it beside {beside.node}, or name a stack without it"
+            message = f"{node.name} of the node set is declared in no file; it is left out"
+            hint = f"declare it together with {beside.node}, or name a node set without it"
             found = NOT_DECLARED.finding(message, hint, file=file, line=line)
             findings += [] if node.when else [found]
         elif sections[node.name] or not any(_stands_for(it, node, known) for it in given):
@@ -176,7 +176,7 @@ def _nobody(given: Iterable[Run]) -> Iterator[Finding]:
     for file, nodes in groupby(given, lambda it: it.place.file):
         first, *rest = nodes
         own = shorten([it.node for it in (first, *rest)])
-        message = f"no launch file and no stack starts {own}; the plan has no such node"
+        message = f"no launch file and no node set starts {own}; the plan has no such node"
         hint = (
             "name its launch file under launch:, or describe it in a file of nodes (docs/stacks.md)"
         )

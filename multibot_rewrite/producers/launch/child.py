@@ -113,7 +113,8 @@ def _parameters(it: Mapping[str, Any], place: Place) -> Iterator[ParameterText]:
 
 
 _MODULE = "multibot_rewrite.producers.launch"
-SECONDS = 120
+# Of one launch file.
+SECONDS, MOST = 120, 1000
 # A launch file may load the fleet that names it.
 _INSIDE = "MULTIBOT_READS_LAUNCH"
 
@@ -136,6 +137,11 @@ def launch_graph(order: LaunchOrder) -> LaunchGraph:
         raise InputError(
             f"{order.file}: this launch file starts no node with these arguments; correct them"
         )
+    if len(found.nodes) > MOST:
+        text = (
+            f"{order.file}: this launch file starts {len(found.nodes)} processes; of a robot {MOST}"
+        )
+        raise InputError(f"{text} are read at most: name a launch file that starts one robot")
     return found
 
 

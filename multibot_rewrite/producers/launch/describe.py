@@ -67,7 +67,8 @@ class Visit(NamedTuple):
     timer starts with its visit and the locals that it keeps, the place of what is visited, arguments
     without effect, included files, the environment before the launch, the number of each action that
     starts a process, what conditions keep out, whether conditions count, what starts it if not the
-    launch itself, after how many events and seconds, and at which event of which action."""
+    launch itself, after how many events and seconds, at which event of which action, and the launch
+    arguments that turn it off."""
 
     context: Any
     nodes: list[LaunchedNode]
@@ -86,12 +87,14 @@ class Visit(NamedTuple):
     delay: float = 0.0
     event: str = ""
     target: Any = None
+    switches: tuple[tuple[str, str], ...] = ()
 
     @property
     def waits(self) -> Process:
-        """What is waited for."""
+        """What is waited for; what turns that off turns this off, too."""
         after = self.numbers.get(id(self.target), (None, -1))[1]
-        return Process(delay=self.delay, event=self.event, after=after)
+        switches = self.nodes[after].process.switches if after >= 0 else self.switches
+        return Process(delay=self.delay, event=self.event, after=after, switches=switches)
 
     def start(self, action: Any, it: LaunchedNode) -> None:
         """Keep what an action starts."""

@@ -21,6 +21,7 @@ NOT_WHOLE = declare(NOT_READ, "launch-not-whole", WARNING, formats=("fleet",))
 PROCESS = declare(NOT_KNOWN_PROCESS, "launched-process-not-known", NOTE, formats=("fleet",))
 TWICE = declare("MF860", "launched-twice", NOTE, formats=("fleet",))
 STOOD_IN = "launch is not installed here: a stand-in read the launch file"
+_OF_OTHERS = "what it starts for the others is left out; name a launch file of one robot to choose"
 _WITHOUT_VALUES = "the node is in the plan without what the file sets"
 
 
@@ -38,6 +39,10 @@ def launch_findings(
     if graph.stood_in:
         place = Place(next((it.place.file for it in graph.nodes), ""), 1)
         yield NOT_WHOLE.finding(STOOD_IN, "", **_place(place))._replace(level=NOTE)
+    if graph.robots:
+        first, place = graph.robots[0], Place(graph.nodes[0].place.file, 1)
+        message = f"the launch file starts {shorten(graph.robots)}: each robot is as {first} is"
+        yield NOT_WHOLE.finding(message, _OF_OTHERS, **_place(place))._replace(level=NOTE)
     for note in graph.notes:
         hint = "the nodes that it starts are not in the plan"
         if note.parameters:
@@ -59,7 +64,7 @@ def launch_findings(
     for one in left:
         if not one.when:
             message = f"{one.name} of {one.origin} is not launched; it is left out"
-            hint = "leave out the stack, or name the launch file that starts it, too"
+            hint = "leave out the node set, or name the launch file that starts it, too"
             place = Place(next((it.place.file for it in graph.nodes), ""), 1)
             yield NOT_LAUNCHED.finding(message, hint, **_place(place))
 

@@ -25,6 +25,28 @@ def wants(action: Any, seen: Visit) -> bool:
     return False
 
 
+# The other value of a launch argument that is on or off.
+_OTHER = {"true": "false", "false": "true", "True": "False", "False": "True"}
+
+
+def switches_of(action: Any, seen: Visit) -> tuple[tuple[str, str], ...]:
+    """Return the launch arguments of a condition that holds, each with its value, if every one is on or
+    off and turns it off with the other value; else none."""
+    with suppress(Exception):
+        watched = _Watched(seen.context)
+        if getattr(action, "condition", None) is None or not is_wanted(action, watched):
+            return ()
+        known = watched.launch_configurations
+        asked = tuple(known.asked.items())
+        for name, value in asked:
+            known[name] = _OTHER[value]
+            if is_wanted(action, watched):
+                return ()
+            known[name] = value
+        return asked
+    return ()
+
+
 class _Asked(dict[str, Any]):
     """Launch configurations that note which of them are asked for."""
 

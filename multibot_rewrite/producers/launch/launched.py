@@ -25,7 +25,7 @@ from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.producers.launch.bridges import BridgedDomains
 from multibot_rewrite.producers.launch.describe import CLASSIC, SIMULATOR
 from multibot_rewrite.producers.launch.models import Model, Models
-from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
+from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchNote
 from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED
 from multibot_rewrite.producers.launch.spawners import Spawned
 from multibot_rewrite.producers.sensor_frames import SensorFrame, sensor_frames
@@ -124,6 +124,17 @@ def world_files(it: LaunchedNode) -> list[str]:
         with suppress(ValueError):
             words += shlex.split(text)
     return [word for word in words if word.endswith(_WORLDS)]
+
+
+def unread_worlds(nodes: Iterable[LaunchedNode]) -> Iterator[LaunchNote]:
+    """Return notes of worlds that cannot be read: a simulator gets them as they are."""
+    for it in nodes:
+        for file in filter(os.path.isfile, world_files(it)):
+            try:
+                read_document(read_file(file), file)
+            except InputError as error:
+                message = f"the simulator gets a world that cannot be read: {error}"
+                yield LaunchNote(it.place, message, parameters=True)
 
 
 def sensors_of(models: Iterable[InSimulator], release: str) -> list[SensorFrame]:

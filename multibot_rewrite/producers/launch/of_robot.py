@@ -44,6 +44,7 @@ from multibot_rewrite.producers.launch.known_node import (
     own_name,
     with_static_transform,
 )
+from multibot_rewrite.producers.launch.launched import unread_worlds
 from multibot_rewrite.producers.launch.programs import once_for_all, passes, program_of, programs
 from multibot_rewrite.producers.launch.records import (
     IdleAction,
@@ -75,9 +76,7 @@ NOTHING: Mapping[str, HandedOn] = {}
 # rclcpp, qos_overriding_options: qos_overrides.TOPIC.publisher.POLICY.
 QOS = "qos_overrides."
 NO_QOS: Mapping[str, object] = {}
-_SPAWNED = (
-    "{} puts something beside the robot into the simulator, which is not started; add it to a world"
-)
+_SPAWNED = "{} spawns something in addition to the robot, which is not started; add it to a world"
 
 
 class Launched(NamedTuple):
@@ -119,7 +118,8 @@ def with_launched(
 ) -> Launched:
     """The nodes of a robot before its files are asked; ``words`` stand for it in namespaces."""
     spawned, notes = spawned_in(graph.nodes)
-    graph = _lasting(graph._replace(notes=(*graph.notes, *notes)))
+    notes = (*graph.notes, *notes, *unread_worlds(graph.nodes))
+    graph = _lasting(graph._replace(notes=notes))
     each = [(number, it) for number, it in enumerate(graph.nodes) if not passes(it)]
     pairs, twice = _each_once(_pair(number, it, stack, known, words) for number, it in each)
     managers = unique(_full_name(it.node, it.facts) for it in pairs if it.facts.known == MANAGER)
@@ -141,7 +141,7 @@ def with_launched(
     own = state_publisher_of([it.facts for it in pairs])
     handed = {it.facts.name: _handed(it, of_all, own, _is_own(it, release)) for it in pairs}
     numbered = [it._replace(number=at) for at, it in enumerate(graph.nodes)]
-    spawning = [it for it in numbered if program_of(it) in programs().spawners]
+    spawning = [it for it in numbered if _is_spawner_of_robot(it)]
     beside = (LaunchNote(it.place, _SPAWNED.format(it.executable)) for it in spawning[1:])
     graph = graph._replace(notes=(*graph.notes, *beside))
     processes = (
@@ -244,7 +244,11 @@ def _handed(
 def _is_built(it: LaunchedNode) -> bool:
     """Is it what a build makes of the robot's own files: a spawner, or of a simulator?"""
     is_simulator = it.package in SIMULATORS and it.executable == SIMULATOR
-    return is_simulator or is_spawner(it) or program_of(it) in programs().spawners
+    return is_simulator or is_spawner(it) or _is_spawner_of_robot(it)
+
+
+def _is_spawner_of_robot(it: LaunchedNode) -> bool:
+    return program_of(it) in programs().spawners and not it.process.is_beside
 
 
 def _stands(include: LaunchedNode, stack: Iterable[NodeFacts]) -> bool:

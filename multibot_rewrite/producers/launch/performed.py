@@ -26,7 +26,7 @@ from multibot_rewrite.producers.launch.stand_in.packages import (
     FindPackageShare,
     PackageNotFoundError,
 )
-from multibot_rewrite.producers.launch.stand_in.parameters import evaluate_parameters
+from multibot_rewrite.producers.launch.stand_in.parameters import ParameterFile, evaluate_parameters
 from multibot_rewrite.producers.launch.stand_in.processes import (
     ExecuteProcess,
     OnProcessExit,
@@ -207,8 +207,14 @@ class _Seen(NamedTuple):
         own = there.pop("parameters", None)
         found = {name: self.plain(it) for name, it in there.items()}
         if own is not None:
-            found["parameters"] = [self.plain(it) for it in evaluate_parameters(self.context, own)]
+            found["parameters"] = [self.parameters(it) for it in own]
         return found
+
+    def parameters(self, it: Any) -> Any:
+        """Return a parameter file or values as plain Python; no file is read."""
+        if isinstance(it, ParameterFile):
+            return {"param_file": it.path(self.context), "allow_substs": it.allow_substs}
+        return self.plain(*evaluate_parameters(self.context, [it]))
 
     def plain(self, it: Any) -> Any:
         """Return a value as plain Python."""

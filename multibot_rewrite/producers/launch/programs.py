@@ -36,7 +36,8 @@ def programs() -> Programs:
     return Programs(**{**data, **sets})
 
 
-_LOOKS = "it only looks, or passes on what a person asks for"
+_BESIDE = "it puts something beside the robots into the simulator that they are in"
+_LOOKS = "it only shows data or forwards an operator's commands"
 
 
 def once_for_all(node: LaunchedNode) -> str:
@@ -44,6 +45,8 @@ def once_for_all(node: LaunchedNode) -> str:
     has of the components in it."""
     if node.container:
         return ""
+    if node.process.is_beside:
+        return _BESIDE
     program = node.executable.rpartition("/")[2]
     command = f"{node.package}/{program}"
     told = (command, f"{command} {node.arguments[0]}" if node.arguments else command)

@@ -65,7 +65,7 @@ class _Xacro:
         return spec
 
     def keep(self, module: ModuleType, load: Callable[[ModuleType], None]) -> None:
-        """Load the module; from then on what it expands is kept: it has just opened the file."""
+        """Load the xacro module, and keep the arguments of each file that it expands from then on."""
         load(module)
         expand = vars(module)["process_doc"]
 

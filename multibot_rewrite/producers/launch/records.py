@@ -151,7 +151,8 @@ class LaunchGraph(NamedTuple):
     the path that they have there, and descriptions that launch files read. ``stood_in`` is true where
     launch is not installed and its stand-in read them. ``unread`` are arguments without effect,
     ``environment`` is what they set for all processes. ``declared`` are the arguments that there are,
-    ``read`` is what the launch files themselves read, ``idle`` is what conditions keep out."""
+    ``read`` is what the launch files themselves read, ``idle`` is what conditions keep out. ``robots``
+    are the names of several that are started: the nodes are those of the first, without its name."""
 
     nodes: tuple[LaunchedNode, ...] = ()
     notes: tuple[LaunchNote, ...] = ()
@@ -163,6 +164,7 @@ class LaunchGraph(NamedTuple):
     declared: tuple[LaunchArgument, ...] = ()
     read: tuple[FileRead, ...] = ()
     idle: tuple[IdleAction, ...] = ()
+    robots: tuple[str, ...] = ()
 
     @property
     def whole(self) -> bool:

@@ -25,7 +25,7 @@ from multibot_rewrite.producers.launch.describe import (
     text,
 )
 from multibot_rewrite.producers.launch.failures import failure, is_certain, is_unset, started_by
-from multibot_rewrite.producers.launch.idle import wants
+from multibot_rewrite.producers.launch.idle import switches_of, wants
 from multibot_rewrite.producers.launch.includes import (
     included,
     not_here,
@@ -64,7 +64,9 @@ def visit_all(entity: Any, seen: Visit) -> None:
 def visit(entity: Any, seen: Visit) -> None:
     """Visit an entity and what is below it; what cannot be visited becomes a note."""
     file = seen.context.get_locals_as_dict().get("current_launch_file_path", seen.place.file)
-    here = seen._replace(place=place_of(entity, file))
+    switches = () if seen.every else switches_of(entity, seen)
+    switches = tuple(dict.fromkeys((*seen.switches, *switches)))
+    here = seen._replace(place=place_of(entity, file), switches=switches)
     # An include has the path of its file for what is below it; other actions may leave theirs.
     own = _is(entity, _INCLUDE)
     if not own and _is(entity, *_GIVING):
@@ -84,6 +86,8 @@ def visit(entity: Any, seen: Visit) -> None:
         for below in handle(entity, here) or ():
             visit(below, here)
     except (Exception, SystemExit) as error:
+        if isinstance(error, RecursionError) and not seen.every:
+            raise
         # A launch file is a program: it may raise anything.
         _failed(entity, error, here)
     finally:
@@ -146,10 +150,6 @@ def _include(entity: Any, seen: Visit) -> Iterable[Any] | None:
     found = _execute(entity, seen)
     unread_of(path_of(entity, seen.context), dict(include.arguments), seen)
     return found
-
-
-def _pass(entity: Any, seen: Visit) -> None:
-    return None
 
 
 def _node(entity: Any, seen: Visit) -> Iterable[Any] | None:
@@ -267,7 +267,7 @@ Handler = Callable[[Any, Visit], "Iterable[Any] | None"]
 def _handlers() -> Mapping[str, Handler]:
     return {
         **dict.fromkeys(names().executed.split(), _execute),
-        **dict.fromkeys(names().passed.split(), _pass),
+        **dict.fromkeys(names().passed.split(), lambda *_: None),
         _INCLUDE: _include,
         "ComposableNodeContainer": _container,
         "LoadComposableNodes": _loaded,

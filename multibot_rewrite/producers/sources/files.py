@@ -40,7 +40,7 @@ def read_program(files: Sequence[str], packages: Packages) -> Read:
             found[path] = _read(path)
             follow = _included if path.endswith(tuple(READERS)[:-1]) else _imported
             waiting += (it for one in found[path].imports for it in follow(path, one, packages))
-    faults = [(Place("", "", it, 1), "is more than is followed") for it in waiting[:1]]
+    faults = [(Place("", "", it, 1), "is one file too many to be read") for it in waiting[:1]]
     left = Source(faults=tuple(faults) if len(found) >= MOST_FILES else ())
     return Read(joined([*found.values(), left]), tuple(found))
 

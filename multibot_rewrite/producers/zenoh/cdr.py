@@ -84,7 +84,7 @@ def read_child_frame(data: bytes) -> str | None:
 
 
 def read_pose(data: bytes, texts: int) -> Transform | None:
-    """The pose behind a stamp and so many texts, where a transform has the same; None as above."""
+    """Return the pose after a stamp and ``texts`` strings, or None for other data."""
     return _read(data, lambda it: _transform(it) if _texts(it, texts) else None, None)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.grouping import dicts_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import MISTYPED, Guesses, meant_name, nearest
@@ -15,6 +15,7 @@ from multibot_rewrite.companions.params.name_sites import params_at
 from multibot_rewrite.companions.params.sections import MANAGER, PARAMETERS
 from multibot_rewrite.description.sources.packages import packages_below, sources_around
 from multibot_rewrite.knowledge.declared import DECLARED, DEMANDED, READ, YAML, Declared, stands_for
+from multibot_rewrite.knowledge.packages import older
 from multibot_rewrite.rules.declaration import remark_at
 from multibot_rewrite.rules.files.bounds import beyond
 from multibot_rewrite.rules.files.parameter_files import facts_of_node, of_parameter, of_release
@@ -45,10 +46,13 @@ def unknown_parameters(file: NamedFile) -> Iterator[Finding]:
             for it, found in section.known
             if all(fact.how == READ and fact.path.endswith(">") for fact in found)
         ]
+        package = section.node.package if section.node else ""
+        stale = older(package, file.context.distro)
         for it, near in _meant_by(section, unknown, file.context.distro):
             if near:
                 message = f"{section.title} has no parameter {it.name!r}"
-                yield remark_at(it.key, message, f"did you mean {near!r}?")
+                hint = f"did you mean {near!r}?{stale and f' {stale}'}"
+                yield remark_at(it.key, message, hint, NOTE if stale else "")
 
 
 def _meant_by(

@@ -24,7 +24,7 @@ from multibot_rewrite.rules.files.section_facts import Section, Setting, filled,
 from multibot_rewrite.system.parameters import Value
 
 # What keeps a node from coming up in each release.
-_STOPS = ("instead", "period")
+_STOPS = ("instead", "period", "as_many")
 _OWN = lazy_compile(r"nav2_\w+_bt_node")
 
 
@@ -159,6 +159,16 @@ def _foreign(it: Demand) -> str:
     return f"lists {own[0]}, which is loaded without it, so it is registered twice" if own else ""
 
 
+def _as_many(it: Demand) -> str:
+    other = value_of(it.section, it.words[0])
+    here, there = len(_items(it)), len(other) if isinstance(other, list) else 0
+    return (
+        f"has {here}, and {it.words[0]} {there}: they go in pairs"
+        if there != here and there
+        else ""
+    )
+
+
 def _instead(it: Demand) -> str:
     """A value that is the default of the new one does no harm."""
     there = it.words[0] in it.section.whole or it.given.value in it.words[1:]
@@ -248,6 +258,7 @@ _PAIRS: dict[str, Callable[[Demand], str]] = {
     "unlike": _unlike,
     "among": _among,
     "foreign": _foreign,
+    "as_many": _as_many,
     "instead": _instead,
     "is_one": _is_one,
     "together": _together,

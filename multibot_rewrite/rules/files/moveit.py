@@ -111,7 +111,7 @@ def groups_not_in_srdf(file: NamedFile) -> Iterator[Finding]:
     groups = _groups(file.file) if asked else frozenset()
     for it in sites if groups else ():
         if it.text and it.text not in groups and it.text.isidentifier():
-            message = f"no SRDF beside it has a group {it.text!r}"
+            message = f"no SRDF of its package has a group {it.text!r}"
             yield remark(it, message, did_you_mean(it.text, groups) or f"there is {min(groups)}")
 
 

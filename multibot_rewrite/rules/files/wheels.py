@@ -161,7 +161,7 @@ def _of_costmap(file: NamedFile, section: Section) -> Iterator[Finding]:
     if size is None:
         return
     if radius and footprint and not _fits(radius, footprint):
-        what = f"{_ROBOT_RADIUS} has no effect beside a footprint, and is another size"
+        what = f"{_ROBOT_RADIUS} has no effect with a footprint, and is another size"
         message = f"{section.title}: {what}"
         yield remark_at(radius.given.node, message, f"leave out {_ROBOT_RADIUS}")
     yield from _inflation(section, size)

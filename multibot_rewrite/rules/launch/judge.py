@@ -19,7 +19,7 @@ from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.records import System
 
 CLAIMS = (interface_not_exported.code, interface_claimed_twice.code)
-_LEFT = "no node of its stack or file is started here: name the launch file that does, too"
+_LEFT = "no node of its node set or file is started here: name the launch file that does, too"
 MODULES = (models, started, rules_of_words)
 
 

@@ -60,7 +60,7 @@ def in_each_other(launched: Launched) -> Iterator[Finding]:
     for (one, here, own), (other, there, reach) in combinations(placed, 2):
         if one.name != other.name and dist(here, there) < max(_NEAR, own + reach):
             where = ", ".join(other.words.get(it, "0") for it in _POSE)
-            message = f"spawns {other.name} where {one.name} stands, at {where}"
+            message = f"spawns {other.name} at the place of {one.name}, {where}"
             hint = f"move one with -x or -y; see {one.place}"
             yield at(in_each_other, other.place, message, hint)._replace(level=level)
 

@@ -39,11 +39,11 @@ from multibot_rewrite.system.records import PUBLISHES, RUNS, SERVICE, SUBSCRIBES
 
 _START_MANAGER = (
     "start ros2_control_node there, load gz_ros2_control in the description, or name the launch file "
-    "that starts it beside this one"
+    "that starts it in addition to this one"
 )
 _CHANGE, _BOND = "/change_state", "bond"
-_UNSURE = "a node that is not known may; see what is incomplete"
-_ELSEWHERE = "name the launch file that does beside this one, if there is one"
+_UNSURE = "an unknown node may do it: see what is reported as incomplete"
+_ELSEWHERE = "name the launch file that starts it in addition to this one, if there is one"
 
 
 @launch_rule("MG721", "launch-fails")
@@ -95,8 +95,8 @@ no_manager = spawner_managers.NO_MANAGER._replace(
 @launch_rule("MG730", "name-of-a-whole-process", distro="humble")
 def names_all(launched: Launched) -> Iterator[Finding]:
     """A manager that gets a name, where it loads controllers."""
-    given = {it.place for it in launched.graph.nodes if it.name}
-    for run in (it for it in launched.nodes if it.place in given):
+    given = {(it.place, it.name) for it in launched.graph.nodes}
+    for run in (it for it in launched.nodes if (it.place, it.name) in given):
         others = {it.name for it in launched.spawned if it.manager == run.full_name}
         if others and names_its_process(run.fact.known, launched.release):
             who = shorten(sorted(others))

@@ -21,6 +21,7 @@ from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import IN_SUBSTITUTION, lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import SLIP, differ_in_numbers, nearest
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.companions.params.sections import meant_for, raw_sections
 from multibot_rewrite.companions.yaml_text import line_of
 from multibot_rewrite.description.checks.numbers import number
@@ -139,9 +140,12 @@ def _of_no_node(launched: Launched) -> Iterator[Finding]:
     every = {it.full_name for it in launched.nodes} | {it.name for it in launched.system.nodes}
     nodes = lists_by_key((last_word(it), it) for it in every)
     started = lists_by_key(((it.place, it.program), it.full_name) for it in launched.nodes)
+    # Of others only their code has the name.
+    named = {it.full_name for it in launched.nodes if it.fact.is_known}
     readers: dict[tuple[str, str], list[str]] = defaultdict(list)
     for node in (it for it in launched.graph.nodes if not it.container):
         names = started.get((node.place, f"{node.package}/{node.executable}"), ())
+        named |= {*names} if node.name else set()
         for it in (one for one in node.parameters if one.file and names):
             readers[it.file, it.text] += names
     found: dict[Place, tuple[str, list[str]]] = {}
@@ -149,6 +153,15 @@ def _of_no_node(launched: Launched) -> Iterator[Finding]:
         with suppress(InputError):
             sections = raw_sections(document_of(file, text))
             by_word = lists_by_key((last_word(it.path), it) for it in sections)
+            lost = named.issuperset(names) and not any(it in nodes or "*" in it for it in by_word)
+            if sections and lost:
+                place = Place(file, line_of(sections[0].keys[0]))
+                message = (
+                    f"no section of it matches a node: {' and '.join(names)} get nothing of it"
+                )
+                near = nearest(last_word(names[0]), by_word)
+                what = f"{near} is nearly its name" if near else f"it has {shorten([*by_word], 3)}"
+                yield at(of_no_node, place, message, f"write {names[0]}: {what}")
             for reader in names:
                 word = last_word(reader)
                 if section := meant_for(by_word.get(word, ()), reader, nodes.get(word, ())):

@@ -88,9 +88,9 @@ def _parameter(
             yield fault("value", child, "", f"{where} {wrong.problem}{instead}", "", WARNING)
         elif row.words and text not in row.words:
             near = nearest(text, row.words)
-            if near:
-                message = f"{where} is not a word that {title(section)} knows"
-                yield fault("word", child, "", message, f"did you mean {near!r}?", WARNING)
+            hint = f"did you mean {near!r}?" if near else f"write {' or '.join(row.words)}"
+            message = f"{where} is not a word that {title(section)} knows"
+            yield fault("word", child, "", message, hint, WARNING)
 
 
 def _measure(child: _Element, row: Value, text: str, where: str) -> Iterator[Problem]:
@@ -121,7 +121,7 @@ def _unread(
     parent = child.getparent()
     there = (it for it in blocks if it and parent is not None and parent.find(it) is not None)
     if beside := next(there, ""):
-        message = f"{title(section)} reads {name!r} in <{beside}>, not beside it"
+        message = f"{title(section)} reads {name!r} in <{beside}>, not outside of it"
         yield fault("misplaced", child, None, message, f"move it into <{beside}>")
 
 

@@ -6,15 +6,16 @@ and what to do about it.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import lru_cache
 from itertools import islice, zip_longest
 from typing import NamedTuple
 
-from multibot_rewrite.base.findings.finding import Remap
+from multibot_rewrite.base.findings.finding import Remap, Setting
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import CHOICE, COMPARED, MISTYPED, nearest
 from multibot_rewrite.base.rosnames import check_topic_name, expand
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.system.instead import COMMON
 from multibot_rewrite.spelling.ways import COMPONENT, HOST, PLUGIN, SPAWNER
 from multibot_rewrite.system.index import Index
@@ -27,6 +28,8 @@ DOES = {
     SERVES: "offers",
     CALLS: "has a client for",
 }
+# rcl has no rule for an action: it is made of these.
+ACTION_PARTS = " and one rule for each of its _action/ names"
 # FILE:LINE, as plans have the place of a plugin.
 _PLACE = lazy_compile(r"(.+):(\d{1,9})")
 
@@ -41,6 +44,22 @@ class Cause(NamedTuple):
     file: str = ""
     line: int = 0
     remaps: tuple[Remap, ...] = ()
+    settings: tuple[Setting, ...] = ()
+
+
+def to_set(name: str, value: str, *nodes: str) -> Cause:
+    """Return the parameter that these nodes are to have; an empty cause without a node."""
+    said = f"set {name}: {value or repr('')} of {shorten(nodes)}" if nodes else ""
+    return Cause(said, settings=tuple(Setting(it, name, value) for it in nodes))
+
+
+def names_another(robot: str, owner: str, remaps: Sequence[Remap] = ()) -> Cause:
+    """Return why nodes of a robot have a name of another one, and what gives them its own."""
+    hint = f"a namespace, remap rule or parameter of {robot} names {owner}"
+    for node, old, new in remaps[:1]:
+        rule = f"{old}:={new.removeprefix(node.rpartition('/')[0] + '/')}"
+        hint += f"; pass the rule {rule} to {shorten([it.node for it in remaps])}"
+    return Cause(hint, remaps=tuple(remaps))
 
 
 def caused(hint: str, place: str) -> Cause:
@@ -107,7 +126,7 @@ def how_to_remap(plan: Index, planned: End) -> str:
     rule = remap_rule(planned)
     if not rule or plugin_of(plan, planned.node)[1]:
         return ""
-    parts = ", and one rule for each of its _action/ names" if planned.kind == ACTION else ""
+    parts = f",{ACTION_PARTS}" if planned.kind == ACTION else ""
     return f"; pass {how_to_pass(plan, planned.node, rule, 'it')}{parts}"
 
 
@@ -161,18 +180,16 @@ def why_other_name(plan: Index, node: str, match: str) -> Cause:
     way, taker = _way(plan, node)
     if way == HOST:
         return Cause(f"{match} is running: {taker} makes it; start that as the plan says")
-    if namespaced and way == COMPONENT:
-        option, missing = f"namespace={f'/{robot}'!r} of its ComposableNode", "namespace"
-    elif way == COMPONENT:
-        name = node.rpartition("/")[2]
-        option, missing = f"name={name!r} of its ComposableNode", "name"
+    missing, rule = "name", Remap(match, "__node", node.rpartition("/")[2])
+    if namespaced:
+        missing, rule = "namespace", Remap(match, "__ns", f"/{robot}")
+    option = f"--ros-args -r {rule.old}:={rule.new}"
+    if way == COMPONENT:
+        option = f"{missing}={rule.new!r} of its ComposableNode"
     elif namespaced:
-        option = f"namespace={robot!r} in the launch file, or --ros-args -r __ns:=/{robot}"
-        missing = "namespace"
-    else:
-        option = f"--ros-args -r __node:={node.rpartition('/')[2]}"
-        missing = "name"
-    return Cause(f"{match} is running: it was started without the robot's {missing}; use {option}")
+        option = f"namespace={robot!r} in the launch file, or {option}"
+    why = f"{match} is running: it was started without the robot's {missing}"
+    return Cause(f"{why}; use {option}", remaps=(rule,))
 
 
 _DIGITS = lazy_compile(r"_?\d+")

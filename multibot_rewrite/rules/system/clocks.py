@@ -6,7 +6,7 @@ is stamped with another time than now.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Set
+from collections.abc import Iterator, Mapping, Sequence, Set
 from fnmatch import translate
 from math import inf, isinf
 
@@ -16,11 +16,20 @@ from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.wording import and_then, only, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
+from multibot_rewrite.rules.system.causes import Cause, to_set
 from multibot_rewrite.rules.system.tf_pieces import publishes_description
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Index, at_work, nodes_of, once, robots_of, sent_on
 from multibot_rewrite.system.parameters import parameter_text
-from multibot_rewrite.system.records import PUBLISHES, RUNS, SIM_TIME, TOPIC, Edge, without_clock
+from multibot_rewrite.system.records import (
+    PUBLISHES,
+    RUNS,
+    SIM_TIME,
+    SUBSCRIBES,
+    TOPIC,
+    Edge,
+    without_clock,
+)
 from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
 _IS_TIMED = lazy_compile("|".join(map(translate, TIMED)))
@@ -38,15 +47,18 @@ def no_clock(seen: Index) -> Iterator[Finding]:
     for robot, nodes in by_robot.items():
         who = shorten(nodes)
         message = f"on simulated time (use_sim_time), but {seen.nobody} publishes {CLOCK}: {who}"
-        remaps: tuple[Remap, ...] = ()
-        cause = "use_sim_time: false on a real robot, or start the simulator's bridge for /clock"
+        bridge = f"start the simulator's bridge for {CLOCK}"
+        cause = to_set(SIM_TIME, parameter_text(False), *nodes)
+        cause = cause._replace(hint=f"{SIM_TIME}: false on a real robot, or {bridge}")
+        if any(_is_simulated_by_plan(seen, it) for it in nodes):
+            cause = Cause(bridge)
         if other := next((it for it in seen.topics if it.type == _TYPE and it.publishers), None):
             message += f"; {other.publishers[0].node} publishes {other.name}"
             sender = other.publishers[0].node
-            cause = f"pass the rule {other.name}:={CLOCK} to {sender}: all robots have one clock"
-            remaps = (Remap(sender, other.name, CLOCK),)
+            rule = f"pass the rule {other.name}:={CLOCK} to {sender}: all robots have one clock"
+            cause = Cause(rule, remaps=(Remap(sender, other.name, CLOCK),))
         yield no_clock.finding(
-            message, cause, robot=robot, node=nodes[0], names=(CLOCK,), remaps=remaps
+            message, **cause._asdict(), robot=robot, node=nodes[0], names=(CLOCK,)
         )
 
 
@@ -68,9 +80,15 @@ def two_clocks(seen: Index) -> Iterator[Finding]:
     times = {node: _times(seen, node) for node in nodes}
     if sum(max(1, count) for count in times.values()) > 1:
         who = and_then(nodes) if len(nodes) > 1 else f"{times[nodes[0]]} nodes {nodes[0]}"
-        cause = "a clock bridge for each robot, two simulators, or a bag with --clock: keep one"
+        cause = Cause("a clock bridge for each robot, or two simulators: keep one")
+        if played := [it for it in nodes if last_word(it).startswith(words.PLAYER)][
+            : len(nodes) - 1
+        ]:
+            cause = Cause(
+                "play the bag without --clock", settings=(Setting(played[0], "--clock", ""),)
+            )
         message = f"{who} publish {CLOCK}"
-        yield two_clocks.finding(message, cause, node=nodes[0], names=(CLOCK,))
+        yield two_clocks.finding(message, **cause._asdict(), node=nodes[0], names=(CLOCK,))
 
 
 def _times(seen: Index, node: str) -> int:
@@ -99,9 +117,7 @@ def clock_stands_or_goes_back(seen: Index) -> Iterator[Finding]:
             cause = "is a bag played in a loop, or was the simulation reset?"
             yield clock_stands_or_goes_back.finding(message, cause, level=WARNING, **about)
         elif it.age == inf and nodes:
-            message = (
-                f"the time on {CLOCK} stands: {clocks[0]} sends none, and {nodes[0]} waits for it"
-            )
+            message = f"{CLOCK} stopped: {clocks[0]} sends no time, and {nodes[0]} waits for it"
             yield clock_stands_or_goes_back.finding(message, "is the simulation paused?", **about)
 
 
@@ -118,11 +134,12 @@ def mixed_clocks(seen: Index) -> Iterator[Finding]:
     if not simulated or not _clocks(seen):
         return
     untold = without_clock(seen.system)
-    asked = (it for it in seen.nodes if not is_viewer(it) and it not in untold)
+    asked = [it for it in seen.nodes if not is_viewer(it) and it not in untold]
     timed = {it for it in asked if compares_times(last_word(seen.plain(it)))}
     timed -= planned_clocks(seen).keys()
     first, their = min(simulated), {*map(seen.robot, simulated)}
     by_robot = lists_by_key((seen.robot(node), node) for node in sorted(timed))
+    every = lists_by_key((seen.robot(it), it) for it in asked if it not in simulated)
     for robot, own in by_robot.items():
         others = [node for node in own if node not in simulated]
         if others and robot in their:
@@ -131,14 +148,20 @@ def mixed_clocks(seen: Index) -> Iterator[Finding]:
             cause, level = "set use_sim_time: true for all nodes of the robot", ERROR
         elif others and robot:
             message = f"{robot} is on the machine's time, {first} on simulated time"
-            cause = f"a real robot beside a simulation? Else set use_sim_time: true for {robot}"
+            cause = f"if {robot} is not a real robot in a simulation, set use_sim_time: true for it"
             level = WARNING
         else:
             continue
         yield clocks_mixed.finding(
             message, cause, level=level, robot=robot, node=others[0], names=(CLOCK,),
-            settings=tuple(Setting(it, SIM_TIME, parameter_text(True)) for it in others),
+            settings=tuple(Setting(it, SIM_TIME, parameter_text(True)) for it in every[robot]),
         )  # fmt: skip
+
+
+def _is_simulated_by_plan(seen: Index, node: str) -> bool:
+    key = node, TOPIC, SUBSCRIBES, CLOCK
+    listens = seen.expected is not None and key in seen.expected.by_key
+    return listens or planned_clocks(seen).get(node) == parameter_text(True)
 
 
 def planned_clocks(seen: Index) -> dict[str, str]:
@@ -196,8 +219,7 @@ def stamp_of_another_time(seen: Index) -> Iterator[Finding]:
     for (senders, what), topics in found.items():
         yield stamp_of_another_time.finding(
             f"the stamps on {shorten(topics)} are {what}",
-            f"see the clock of {shorten(senders)}: use_sim_time, or that of its machine",
-            level=WARNING if what == _ZERO else ERROR,
+            **_other_clock(senders, what)._asdict(), level=WARNING if what == _ZERO else ERROR,
             robot=only(robots_of(seen, senders)), node=senders[0], names=tuple(topics),
         )  # fmt: skip
 
@@ -223,13 +245,21 @@ def _old_transforms(seen: Index, clock: bool) -> Iterator[Finding]:
         likely = [it for it in own if not publishes_description(seen, it)] or own
         yield stamp_of_another_time.finding(
             f"the stamps of {listed} on {topic} are {what}",
-            f"see the clock of {shorten(likely) or 'its sender'}: use_sim_time, or that of its machine",
-            robot=robot, node=likely[0] if len(likely) == 1 else "",
+            **_other_clock(likely, what)._asdict(), robot=robot, node=only(likely),
             names=unique(it.child for it in edges),
         )  # fmt: skip
 
 
 _ZERO = "0: its sender leaves them out"
+_MACHINES = "of the machine's time, not of /clock"
+_SIMULATED = "of another clock: simulated time, which nothing here has?"
+
+
+def _other_clock(senders: Sequence[str], what: str) -> Cause:
+    """Return which time the senders should have, or where to look."""
+    if what in (_MACHINES, _SIMULATED):
+        return to_set(SIM_TIME, parameter_text(what == _MACHINES), *senders)
+    return Cause(f"see the clock of {shorten(senders) or 'its sender'}, or that of its machine")
 
 
 def _wrong(age: float, clock: bool) -> str:
@@ -239,9 +269,9 @@ def _wrong(age: float, clock: bool) -> str:
     other = abs(age) > _YEAR
     if clock:
         # 0 is not known.
-        return "of the machine's time, not of /clock" if age and not other else ""
+        return _MACHINES if age and not other else ""
     if other:
-        return "of another clock: simulated time, which nothing here has?"
+        return _SIMULATED
     if age >= _OLD:
         return f"{age:.0f} s old"
     return f"{-age:.0f} s in the future" if age <= -_AHEAD else ""

@@ -13,13 +13,13 @@ from multibot_rewrite.base.conventions import (
     is_from_outside,
     team,
 )
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Remap
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Remap, Setting
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.base.wording import and_then, only, shorten
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.system.causes import Spelled, alike
+from multibot_rewrite.rules.system.causes import Spelled, alike, names_another
 from multibot_rewrite.rules.system.matching import STAMPED
 from multibot_rewrite.rules.system.names import ABSENT, nobody_in
 from multibot_rewrite.rules.system.sharing import own_names
@@ -35,6 +35,8 @@ _CHOOSE = f"{_MUX} the robot's driver{_EACH}"
 # Of Nav2, between its controller and the robot: they limit velocities, and stop before obstacles.
 LIMITS = ("velocity_smoother", "collision_monitor")
 _VELOCITY = "geometry_msgs/msg/Twist"
+# Of a joystick; it has to be held (teleop_twist_joy).
+_BUTTON = "enable_button"
 # The topics of RViz's own tools.
 _OFFERED = ("goal_pose", "initialpose", "clicked_point")
 
@@ -53,12 +55,22 @@ def command_for_several_robots(seen: Index) -> Iterator[Finding]:
             message = f"{and_then(robots)} all obey {name}: {shorten(nodes)}"
             cause = own_names(seen, ends, robots)
             nobodys = joystick and not seen.robot(name)
+            if joystick and len(_buttons(seen, nodes)) == len(nodes):
+                continue
             if nobodys:
-                cause = cause._replace(hint=f"{cause.hint}; or give each its own enable_button")
+                own = tuple(Setting(it, _BUTTON, str(at)) for at, it in enumerate(nodes, 4))
+                also = "".join(f", {it.value} for {it.node}" for it in own)
+                hint = f"{cause.hint}; or give each its own {_BUTTON}: {also[2:]}"
+                cause = cause._replace(hint=hint, settings=() if cause.remaps else own)
             yield command_for_several_robots.finding(
                 message, level=WARNING if nobodys else ERROR, node=nodes[0], names=(name,),
                 **cause._asdict(),
             )  # fmt: skip
+
+
+def _buttons(seen: Index, nodes: Sequence[str]) -> set[str]:
+    """Return the buttons of a joystick that these are known to wait for."""
+    return {it.value for it in seen.system.parameters if it.name == _BUTTON and it.node in nodes}
 
 
 @system_rule("MG308", "command-without-reader", ERROR, absence=True, drawn="leak")
@@ -191,7 +203,7 @@ def _unread(seen: Index, ends: Ends, meant: str, robots: int) -> Finding:
     wanted = seen.by_name[TOPIC, meant].type
     if set(wanted.split(" | ")).isdisjoint(ends.type.split(" | ")):
         several += f"; it reads {wanted}, not {ends.type}"
-    remaps = tuple(Remap(it, ends.name, meant) for it in nodes_of(at_work(ends.publishers)))
+    remaps = tuple(Remap(it, ends.name, meant) for it in nodes_of(ends.publishers))
     cause = f"start it in the robot's namespace, or pass the rule {ends.name}:={meant}{several}"
     if others := _sends_already(seen, meant):
         remaps, cause = (), f"{reader} obeys {others} there: {_CHOOSE}"
@@ -233,10 +245,14 @@ def command_from_another_robot(seen: Index) -> Iterator[Finding]:
                 continue
             does = "publishes" if kind == TOPIC else "sends goals to" if kind == ACTION else "calls"
             message = f"{does} {name}, a name of {owner}"
-            cause = f"a namespace, remap rule or parameter of {robot} names {owner}"
+            # Where somebody sends to its own robot already, a rule would make two senders.
+            free = own and (own.servers or (_obeyed(own) and not _sends_already(seen, own.name)))
+            free = free and kind != ACTION
+            rules = [Remap(node, name, own.name)] if own and free and own.type == ends.type else []
             yield command_from_another_robot.finding(
-                message, cause, robot=robot, node=node, names=(name,)
-            )
+                message, **names_another(robot, owner, rules)._asdict(),
+                robot=robot, node=node, names=(name,),
+            )  # fmt: skip
 
 
 def _of_others(seen: Index, owner: str, ends: Iterable[End]) -> list[End]:
@@ -278,7 +294,7 @@ def several_command_senders(seen: Index) -> Iterator[Finding]:
         loose = [it for it in teams.values() if it not in guards]
         tool = next((node for node in loose if is_tool(node)), max(loose or teams.values()))
         others = [node for node in teams.values() if node != tool]
-        message = f"publishes {ends.name} beside {shorten(others)}, and {readers[0]} obeys both"
+        message = f"publishes {ends.name}, and so does {shorten(others)}; {readers[0]} obeys both"
         past = bool(guards) and tool not in guards
         cause = f"{_MUX} {guards[0]}{_EACH}" if past else _CHOOSE
         if past and chooses(guards[0]):
@@ -306,8 +322,10 @@ def bag_beside_a_robot(seen: Index) -> Iterator[Finding]:
             mixed[players[0]].append(ends.name)
     for player, names in mixed.items():
         message = f"plays {shorten(sorted(names))} into the running system"
-        cause = "play it in another ROS_DOMAIN_ID, or give its topics other names with --remap"
-        robot = only(robots_of(seen, names))
+        rules = [Remap(player, it, f"{it}_of_bag") for it in sorted(names)]
+        listed = " ".join(f"{it.old}:={it.new}" for it in rules)
         yield bag_beside_a_robot.finding(
-            message, cause, robot=robot, node=player, names=tuple(sorted(names))
-        )
+            message, f"play it in another ROS_DOMAIN_ID, or with --remap {listed}",
+            robot=only(robots_of(seen, names)), node=player, names=tuple(sorted(names)),
+            remaps=tuple(rules),
+        )  # fmt: skip

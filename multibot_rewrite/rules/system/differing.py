@@ -26,7 +26,7 @@ from multibot_rewrite.system.records import SIM_TIME, ZENOH, Edge
 # What is each robot's own: who and where it is, what it is connected to, which files it reads.
 _OWN = lazy_compile(
     r"(^|[._])((?<!frame_)id|ip|ports?|address(es)?|host(name)?|ur[li]|serial|device|dev|names?|namespace"
-    r"|prefix|tag|color|seed|domain|poses?|position|datum|path|file(name)?|folder|home|start)([._]|$)"
+    r"|prefix|tag|color|seed|domain|poses?|position|datum|button|path|file(name)?|folder|home|start)([._]|$)"
     r"|^(x|y|z|yaw|roll|pitch|theta|qos_overrides\..*)$|description|semantic|plugin_lib"
 )
 # A description's place of a part, in metres and parts of a quaternion.
@@ -140,7 +140,8 @@ def _qualities(seen: Index) -> _Values:
         for key, end in made.ends.items():
             if end.qos:
                 words = " ".join(qos_words(end))
-                found[(*key, "qos")][robot] = _Told(end.node, end.name, words, words)
+                about = (*key, "qos")
+                found[about][robot] = _Told(end.node, end.name, words, words)
     return found
 
 

@@ -43,14 +43,14 @@ class _Message(NamedTuple):
 @system_rule("MG411", "frame-id-of-another-robot", ERROR)
 def frame_id_of_another_robot(seen: Index) -> Iterator[Finding]:
     """By the names of frames: robots with a tf topic each may have the same ones."""
+    frames = _by_topic(seen)
     for (frame, robot, senders), messages in _by_sender(seen).items():
         if _is_of_another(seen, frame, robot, messages):
             topics = [it.topic for it in messages if it.type.startswith(_MEASURED)]
             owner = seen.frame_robot(frame)
             message = f"{messages[0].field} of {shorten(topics)} is {frame}, a frame of {owner}"
-            sent = {one for tree in trees_of(seen, robot) for one in frames_in(tree.edges)}
-            alike = (it for it in sent if seen.plain_frame(it) == seen.plain_frame(frame))
-            own = only([it for it in alike if seen.frame_robot(it) == robot])
+            sent = {one for it in trees_of(seen, robot) for one in frames[it.topic].get(robot, ())}
+            own = only([it for it in sent if seen.plain_frame(it) == seen.plain_frame(frame)])
             cause = f"set the frame of {_one_of(senders)} to {own or f'that of {robot}'}"
             yield frame_id_of_another_robot.finding(
                 f"{message}; sent by {_one_of(senders)}", cause,
@@ -94,8 +94,7 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
         needed = seen.is_live and any(_is_read(seen, it) for it in placed)
         yield frame_id_unknown.finding(
             f"{messages[0].field} of {topics} is {frame}, which is in no transform of"
-            f" {robot or 'tf'}; sent by"
-            f" {_one_of(senders)}",
+            f" {robot or 'tf'}; sent by {_one_of(senders)}",
             # A sensor in a simulator sends what its description says, else a name that is in no tf.
             (f"write <gz_frame_id>{link}</gz_frame_id> in the sensor" if link else "")
             or (f"set the frame of {_one_of(senders)} to {_one_of(likely)}" if likely else "")
@@ -162,6 +161,7 @@ def _where(seen: Index) -> Mapping[str, Sequence[str]]:
     return lists_by_key((it, tree.topic) for tree in seen.trees for it in frames_in(tree.edges))
 
 
+@once
 @once
 def _senders_of(seen: Index) -> Mapping[str, str]:
     """The node that sends a frame, of the first tree in which one alone does."""

@@ -37,7 +37,6 @@ _ENOUGH = 3
 _OTHER_SIDE = {PUBLISHES: SUBSCRIBES, SUBSCRIBES: PUBLISHES, SERVES: CALLS, CALLS: SERVES}
 # A number of a process or an address in a node's name.
 _RANDOM = re.compile(r"\d{4}")
-_CHANGE = "/change_state"
 # Node, kind, role and name, without the robot's.
 _Key = tuple[str, str, str, str]
 
@@ -74,7 +73,7 @@ def lacks_what_its_likes_have(seen: Index) -> Iterator[Finding]:
 
 @once
 def made_of(seen: Index) -> Mapping[str, MadeOf]:
-    """What each robot is made of."""
+    """Return the nodes and their endpoints of each robot."""
     return {robot: MadeOf(own, _ends(seen, own)) for robot, own in nodes_of_each(seen).items()}
 
 
@@ -151,7 +150,7 @@ def _lost_ends(
         others = {it.node for name in own for it in at_work(ends_of(seen, name))} - {node}
         wait = f"; {shorten(sorted(others), SEVERAL)} has it in vain" if others else ""
         yield lacks_what_its_likes_have.finding(
-            f"lacks {shorten(own, SEVERAL)} beside {theirs[0].node}, which {does}{wait}",
+            f"lacks {shorten(own, SEVERAL)}; {theirs[0].node} {does}{wait}",
             "a remap rule, a parameter or a version of its own?",
             robot=robot, node=node, names=own,
         )  # fmt: skip
@@ -176,7 +175,7 @@ def _is_needy(end: End) -> bool:
     or a sensor of which one robot's program makes use is not, nor what seldom has all its inputs."""
     if end.role == SUBSCRIBES and chooses(end.node):
         return False
-    wants = end.role in (SUBSCRIBES, CALLS) or end.name.endswith(_CHANGE)
+    wants = end.role in (SUBSCRIBES, CALLS) or end.name.endswith(words.CHANGE_STATE)
     return wants or end.type == words.JOINTS or words.moves(end.name, end.type)
 
 
@@ -314,7 +313,7 @@ def driver_missing(seen: Index) -> Iterator[Finding]:
         hint = "start it for this robot too"
         if there:
             message = f"lacks {shorten(names, SEVERAL)}, which {node} has; it is used by {vain}"
-            hint = "see its log; a remap rule, a parameter or a version of its own?"
+            hint = "see its log; does it have other remap rules, parameters or another version?"
         yield driver_missing.finding(
             message, hint, level=ERROR if seen.is_live else WARNING,
             robot=robot, node=there, names=names,

@@ -14,6 +14,7 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import only, shorten, unique
 from multibot_rewrite.rules.declaration import see, system_rule, where
+from multibot_rewrite.rules.system.causes import Cause, to_set
 from multibot_rewrite.rules.system.states import ACTIVE
 from multibot_rewrite.rules.system.tf_trees import root_of
 from multibot_rewrite.rules.system.transforms import collide
@@ -45,7 +46,7 @@ def map_not_joined(seen: Index) -> Iterator[Finding]:
             if body and node not in _told_not_to(seen):
                 yield map_not_joined.finding(
                     f"sends no {_MAP} -> {body.root} on {tree.topic}, and no other node does",
-                    _why(seen, node, body, start.name if start else ""),
+                    **_why(seen, node, body, start.name if start else "")._asdict(),
                     robot=seen.robot(node), node=node, names=(body.root, *body.loose),
                 )  # fmt: skip
 
@@ -83,28 +84,26 @@ def _told_not_to(seen: Index) -> Set[str]:
     return {node for it in seen.system.edges if it.sure == OFF for node in it.publishers}
 
 
-def _why(seen: Index, node: str, body: _Body, start: str) -> str:
+def _why(seen: Index, node: str, body: _Body, start: str) -> Cause:
     """The first thing that it lacks."""
     state = seen.node[node].lifecycle if node in seen.node else ""
     if state not in ("", ACTIVE):
-        return f"it is {state}: see the log of its lifecycle manager"
+        return Cause(f"it is {state}: see the log of its lifecycle manager")
     if body.loose:
-        return (
-            f"{_MAP} -> {body.loose[0]} is sent, and nothing is below {body.loose[0]}: set its"
-            f" odom_frame_id to {body.root}"
-        )
+        sent = f"{_MAP} -> {body.loose[0]} is sent, and nothing is below {body.loose[0]}"
+        cause = to_set("odom_frame_id", body.root, node)
+        return cause._replace(hint=f"{sent}: {cause.hint}")
     # The scans and maps that it reads.
     read = [it for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES]
     read = [it for it in read if words.is_of_a_body(it.type) or it.type == words.MAP]
     if unsent := [it.name for it in read if it.name not in seen.published]:
-        return f"it waits for {shorten(unsent)}, which {seen.nobody} publishes"
+        return Cause(f"it waits for {shorten(unsent)}, which {seen.nobody} publishes")
     told = any(
         (it.node, it.name, it.value) == (node, _START, "true") for it in seen.system.parameters
     )
     nobody = not told and not seen.ends_at(TOPIC, start).publishers
-    return (
-        f"it waits for an initial pose: {'nothing publishes' if nobody else 'send one to'} {start}"
-    )
+    do = "nothing publishes" if nobody else "send one to"
+    return Cause(f"it waits for an initial pose: {do} {start}")
 
 
 @system_rule("MG414", "odometry-of-another-robot", ERROR)

@@ -9,12 +9,13 @@ from functools import lru_cache
 from math import inf
 from typing import NamedTuple
 
-from multibot_rewrite.base.conventions import EVERYBODYS
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.conventions import EVERYBODYS, STAMP_SWITCHES, switch
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Setting
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.knowledge.stacks import older_node
 from multibot_rewrite.rules.declaration import see, system_rule, where
-from multibot_rewrite.rules.system.causes import caused, plugin_of
+from multibot_rewrite.rules.system.causes import Cause, caused, plugin_of, to_set
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Ends, Index, at_work, nodes_of, once
 from multibot_rewrite.system.records import SUBSCRIBES, TOPIC, ZENOH, End, Qos
@@ -28,7 +29,6 @@ LIVELINESS = ("AUTOMATIC", "MANUAL_BY_NODE", "MANUAL_BY_TOPIC")
 # A valid type hash starts with the version of the hash.
 HASH = "RIHS"
 STAMPED = "Stamped"
-_SWITCH = "enable_stamped_cmd_vel, use_stamped_vel or stamped is set on one side"
 
 
 @system_rule("MG306", "types-differ", ERROR, all_ends=True)
@@ -74,13 +74,35 @@ def planned_types(seen: Index) -> Mapping[tuple[str, str], Set[str]]:
 def _differs(seen: Index, ends: Ends, own: Sequence[End], others: Sequence[End]) -> Finding:
     asked, given = dict(_all_types(own)), dict(_all_types(others))
     message, cause = _difference(ends.name, others[0].node, asked, given)
+    stamped = _by_a_switch(asked.keys(), given.keys())
     both, node = (*others, *own), own[0].node
+    switched = to_stamp(seen, both) if stamped else Cause("")
     level = WARNING if is_viewer(node) else ERROR
+    if stale := _stale(seen, both):
+        level, cause = NOTE, f"{cause}; {stale}: its type may be another one now"
     robot = seen.robot(node) or seen.robot(ends.name)
     return types_differ.finding(
-        message, cause + see(both),
+        message, f"{cause}{switched.hint}{see(both)}", settings=switched.settings,
         level=level, robot=robot, node=node, names=(ends.name,), **where(both),
     )  # fmt: skip
+
+
+def _stale(seen: Index, ends: Iterable[End]) -> str:
+    """Say that the type of one of the ends is known of an earlier version of its node only."""
+    known = (seen.node[it.node].known for it in ends if it.node in seen.node)
+    return next(filter(None, (older_node(it, seen.system.release) for it in known)), "")
+
+
+def to_stamp(seen: Index, ends: Iterable[End]) -> Cause:
+    """Return what makes the velocities of all of a robot's Nav2 stamped, where that is the side that is
+    not; an empty cause where no parameter is known."""
+    bare = [it.node for it in ends if it.type and not it.type.endswith(STAMPED)]
+    if not bare or not all(switch(STAMP_SWITCHES, it) for it in bare):
+        return Cause("")
+    mine = (it for it in seen.nodes if seen.robot(it) == seen.robot(bare[0]))
+    nodes = [it for it in mine if switch(STAMP_SWITCHES, it)]
+    cause = to_set(switch(STAMP_SWITCHES, bare[0]), "true", *nodes)
+    return cause._replace(hint=f": {cause.hint} (from Jazzy on)")
 
 
 def _not_as_planned(seen: Index, ends: Ends, own: Sequence[End], planned: Set[str]) -> Finding:
@@ -90,12 +112,14 @@ def _not_as_planned(seen: Index, ends: Ends, own: Sequence[End], planned: Set[st
     )
     plugin, place = plugin_of(seen.expected, node)
     which = f"another version or setting of {plugin or 'the node'}"
+    switched = Cause("")
     if _by_a_switch({it for it, _ in _all_types(own)}, planned):
-        which = _SWITCH
+        switched = to_stamp(seen, own)
+        which = f"velocities are stamped on one side{switched.hint}"
     at = f", see {place}" if place else ""
     cause = caused(f"{which}{at}? If this type is right, correct the plan", place)
     return types_differ.finding(
-        message, **cause._asdict(),
+        message, **cause._replace(settings=switched.settings)._asdict(),
         robot=seen.robot(node) or seen.robot(ends.name),
         node=node if node in seen.nodes else "", names=(ends.name,),
     )  # fmt: skip
@@ -142,8 +166,6 @@ def _difference(
             "their packages of messages were built from different versions: build both from one",
         )
     cause = "no message ever arrives; use the same type on both sides"
-    if _by_a_switch(asked.keys(), given.keys()):
-        cause += f": {_SWITCH}"
     return f"uses {name} as {wanted}, but {giver} has it as {there}", cause
 
 
@@ -225,11 +247,9 @@ def not_latched(seen: Index) -> Iterator[Finding]:
         for node in nodes_of(_with_durability(ends.publishers, DURABILITY[0])):
             yield not_latched.finding(
                 f"publishes {ends.name} with durability VOLATILE: who starts later never gets it",
-                f"set it with qos_overrides.{ends.name}.publisher in its parameters",
-                robot=seen.robot(ends.name) or seen.robot(node),
-                node=node,
-                names=(ends.name,),
-            )
+                robot=seen.robot(ends.name) or seen.robot(node), node=node, names=(ends.name,),
+                **_set_qos(node, ends.name, PUBLISHER, ("durability", DURABILITY[1]))._asdict(),
+            )  # fmt: skip
 
 
 def _offered_otherwise(seen: Index, name: str, qos: Iterable[tuple[str, str]]) -> Iterator[Finding]:
@@ -237,12 +257,24 @@ def _offered_otherwise(seen: Index, name: str, qos: Iterable[tuple[str, str]]) -
     for end in seen.ends_at(TOPIC, name).publishers:
         offered = [(policy, word, getattr(end.qos, policy)) for policy, word in qos if end.qos]
         known = (it for it in offered if it[2] not in (it[1], "UNKNOWN", "SYSTEM_DEFAULT"))
-        if different := [f"{policy} {there}, the plan has {word}" for policy, word, there in known]:
+        if different := [*known]:
+            listed = ", ".join(f"{one} {it}, the plan has {word}" for one, word, it in different)
             yield not_latched.finding(
-                f"{name} is published with {', '.join(different)}",
-                f"set it with qos_overrides.{name}.publisher in its parameters",
+                f"{name} is published with {listed}",
                 robot=seen.robot(name) or seen.robot(end.node), node=end.node, names=(name,),
+                **_set_qos(end.node, name, PUBLISHER, *(it[:2] for it in different))._asdict(),
             )  # fmt: skip
+
+
+PUBLISHER, SUBSCRIPTION = "publisher", "subscription"
+
+
+def _set_qos(node: str, name: str, side: str, *policies: tuple[str, str]) -> Cause:
+    """Return the parameters of a node that give its end of a topic these policies."""
+    start = f"qos_overrides.{name}.{side}"
+    settings = tuple(Setting(node, f"{start}.{one}", word.lower()) for one, word in policies)
+    said = ", ".join(f"{it.name}: {it.value}" for it in settings)
+    return Cause(f"set {said} in the parameters of {node}", settings=settings)
 
 
 def _with_durability(ends: Iterable[End], word: str) -> list[End]:
@@ -260,10 +292,16 @@ def _misses_what_was_sent(seen: Index, ends: Ends) -> Iterator[Finding]:
         yield not_latched.finding(
             f"{shorten(readers)} reads {ends.name} with durability VOLATILE, and {once[0]} sends it"
             " once: started later, it never gets it",
-            f"let it ask for {DURABILITY[1]} (map_subscribe_transient_local of a costmap)",
             level=WARNING, robot=seen.robot(ends.name) or seen.robot(readers[0]),
-            node=readers[0], names=(ends.name,),
+            node=readers[0], names=(ends.name,), **_ask_latched(readers, ends.name)._asdict(),
         )  # fmt: skip
+
+
+def _ask_latched(nodes: Sequence[str], name: str) -> Cause:
+    """Return the parameter by which a costmap asks for what is sent once, else that of the QoS."""
+    if all(last_word(it).endswith("costmap") for it in nodes):
+        return to_set("static_layer.map_subscribe_transient_local", "true", *nodes)
+    return _set_qos(nodes[0], name, SUBSCRIPTION, ("durability", DURABILITY[1]))
 
 
 def _is_latched(ends: Ends) -> bool:

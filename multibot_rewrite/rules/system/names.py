@@ -8,12 +8,18 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence, S
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import EVERYBODYS, chooses, is_from_outside, team
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Remap
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Remap, Setting
 from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.nearest import MISTYPED, nearest
-from multibot_rewrite.base.wording import and_then, shorten
+from multibot_rewrite.base.wording import and_then, shorten, unique
 from multibot_rewrite.rules.declaration import see, system_rule, where
-from multibot_rewrite.rules.system.causes import NONE, Spelled, alike
+from multibot_rewrite.rules.system.causes import (
+    ACTION_PARTS,
+    NONE,
+    Cause,
+    Spelled,
+    alike,
+)
 from multibot_rewrite.rules.system.instead import (
     COMMON,
     MANAGER,
@@ -32,6 +38,7 @@ from multibot_rewrite.system.index import (
     robots_of,
     spaces,
 )
+from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import ACTION, RUNS, SERVES, SERVICE, TOPIC, End
 from multibot_rewrite.system.tool_nodes import in_namespaces_above, is_spawner, is_viewer, last_word
 
@@ -266,6 +273,16 @@ def server_names_miss(seen: Index) -> Iterator[Finding]:
                 yield from _unserved(seen, end, _served(seen).get((end.kind, end.type), _NOBODY))
 
 
+def not_managed(seen: Index, manager: str, nodes: Sequence[str], else_: str = "") -> Cause:
+    """Return how a lifecycle manager is to leave nodes out that it has in its list."""
+    asked = (it.name for it in seen.by_node[manager] if it.name.endswith(words.CHANGE_STATE))
+    listed = unique(it.removesuffix(words.CHANGE_STATE) for it in asked)
+    space = manager.rpartition("/")[0] + "/"
+    names = parameter_text([it.removeprefix(space) for it in listed if it not in nodes])
+    hint = f"{else_}leave {shorten(nodes)} out of {words.NODE_NAMES} of {manager}"
+    return Cause(hint, settings=(Setting(manager, words.NODE_NAMES, names),))
+
+
 class _Served(NamedTuple):
     """What is served of a kind and type: all names, and those by their name without a robot's."""
 
@@ -298,17 +315,18 @@ def _unserved(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
     if other := near or (by_type.name if by_type else ""):
         sure = near or end.kind == ACTION
         yield _missed_server(seen, end, lost, other, ERROR if sure else WARNING)
-    elif listed and end.name.endswith("/change_state"):
+    elif listed and end.name.endswith(words.CHANGE_STATE):
         # A node that runs and is called nearly so: a letter wrong, or without the namespace.
         same = (it for it in seen.nodes if it == f"/{last_word(listed)}")
         space = listed.rpartition("/")[0]
         others = [it for it in seen.nodes if it.rpartition("/")[0] == space]
         meant = next(same, "") or nearest(listed, others, MISTYPED)
         instead = f"; {meant} runs" if meant else ""
+        wait = f"it waits for {listed} and activates nothing after it: start it, or "
+        cause = not_managed(seen, end.node, [listed], wait)
         yield server_names_miss.finding(
             f"{lost}: {listed} is in its list, and does not run{instead}",
-            f"it waits for {listed} and activates nothing after it: start it, or leave it out of"
-            " node_names",
+            cause.hint, settings=cause.settings,
             robot=seen.robot(end.node), node=end.node, names=(end.name,), **where([end]),
         )  # fmt: skip
     elif not (listed or is_viewer(end.node)) and (
@@ -357,7 +375,8 @@ def _called_by_robots(seen: Index) -> Mapping[tuple[str, str], tuple[list[str], 
 
 def _missed_server(seen: Index, end: End, lost: str, other: str, level: str) -> Finding:
     servers = seen.by_name[end.kind, other].servers
-    cause = f"pass the rule {end.name}:={other}, or start it in the namespace of the robot"
+    parts = f"{ACTION_PARTS}," if end.kind == ACTION else ""
+    cause = f"pass the rule {end.name}:={other},{parts} or start it in the namespace of the robot"
     remaps: tuple[Remap, ...] = (Remap(end.node, end.name, other),)
     managed = [it.node for it in seen.by_name[end.kind, other].clients if _manages(it.node)]
     if _manages(end.node) and managed:

@@ -73,11 +73,11 @@ def unplanned_ends(plan: Index, seen: Index) -> Mapping[str, Sequence[End]]:
 @once
 def unplanned_nodes(plan: Index, seen: Index) -> Sequence[str]:
     """The nodes that are not planned, without those that come and go."""
-    return [node for node in _others(plan, seen) if not seen.is_tool(node)]
+    return [node for node in _not_in_plan(plan, seen) if not seen.is_tool(node)]
 
 
 @once
-def _others(plan: Index, seen: Index) -> Set[str]:
+def _not_in_plan(plan: Index, seen: Index) -> Set[str]:
     known = plan.robot_of.keys() | set(plan.own[""])
     return dict.fromkeys(node for node in seen.nodes if node not in known).keys()
 
@@ -86,7 +86,9 @@ def _others(plan: Index, seen: Index) -> Set[str]:
 def matches(plan: Index, seen: Index) -> Mapping[str, str]:
     """The running node that each missing node probably is."""
     gone = {node: robot for node, robot in plan.robot_of.items() if node not in seen.nodes}
-    return probable_matches(gone, _others(plan, seen), unplanned_nodes(plan, seen), plan.of_names)
+    return probable_matches(
+        gone, _not_in_plan(plan, seen), unplanned_nodes(plan, seen), plan.of_names
+    )
 
 
 def probable_matches(
@@ -257,7 +259,10 @@ def _why_missing(plan: Index, seen: Index, planned: End, used: str) -> Cause:
         remaps = (Remap(planned.node, used, planned.name),) if remap_rule(planned) else ()
         hint = f"{instead}: {why.hint}{how_to_remap(plan, planned)}"
         return why._replace(hint=hint, remaps=remaps)
-    return _why_remapped(plan, planned, used, instead)
+    cause = _why_remapped(plan, planned, used, instead)
+    types = (it.type for it in _unplanned(plan, seen, planned) if it.name == used)
+    alike = all(it in ("", planned.type) for it in types) or not planned.type
+    return cause._replace(remaps=(Remap(planned.node, used, planned.name),) if alike else ())
 
 
 def _why_remapped(plan: Index, planned: End, used: str, instead: str) -> Cause:

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence, Set
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import SENT_FRAMES, USUAL_FRAMES
-from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding, Setting
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import planned_rule
 from multibot_rewrite.rules.system.causes import Cause, caused
@@ -126,7 +126,9 @@ def _first_word(plan: Index, frame: str, robot: str) -> str:
     return plain[: next(ends, None)]
 
 
-def with_more_names(plan: Index, seen: Index) -> Iterator[tuple[str, str, Robot, tuple[str, ...]]]:
+def with_more_names(
+    plan: Index, seen: Index
+) -> Iterator[tuple[str, Cause, Robot, tuple[str, ...]]]:
     """Message, cause, robot and frames: planned ones with the robot's name again, or another prefix.
 
     Source: robot_state_publisher src/robot_state_publisher.cpp: frame_prefix is put in front of parent
@@ -136,10 +138,12 @@ def with_more_names(plan: Index, seen: Index) -> Iterator[tuple[str, str, Robot,
         if names := tuple(it.frame for it in found if it.added):
             added = next(it.added for it in found if it.added)
             verb = "is" if len(names) == 1 else "are"
-            sender = state_publisher(plan, robot) or f"the robot_state_publisher of {robot.name}"
-            cause = (
+            node = state_publisher(plan, robot)
+            sender = node or f"the robot_state_publisher of {robot.name}"
+            cause = Cause(
                 f"frame_prefix of {sender} is {added!r}, or tf_frame_prefix_enable of a controller (on"
-                " by default), on top of a rewritten description: set them to '' and false"
+                " by default), on top of a rewritten description: set them to '' and false",
+                settings=(Setting(node, "frame_prefix", ""),) if node else (),
             )
             yield f"{_frames(names)} {verb} planned without {added!r}", cause, robot, names
 

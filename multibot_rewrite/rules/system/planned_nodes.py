@@ -10,7 +10,7 @@ from fnmatch import fnmatchcase
 from itertools import combinations
 
 from multibot_rewrite.base.conventions import EVERYBODYS
-from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding, Setting
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import SEVERAL, shorten, unique
 from multibot_rewrite.rules.declaration import planned_rule, system_rule
@@ -179,7 +179,9 @@ def enclave_of_another_robot(seen: Index) -> Iterator[Finding]:
         named = {"/".join(parts[start:end]) for start, end in spans}
         if other := min(named & robots, default=""):
             message = f"{name} is in the enclave {enclave}, which is of {other}"
-            yield enclave_of_another_robot.finding(message, _start(robot), robot=robot, node=name)
+            yield enclave_of_another_robot.finding(
+                message, **_start(robot, [name])._asdict(), robot=robot, node=name
+            )
 
 
 @system_rule("MG113", "without-enclave", WARNING)
@@ -191,11 +193,14 @@ def without_enclave(seen: Index) -> Iterator[Finding]:
     bare = lists_by_key((seen.robot(it.name), it.name) for it in owned if not it.enclave)
     for robot, names in bare.items():
         message = f"{shorten(names)}: in no enclave"
-        yield without_enclave.finding(message, _start(robot), robot=robot, node=names[0])
+        cause = _start(robot, names)._asdict()
+        yield without_enclave.finding(message, **cause, robot=robot, node=names[0])
 
 
-def _start(robot: str) -> str:
-    return f"start it with --ros-args --enclave {enclave_of(robot)}"
+def _start(robot: str, nodes: Sequence[str]) -> Cause:
+    option, enclave = "--enclave", enclave_of(robot)
+    settings = tuple(Setting(it, option, enclave) for it in nodes)
+    return Cause(f"start it with --ros-args {option} {enclave}", settings=settings)
 
 
 # How the nodes of ros_gz_bridge are called.

@@ -65,7 +65,7 @@ def limits_left_out(seen: Index) -> Iterator[Finding]:
         for node in nodes if limits else ():
             if last_word(node) == _CONTROLLER:
                 yield limits_left_out.finding(
-                    f"publishes {ends.name} beside {limits[0]}, which is to limit it",
+                    f"publishes {ends.name}, and so does {limits[0]}, which should limit it",
                     "pass it the rule cmd_vel:=cmd_vel_nav, so that velocity_smoother reads it first",
                     robot=seen.robot(node), node=node, names=(ends.name,),
                     remaps=(Remap(node, ends.name, f"{ends.name.rpartition('/')[0]}/cmd_vel_nav"),),

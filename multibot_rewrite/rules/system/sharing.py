@@ -11,7 +11,7 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules import declaration
 from multibot_rewrite.rules.declaration import see, system_rule, where
-from multibot_rewrite.rules.system.causes import Cause
+from multibot_rewrite.rules.system.causes import Cause, names_another
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import NO_NAMESPACE, Ends, Index, at_work, nodes_of, robots_of
 from multibot_rewrite.system.records import (
@@ -39,19 +39,15 @@ def own_names(seen: Index, ends: Ends, robots: Sequence[str]) -> Cause:
     spaces = {it: it.rpartition("/")[0] for it in users if seen.robot(it) not in ("", owner)}
     remaps = (Remap(it, ends.name, f"{space}{plain}") for it, space in spaces.items() if space)
     if owner:
-        others = robots_of(seen, spaces)
-        return Cause(
-            f"a namespace, remap rule or parameter of {and_then(others)} names {owner}; pass the rule"
-            f" {ends.name}:={plain.strip('/')} to {shorten(spaces)}",
-            remaps=tuple(remaps),
-        )
+        return names_another(and_then(robots_of(seen, spaces)), owner, [*remaps])
     readers = [] if NO_NAMESPACE in robots else outsiders(seen, ends.subscribers)
-    more = f"; then {shorten(readers)} has to read those of all robots" if readers else ""
+    own = "each robot needs its own: write a relative name in the code or parameters of these nodes"
+    if readers:
+        return Cause(f"{own}; then {shorten(readers)} has to read those of all robots")
     return Cause(
-        "each robot needs its own: write a relative name in the code or parameters of these nodes;"
-        f" or give each that uses it the rule {ends.name}:={ends.name.strip('/')} in its robot's"
-        f" namespace (--ros-args -r, remappings= in the launch file){more}",
-        remaps=() if readers else tuple(remaps),
+        f"{own}; or give each that uses it the rule {ends.name}:={ends.name.strip('/')} in its robot's"
+        " namespace (--ros-args -r, remappings= in the launch file)",
+        remaps=tuple(remaps),
     )
 
 
@@ -64,32 +60,24 @@ def outsiders(seen: Index, ends: Iterable[End]) -> list[str]:
 def topic_of_several_robots(seen: Index) -> Iterator[Finding]:
     """Reports and orders of a fleet are none: only what belongs to one robot."""
     for ends in seen.topics:
-        if len(ends.publishers) < 2:
-            continue
-        nodes = nodes_of(at_work(ends.publishers))
-        robots = robots_of(seen, nodes)
-        plain = seen.plain(ends.name)
+        plain, owner = seen.plain(ends.name), seen.robot(ends.name)
         # Who sends commands to another robot is a rule of its own.
-        orders = words.moves(plain, ends.type) and bool(seen.robot(ends.name))
-        if len(robots) > 1 and words.is_of_one_robot(plain, ends.type) and not orders:
-            message = f"{and_then(robots)} publish on {ends.name}: {shorten(nodes)}"
-            cause = own_names(seen, ends, robots)._asdict()
-            yield topic_of_several_robots.finding(
-                message, **cause, node=nodes[0], names=(ends.name,)
-            )
-    # Of a topic without a robot's name; that of a robot is for those who follow it.
-    for ends in seen.topics:
-        if not words.is_of_a_body(ends.type) or seen.robot(ends.name):
-            continue
-        nodes = nodes_of(at_work(ends.subscribers))
-        robots = robots_of(seen, nodes)
-        senders = robots_of(seen, nodes_of(ends.publishers))
-        if len(robots) > 1 and len(senders) < 2:
-            message = f"{and_then(robots)} all read {ends.name}: {shorten(nodes)}"
-            cause = own_names(seen, ends, robots)._asdict()
-            yield topic_of_several_robots.finding(
-                message, **cause, node=nodes[0], names=(ends.name,)
-            )
+        orders = words.moves(plain, ends.type) and bool(owner)
+        sent = len(ends.publishers) > 1 and words.is_of_one_robot(plain, ends.type) and not orders
+        # Of a topic without a robot's name; that of a robot is for those who follow it.
+        read = words.is_of_a_body(ends.type) and not owner
+        alone = read and len(robots_of(seen, nodes_of(ends.publishers))) < 2
+        for side, do, asked in (
+            (ends.publishers, "publish on", sent),
+            (ends.subscribers, "all read", alone),
+        ):
+            nodes = nodes_of(at_work(side)) if asked else ()
+            robots = robots_of(seen, nodes)
+            if len(robots) > 1:
+                yield topic_of_several_robots.finding(
+                    f"{and_then(robots)} {do} {ends.name}: {shorten(nodes)}",
+                    **own_names(seen, ends, robots)._asdict(), node=nodes[0], names=(ends.name,),
+                )  # fmt: skip
 
 
 @system_rule("MG321", "data-of-another-robot", ERROR, drawn="cross-talk", meant=(SUBSCRIBES,))
@@ -112,10 +100,11 @@ def data_of_another_robot(seen: Index) -> Iterator[Finding]:
                 f"subscribes to {ends.name} of {owner}, but {robot} has {mine.name}, which it does"
                 " not read"
             )
-            cause = f"a parameter or remap rule of {robot} names {owner}"
+            own_rule = [Remap(end.node, ends.name, mine.name)] if mine.type == ends.type else []
             yield data_of_another_robot.finding(
-                message, cause, robot=robot, node=end.node, names=(ends.name, mine.name)
-            )
+                message, **names_another(robot, owner, own_rule)._asdict(),
+                robot=robot, node=end.node, names=(ends.name, mine.name),
+            )  # fmt: skip
 
 
 @system_rule("MG323", "two-maps", ERROR, meant=(PUBLISHES,))

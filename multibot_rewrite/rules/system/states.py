@@ -15,14 +15,18 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import PLACEHOLDER
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Setting
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.nearest import Guesses
 from multibot_rewrite.base.wording import SEVERAL, and_then, shorten
 from multibot_rewrite.rules import declaration
 from multibot_rewrite.rules.declaration import see, system_rule, where
+from multibot_rewrite.rules.system.causes import Cause, to_set
 from multibot_rewrite.rules.system.clocks import mixed_clocks, planned_clocks
+from multibot_rewrite.rules.system.names import not_managed
+from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Index, nodes_of
+from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import (
     CLAIMS,
     COMMAND,
@@ -35,7 +39,7 @@ from multibot_rewrite.system.records import (
 )
 from multibot_rewrite.system.tool_nodes import is_tool, is_viewer, last_word
 
-ACTIVE = "active"
+ACTIVE, INACTIVE = "active", "--inactive"
 
 
 @system_rule("MG511", "not-active", ERROR)
@@ -96,13 +100,15 @@ def interface_commanded_twice(seen: Index) -> Iterator[Finding]:
             who = " and ".join(f"{name} of {node}" for node, name in names)
             message = f"{interface} is commanded by {who}"
             cause = "two controller managers for one robot: stop one, or unload its controller"
+            settings: tuple[Setting, ...] = ()
             if len({it.manager for it in found}) == 1:
-                cause = "spawn one of them with --inactive"
+                cause = f"spawn {found[-1].name} with {INACTIVE}"
+                settings = (Setting(found[-1].manager, INACTIVE, found[-1].name),)
             wanted, own = (CLAIMS, COMMAND, interface), {it.name for it in found}
             claimed = (it for it in seen.system.interfaces if (it.role, it.kind, it.name) == wanted)
             places = [it for it in claimed if last_word(it.node) in own]
             yield interface_commanded_twice.finding(
-                message, cause + see(places),
+                message, cause + see(places), settings=settings,
                 robot=robot, node=found[0].manager, names=(interface,), **where(places),
             )  # fmt: skip
 
@@ -138,13 +144,15 @@ def use_sim_time_differs(seen: Index) -> Iterator[Finding]:
             f"{SIM_TIME} is {str(odd).lower()} for {shorten(sorted(found[odd]))}, and not for"
             f" {shorten(sorted(found[not odd]))}"
         )
-        cause = "use_sim_time has to be the same for all nodes of a robot"
-        yield use_sim_time_differs.finding(message, cause, robot=robot, node=min(found[odd]))
+        cause = to_set(SIM_TIME, parameter_text(not odd), *sorted(found[odd]))
+        yield use_sim_time_differs.finding(
+            message, f"{cause.hint}: it is the same for all nodes of a robot",
+            settings=cause.settings, robot=robot, node=min(found[odd]),
+        )  # fmt: skip
 
 
 # So many doubled nodes are two robots rather than two nodes.
 MANY = 3
-_CHANGE_STATE = "/change_state"
 
 
 @system_rule("MG301", "nodes-of-one-name", ERROR)
@@ -161,10 +169,7 @@ def nodes_of_one_name(seen: Index) -> Iterator[Finding]:
     for robot, names in by_robot.items():
         if len(names) >= MANY:
             cause = f"{robot} was started twice, or another robot was started with its namespace"
-            bare = (
-                "two robots were started without a namespace: give each its own (namespace:=robot1,"
-                " PushRosNamespace in the launch file)"
-            )
+            bare = "two robots were started without a namespace: give each its own"
             yield nodes_of_one_name.finding(
                 f"{len(names)} nodes run more than once: {shorten(names, SEVERAL)}",
                 cause if robot else bare, robot=robot, node=names[0], names=tuple(names),
@@ -186,19 +191,27 @@ def managed_twice(seen: Index) -> Iterator[Finding]:
     managed = lists_by_key(
         (
             nodes_of(it for it in ends.clients if not _asks_for_a_person(seen, it.node)),
-            ends.name.removesuffix(_CHANGE_STATE),
+            ends.name.removesuffix(words.CHANGE_STATE),
         )
         for ends in asked
-        if ends.name.endswith(_CHANGE_STATE)
+        if ends.name.endswith(words.CHANGE_STATE)
     )
     for managers, nodes in managed.items():
         if len(managers) > 1:
             message = f"{and_then(managers)} all manage the life cycle of {shorten(sorted(nodes))}"
-            cause = "one of them is too many, or its node_names has nodes of another robot"
-            services = (f"{node}{end}" for node in nodes for end in (_CHANGE_STATE, "/get_state"))
+            robot = seen.robot(nodes[0])
+            foreign = [it for it in managers if seen.robot(it) != robot]
+            cause = Cause(
+                f"one of them is too many: stop {foreign[-1] if foreign else managers[-1]}"
+            )
+            if 0 < len(foreign) < len(managers):
+                cause = not_managed(seen, foreign[0], nodes)
+            services = (
+                f"{node}{end}" for node in nodes for end in (words.CHANGE_STATE, "/get_state")
+            )
             yield managed_twice.finding(
-                message, cause,
-                robot=seen.robot(nodes[0]), node=managers[0], names=(*managers, *services),
+                message, **cause._asdict(),
+                robot=robot, node=managers[0], names=(*managers, *services),
             )  # fmt: skip
 
 

@@ -49,7 +49,7 @@ def why_not_received(
     """Why planned frames are in no transform; ``undescribed``: none of the description's is."""
     theirs, name = [*foreign(plan, seen, robot)], robot.name
     publisher = state_publisher(plan, robot) or STATE_PUBLISHER
-    described = "no planned node sends its description: is what sends it started?"
+    described = "no planned node publishes its description: is the node that does it running?"
     if is_described(plan, robot):
         described = f"has {publisher} the description of {name}, or that of another robot?"
     causes = (

@@ -8,12 +8,19 @@ from collections import defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from functools import cache
 
-from multibot_rewrite.base.conventions import BODY_FRAMES, SENT_FRAMES, USUAL_FRAMES
+from multibot_rewrite.base.conventions import (
+    BODY_FRAMES,
+    SENT_FRAMES,
+    TF_SWITCHES,
+    USUAL_FRAMES,
+    switch,
+)
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.nearest import MISTYPED, differ_in_numbers, nearest
 from multibot_rewrite.base.wording import only, unique
 from multibot_rewrite.rules.declaration import see, system_rule, where
+from multibot_rewrite.rules.system.causes import to_set
 from multibot_rewrite.rules.system.planned_frames import misnamed
 from multibot_rewrite.rules.system.tf_causes import why_disconnected
 from multibot_rewrite.rules.system.tf_trees import (
@@ -25,6 +32,7 @@ from multibot_rewrite.rules.system.tf_trees import (
     sent_elsewhere,
 )
 from multibot_rewrite.system.index import Index, Tree, robots_of
+from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import NOWHERE, OFF, Edge
 from multibot_rewrite.system.tf_copies import tree_topic
 from multibot_rewrite.system.tool_nodes import last_word
@@ -178,13 +186,16 @@ def told_not_to(seen: Index) -> Iterator[Finding]:
         if (topic, child) in sent:
             continue
         also = f", and so is {more[0].publishers[0]}" if more else ""
-        cause = "let one node send it: the controller (enable_odom_tf) or the filter (publish_tf)"
+        node = first.publishers[0]
+        name = switch(TF_SWITCHES, node)
+        told = to_set(name, parameter_text(True), *[node] * bool(name))
+        cause = f"let one node send it{': ' * bool(name)}{told.hint}"
         if beside:
             cause += f"; {beside.publishers[0]} ({beside.place}) sends {beside.child}"
         yield tf_tree_in_pieces.finding(
             f"is set not to send {first.parent} -> {child}, which no node sends{also}",
             cause + see((*more, first)), level=ERROR if more else WARNING,
-            robot=seen.robot(first.publishers[0]), node=first.publishers[0], names=(child,),
+            robot=seen.robot(node), node=node, names=(child,), settings=told.settings,
             **where([first]),
         )  # fmt: skip
 

@@ -235,12 +235,15 @@ def _elsewhere(
     does = f"{verb}s" if len(nodes) == 1 else verb
     message = f"{shorten(nodes)} {does} tf on {topic}, but the tf of {robot} is on {home}"
     other = seen.robot(topic)
-    hint, remaps = f"a namespace or remap rule of {robot} names {other}", tf_remaps((), "", "")
-    if other in ("", robot):
-        target = "tf" if home.startswith(f"/{robot}/") else home
-        rules = f"-r {topic}:={target} -r {static_topic(topic)}:={static_topic(target)}"
-        hint = f"pass {rules}: to the whole process, where the node shares one"
-        remaps = tf_remaps(nodes, topic, home)
+    # tf2 asks for /tf: a rule for the name that another rule made is none.
+    target = "tf" if home.startswith(f"/{robot}/") else home
+    rules = f"-r /{TF}:={target} -r {static_topic(f'/{TF}')}:={static_topic(target)}"
+    hint = f"pass {rules}: to the whole process, where the node shares one"
+    if home == f"/{TF}":
+        hint = f"leave out its rules for {home} and {static_topic(home)}, or start it without them"
+    if other not in ("", robot):
+        hint = f"a namespace or remap rule of {robot} names {other}; {hint}"
     return tf_on_two_topics.finding(
-        message, hint, robot=robot, node=nodes[0], names=(topic, home), remaps=remaps
-    )
+        message, hint, robot=robot, node=nodes[0], names=(topic, home),
+        remaps=tf_remaps(nodes, topic, home),
+    )  # fmt: skip

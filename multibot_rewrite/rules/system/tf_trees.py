@@ -52,6 +52,11 @@ def roots_by_robot(plan: Index, seen: Index) -> Iterator[tuple[Robot, Sequence[s
             for frame in (edge.child, edge.parent):
                 robot = _robot_at_home(plan, tree, frame)
                 roots_of[robot].add(roots_above.get(edge.parent, edge.parent))
+        # What is planned to hang from a frame of all, and does not.
+        for it in plan.system.edges if is_one_each else ():
+            hangs = it.static and it.parent in plan.system.shared_frames and it.child not in above
+            if hangs and it.child in roots_of[_robot_at_home(plan, tree, it.child)]:
+                roots_of[_robot_at_home(plan, tree, it.child)].add(it.parent)
         for robot, found in roots_of.items():
             roots = sorted(found - {""})
             if robot and len(roots) > 1:

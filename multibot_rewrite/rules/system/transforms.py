@@ -7,20 +7,29 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 
-from multibot_rewrite.base.conventions import SENT_FRAMES, USUAL_FRAMES, WORLD_FRAMES
+from multibot_rewrite.base.conventions import (
+    SENT_FRAMES,
+    TF_SWITCHES,
+    USUAL_FRAMES,
+    WORLD_FRAMES,
+    switch,
+)
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding, Remap
 from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.wording import SEVERAL, and_then, only, shorten, unique
 from multibot_rewrite.rules.declaration import see, system_rule, where
-from multibot_rewrite.rules.system.causes import Cause
+from multibot_rewrite.rules.system.causes import Cause, to_set
 from multibot_rewrite.rules.system.planned_frames import with_more_names
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Index, Tree, robots_of
+from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import SUBSCRIBES, Edge
 from multibot_rewrite.system.tf_copies import static_topic
 from multibot_rewrite.system.tool_nodes import last_word
 
 _STATE_PUBLISHER, _STATIC = "robot_state_publisher", "static_transform_publisher"
+# These have a prefix for frames as well, on by default.
+_OF_CONTROLLERS = "enable_odom_tf"
 
 
 @system_rule("MG401", "two-parents", ERROR)
@@ -160,7 +169,8 @@ def _apart(seen: Index, tree: Tree, robots: Sequence[str]) -> Cause:
         for node in nodes
         for it in tf_remaps([node], tree.topic, f"{node.rpartition('/')[0]}{tree.topic}")
     )
-    whole = len(robots) == len(robots_of(seen, nodes))
+    # One without a namespace may keep the topic.
+    whole = len(robots) - 1 <= len(robots_of(seen, nodes))
     own += ", or put its name into its frames (urdf-postfix)"
     return Cause(f"{own}; {senders}", remaps=tuple(remaps) if whole else ())
 
@@ -261,7 +271,10 @@ def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
             right = {it for edge in own for it in seen.senders.get(edge[1::-1], ())}
             nodes = sorted(nodes, key=lambda it: it not in right)
             listed_nodes = shorten(nodes, SEVERAL)
-            cause = f"stop one, or its tf (publish_tf, enable_odom_tf): two of {listed_nodes}"
+            able = [it for it in nodes if switch(TF_SWITCHES, it)]
+            name = switch(TF_SWITCHES, able[-1]) if able else ""
+            off = to_set(name, parameter_text(False), *able[-1:])
+            cause = f"stop one{', or ' * bool(able)}{off.hint}: two of {listed_nodes}"
             others = [it for it in senders if seen.robot(it) not in ("", who)]
             others = [it for it in others if it not in nodes]
             if others:
@@ -271,6 +284,7 @@ def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
             yield transform_of_two_senders.finding(
                 message, cause + see(own), level=NOTE if is_fixed else ERROR,
                 robot=who, names=unique(it.child for it in own), **where(own),
+                settings=() if is_fixed else off.settings,
             )  # fmt: skip
 
 
@@ -280,7 +294,7 @@ def robots_name_twice(seen: Index) -> Iterator[Finding]:
     told = set()
     for message, cause, it, names in with_more_names(seen.expected, seen) if seen.expected else ():
         told.add(it.name)
-        yield robots_name_twice.finding(message, cause, robot=it.name, names=names)
+        yield robots_name_twice.finding(message, **cause._asdict(), robot=it.name, names=names)
     for tree in seen.trees:
         doubled: dict[str, list[str]] = defaultdict(list)
         for frame in unique(it for edge in tree.edges for it in (edge.child, edge.parent)):
@@ -295,11 +309,24 @@ def robots_name_twice(seen: Index) -> Iterator[Finding]:
                 continue
             verb = "has" if len(frames) == 1 else "have"
             message = f"{shorten(frames)} {verb} the name of {robot} twice"
-            cause = (
-                "frame_prefix of robot_state_publisher, or tf_frame_prefix_enable of a controller (on"
-                " by default), on top of a description that has the name: set them to '' and false"
+            sent = [it for it in tree.edges if it.child in frames or it.parent in frames]
+            cause = _without_prefix(_senders(tree, sent))
+            yield robots_name_twice.finding(
+                message, **cause._asdict(), robot=robot, names=tuple(frames)
             )
-            yield robots_name_twice.finding(message, cause, robot=robot, names=tuple(frames))
+
+
+def _without_prefix(nodes: Iterable[str]) -> Cause:
+    """Return what takes the robot's name away that is put before frames of a rewritten description."""
+    described = [it for it in nodes if last_word(it).startswith(_STATE_PUBLISHER)]
+    driven = [it for it in nodes if switch(TF_SWITCHES, it) == _OF_CONTROLLERS]
+    causes = [
+        to_set("frame_prefix", "", *described),
+        to_set("tf_frame_prefix_enable", parameter_text(False), *driven),
+    ]
+    said = " and ".join(filter(None, (it.hint for it in causes))) or "leave one of the two out"
+    settings = (one for it in causes for one in it.settings)
+    return Cause(f"the description has the name already: {said}", settings=tuple(settings))
 
 
 def who_can_send(seen: Index, nodes: Sequence[str], edges: Sequence[Edge]) -> Sequence[str]:

@@ -63,7 +63,7 @@ def nothing_known_sends(seen: Index) -> Iterator[Finding]:
                 "start what sends it for the other robot", level=ERROR, robot=robot, names=lacked,
             )  # fmt: skip
         if rest := tuple(it for it in sorted(names) if it not in elsewhere):
-            hint = "name a stack or nodes that do, if no driver of its own does"
+            hint = "name a node set or nodes that do, if no driver of its own does"
             message = f"no known node sends {shorten(rest, _LISTED)}"
             yield nothing_known_sends.finding(message, hint, robot=robot, names=rest)
 
@@ -151,7 +151,7 @@ def _read(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     sender = _sender(seen, it.node, edges) if usual else None
     if sender is None and usual and edges and not seen.in_doubt and _listens(seen, it.node):
         message = f"reads frame {it.frame}, but no known node sends it"
-        return _finding(seen, it, message, "name the node or stack that sends it", NOTE)
+        return _finding(seen, it, message, "name the node or node set that sends it", NOTE)
     if sender is None:
         return _unknown(seen, it, edges)
     place = f" ({sender.place})" if sender.place != NOWHERE else ""

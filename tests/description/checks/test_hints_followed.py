@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A hint that is followed ends in "proved": each reason that a user can mend, with what its hint says.
+"""A hint that is followed ends in "verified": each reason that a user can mend, with its hint.
 
 Expected: the word, and that the hint names what was written here (never what the code thinks of it).
 """
@@ -33,9 +33,10 @@ HIT = (
 SENSORS = (
     '<gazebo><plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/></gazebo>'
 )
+# A plugin of ROS 1 alone: no rule of its own moves its transforms.
 DRIVE = (
-    '<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so">'
-    "<robotNamespace>/a</robotNamespace><updateRate>10</updateRate><commandTopic>cmd_vel</commandTopic></plugin></gazebo>"
+    '<gazebo><plugin name="d" filename="libgazebo_ros_skid_steer_drive.so">'
+    "<robotNamespace>/a</robotNamespace><broadcastTF>true</broadcastTF></plugin></gazebo>"
 )
 PARAM = (
     '<gazebo><plugin name="c" filename="libgazebo_ros_control.so"><robotParam>{}</robotParam>'
@@ -143,7 +144,7 @@ ROWS = (
         "postfix",
         "jazzy",
         "MB901",
-        "add a line to a vocabulary file: a uses/declares site",
+        "add a line to a file of plugin definitions: uses or declares",
         MARK,
         {"vocabulary": "[element acme]\nat: robot\n@at uses link\n"},
     ),
@@ -218,14 +219,14 @@ ROWS = (
 @pytest.mark.parametrize("row", ROWS, ids=[it.code for it in ROWS])
 def test_what_the_hint_says_ends_in_proved(row: Followed, tmp_path: Path) -> None:
     before = rewrite(ROVER.format(row.text), "robot1", layout=row.layout, distro=row.distro)
-    assert before.not_proved
+    assert before.not_verified
     assert [it.hint for it in before.findings if it.code == row.code and row.hint in it.hint]
     options = {"layout": row.layout, "distro": row.distro, **row.options}
     if "vocabulary" in options:
         file = tmp_path / "acme.vocab"
         file.write_text(options["vocabulary"])
         options["vocabulary"] = [str(file)]
-    assert rewrite(ROVER.format(row.after), "robot1", **options).not_proved == ()
+    assert rewrite(ROVER.format(row.after), "robot1", **options).not_verified == ()
 
 
 def test_a_name_that_stays_and_is_looked_up_in_the_world_has_no_layout() -> None:

@@ -45,7 +45,7 @@ def test_the_own_model_in_front_of_a_link_is_another_one_for_each_robot(
 ) -> None:
     """ContainPlugin.cc:100 looks it up in the world, where each robot has a name of its own."""
     made = rewrite(robot(CONTAIN.format(entity)), "robot1", layout=layout)
-    assert ("1 name looked up in the whole world" in made.not_proved) == is_shared
+    assert ("1 name looked up in the whole world" in made.not_verified) == is_shared
 
 
 HAND = """<gazebo><plugin name="h" filename="libgazebo_ros_hand_of_god.so"><ros/>
@@ -60,7 +60,7 @@ def test_frames_that_code_makes_of_a_parameter(frame: str, layout: str) -> None:
     given = f"<frame_id>{frame}</frame_id>" if frame else ""
     made = rewrite(robot(HAND.format(given)), "robot1", layout=layout)
     apart = frame == "hand" and layout != "tf-per-robot"
-    assert (made.not_proved == ()) == apart
+    assert (made.not_verified == ()) == apart
 
 
 PLUGIN = """<plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">

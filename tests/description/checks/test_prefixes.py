@@ -25,10 +25,10 @@ def test_a_prefix_counts_as_written_where_it_has_its_default(
     """gz-sim Elevator.cc:185 to 189: floor_ and door_ where they are absent."""
     text = LIFT.format(inside)
     told = rewrite(text, "robot1", layout=layout)
-    assert told.not_proved == ("2 prefix parameters that no postfix reaches",)
+    assert told.not_verified == ("2 prefix parameters that no postfix reaches",)
     assert any(repr(value) in it.message for it in told.findings if it.code == "MB422")
     made = rewrite(text, "robot1", layout=layout, affix="prefix")
-    assert made.not_proved == ()
+    assert made.not_verified == ()
     assert f"<floor_link_prefix>robot1/{value}</floor_link_prefix>" in made.text
 
 
@@ -59,7 +59,7 @@ def test_sensors_whose_names_code_makes_behind_a_prefix(
 ) -> None:
     text = CAMERA.format("".join(map(SENSOR.format, names)), inside)
     made = rewrite(text, "robot1", layout="postfix", affix=affix)
-    assert ", ".join(made.not_proved) == reasons
+    assert ", ".join(made.not_verified) == reasons
 
 
 UR = """<robot name="ur" xmlns:xacro="http://www.ros.org/wiki/xacro">
@@ -79,4 +79,4 @@ def test_a_prefix_with_the_name_that_an_argument_gave_needs_no_postfix(
     file = tmp_path / "ur.urdf.xacro"
     file.write_text(UR.format(value))
     made = rewrite(file, "left", layout="postfix", xacro_args={"p": "{robot}_"})
-    assert made.not_proved == reasons
+    assert made.not_verified == reasons

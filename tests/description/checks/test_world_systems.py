@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the lint says of all copies leaves a rewrite unproved: systems of the world, absolute names."""
+"""What the lint says of all copies leaves a rewrite unverified: world systems, absolute names."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ CONTROL = (
 
 def codes(inside: str, layout: str) -> list[str]:
     made = rewrite(ROBOT.format(inside), "robot1", layout=layout, distro="humble")
-    assert bool(made.not_proved) == bool(made.findings)
+    assert bool(made.not_verified) == bool(made.findings)
     return [it.code for it in made.findings]
 
 

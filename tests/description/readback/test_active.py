@@ -36,7 +36,7 @@ def hardware(class_: str, inside: str = "") -> str:
 
 
 def why(text: str, layout: str = "postfix", distro: str = "jazzy") -> tuple[str, ...]:
-    return rewrite(text, "robot1", layout=layout, distro=distro).not_proved
+    return rewrite(text, "robot1", layout=layout, distro=distro).not_verified
 
 
 @pytest.mark.parametrize(
@@ -78,7 +78,7 @@ def test_a_plugin_written_for_ros_1_beside_one_for_ros_2_is_that_of_ros_2() -> N
     old = plugin("gazebo_ros_camera", "<cameraName>c</cameraName><frameName>a</frameName>")
     new = plugin("gazebo_ros_imu_sensor", "<ros/>")
     made = [rewrite(robot(it), "robot1", layout="postfix") for it in (old, new, old + new)]
-    assert [it.not_proved for it in made] == [(), (), ()]
+    assert [it.not_verified for it in made] == [(), (), ()]
     cameras = [it.text.partition("camera.so")[2].partition("</plugin>")[0] for it in made]
     assert ["<ros>" in it for it in cameras] == [False, False, True]
 
@@ -131,7 +131,7 @@ def test_drives_of_ros_1_send_to_one_tf() -> None:
     wheels = "<robotNamespace>/a</robotNamespace><robotBaseFrame>a</robotBaseFrame>"
     text = robot(plugin("gazebo_ros_planar_move", wheels + "<commandTopic>cmd_vel</commandTopic>"))
     reasons = [
-        rewrite(text, "r", layout=it).not_proved for it in ("tf-per-robot", "frames-per-robot")
+        rewrite(text, "r", layout=it).not_verified for it in ("tf-per-robot", "frames-per-robot")
     ]
     assert ["1 topic shared by all robots" in it for it in reasons] == [True, False]
 
@@ -182,7 +182,7 @@ def test_what_a_driver_opens_on_its_computer_is_one_robots(inside: str, shared: 
     found = [it for it in made.findings if it.code == "MB412"]
     assert len(found) == shared
     assert all("a computer of its own" in it.hint for it in found)
-    assert any("resource" in it for it in made.not_proved) == bool(shared)
+    assert any("resource" in it for it in made.not_verified) == bool(shared)
 
 
 @pytest.mark.parametrize(
@@ -205,7 +205,7 @@ def test_numbers_end_where_the_last_one_is(inside: str, numbers: list[str]) -> N
     found = [etree.fromstring(one.data).xpath("string(//fdm_port_in|//param)") for one in made]
     assert found == numbers
     is_shared = len(set(numbers)) < len(numbers)
-    assert all(any("resource" in it for it in one.not_proved) == is_shared for one in made)
+    assert all(any("resource" in it for it in one.not_verified) == is_shared for one in made)
 
 
 # ---------------------------------------------------------------- gz-transport
@@ -351,17 +351,17 @@ def test_the_camera_info_of_other_cameras_is_beside_their_image(type_: str, insi
     Sensor; :664 AdvertiseInfo replaces the last part of the image's topic."""
     text = robot(SENSOR.format(type_, inside))
     made = rewrite(text, "robot1", distro="jazzy")
-    assert made.not_proved == ("1 topic shared by all robots",)
+    assert made.not_verified == ("1 topic shared by all robots",)
     assert any("/boxes/a/camera_info" in it.message for it in made.findings)
     assert "camera_info_topic>" not in made.text.replace(INFO, "")
-    assert rewrite(text, "robot1", topics="prefix", distro="jazzy").not_proved == ()
+    assert rewrite(text, "robot1", topics="prefix", distro="jazzy").not_verified == ()
 
 
 def test_a_camera_has_an_own_camera_info() -> None:
     made = rewrite(robot(SENSOR.format("camera", "<camera/>")), "robot1", distro="jazzy")
     assert "<camera_info_topic>/boxes/camera_info/robot1</camera_info_topic>" in made.text
     # Its image is a_image, and image_transport looks beside it.
-    assert made.not_proved == () and [it.code for it in made.findings] == ["MB439"]
+    assert made.not_verified == () and [it.code for it in made.findings] == ["MB439"]
     assert "its camera_info" in given(made.findings)
     assert '"/boxes/a/camera_info:=/boxes/camera_info/ROBOT"' in made.findings[0].hint
 
@@ -386,7 +386,7 @@ def test_an_arm_sends_no_odometry(distro: str) -> None:
     (diff_drive_controller.cpp, command_interface_configuration)."""
     arm = rewrite(simulated("position"), "robot1", layout="tf-per-robot", distro=distro)
     base = rewrite(simulated("velocity"), "robot1", layout="tf-per-robot", distro=distro)
-    assert arm.not_proved == base.not_proved == ()
+    assert arm.not_verified == base.not_verified == ()
     assert [it.code for it in arm.findings] == []
     # The controllers of Lyrical take no rules but those of their spawner: the summary says it.
     assert [it.code for it in base.findings] == ["MR105"] * (distro == "lyrical")
@@ -398,7 +398,7 @@ def test_a_node_without_rules_gets_a_namespace_in_every_layout() -> None:
     controller manager in the same, with the arguments of the plugin. A rule for the manager alone keeps
     it where the layout has it (rcl remap.c: a rule with a node's name is for that node)."""
     made = rewrite(simulated("velocity"), "robot1", distro="jazzy")
-    assert made.not_proved == ()
+    assert made.not_verified == ()
     assert "<namespace>/robot1</namespace>" in made.text
     assert "<remapping>controller_manager_robot1:__ns:=/</remapping>" in made.text
     found = [
@@ -417,7 +417,7 @@ def test_a_namespace_of_the_file_is_the_helpers_alone() -> None:
     made = rewrite(text, "robot1", distro="jazzy")
     found = [it.name for it in read(made.data, "", load_vocabulary((), "jazzy")).names]
     assert {"/x/controller_manager_robot1", "/x_robot1/gz_ros_control"} < set(found)
-    assert made.not_proved == ()
+    assert made.not_verified == ()
     assert strip(made.data, "robot1", distro="jazzy") == text.encode()
 
 
@@ -442,7 +442,7 @@ def test_ros_1_controllers_are_apart_by_their_namespace(
     """gazebo_ros_control_plugin.cpp:85-91: an absent namespace is the model's name, an empty one the
     root; :154 NodeHandle(robot_namespace_), below which controller_manager has its services."""
     made = rewrite(control_of_ros_1(namespace), "robot1", layout=layout)
-    assert made.not_proved == ()
+    assert made.not_verified == ()
     assert f"<robotNamespace>{expected}</robotNamespace>" in made.text
     assert strip(made.data, "robot1", layout=layout) == control_of_ros_1(namespace).encode()
 

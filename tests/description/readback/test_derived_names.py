@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Names that a consumer makes of another element, as its source says: a rewrite that loses them, or
-that leaves one for all robots, is not proved."""
+that leaves one for all robots, is not verified."""
 
 from __future__ import annotations
 
@@ -99,10 +99,10 @@ def test_nothing_of_ros_2_is_inserted_into_what_reads_none_of_it() -> None:
         assert "<ros>" not in rewrite(old, "robot1", layout=layout).text
     made = rewrite(old, "robot1")
     assert "<robotNamespace>r_robot1</robotNamespace>" in made.text
-    assert made.not_proved == ()
+    assert made.not_verified == ()
     made = rewrite(old, "robot1", layout="both")
     assert "<robotNamespace>robot1/r</robotNamespace>" in made.text
-    assert made.not_proved == ()
+    assert made.not_verified == ()
 
 
 @pytest.mark.parametrize("layout", ["frame-prefix", "frames-per-robot"])
@@ -114,7 +114,7 @@ def test_a_frame_that_is_fixed_in_code_is_shared_on_one_tf(layout: str) -> None:
         '<plugin name="k" filename="libgazebo_ros_kobuki.so"/></gazebo></robot>'
     )
     made = rewrite(text, "r1", layout=layout, distro="humble")
-    assert made.not_proved and "MG402" in {it.code for it in made.findings}
+    assert made.not_verified and "MG402" in {it.code for it in made.findings}
 
 
 def test_a_rule_that_ros_1_does_not_read_keeps_nothing_apart() -> None:

@@ -229,10 +229,10 @@ FAULTS = (
 
 
 def found(fault: Fault) -> tuple[set[str], tuple[str, ...]]:
-    """What is shared by the words of the findings, and why the rewrite is not proved."""
+    """What is shared by the words of the findings, and why the rewrite is not verified."""
     result = rewrite(ROVER % fault.source, "robot1", layout=fault.layout)
     said = (re.search(r"would have the (\w+ '[^']*')", it.message) for it in result.findings)
-    return {it[1] for it in said if it}, result.not_proved
+    return {it[1] for it in said if it}, result.not_verified
 
 
 @pytest.mark.sample(1)

@@ -58,7 +58,7 @@ def test_a_rewrite_that_loses_a_rule_is_not_proved() -> None:
     source = source.replace("libgazebo_ros_imu", "libhector_gazebo_ros_imu")
     source = source.replace("</ros>", "</ros><topicName>/a/imu</topicName>")
     made = rewrite(source, "robot1", affix="prefix")
-    assert made.not_proved == ("1 remap rule matching no name any more",)
+    assert made.not_verified == ("1 remap rule matching no name any more",)
     assert [it.code for it in made.findings] == ["MB436"]
 
 

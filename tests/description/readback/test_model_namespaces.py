@@ -129,14 +129,14 @@ def test_what_cannot_be_each_robots_own_is_said() -> None:
     for source in (model(' namespace="/"', DRIVE.format("")), model("", arm("{name}"))):
         found = rewrite(source, "robot1", layout="tf-per-robot", distro=MAIN)
         assert "MG320" in {it.code for it in found.findings}
-        assert any("topic" in reason for reason in found.not_proved)
+        assert any("topic" in reason for reason in found.not_verified)
 
 
 def test_a_rewrite_that_only_some_builds_of_gazebo_read_is_not_called_proved() -> None:
     source = model(' namespace="robot"')
-    reasons = rewrite(source, "robot1", distro=MAIN).not_proved
+    reasons = rewrite(source, "robot1", distro=MAIN).not_verified
     assert reasons == ("1 model namespace that not every Gazebo reads",)
-    assert rewrite(source, "robot1", distro="lyrical").not_proved == ()
+    assert rewrite(source, "robot1", distro="lyrical").not_verified == ()
 
 
 def test_a_vocabulary_says_which_systems_read_it(tmp_path: Path) -> None:

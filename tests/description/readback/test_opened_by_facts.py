@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files that are called proved, judged by a reader that knows neither the vocabulary nor the second
+"""Files that are called verified, judged by a reader that knows neither the vocabulary nor the second
 reading: facts from the consumers' sources say what each plugin opens. No two robots meet."""
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ LAYOUTS = ("postfix", "tf-per-robot", "frames-per-robot")
 
 
 def both(text: bytes, layout: str, known: set[str]) -> tuple[set[Opened], set[Opened]] | None:
-    """What two robots open; None where the rewrite is refused or not proved."""
+    """What two robots open; None where the rewrite is refused or not verified."""
     try:
         one, other = rewrite_all(text, ["robot1", "robot2"], layout=layout)
     except MultibotError:
         return None
-    if one.not_proved:
+    if one.not_verified:
         return None
     # ROS 1 loads no plugin of a robot that ROS 2 controls; ROS 2 does not read its parameters (MB904).
     ros_1 = "noetic" if b"<ros2_control" in text else "no such branch"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a rewrite is called: proved, or not and why."""
+"""What a rewrite is called: verified, or not and why."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from postfix_command import run
 
 from multibot_rewrite import RewriteRefused, rewrite, rewrite_all
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.description.checks.verdict import REASONS, given, not_proved
+from multibot_rewrite.description.checks.verdict import REASONS, given, not_verified
 
 LIDAR = """<robot name="r"><link name="a"/><gazebo reference="a">
 <sensor name="lidar" type="gpu_lidar"><topic>{}</topic></sensor></gazebo></robot>"""
@@ -21,7 +21,7 @@ DRIVE = """<robot name="r"><link name="a"/><gazebo>
 
 
 def of(*codes: str) -> tuple[str, ...]:
-    return not_proved(Finding(code, "warning", "x") for code in codes)
+    return not_verified(Finding(code, "warning", "x") for code in codes)
 
 
 @pytest.mark.parametrize(
@@ -109,7 +109,7 @@ def test_every_reason_is_a_warning_of_a_rewrite() -> None:
     ],
 )
 def test_a_rewrite_says_why_it_is_not_proved(text: str, why: tuple[str, ...]) -> None:
-    assert rewrite(text, "robot1", layout="tf-per-robot").not_proved == why
+    assert rewrite(text, "robot1", layout="tf-per-robot").not_verified == why
 
 
 @pytest.mark.more
@@ -118,18 +118,18 @@ def test_the_summary_and_strict(tmp_path: Path) -> None:
     file.write_text(LIDAR.format("{name}/scan"))
     done = run(tmp_path, "r.urdf", "robot1", "-o", str(out))
     assert done.code == 0
-    end = "; rewritten, not proved: 1 topic shared by all robots (ROS 2 lyrical)\n"
+    end = ". Not verified: 1 topic shared by all robots (ROS 2 lyrical)\n"
     assert done.err.endswith(end)
     out.unlink()
     stopped = run(tmp_path, "r.urdf", "robot1", "-o", str(out), "--fail-on", "warning")
     assert stopped.code == 1
     assert not out.exists()
-    assert "proved" not in stopped.err
+    assert "erified" not in stopped.err
     healthy = run(
         tmp_path, str(ROBOTS / "rover.urdf"), "robot1", "-o", str(out), "--fail-on", "warning"
     )
     assert healthy.code == 0
-    assert healthy.err.endswith("; proved (ROS 2 humble: it loads libgazebo_ros_diff_drive.so)\n")
+    assert healthy.err.endswith(". Verified (ROS 2 humble: it loads libgazebo_ros_diff_drive.so)\n")
 
 
 @pytest.mark.more
@@ -138,7 +138,7 @@ def test_what_is_not_shown_is_a_reason_all_the_same(tmp_path: Path) -> None:
     file.write_text(LIDAR.format("{name}/scan"))
     quiet = run(tmp_path, "r.urdf", "robot1", "-o", str(tmp_path / "o"), "--ignore", "MG320")
     assert "MG320" not in quiet.err
-    assert "not proved: 1 topic" in quiet.err
+    assert "Not verified: 1 topic" in quiet.err
 
 
 # odom of left_b and odom_left of b are both odom_left_b; the first is a default that was inserted.
@@ -163,7 +163,7 @@ def test_what_all_robots_share_is_no_refusal_of_two() -> None:
     """It is a warning however the robots are called."""
     text = LIDAR.format("{name}/scan")
     first, second = rewrite_all(text, ["left_b", "b"], separators={"topic": "_"})
-    assert first.not_proved == second.not_proved == ("1 topic shared by all robots",)
+    assert first.not_verified == second.not_verified == ("1 topic shared by all robots",)
 
 
 def test_a_model_of_another_file_is_not_proved() -> None:
@@ -173,5 +173,5 @@ def test_a_model_of_another_file_is_not_proved() -> None:
         "<include><uri>model://lidar</uri><name>front</name></include></model></sdf>"
     )
     made = rewrite(source, "robot1", layout="both")
-    assert made.not_proved == ("1 included model not read",)
+    assert made.not_verified == ("1 included model not read",)
     assert [it.code for it in made.findings] == ["MB906"]

@@ -50,4 +50,4 @@ def test_a_substitution_in_a_text_of_sdf_is_a_text() -> None:
     """sdformat reads ${} as it stands; in a file of xacro, or with arguments, it is one of xacro."""
     material = "<visual name='v'><material>c${}</material></visual>"
     text = f'<sdf version="1.9"><model name="m"><link name="l">{material}</link></model></sdf>'
-    assert rewrite(text, "robot1").not_proved == ()
+    assert rewrite(text, "robot1").not_verified == ()

@@ -109,7 +109,7 @@ def test_a_refused_description_is_explained_all_the_same() -> None:
 def test_an_srdf_is_explained_beside_its_urdf() -> None:
     (item,) = explain(SRDF, 3, urdf=ROBOT)
     assert (item.reason, item.new) == ("link 'base', declared at line 2 of the URDF", "base/robot1")
-    with pytest.raises(InputError, match="beside its URDF"):
+    with pytest.raises(InputError, match="with its URDF"):
         explain(SRDF, 3)
 
 

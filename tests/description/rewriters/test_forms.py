@@ -148,8 +148,8 @@ MODEL = """<sdf><model name="m"{}><link name="one"/><link name="two"/><plugin na
         ("none/../info", ""),
         ("{link}", "base"),
         ("{sensor}/x", "eye/x"),
-        ("{model}/x", "{model}/x"),
         # What stands for the model's name is no text that a user writes.
+        ("{model}/x", f"{SPAWNED}x"),
         ("{model}/{way}/x", f"{SPAWNED}left/x"),
         ("x/{way}", "x/left"),
         ("x/{none}", ""),

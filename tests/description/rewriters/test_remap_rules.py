@@ -63,7 +63,7 @@ def test_a_rule_matches_in_the_robots_namespace_what_it_matched_before(
     before = name_in_graph(source, "gazebo_ros_force")
     made = rewrite(source, "robot1", layout="tf-per-robot")
     assert name_in_graph(made.text, "gazebo_ros_force") == f"/robot1{before}"
-    assert made.not_proved == ()
+    assert made.not_verified == ()
     assert strip(made.text, "robot1", layout="tf-per-robot") == source.encode()
 
 
@@ -98,7 +98,7 @@ def test_a_rule_below_the_name_of_a_camera_follows_it(
     full = stem if stem.startswith("/") else f"/{namespace}/{stem}".replace("//", "/")
     source = plugin("camera", given + rules(f"{full}/image_raw:=image"), CAMERA.format(stem))
     made = rewrite(source, "robot1", layout=layout, affix=affix)
-    assert made.not_proved == ()
+    assert made.not_verified == ()
     (name,) = re.findall(r"<camera_name>([^<]*)<", made.text)
     assert "robot1" in name or (layout == "both" and not stem.startswith("/"))
     image = name_in_graph(made.text, f"{name}/image_raw")
@@ -124,7 +124,7 @@ def test_a_relative_rule_for_an_absolute_name_gets_one_that_still_matches() -> N
     assert name_in_graph(source, "/tf") == "/my_tf"
     made = rewrite(source, "robot1", layout="tf-per-robot")
     assert name_in_graph(made.text, "/tf") == "/robot1/my_tf"
-    assert made.not_proved == ()
+    assert made.not_verified == ()
     assert strip(made.text, "robot1", layout="tf-per-robot") == source.encode()
 
 
@@ -170,7 +170,7 @@ def test_a_rule_of_an_unknown_plugin_moves_and_nothing_is_proved() -> None:
     made = rewrite(source, "robot1", layout="both")
     moved = ["/robot1/go:=cmd_vel", "/tf:=tf", "/diagnostics:=diagnostics"]
     assert rule_texts(made.text) == moved
-    assert made.not_proved == ("1 plugin not known",)
+    assert made.not_verified == ("1 plugin not known",)
 
 
 def test_rules_for_controllers_move_with_the_namespace_of_their_manager() -> None:
@@ -195,13 +195,13 @@ def test_an_argument_in_the_old_form_is_a_rule() -> None:
     source = plugin("force", "<argument>gazebo_ros_force:=push</argument>")
     made = rewrite(source, "robot1", layout="postfix")
     assert rule_texts(made.text) == ["gazebo_ros_force:=push/robot1"]
-    assert made.not_proved == ()
+    assert made.not_verified == ()
 
 
 def test_an_argument_that_rcl_refuses_proves_nothing() -> None:
     flags = ("--ros-args", "gazebo_ros_force:=push")
     source = plugin("force", "".join(f"<argument>{it}</argument>" for it in flags))
-    assert rewrite(source, "robot1", layout="postfix").not_proved
+    assert rewrite(source, "robot1", layout="postfix").not_verified
 
 
 def test_a_rule_for_the_controller_manager_is_none_for_its_controllers() -> None:

@@ -52,7 +52,7 @@ def rover(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_all_is_known_renamed_and_proved(rover: Path) -> None:
     done = rewrite(rover, "r1")
     assert {it.code for it in done.findings} == set()
-    assert done.not_proved == ()
+    assert done.not_verified == ()
     for name in (b"rotor/r1", b"spin_r1", b"top/r1", b"front_r1::camera_link/r1", b"tilt/r1"):
         assert name in done.data, name
     assert b"<include" not in done.data
@@ -89,7 +89,7 @@ def test_it_is_looked_for_where_gazebo_looks(
     alone.write_text(ROVER)
     assert [it.code for it in rewrite(alone, "r1").findings].count("MB906") == 2
     monkeypatch.setenv(variable, f"/nowhere:{rover.parents[1]}")
-    assert rewrite(alone, "r1").not_proved == ()
+    assert rewrite(alone, "r1").not_verified == ()
 
 
 def test_the_file_is_the_one_that_the_config_names(rover: Path) -> None:

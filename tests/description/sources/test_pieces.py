@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every piece of a value knows where it was written: read off the files by hand, and proved by changing
-them."""
+"""Every piece of a value knows where it was written: read off the files by hand, and verified by
+changing them."""
 
 from __future__ import annotations
 

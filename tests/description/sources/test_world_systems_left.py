@@ -39,9 +39,9 @@ def _libraries(data: bytes) -> list[str]:
 def test_they_are_comments_then(own: str, layout: str) -> None:
     text = ROBOT.format(own)
     kept = rewrite(text, "r1", distro="jazzy", layout=layout)
-    assert "MB416" in {it.code for it in kept.findings} and kept.not_proved
+    assert "MB416" in {it.code for it in kept.findings} and kept.not_verified
     left = rewrite(text, "r1", distro="jazzy", layout=layout, world_systems="leave")
-    assert "MB416" not in {it.code for it in left.findings} and left.not_proved == ()
+    assert "MB416" not in {it.code for it in left.findings} and left.not_verified == ()
     assert _libraries(left.data) == ["gz-sim-diff-drive-system"]
     # Nothing but these is other than in a rewrite that keeps them.
     assert (
@@ -72,7 +72,7 @@ def test_one_with_that_spelling_stays_and_is_told() -> None:
     own = SENSORS.replace("ogre2", "ogre-&#45;2")
     left = rewrite(ROBOT.format(own), "r1", distro="jazzy", world_systems="leave")
     assert "gz-sim-sensors-system" in _libraries(left.data)
-    assert [it.code for it in left.findings] == ["MB416"] and left.not_proved
+    assert [it.code for it in left.findings] == ["MB416"] and left.not_verified
 
 
 @pytest.mark.parametrize(
@@ -88,7 +88,7 @@ def test_several_robots_leave_them(robots: list[str], said: dict[str, str], is_l
     """Two copies of Sensors crash Gazebo (gz-sensors issue 497); one may be all there is."""
     made = [*rewrite_all(ROBOT.format(SENSORS), robots, distro="jazzy", **said)]
     assert {"gz-sim-sensors-system" in _libraries(it.data) for it in made} == {not is_left}
-    assert {it.not_proved == () for it in made} == {is_left}
+    assert {it.not_verified == () for it in made} == {is_left}
 
 
 def test_the_note_has_the_text_for_the_world() -> None:

@@ -51,7 +51,7 @@ def template(case: Case) -> Template:
 
 
 def passes(wrong: Template, text: bytes | None = None) -> bool:
-    """Is a wrong template, or a wrong text in the place of what it gives, proved all the same?"""
+    """Is a wrong template, or a wrong text in the place of what it gives, verified all the same?"""
     with pytest.MonkeyPatch.context() as patch:
         if text is not None:
             patch.setattr(pipeline, "fill", lambda pieces, robot: text)
@@ -63,14 +63,14 @@ def passes(wrong: Template, text: bytes | None = None) -> bool:
 
 
 def proved_texts(right: Template, seed: str, times: int) -> list[str]:
-    """The wrong texts of a template that are proved."""
+    """The wrong texts of a template that are verified."""
     text = fill(right.pieces, "robot1")
     found = wrong_texts(text, random.Random(seed), times)
     return [about for about, wrong in found if passes(right, wrong)]
 
 
 def proved_plans(right: Template) -> list[str]:
-    """The wrong plans of a template that are proved."""
+    """The wrong plans of a template that are verified."""
     return [about for about, wrong in wrong_plans(right) if passes(wrong)]
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every real SDF is rewritten and proved, or refused for a true reason; libsdformat sees it alike."""
+"""Every real SDF is rewritten and verified, or refused for a true reason; libsdformat sees it alike."""
 
 from __future__ import annotations
 

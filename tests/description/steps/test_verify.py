@@ -30,7 +30,7 @@ Wrong = Callable[[bytes], bytes]
 
 @pytest.fixture
 def made(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[Wrong], None]]:
-    """Call it with what is done to every text before it is proved."""
+    """Call it with what is done to every text before it is verified."""
     right: Make = getattr(pipeline, FILL)
 
     def start(wrong: Wrong) -> None:

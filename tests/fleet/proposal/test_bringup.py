@@ -291,7 +291,7 @@ def test_only_files_that_a_node_reads_are_taken(package: Path) -> None:
         "ros_gz_bridge parameter_bridge: config_file",
         "driver (acme driver)",
         "Once for all robots; `own_nodes: [NAME]` gives each its own:",
-        "rviz2 rviz2, since it only looks, or passes on what a person asks for",
+        "rviz2 rviz2, since it only shows data or forwards an operator's commands",
     ]
     assert "unread" not in text
 
@@ -429,6 +429,13 @@ BAD = {
         "x = DeclareLaunchArgument('ip')", "it has to be given ip; write ip:=VALUE after it",
     ),
     "it includes itself": ("x = IncludeLaunchDescription(__file__)", "without an end"),
+    "it includes itself after a node": (
+        "x = GroupAction([Node(package='a', executable='b'), IncludeLaunchDescription(__file__)])",
+        "without an end",
+    ),
+    "it starts too much": (
+        "x = GroupAction([Node(package='a', executable='b')] * 1001)", "starts 1001 processes",
+    ),
     "it writes": ("x = open('FOLDER/made', 'w')", "give --trust"),
     "it starts nothing": ("x = LogInfo(msg='a')", "starts no node with these arguments"),
     "it is no Python": (")", "SyntaxError"),

@@ -196,11 +196,15 @@ def test_a_layout_that_does_not_work_is_replaced(
 
 
 @pytest.mark.more
-def test_a_real_arm_on_the_world_gets_a_world_of_its_own(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "plugin", ["", '<gazebo><plugin filename="libgz_x.so" name="a"/></gazebo>']
+)
+def test_a_real_arm_on_the_world_gets_a_world_of_its_own(plugin: str, tmp_path: Path) -> None:
+    """It is real if that is said, whatever its description has for a simulator."""
     world = '<robot name="r"><link name="world"/><link name="a"/><joint name="j" type="fixed">'
-    world += '<parent link="world"/><child link="a"/></joint></robot>'
+    world += f'<parent link="world"/><child link="a"/></joint>{plugin}</robot>'
     (tmp_path / "r.urdf").write_text(world)
-    fleet = made(tmp_path, tmp_path / "r.urdf")
+    fleet = made(tmp_path, tmp_path / "r.urdf", "--simulator", "none")
     assert fleet["shared_frames"] == ["map"], "each real robot stands on a world of its own"
 
 

@@ -70,10 +70,12 @@ def test_robots_are_simulated_where_a_description_has_something_for_it(
 
 def test_a_real_robot_that_stands_on_the_world_has_one_of_its_own() -> None:
     fixed = standing_on("world")
-    found = propose.worlds_of([member(), fixed])
+    found = propose.worlds_of([member(), fixed], True)
     assert {key: it.value for key, it in found.items()} == {"shared_frames": ["map"]}
-    assert propose.worlds_of([member(simulator="gz"), fixed]) == {}
-    assert propose.worlds_of([standing_on("map")]) == propose.worlds_of([member()]) == {}
+    assert propose.worlds_of([member(simulator="gz"), fixed], False) == {}
+    assert (
+        propose.worlds_of([standing_on("map")], True) == propose.worlds_of([member()], True) == {}
+    )
 
 
 @pytest.mark.parametrize(("apart", "places"), [(0.0, (0, 1.5, 3.5)), (2.0, (0, 2, 4))])

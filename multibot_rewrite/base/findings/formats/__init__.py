@@ -29,7 +29,7 @@ NO_COVERAGE: Mapping[str, object] = MappingProxyType({})
 
 
 class Report(NamedTuple):
-    """What a report says beside its findings: the command that made it, the files that were read,
+    """What a report says besides its findings: the command that made it, the files that were read,
     all rules by code, the ROS 2 release whose facts it rests on, and how much of the robots it is
     about (``system.coverage.as_value``)."""
 
@@ -43,7 +43,7 @@ class Report(NamedTuple):
 def rendered(
     name: str, findings: Sequence[Finding], report: Report, *, colour: bool = False
 ) -> str:
-    """The report in the format ``name``; ``colour`` is for the text on a terminal."""
+    """Return the report in the format ``name``; ``colour`` is for the text on a terminal."""
     render = getattr(import_module(f"{__name__}.{FORMATS[name]}"), f"as_{name}")
     options = {"colour": colour} if name == "text" else {}
     text: str = render(findings, report, **options)

@@ -57,12 +57,12 @@ def json_text(value: object) -> str:
 
 
 def path_given(path: str) -> str:
-    """A path as it was given, with ``/``."""
+    """Return a path as it was given, with ``/``."""
     return path.replace(os.sep, "/")
 
 
 def inside(path: str) -> str | None:
-    """A path relative to the working directory, with ``/``; None where it is not below it."""
+    """Return a path below the working directory, relative to it, with ``/``; None for another."""
     here = os.path.join(os.getcwd(), "")
     whole = os.path.abspath(path)
     return path_given(whole[len(here) :]) if whole.startswith(here) else None
@@ -80,29 +80,29 @@ def said(finding: Finding) -> str:
 
 
 def said_of(finding: Finding) -> str:
-    """The same with the robot or node in front: for formats that show files only."""
+    """Return message and hint with the robot or node in front, for formats that show files only."""
     who = f"{finding.place}: " if finding.robot or finding.node else ""
     return f"{one_line(who)}{said(finding)}"
 
 
 def title(finding: Finding, report: Report) -> str:
-    """The code and, where the rule is known, its name."""
+    """Return the code and, if the rule is known, its name."""
     rule = report.rules.get(finding.code)
     return f"{finding.code} {rule.name}" if rule else finding.code
 
 
 def file_of(finding: Finding, report: Report) -> str:
-    """The file to show a finding at: its own, else the first that was read (a plan, a fleet)."""
+    """Return the file to show a finding at: its own, or the first that was read (a plan, a fleet)."""
     return finding.file or next(iter(report.files), "")
 
 
 def circumstances(finding: Finding) -> str:
-    """The xacro arguments under which it is found, behind a space; empty for the default ones."""
+    """Return the xacro arguments under which it is found, after a space; empty for the defaults."""
     return one_line(f" [with {finding.arguments}]") if finding.arguments else ""
 
 
 def calls(finding: Finding) -> Iterator[MacroCall]:
-    """The xacro macro calls that made what is at fault, the innermost first."""
+    """Yield the xacro macro calls that made the faulty element, the innermost first."""
     for call in finding.calls:
         parts = _CALL.fullmatch(call)
         assert parts is not None, "a call is written file:line: name"
@@ -110,7 +110,7 @@ def calls(finding: Finding) -> Iterator[MacroCall]:
 
 
 def via(finding: Finding, spelled: Callable[[str], str]) -> Iterator[str]:
-    """A line for each of the calls, with its path so spelled."""
+    """Yield a line for each macro call; ``spelled`` formats its path."""
     for call in calls(finding):
         yield one_line(f"via {spelled(call.file)}:{call.line}: {call.macro}")
 
@@ -132,7 +132,7 @@ def in_words(levels: Mapping[str, int]) -> str:
 
 
 def by_file(findings: Iterable[Finding], report: Report) -> dict[str, list[Finding]]:
-    """The findings of each file; the files that were read come first, with findings or without."""
+    """Return the findings of each file, first of the files that were read, also those without any."""
     result: dict[str, list[Finding]] = {file: [] for file in report.files}
     for finding in findings:
         result.setdefault(file_of(finding, report), []).append(finding)
@@ -140,7 +140,7 @@ def by_file(findings: Iterable[Finding], report: Report) -> dict[str, list[Findi
 
 
 def fingerprints(findings: Sequence[Finding]) -> list[str]:
-    """What each finding is known by from run to run: no two are equal, and lines may move."""
+    """Return a text for each finding that stays the same from run to run, also if lines move."""
     from hashlib import sha256
 
     seen: Counter[tuple[str, ...]] = Counter()
@@ -161,7 +161,7 @@ def as_text(findings: Sequence[Finding], report: Report, *, colour: bool = False
 
 
 def lines_of(finding: Finding, *, colour: bool = False) -> Iterator[str]:
-    """The lines of one finding."""
+    """Yield the lines of one finding."""
     it = finding._replace(file=path_given(finding.file))
     paint, plain = (_PAINT.get(it.level, ""), _NO_PAINT) if colour else ("", "")
     head = f"{one_line(it.place)}: {paint}{it.level}: {it.code}{plain}"
@@ -208,8 +208,8 @@ def _json_finding(finding: Finding, report: Report) -> dict[str, Any]:
 
 
 def as_github(findings: Sequence[Finding], report: Report) -> str:
-    """A workflow command a line, which GitHub shows beside the line; macro calls are further lines of
-    its message."""
+    """Return a workflow command for each finding, which GitHub shows at its line; macro calls are
+    further lines of the message."""
     text = ""
     for it in findings:
         file = one_line(path_below(file_of(it, report)))
@@ -223,7 +223,7 @@ def as_github(findings: Sequence[Finding], report: Report) -> str:
 
 
 def as_gitlab(findings: Sequence[Finding], report: Report) -> str:
-    """A Code Quality report; GitLab tells new findings from old ones by their fingerprints."""
+    """Return a Code Quality report; GitLab recognises known findings by their fingerprints."""
     entries = [
         {
             "description": f"{it.code}: {said_of(it)}{circumstances(it)}",
@@ -238,7 +238,7 @@ def as_gitlab(findings: Sequence[Finding], report: Report) -> str:
 
 
 def as_markdown(findings: Sequence[Finding], report: Report) -> str:
-    """Counts, then a table for each file with findings, as many as a comment holds."""
+    """Return counts, then a table for each file with findings, as many as a comment holds."""
     found = in_words(counts(findings)) or "no findings"
     files = plural(len(report.files), "file")
     held = f" ({_escaped(str(report.coverage['text']))})" if report.coverage else ""
@@ -253,7 +253,7 @@ def as_markdown(findings: Sequence[Finding], report: Report) -> str:
 
 
 def _markdown_parts(findings: Sequence[Finding], report: Report) -> Iterator[tuple[bool, str]]:
-    """What the text is put together from, and whether it is a finding's row."""
+    """Yield the parts of the text, each with whether it is the row of a finding."""
     for file, found in by_file(findings, report).items():
         if not found:
             continue

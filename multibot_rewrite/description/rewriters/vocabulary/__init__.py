@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The vocabulary: which tag of which plugin holds which name. Data in ``*.vocab``, read lazily;
+"""The plugin definitions: which tag of which plugin holds which name. Data in ``*.vocab``, read lazily;
 ``README.md`` has the grammar.
 """
 
@@ -45,12 +45,12 @@ HERE = os.path.dirname(__file__)
 def load_vocabulary(
     extra: tuple[str, ...], release: str, *, packages: bool = True, ros: str = ""
 ) -> Vocabulary:
-    """The built-in vocabulary, that of installed ``packages``, and the files named in ``extra``, as far
-    as they hold in a ``release``; with an empty one all of it, which no document can be read with;
-    ``ros`` as for ``Vocabulary``.
+    """Return the built-in definitions, those of installed ``packages``, and the files in ``extra``, for
+    a ``release``.
 
-    Raises VocabularyError, naming file and line, for a mistake: at once in what is not built in,
-    else in a section that is used.
+    With an empty one it is all of them, which no document can be read with; ``ros`` as for
+    ``Vocabulary``. Raises VocabularyError, naming file and line, for a mistake: at once in what is not
+    built in, otherwise in a section that is used.
     """
     builtin = sorted(name for name in os.listdir(HERE) if name.endswith(".vocab"))
     named = {file.name: file.path for file in (installed() if packages else ())}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One section of a vocabulary file: its rows read, checked and made a ``VocabularySection``.
+"""One section of a definition file: its rows read, checked and made a ``VocabularySection``.
 
 ``README.md`` has the grammar.
 """
@@ -155,9 +155,9 @@ def read_header(place: str, row: str) -> tuple[str, ...]:
 def read_section(
     file: str, line: int, rows: list[str]
 ) -> tuple[dict[str, str], dict[str, SiteRow]]:
-    """Settings and sites of a section whose header is at ``line``.
+    """Return settings and sites of a section whose header is at ``line``.
 
-    The sites are by path, and by release where one path has several.
+    The sites are by path, and by release if one path has several.
     """
     section = " ".join(read_header(f"{file}:{line}", rows[0])[:2])
     settings: dict[str, str] = {}
@@ -168,7 +168,7 @@ def read_section(
         if not words or row.startswith("#") or words[1:2] == [VALUE]:
             continue
         if words[0].endswith(":"):
-            _setting(settings, f"{file}:{number}", words)
+            _add_setting(settings, f"{file}:{number}", words)
             continue
         site = _site(f"{file}:{number}", section, number, row)
         before = at_path.setdefault(site.path, [])
@@ -189,7 +189,7 @@ def assemble(
     settings: dict[str, str],
     sites: Sequence[SiteRow],
 ) -> VocabularySection:
-    """A section from its parts; ``sites`` include those of its blocks."""
+    """Return a section from its parts; ``sites`` include those of its blocks."""
     if header[0] == "element" and "at" not in settings:
         raise VocabularyError(
             f"{file}:{line}: [{' '.join(header)}] needs at: the elements it is in"
@@ -227,7 +227,7 @@ def assemble(
 
 
 def _read_in(words: str) -> str:
-    """The source where only the checkout is named that its values were read in."""
+    """Return the source without the tag, if only a checkout is named for its values."""
     repository, _, rest = words.partition(" ")
     return f"{repository} {rest.partition(' ')[2]}".strip()
 
@@ -237,7 +237,7 @@ def _tags(sites: Iterable[SiteRow]) -> frozenset[str]:
     return frozenset(split_step(steps[0])[0] for steps in paths)
 
 
-def _setting(settings: dict[str, str], place: str, words: list[str]) -> None:
+def _add_setting(settings: dict[str, str], place: str, words: list[str]) -> None:
     key = words[0][:-1]
     if key not in SETTINGS:
         raise VocabularyError(f"{place}: unknown setting {key!r}, use one of {', '.join(SETTINGS)}")
@@ -316,7 +316,7 @@ def _check_words(place: str, path: str, kinds: Iterable[str], options: dict[str,
 
 
 def is_step(text: str) -> bool:
-    """Is this one step of a path, as a vocabulary file may have it?"""
+    """Is this one step of a path, as a definition file may have it?"""
     return _ONE_STEP.fullmatch(text) is not None
 
 
@@ -345,7 +345,7 @@ def split_opens(word: str) -> Opened:
 
 @lru_cache(maxsize=PATHS)
 def split_path(path: str) -> tuple[tuple[str, ...], str]:
-    """The child steps of a path, and the attribute at its end or an empty string."""
+    """Return the child steps of a path, and the attribute at its end or an empty string."""
     bracket = path.rfind("]") + 1
     steps, _, attribute = path[bracket:].partition("@")
     whole = path[:bracket] + steps

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Vocabulary that other installed packages bring: entry points ``multibot_rewrite.vocabulary``.
+"""Plugin definitions that other installed packages bring: entry points ``multibot_rewrite.vocabulary``.
 
 An entry point names a package whose ``*.vocab`` files are read; its code is not imported.
 """
@@ -20,7 +20,7 @@ _METADATA = (".dist-info", ".egg-info")
 
 
 class Installed(NamedTuple):
-    """One vocabulary file of an installed distribution."""
+    """One definition file of an installed distribution."""
 
     distribution: str
     version: str
@@ -34,9 +34,9 @@ class Installed(NamedTuple):
 
 @lru_cache(maxsize=1)
 def installed() -> tuple[Installed, ...]:
-    """The vocabulary files of all installed packages, by distribution, entry point and file.
+    """Return the definition files of all installed packages, by distribution, entry point and file.
 
-    Raises VocabularyError, naming distribution and version, where one cannot be found.
+    Raises VocabularyError, naming distribution and version, if one cannot be found.
     """
     found = [file for folder in announcing(sys.path) for file in _files(folder)]
     found.sort(key=lambda file: _key(file.distribution))
@@ -44,15 +44,15 @@ def installed() -> tuple[Installed, ...]:
 
 
 def advice(message: str) -> str:
-    """What to do about an error in a file of an installed package; else an empty string."""
+    """Return the hint for an error in a file of an installed package; empty for other files."""
     owner = next((file for file in installed() if message.startswith(f"{file.name}:")), None)
     return _remedy(owner.distribution) if owner else ""
 
 
 def announcing(folders: Iterable[str]) -> list[str]:
-    """The metadata folders below ``folders`` that name the group.
+    """Return the metadata folders below ``folders`` that name the group.
 
-    A look at bytes, because importlib.metadata takes longer to import than a rewrite takes. Of a
+    It searches bytes, because importlib.metadata takes longer to import than a rewrite takes. Of a
     distribution that is there twice the first one counts, as it does for imports.
     """
     paths = [
@@ -75,7 +75,7 @@ def _names(folder: str) -> list[str]:
 
 
 def _key(name: str) -> str:
-    """The normalized name of a distribution, also from its ``name-version.dist-info``."""
+    """Return the normalized name of a distribution, also from its ``name-version.dist-info``."""
     for end in _METADATA:
         if name.endswith(end):
             name = name.removesuffix(end).partition("-")[0]
@@ -94,7 +94,7 @@ def _entry_points(folder: str) -> bytes:
 
 
 def _files(folder: str) -> Iterator[Installed]:
-    """The vocabulary files of the distribution whose metadata folder this is."""
+    """Yield the definition files of the distribution with this metadata folder."""
     from importlib.metadata import Distribution  # the few that get here pay for it
 
     about = Distribution.at(folder)
@@ -118,9 +118,9 @@ def _remedy(distribution: str) -> str:
 
 
 def vocabulary_files(package: str) -> list[str]:
-    """The ``*.vocab`` files right in a package, found without importing it.
+    """Return the ``*.vocab`` files directly in a package, found without importing it.
 
-    Raises VocabularyError where there is no such package or no file in it.
+    Raises VocabularyError if there is no such package or no file in it.
     """
     top, *below = package.split(".")
     if not all(word.isidentifier() for word in (top, *below)):
@@ -136,7 +136,7 @@ def vocabulary_files(package: str) -> list[str]:
 
 
 def _places(package: str) -> list[str]:
-    """The folders of a top-level package: one, or more of a namespace package."""
+    """Return the folders of a top-level package: one, or more of a namespace package."""
     from importlib.util import find_spec
 
     try:

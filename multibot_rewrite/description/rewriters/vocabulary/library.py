@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The sections of vocabulary files, each parsed when it is first asked for."""
+"""The sections of definition files, each parsed when it is first asked for."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class Vocabulary:
                 line += chunk.count("\n")
 
     def find(self, type_: str, name: str) -> tuple[VocabularySection, ...]:
-        """The rewriters of that type under that name: more than one where ROS 1 and 2 differ.
+        """Return the sections of that type and name: more than one if ROS 1 and 2 differ.
 
         Sections of one flavour are one; a later one without ``ros:`` adds to every flavour.
         """
@@ -66,7 +66,7 @@ class Vocabulary:
         return own if own and self.ros else found
 
     def of_every_ros(self, type_: str, name: str) -> tuple[VocabularySection, ...]:
-        """The same of ROS 1 and ROS 2, whichever of them is known to load the plugins."""
+        """Return the sections of that type and name for ROS 1 and ROS 2."""
         return self._find((type_, name), ())
 
     def _find(self, key: tuple[str, str], within: tuple[str, ...]) -> tuple[VocabularySection, ...]:
@@ -103,7 +103,7 @@ class Vocabulary:
         return (name for of, name in self._raw if of == type_)
 
     def rows_elsewhere(self, type_: str, name: str) -> Iterator[SiteRow]:
-        """The rows that this release lacks, each with the words for the releases that have it."""
+        """Yield the rows that this release lacks, with the words for those that have it."""
         for file, line, chunk in self._raw.get((type_, name), ()):
             if "releases" in chunk:
                 settings, own = read_section(file, line, chunk.split("\n"))
@@ -113,14 +113,14 @@ class Vocabulary:
                         yield site._replace(releases=site.releases or words)
 
     def releases_elsewhere(self, type_: str, name: str) -> tuple[str, ...]:
-        """The releases with a section of that name, where this one has none."""
+        """Return the releases with a section of that name, if this one has none."""
         if self.find(type_, name):
             return ()
         words = [_released(chunk) for *_, chunk in self._raw.get((type_, name), ())]
         return tuple(it for it in RELEASES if any(has_release(word, it) for word in words))
 
     def values(self, name: str, of_ros_1: bool = False) -> Values | None:
-        """What the plugin or hardware of that name reads, in any release; None where nobody looked."""
+        """Return the values that the plugin or hardware reads, in any release, or None."""
         key = (name, of_ros_1)
         if key not in self._values:
             raws = [it for type_ in VALUED for it in self._raw.get((type_, name), ())]
@@ -144,7 +144,7 @@ class Vocabulary:
                 yield from self._value_rows(self._raw.get(("block", block), ()))
 
     def valued(self) -> Iterator[tuple[str, bool]]:
-        """The names that have values; with true for those of ROS 1."""
+        """Yield the names that have values; with true for those of ROS 1."""
         named = ((name, raws) for (type_, name), raws in self._raw.items() if type_ in VALUED)
         for name, raws in named:
             found = {_is_of_ros_1(it[2]) for it in raws if has_values(it[2])}
@@ -199,7 +199,7 @@ class Vocabulary:
 
 
 def _released(chunk: str) -> str:
-    """The release words of a section that is not read yet; wrong ones are found when it is."""
+    """Return the release words of a section that is not read yet; wrong ones are found when it is."""
     words = next((row.strip() for row in _set(chunk, "releases")), "")
     return words if words and is_release_words(words) else ""
 
@@ -209,14 +209,14 @@ def _is_of_ros_1(chunk: str) -> bool:
 
 
 def _set(chunk: str, name: str) -> list[str]:
-    """What a setting is set to in a section that is not read yet, row by row."""
+    """Return the rows of a setting in a section that is not read yet."""
     return [it.partition("\n")[0] for it in chunk.split(f"\n{name}:")[1:]]
 
 
 def merge(first: VocabularySection, second: VocabularySection) -> VocabularySection:
-    """What two sections say of one thing: a user's file may add to what is known.
+    """Return two sections of one thing as one: a user's file may add to what is known.
 
-    Raises VocabularyError where both say something of one path or set one setting differently.
+    Raises VocabularyError if both have one path or set one setting differently.
     """
     there = lists_by_key((site.path, site) for site in first.sites)
     # Of two sections with one block: its lines are not there twice.

@@ -57,7 +57,7 @@ class Values(NamedTuple):
 
 
 def is_typed(word: str) -> bool:
-    """Does this word of a row say something of the value, and not whose name it is?"""
+    """Return whether this word of a row is about the value's type, not about its kind of name."""
     option, given, _ = word.partition("=")
     return bool(given) and option in OPTIONS
 
@@ -68,7 +68,7 @@ def has_values(chunk: str) -> bool:
 
 
 def read_values(file: str, line: int, rows: Iterable[str]) -> Iterator[Value]:
-    """The values of a section whose first row is at ``line``; raises VocabularyError."""
+    """Yield the values of a section whose first row is at ``line``; raises VocabularyError."""
     for number, row in enumerate(rows, line):
         path, *words = row.partition(" # ")[0].split() or [""]
         if words and row[:1] != "#" and not path.endswith(":"):
@@ -78,7 +78,7 @@ def read_values(file: str, line: int, rows: Iterable[str]) -> Iterator[Value]:
 def values_of(
     names: tuple[str, ...], of_ros_1: bool, is_open: bool, found: Iterable[Value]
 ) -> Values:
-    """The values of a plugin, the first one of each name."""
+    """Return the values of a plugin, the first one of each name."""
     rows: dict[str, Value] = {}
     for it in found:
         rows.setdefault(it.name, it)
@@ -147,7 +147,7 @@ class WiredTopic(NamedTuple):
 
 
 def wired_topics(place: str, settings: Mapping[str, str]) -> Iterator[WiredTopic]:
-    """The words of ``publishes:``, ``subscribes:`` and ``serves:``; raises VocabularyError."""
+    """Yield the topics of ``publishes:``, ``subscribes:`` and ``serves:``; raises VocabularyError."""
     for role in ROLES:
         for word in settings.get(role, "").split():
             when, asked, topic = word.rpartition("?")

@@ -37,7 +37,7 @@ _SCOPES, _SCOPES_SINCE = 0b11, 6
 
 
 def version() -> int:
-    """The version of the kernel's interface, 0 where it has none."""
+    """Return the version of the kernel's Landlock interface, 0 without one."""
     found = SYSTEM.syscall(CREATE_RULESET, None, ctypes.c_size_t(0), _ASK_VERSION) if SYSTEM else 0
     return max(0, int(found))
 

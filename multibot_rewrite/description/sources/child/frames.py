@@ -47,12 +47,12 @@ class GarbageError(Exception):
 
 
 def framed(kind: bytes, data: bytes) -> bytes:
-    """A frame as it is sent."""
+    """Return a frame as it is sent."""
     return HEAD.pack(kind, len(data)) + data
 
 
 def received(read: Callable[[int], bytes], longest: Mapping[bytes, int]) -> tuple[bytes, bytes]:
-    """The next frame; ``read`` gives as many bytes as it is asked for. Raises GarbageError."""
+    """Return the next frame; ``read`` returns as many bytes as requested. Raises GarbageError."""
     kind, length = HEAD.unpack(read(HEAD.size))
     if length > longest.get(kind, -1):
         raise GarbageError
@@ -75,7 +75,7 @@ _ERRORS: dict[str, Callable[..., Exception]] = {
 
 
 def asking(read: Callable[[int], bytes], write: Callable[[bytes], object]) -> Ask:
-    """The function that asks; it raises what the parent says."""
+    """Return the function that asks the parent; it raises the parent's error."""
 
     def ask(what: str, name: str) -> bytes:
         write(framed(QUESTION, json.dumps([what, str(name)]).encode()))
@@ -109,7 +109,7 @@ def connect(xacro: Any, substitution: Any, ask: Ask) -> None:
 
 
 def _known(look_up: Callable[..., str], ask: Ask) -> Callable[..., str]:
-    """The value that the parent has; else what ``look_up`` says of a variable that is not set."""
+    """Return a function for the parent's value of a variable, or for ``look_up`` if it is not set."""
 
     def known(name: str, *more: str, **named: str) -> str:
         found = json.loads(ask(ENVIRONMENT, name))

@@ -76,7 +76,7 @@ class PiecedText(str):
 
 
 def pieces_of(text: str) -> tuple[Piece, ...]:
-    """The pieces of a text, which may know of none."""
+    """Return the pieces of a text, one without a place if none are known."""
     if isinstance(text, PiecedText):
         return text.pieces
     return (Piece(len(text), None),) if text else ()
@@ -89,7 +89,7 @@ def joined(texts: Sequence[str]) -> PiecedText:
 
 
 def placed(text: str, place: Spot) -> PiecedText:
-    """A text that stands as it is at a place."""
+    """Return a text that is literally at a place."""
     return PiecedText(text, [Piece(len(text), place)] if text else ())
 
 
@@ -103,7 +103,7 @@ def _cut(pieces: Iterable[Piece], start: int, end: int) -> Iterator[Piece]:
 
 
 def _moved(place: Spot | None, by: int) -> Spot | None:
-    """The place of what follows so many characters of a piece; an expression has one place."""
+    """Return the place after so many characters of a piece; an expression has one place."""
     return place._replace(at=place.at + by) if place and not place.length else place
 
 
@@ -196,8 +196,8 @@ def _as_text(value: object, part: str) -> str:
 
 
 def _known(value: Any, part: str) -> Any:
-    """A result of the expression that is ``part`` of a text: what has no place has that of the whole,
-    or of the word in quotes that it is."""
+    """Return a result of the expression ``part`` with places: a text without one has that of the whole,
+    or of the quoted word that it is."""
     if not isinstance(value, str):
         return value
     pieces, at = [], 0
@@ -210,7 +210,7 @@ def _known(value: Any, part: str) -> Any:
 
 
 def _quoted(text: str, part: str) -> Spot | None:
-    """Where a text stands in quotes, if that is in one place."""
+    """Where a text is in quotes, if that is in one place."""
     found = [
         part.find(f"{quote}{text}{quote}")
         for quote in "'\""
@@ -223,14 +223,14 @@ def _quoted(text: str, part: str) -> Spot | None:
 
 
 def _of(part: str) -> Spot | None:
-    """The place of an expression that stands as it is somewhere."""
+    """Return the place of an expression that is literally somewhere, or None."""
     pieces = pieces_of(part)
     whole = len(pieces) == 1 and pieces[0].place
     return whole._replace(length=len(part)) if whole and not whole.length else None
 
 
 def _defaults(parse: Callable[[str], Any]) -> Callable[[str], Any]:
-    """xacro's reading of a macro's parameters, whose defaults know where they stand."""
+    """xacro's reading of a macro's parameters, whose defaults know where they are written."""
 
     def parsed(text: str) -> Any:
         param, value, rest = parse(text)
@@ -244,8 +244,8 @@ def _defaults(parse: Callable[[str], Any]) -> Callable[[str], Any]:
 
 
 def numbers(document: Any, words: list[str]) -> array[int]:
-    """The pieces of all values of an expanded document, eight numbers each: element, attribute, length,
-    file, element, attribute, offset, length of an expression; attributes by their number in
+    """Return the pieces of all values of an expanded document, eight numbers each: element, attribute,
+    length, file, element, attribute, offset, length of an expression; attributes by their number in
     ``words``."""
     known: dict[str, int] = {}
 

@@ -52,8 +52,8 @@ def missing() -> str:
 def expand(
     path: str, arguments: Mapping[str, str], traced: bool, in_pieces: bool, ask: Ask
 ) -> Expanded:
-    """The text of a xacro file, or in the report why there is none; ``traced`` with the origin of each
-    element, ``in_pieces`` also with that of each piece of a value."""
+    """Return the text of a xacro file, or the reason why there is none. With ``traced`` it has the
+    origin of each element, with ``in_pieces`` also that of each piece of a value."""
     import xacro
     from xacro import substitution_args
 
@@ -84,7 +84,7 @@ def expand(
 
 
 def _failure(error: Exception, file: str, marks: Marks) -> dict[str, object]:
-    """What went wrong: words, the file, and the place as far as it is known."""
+    """Return the reason of a failure, the file, and the place as far as it is known."""
     position = (error.lineno, error.offset + 1) if isinstance(error, ExpatError) else None
     place = _place(error)
     said = {"reason": _reason(error)[:MOST_WORDS], "file": file, "position": position}
@@ -103,7 +103,7 @@ def _place(error: BaseException) -> tuple[int, int, str] | None:
 
 
 def _frames(error: BaseException) -> Iterator[FrameType]:
-    """The frames an error passed, the outermost first, and those of what caused it behind them."""
+    """Yield the frames an error passed, the outermost first, then those of its cause."""
     step = error.__traceback__
     while step is not None:
         yield step.tb_frame
@@ -114,7 +114,7 @@ def _frames(error: BaseException) -> Iterator[FrameType]:
 
 
 def _attribute(element: Any, frame: FrameType) -> str:
-    """The attribute whose value was evaluated; empty where that is not known."""
+    """Return the attribute whose value was evaluated; empty if that is not known."""
     name, value = frame.f_locals.get("name"), frame.f_locals.get("value")
     both = isinstance(name, str) and isinstance(value, str)
     return str(name) if both and element.getAttribute(name) == value else ""
@@ -155,7 +155,7 @@ class Marks:
         self.current = self.failed = NOWHERE
 
     def handle(self, operation: int, key: str, data: Mark, source: Any, copy: Any) -> None:
-        """Called by minidom for every copy of an element."""
+        """Mark the copy of an element; minidom calls this for every copy."""
         if operation == UserDataHandler.NODE_CLONED and copy is not None:
             copy.setUserData(key, data._replace(call=self.current), self)
 
@@ -169,13 +169,13 @@ class Marks:
             note(document, number)
 
     def number(self, file: str, elements: int = 0) -> int:
-        """The number of a file that was just read."""
+        """Return the number of a file that was just read."""
         if (file, elements) not in self.files[-1:]:
             self.files.append((file, elements))
         return len(self.files) - 1
 
     def call(self, macro: str, at: Mark) -> int:
-        """The number of a new call, inside the current one."""
+        """Return the number of a new call, inside the current one."""
         if macro not in self.macros:
             self.macros.append(macro)
         self.calls.extend((self.current, self.macros.index(macro), at.file, at.element))

@@ -111,8 +111,8 @@ def enclose(files: bool = False) -> bool:
 
 @cache
 def filter_program(machine: Machine, files: bool = False) -> bytes:
-    """The filter as the kernel reads it: eight bytes an instruction. With ``files`` libraries can be
-    loaded as well: they may be those of Python's modules."""
+    """Return the filter as the kernel reads it: eight bytes an instruction. With ``files`` libraries
+    can be loaded as well: they may be those of Python's modules."""
     steps = [
         (_LOAD, 0, 0, _ARCHITECTURE),
         (_EQUAL, 1, 0, machine.audit),

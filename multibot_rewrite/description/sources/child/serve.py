@@ -104,7 +104,7 @@ def _forked(control: socket.socket, descriptor: int) -> int:
 
 
 def _ended(pid: int) -> int:
-    """The signal that ended a child, or 0. It closed its socket: when it ended, or to look so."""
+    """Return the signal that ended a child, or 0. A child may close its socket before it ends."""
     for _ in range(MOST_LOOKS):
         ended, status = os.waitpid(pid, os.WNOHANG)
         if ended:

@@ -29,5 +29,5 @@ def undumpable() -> bool:
 
 
 def die_with_parent() -> bool:
-    """The kernel kills this process when its parent ends."""
+    """Let the kernel end this process with its parent; returns whether it does."""
     return control(_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)

@@ -234,9 +234,7 @@ def declared(entities: Iterable[Any]) -> list[Declared]:
 
 
 def _declare(
-    entities: Iterable[Any],
-    above: tuple[IncludeLaunchDescription, ...],
-    found: dict[str, Declared],
+    entities: Iterable[Any], above: tuple[IncludeLaunchDescription, ...], found: dict[str, Declared]
 ) -> None:
     for it in entities if len(above) < _DEEPEST else ():
         if isinstance(it, ResetLaunchConfigurations):

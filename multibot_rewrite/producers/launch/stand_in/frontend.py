@@ -97,10 +97,6 @@ def _parts(value: Any) -> Any:
     return parse_substitution(value if isinstance(value, str) else str(value))
 
 
-def _truth(value: Any) -> bool:
-    return value if isinstance(value, bool) else value.lower() in ("true", "1", "on", "yes")
-
-
 def _words(line: str) -> list[Any]:
     """A command line: only its own blanks separate, not those of values (ExecuteProcess)."""
     found: list[list[Any]] = [[]]
@@ -172,6 +168,7 @@ def _component(entity: Entity) -> Any:
     return made
 
 
+_TRUE = ("true", "1", "on", "yes")
 _MODULES = {
     "": "launch.actions",
     "ros": "launch_ros.actions",
@@ -179,7 +176,7 @@ _MODULES = {
     "loops": f"{__package__}.processes",
 }
 _READERS: Mapping[str, Reader] = {
-    **{"": _parts, "text": str, "truth": _truth, "words": _words},
+    **{"": _parts, "text": str, "truth": lambda it: f"{it}".lower() in _TRUE, "words": _words},
     "end": lambda _: [import_module("launch.actions").Shutdown()],
 }
 _named = _pairs("name", "value")

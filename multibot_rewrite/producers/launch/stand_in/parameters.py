@@ -81,8 +81,12 @@ class ParameterFile:
         self.__param_file = normalize_to_list_of_substitutions(text)
         self.allow_substs = allow_substs
 
+    def path(self, context: LaunchContext) -> str:
+        """Return the path, before its substitutions are replaced."""
+        return perform_substitutions(context, self.__param_file)
+
     def evaluate(self, context: LaunchContext) -> Path:
-        path = Path(perform_substitutions(context, self.__param_file))
+        path = Path(self.path(context))
         if not typed_truth(text_of(context, str_of(self.allow_substs))):
             return path
         with tempfile.NamedTemporaryFile("w", prefix="launch_params_", delete=False) as out:

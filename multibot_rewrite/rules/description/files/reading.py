@@ -121,7 +121,7 @@ _ROOT = lazy_compile(rb"<robot\b" + ATTRIBUTES + rb">")
 
 @rule("MB140", "xml-declaration", WARNING)
 def xml_declaration(subject: Subject) -> Iterator[Problem]:
-    """With a fix: a file of another encoding that was read at all is plain ASCII."""
+    """Yield XML declarations of another version or encoding; a file that was read is plain ASCII."""
     source = subject.document.source
     if subject.origins or b"<?xml" not in source[:8]:
         return

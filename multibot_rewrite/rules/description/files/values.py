@@ -127,7 +127,9 @@ def sees_nothing(subject: Subject) -> Iterator[Problem]:
         for inner in sensor.iterchildren("camera") if type_ in CAMERAS else ():
             yield from _none_of(inner, _ABOVE_0["camera"])
         for inner in sensor.iterchildren("lidar", "ray") if type_ in LIDARS else ():
-            yield from _none_of(inner, _ABOVE_0["lidar"])
+            # One that a camera draws (gz-sensors GpuLidarSensor.cc, SetNearClipPlane).
+            drawn = ("range/min",) * type_.startswith("gpu_")
+            yield from _none_of(inner, (*_ABOVE_0["lidar"], *drawn))
             near, far = number_at(inner, "range/min"), number_at(inner, "range/max")
             if near is not None and far is not None and near >= BLIND and far >= FAR:
                 hint = "divide by 1000: are these millimetres?"
@@ -147,10 +149,13 @@ def unusable_numbers(subject: Subject) -> Iterator[Problem]:
     for plugin in every("plugin"):
         for least in plugin.iterchildren("*"):
             tag = str(least.tag)
-            low = number(text_of(least)) if tag.startswith("min_") else None
-            high = number_at(plugin, f"max_{tag.removeprefix('min_')}") if low is not None else None
-            if low is not None and high is not None and low > high:
-                message = f"{tag} is {low:g}, above max_{tag.removeprefix('min_')} ({high:g})"
+            most = "_".join("max" if it == "min" else it for it in tag.split("_"))
+            low = number(text_of(least)) if most != tag else None
+            high = number_at(plugin, most) if low is not None else None
+            # Of a command or an integral -1 is no limit (gz-math PID.cc).
+            free = high == -1 and most.endswith("max")
+            if low is not None and high is not None and low > high and not free:
+                message = f"{tag} is {low:g}, above {most} ({high:g})"
                 yield Problem(least, message, "", "swap the two, or correct one", level=WARNING)
 
 

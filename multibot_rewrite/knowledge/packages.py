@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Packages of known nodes: the versions that each release has, and of what day the source is that was
+read of them, as ``packages.schema`` has it, which ``python -m tools.interfaces.versions`` makes."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from functools import cache, lru_cache
+from typing import NamedTuple
+
+from multibot_rewrite.base.bounded import read_text
+from multibot_rewrite.base.releases import CAME, NEWEST_LTS, RELEASES
+
+COMMENT, NONE = "#", "-"
+_FILE = os.path.join(os.path.dirname(__file__), "packages.schema")
+
+
+class Versions(NamedTuple):
+    """The version of a package that a release came with, and the one that it has now; the commit that
+    was read of it, its version and its day. What is not known is empty."""
+
+    first: str = ""
+    now: str = ""
+    commit: str = ""
+    version: str = ""
+    date: str = ""
+
+
+class Package(NamedTuple):
+    """A package: the repository that has it, and its versions by release."""
+
+    repository: str
+    versions: Mapping[str, Versions]
+
+
+@cache
+def packages() -> Mapping[str, Package]:
+    """Every package of the table."""
+    found: dict[str, Package] = {}
+    rows: dict[str, Versions] = {}
+    for line in read_text(_FILE).splitlines():
+        if line.startswith("["):
+            repository, _, names = line[1:].partition("] ")
+            rows = {}
+            found |= dict.fromkeys(names.split(), Package(repository, rows))
+        elif line and not line.startswith(COMMENT):
+            release, *columns = line.split()
+            rows[release] = Versions(*("" if it == NONE else it for it in columns))
+    return found
+
+
+def number(version: str) -> tuple[int, ...]:
+    """A version as it is compared."""
+    return tuple(int(it) for it in version.split(".") if it.isdecimal())
+
+
+@lru_cache(maxsize=1024)  # so many facts, so few words
+def by_version(words: str) -> str:
+    """Release words in which ``PACKAGE VERSION+`` stands for the releases that have this version, on
+    condition of it where they came with an earlier one."""
+    return ", ".join(it for term in words.split(",") for it in _terms(term.strip()))
+
+
+def _terms(term: str) -> Iterator[str]:
+    name, _, since = term.removesuffix("+").partition(" ")
+    if name in RELEASES or not since or name not in packages():
+        yield term
+        return
+    for release, it in versions_of(name).items():
+        if it.now and number(it.now) >= number(since):
+            always = release not in CAME or (it.first and number(it.first) >= number(since))
+            yield release if always else f"{release} {since}+"
+
+
+def older(name: str, release: str) -> str:
+    """Say that what was read of a package is from before this release and of an earlier version; empty
+    where that is not so or nothing of it is known."""
+    it = versions_of(name).get(release, Versions())
+    came = CAME.get(release, CAME[NEWEST_LTS])
+    if not it.date or it.date >= came or number(it.now)[:2] <= number(it.version)[:2]:
+        return ""
+    return f"{name} {it.version} of {it.date} was read, {release} has {it.now}"
+
+
+def versions_of(name: str) -> Mapping[str, Versions]:
+    """The versions of a package by release; none of one that the table lacks."""
+    return packages()[name].versions if name in packages() else {}

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A launch file that starts several robots, or puts more into a simulator -> what it starts for one."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+
+from multibot_rewrite.base.grouping import lists_by_key
+from multibot_rewrite.producers.launch.programs import program_of, programs
+from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
+from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
+
+# How the spawner of a robot gets its description, which somebody publishes.
+_PUBLISHED = frozenset(("-topic", "-param"))
+_NUMBER, _WORDS = re.compile(r"[0-9]+"), re.compile(r"[^\s/:=]+")
+
+
+def of_first_robot(graph: LaunchGraph) -> LaunchGraph:
+    """Return what launch files start for the first of several robots, without its name; of one robot
+    the same."""
+    robots = _robots(graph.nodes)
+    if not robots:
+        return graph
+    first, others = robots[0], frozenset(robots[1:])
+    kept = [at for at, it in enumerate(graph.nodes) if others.isdisjoint(_names(it))]
+    places = {old: new for new, old in enumerate(kept)}
+    nodes = []
+    for it in (graph.nodes[at] for at in kept):
+        after = places.get(it.process.after, -1)
+        own = unnamed(it, first)
+        nodes.append(own._replace(process=own.process._replace(after=after)))
+    return graph._replace(nodes=tuple(nodes), robots=robots)
+
+
+def with_beside(graph: LaunchGraph) -> LaunchGraph:
+    """Return what launch files start, in which what puts a file beside the robot into its simulator is
+    marked: the robot is the published description, else the first URDF, else the first file."""
+    spawning = [it for it in graph.nodes if program_of(it) in programs().spawners]
+    filed = [it for it in spawning if _PUBLISHED.isdisjoint(it.arguments)]
+    filed.sort(key=lambda it: not any(word.endswith(".urdf") for word in it.arguments))
+    beside = filed if len(filed) < len(spawning) else filed[1:]
+    nodes = (
+        it._replace(process=it.process._replace(is_beside=True)) if it in beside else it
+        for it in graph.nodes
+    )
+    return graph._replace(nodes=tuple(nodes)) if beside else graph
+
+
+def _robots(nodes: Iterable[LaunchedNode]) -> tuple[str, ...]:
+    """Return the namespaces of state publishers that differ by a number alone; none for fewer than
+    two: ``left`` and ``right`` are parts of one robot."""
+    homes = (it.namespace.split("/")[1] for it in nodes if it.package == STATE_PUBLISHER)
+    alike = lists_by_key((_NUMBER.sub("", it), it) for it in dict.fromkeys(homes) if it)
+    return next((tuple(it) for it in alike.values() if len(it) > 1), ())
+
+
+def _names(it: LaunchedNode) -> Iterator[str]:
+    """Yield what may be the name of its robot: its first namespace, its own name and words."""
+    yield it.namespace.split("/")[1]
+    yield it.name
+    for word in it.arguments:
+        yield from _WORDS.findall(word)
+
+
+def without(text: str, robot: str) -> str:
+    """Return a text in which names of a robot are as those of any: ``/scan`` of ``/robot1/scan``."""
+    return text.replace(f"/{robot}/", "/")
+
+
+def unnamed(it: LaunchedNode, robot: str) -> LaunchedNode:
+    """Return what is started without the name of its robot."""
+
+    def home(text: str) -> str:
+        return without(f"{text}/", robot).rstrip("/")
+
+    return it._replace(
+        namespace=home(it.namespace) or "/",
+        container=home(it.container),
+        remappings=tuple((without(old, robot), without(new, robot)) for old, new in it.remappings),
+        arguments=tuple(without(word, robot) for word in it.arguments),
+        parameters=tuple(own._replace(text=without(own.text, robot)) for own in it.parameters),
+    )
