@@ -26,9 +26,6 @@ from multibot_rewrite.description.rewriters.vocabulary import TYPES, load_vocabu
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.processes import start_server
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.fleet.checks.closed_plan import closed_plan
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.lint.catalogue import rules
 from multibot_rewrite.lint.check import lint_data
 from multibot_rewrite.lint.config.configured import (
@@ -91,9 +88,16 @@ def _configured(options: argparse.Namespace, path: str) -> Configured:
 
 def _of_fleet(path: str, distro: str) -> Sequence[Finding]:
     """Return what ``multibot plan`` finds in a fleet file."""
+    from multibot_rewrite.fleet.checks.closed_plan import (
+        closed_plan,  # a description needs none of it
+    )
+    from multibot_rewrite.fleet.file.fleet_file import read_fleet
+    from multibot_rewrite.fleet.fleet_plan import plan_fleet
+
     fleet = closed_plan(plan_fleet(read_fleet(path, distro, os.environ)))
-    found = (*fleet.table.problems, *fleet.gaps)
-    return [it if it.file else it._replace(file=path) for it in found]
+    return [
+        it if it.file else it._replace(file=path) for it in (*fleet.table.problems, *fleet.gaps)
+    ]
 
 
 def fixed(options: argparse.Namespace, path: str, only: Finding | None) -> bytes:

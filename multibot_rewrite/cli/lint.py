@@ -62,8 +62,6 @@ _PLAIN = ("urdf", "baseline", "fail_on", "trust")
 def run(options: argparse.Namespace) -> int:
     """Lint or fix; returns the exit code."""
     if options.lsp:
-        if options.words:
-            raise UsageError(f"--lsp serves what an editor opens; leave out {options.words[0]}")
         from multibot_rewrite.cli import lsp  # pygls is an extra
 
         return lsp.run(options)

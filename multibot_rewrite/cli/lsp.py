@@ -16,16 +16,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from difflib import SequenceMatcher
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
-from multiprocessing.forkserver import ensure_running
 from multiprocessing.process import BaseProcess
 from typing import Any
-
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.base.model import MultibotError, Unusable
-from multibot_rewrite.cli import answers
-from multibot_rewrite.cli.process import DONE
-from multibot_rewrite.refactor.symbols import Place
-from multibot_rewrite.version import __version__
 
 try:
     from lsprotocol import types as lsp
@@ -33,19 +25,23 @@ try:
     from pygls.uris import from_fs_path
     from pygls.workspace import TextDocument
 except ImportError as error:
+    from multibot_rewrite.base.model import Unusable
+
     hint = "pip install 'multibot_rewrite[lsp]'"
     raise Unusable(f"an editor cannot be served: {error}; {hint}") from None
 
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.model import MultibotError
+from multibot_rewrite.cli import answers
+from multibot_rewrite.cli.process import DONE
+from multibot_rewrite.refactor.symbols import Place
+from multibot_rewrite.version import __version__
+
 # Seconds: without a change before a file is linted, and after which an answer is given up.
-PAUSE, MOST = 0.05, 90.0
+PAUSE, MOST = 0.05, 60.0
 _FIX, _FIX_ALL = lsp.CodeActionKind.QuickFix, lsp.CodeActionKind.SourceFixAll
 _WARM = "multibot_rewrite.cli.warm"
 _SEVERITIES = {ERROR: lsp.DiagnosticSeverity.Error, WARNING: lsp.DiagnosticSeverity.Warning}
-_CHANGES = (
-    lsp.TEXT_DOCUMENT_DID_OPEN,
-    lsp.TEXT_DOCUMENT_DID_CHANGE,
-    lsp.TEXT_DOCUMENT_DID_CLOSE,
-)
 # A name, a tag with its bracket or an attribute with its value.
 _MARKED = re.compile(r"</?[\w:.-]+|[\w:.-]+\s*=\s*(?:\"[^\"]*\"?|'[^']*'?)|[^\s<>]+")
 _WORD = re.compile(r"[^\s\"'<>=,(){}\[\]]+")
@@ -54,11 +50,7 @@ _WORD = re.compile(r"[^\s\"'<>=,(){}\[\]]+")
 def run(options: argparse.Namespace) -> int:
     """Serve an editor until it says exit; returns the exit code."""
     gc.enable()
-    server, here = Server(options), os.getcwd()
-    # Python looks for its own modules in the folder in which the process is started.
-    os.chdir(os.sep)
-    ensure_running()
-    os.chdir(here)
+    server = Server(options)
     for name, (function, about) in _FEATURES.items():
         server.feature(name, about)(function)
     server.start_io()
@@ -183,6 +175,18 @@ def _edits(old: Sequence[str], new: bytes) -> Iterator[lsp.TextEdit]:
             yield lsp.TextEdit(where, "".join(lines[first:last]))
 
 
+def _initialized(ls: Server, _: lsp.InitializedParams) -> None:
+    ls.spare()
+
+
+def _changed(ls: Server, params: Any) -> None:
+    ls.diagnose(params.text_document.uri)
+
+
+def _saved(ls: Server, _: lsp.DidSaveTextDocumentParams) -> None:
+    ls.diagnose(*ls.workspace.text_documents)  # one may include it
+
+
 def _cursor(ls: Server, params: Any) -> tuple[str, int, int]:
     """Return the uri of a file, and line and column, from 0, of the cursor in it."""
     document = ls.workspace.get_text_document(params.text_document.uri)
@@ -240,10 +244,11 @@ async def _rename(ls: Server, params: lsp.RenameParams) -> lsp.WorkspaceEdit | N
 
 
 _FEATURES: Mapping[str, tuple[Callable[..., Any], Any]] = {
-    lsp.INITIALIZED: (lambda ls, _: ls.spare(), None),
-    **dict.fromkeys(_CHANGES, (lambda ls, it: ls.diagnose(it.text_document.uri), None)),
-    # Others may include what is saved.
-    lsp.TEXT_DOCUMENT_DID_SAVE: (lambda ls, _: ls.diagnose(*ls.workspace.text_documents), None),
+    lsp.INITIALIZED: (_initialized, None),
+    lsp.TEXT_DOCUMENT_DID_OPEN: (_changed, None),
+    lsp.TEXT_DOCUMENT_DID_CHANGE: (_changed, None),
+    lsp.TEXT_DOCUMENT_DID_SAVE: (_saved, None),
+    lsp.TEXT_DOCUMENT_DID_CLOSE: (_changed, None),
     lsp.TEXT_DOCUMENT_HOVER: (_hover, None),
     lsp.TEXT_DOCUMENT_CODE_ACTION: (_actions, lsp.CodeActionOptions([_FIX, _FIX_ALL])),
     lsp.TEXT_DOCUMENT_DEFINITION: (_definition, None),
