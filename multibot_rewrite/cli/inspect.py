@@ -105,7 +105,7 @@ def show(options: argparse.Namespace, name: str | None) -> int:
     if options.form == JSON:
         deliver(options, json_bytes({"sections": [as_json(it) for it in found]}))
     else:
-        deliver_report(options, details(found))
+        deliver_report(options, _details(found))
     return DONE
 
 
@@ -129,8 +129,8 @@ def _list(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
     yield Grid(("type", "name", "ROS", "also called", "rows", "source"), rows)
 
 
-def details(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
-    """Return everything known, a block of lines a section."""
+def _details(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
+    """Everything known, a block of lines a section."""
     for number, section in enumerate(sections):
         yield from [""] * (number > 0)
         yield f"{section.name}  {section.file}:{section.line}"
