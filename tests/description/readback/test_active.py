@@ -240,7 +240,8 @@ TRIGGER = (
     'filename="gz-sim-triggered-publisher-system"><input type="gz.msgs.Contacts" topic="{0}"/>'
     '<output type="gz.msgs.Empty" topic="stop"/><service name="/world/w/set_pose" '
     'reqType="gz.msgs.Pose" repType="gz.msgs.Boolean"/></plugin></gazebo>'
-    '<gazebo reference="a"><sensor name="s" type="contact"><topic>{1}</topic></sensor></gazebo>'
+    '<gazebo reference="a"><sensor name="s" type="contact"><contact><topic>{1}</topic></contact>'
+    "</sensor></gazebo>"
 )
 
 
