@@ -764,7 +764,7 @@ def test_one_node_goes_to_standard_output(shot: Path, capsys: pytest.CaptureFixt
         "      ~/image: {type: sensor_msgs/msg/Image, transport: true}\n\nstacks:\n  learned:\n"
         "    about: Learned from a running graph\n    nodes:\n      - eye\n"
     ) in out
-    assert err == "multibot: 1 node learned as stack learned (ROS 2 lyrical)\n"
+    assert err == "multibot: 1 node learned as node set learned (ROS 2 lyrical)\n"
 
 
 def test_an_incomplete_view_is_written_and_reported(
