@@ -655,8 +655,8 @@ NAV = "/robot1/controller_server"
         ),
         (
             (DRIVE, SERVER, f"/robot1/teleop publishes /robot1/cmd_vel {TWIST}"),
-            ["MG312 warning /robot1/teleop: publishes /robot1/cmd_vel beside"
-             f" /robot1/controller_server, and /robot1/driver obeys both; {CHOOSE}"],
+            ["MG312 warning /robot1/teleop: publishes /robot1/cmd_vel, and so does"
+             f" /robot1/controller_server; /robot1/driver obeys both; {CHOOSE}"],
         ),
         # A goal is no motion.
         (

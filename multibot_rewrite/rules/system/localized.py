@@ -39,7 +39,8 @@ class _Body(NamedTuple):
 def map_not_joined(seen: Index) -> Iterator[Finding]:
     """Where the tree is in pieces below the odometry as well, that is the finding."""
     for tree in seen.trees:
-        localizers = [it for it in (*tree.senders, *tree.listeners) if _starts_at(seen, it)]
+        silent = (it for it in tree.listeners if switch(TF_SWITCHES, it))
+        localizers = [it for it in (*tree.senders, *silent) if _starts_at(seen, it)]
         if not localizers or not tree.edges or collide(seen, tree):
             continue
         for node in unique(localizers):
