@@ -108,10 +108,13 @@ def every_release() -> NodeLibrary:
     return library
 
 
-def older_node(name: str, release: str) -> str:
-    """Say that what was read of a known node is older than a release, as ``packages.older``."""
+def older_node(name: str, release: str, type_: str = "") -> str:
+    """Say that what was read of a known node is older than a release, as ``packages.older``; with a type
+    empty, too, if that is not read of it: a bridge has the types of its file."""
     found = every_release().nodes.get(name) if name and release else None
-    return older(found.package, release) if found else ""
+    if found is None or (type_ and all(it.type != type_ for it in found.endpoints)):
+        return ""
+    return older(found.package, release)
 
 
 def in_release(library: NodeLibrary, release: str) -> NodeLibrary:

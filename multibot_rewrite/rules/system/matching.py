@@ -89,8 +89,8 @@ def _differs(seen: Index, ends: Ends, own: Sequence[End], others: Sequence[End])
 
 def _stale(seen: Index, ends: Iterable[End]) -> str:
     """Say that the type of one of the ends is known of an earlier version of its node only."""
-    known = (seen.node[it.node].known for it in ends if it.node in seen.node)
-    return next(filter(None, (older_node(it, seen.system.release) for it in known)), "")
+    known = ((seen.node[it.node].known, it.type) for it in ends if it.node in seen.node)
+    return next(filter(None, (older_node(it, seen.system.release, own) for it, own in known)), "")
 
 
 def to_stamp(seen: Index, ends: Iterable[End]) -> Cause:
