@@ -63,7 +63,7 @@ def nav2(layout: str = "L2", *robots: str) -> System:
     with TemporaryDirectory() as folder:
         file = f"{folder}/plan.yaml"
         names = robots or ("robot1", "robot2")
-        given = ["--stack", "nav2", "--layout", layout, "-o", file]
+        given = ["--stack", "nav2", "--layout", layout, "--distro", "lyrical", "-o", file]
         assert multibot.main(["plan", str(ROVER), *names, *given]) == 0
         return from_yaml(Path(file).read_bytes(), file)
 
