@@ -50,8 +50,8 @@ class Process(NamedTuple):
     With ``respawn`` it is started again when it ends, after ``respawn_delay`` seconds. It starts
     ``delay`` seconds after the launch, or after the ``event`` (one of ``EVENTS``) of the process that
     is number ``after`` in its launch, -1 for none. ``is_include`` is true for a launch file of a
-    package, with launch arguments as words; ``is_beside`` for what puts something else than the robot
-    into its simulator. ``switches`` are the launch arguments that turn it off with another value, each
+    package, with launch arguments as words; ``is_extra`` for what spawns something else than the robot
+    in its simulator. ``switches`` are the launch arguments that turn it off with another value, each
     with the one with which it starts.
     """
 
@@ -64,7 +64,7 @@ class Process(NamedTuple):
     event: str = ""
     after: int = -1
     is_include: bool = False
-    is_beside: bool = False
+    is_extra: bool = False
     switches: tuple[tuple[str, str], ...] = ()
 
 

@@ -552,10 +552,10 @@ def of_all(
     found: list[Start] = []
     for robot in plan.robots:
         for it in (one for one in plan.evidence_of(robot).processes if one.once):
-            made, beside = _process(it.node, robot.spec.name, "", None), it.node.process.is_beside
+            made, extra = _process(it.node, robot.spec.name, "", None), it.node.process.is_extra
             made = made._replace(number=-1, process=made.process._replace(after=-1))
-            made = made._replace(condition=SIMULATOR if beside else "")
-            found += [] if made in found or (beside and not simulators) else [made]
+            made = made._replace(condition=SIMULATOR if extra else "")
+            found += [] if made in found or (extra and not simulators) else [made]
     shared = (*_shared(plan, names, known, values, files), *found)
     if BRIDGE_FILE not in files:
         return shared

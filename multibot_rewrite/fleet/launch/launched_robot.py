@@ -20,7 +20,7 @@ from multibot_rewrite.producers.launch.child import launch_graph
 from multibot_rewrite.producers.launch.known_node import with_sources
 from multibot_rewrite.producers.launch.of_robot import Launched, as_launched, with_launched
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder, joined
-from multibot_rewrite.producers.launch.several_robots import of_first_robot, with_beside
+from multibot_rewrite.producers.launch.several_robots import of_first_robot, with_extras
 from multibot_rewrite.spelling.records import Run
 
 NOT_SPAWNED = "no spawner of the launch files loads it"
@@ -60,7 +60,7 @@ def known_here(
 def launch_of(orders: Sequence[LaunchOrder], robot: str) -> LaunchGraph:
     """All that these launch files start, with the robot in the place of ``{robot}``; of several robots
     the first one. Raises as ``launched_robot``."""
-    return with_beside(of_first_robot(joined([*map(_read, _own(orders, robot))])))
+    return with_extras(of_first_robot(joined([*map(_read, _own(orders, robot))])))
 
 
 def _read(order: LaunchOrder) -> LaunchGraph:

@@ -241,7 +241,7 @@ def _is_built(it: LaunchedNode) -> bool:
 
 
 def _is_spawner_of_robot(it: LaunchedNode) -> bool:
-    return program_of(it) in programs().spawners and not it.process.is_beside
+    return program_of(it) in programs().spawners and not it.process.is_extra
 
 
 def _stands(include: LaunchedNode, stack: Iterable[NodeFacts]) -> bool:

@@ -36,7 +36,7 @@ def programs() -> Programs:
     return Programs(**{**data, **sets})
 
 
-_BESIDE = "it spawns something in addition to the robots into their simulator"
+_EXTRA = "it spawns something in addition to the robots, in the one simulator"
 _LOOKS = "it only shows data or forwards an operator's commands"
 
 
@@ -45,8 +45,8 @@ def once_for_all(node: LaunchedNode) -> str:
     has of the components in it."""
     if node.container:
         return ""
-    if node.process.is_beside:
-        return _BESIDE
+    if node.process.is_extra:
+        return _EXTRA
     program = node.executable.rpartition("/")[2]
     command = f"{node.package}/{program}"
     told = (command, f"{command} {node.arguments[0]}" if node.arguments else command)

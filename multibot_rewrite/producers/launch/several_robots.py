@@ -29,18 +29,18 @@ def of_first_robot(graph: LaunchGraph) -> LaunchGraph:
     return graph._replace(nodes=tuple(nodes), robots=robots)
 
 
-def with_beside(graph: LaunchGraph) -> LaunchGraph:
-    """Return what launch files start, in which what puts a file beside the robot into its simulator is
+def with_extras(graph: LaunchGraph) -> LaunchGraph:
+    """Return what launch files start, in which what spawns a file in addition to the robot is
     marked: the robot is the published description, else the first URDF, else the first file."""
     spawning = [it for it in graph.nodes if program_of(it) in programs().spawners]
     filed = [it for it in spawning if _PUBLISHED.isdisjoint(it.arguments)]
     filed.sort(key=lambda it: not any(word.endswith(".urdf") for word in it.arguments))
-    beside = filed if len(filed) < len(spawning) else filed[1:]
+    extra = filed if len(filed) < len(spawning) else filed[1:]
     nodes = (
-        it._replace(process=it.process._replace(is_beside=True)) if it in beside else it
+        it._replace(process=it.process._replace(is_extra=True)) if it in extra else it
         for it in graph.nodes
     )
-    return graph._replace(nodes=tuple(nodes)) if beside else graph
+    return graph._replace(nodes=tuple(nodes)) if extra else graph
 
 
 def _robots(nodes: Iterable[LaunchedNode]) -> tuple[str, ...]:
