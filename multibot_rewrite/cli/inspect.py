@@ -105,7 +105,7 @@ def show(options: argparse.Namespace, name: str | None) -> int:
     if options.form == JSON:
         deliver(options, json_bytes({"sections": [as_json(it) for it in found]}))
     else:
-        deliver_report(options, _details(found))
+        deliver_report(options, details(found))
     return DONE
 
 
@@ -129,7 +129,7 @@ def _list(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
     yield Grid(("type", "name", "ROS", "also called", "rows", "source"), rows)
 
 
-def _details(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
+def details(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
     """Everything known, a block of lines a section."""
     for number, section in enumerate(sections):
         yield from [""] * (number > 0)
