@@ -708,8 +708,12 @@ RADIUS_IS = (
             "MB124 warning ccww</turningDirection>: turningDirection 'ccww' is not a word that"
             " gz-sim-multicopter-motor-model-system knows; did you mean 'ccw'?",
         ),
-        # A word that is like none may be one of a later version.
-        (system(*MOTOR, "<turningDirection>zzz</turningDirection>"), ""),
+        # "Please only use 'cw' or 'ccw' as turningDirection" (MulticopterMotorModel.cc:312).
+        (
+            system(*MOTOR, "<turningDirection>zzz</turningDirection>"),
+            "MB124 warning zzz</turningDirection>: turningDirection 'zzz' is not a word that"
+            " gz-sim-multicopter-motor-model-system knows; write cw or ccw",
+        ),
         (
             system(
                 "ackermann-steering", "AckermannSteering", "<steering_limit>30</steering_limit>"
