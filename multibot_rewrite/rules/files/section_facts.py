@@ -99,7 +99,7 @@ def _in_folder(file: NamedFile) -> Iterator[YamlText]:
     folder = os.path.dirname(own)
     for name in sorted(entries(folder)):
         path = os.path.join(folder, name)
-        if path == own and file.document:
+        if path == own and file.document and file.kind == PARAMS:
             yield file.document
             continue
         data = read_file(path) if is_beside(name) else b""
