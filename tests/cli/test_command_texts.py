@@ -214,7 +214,7 @@ def test_a_section_of_the_vocabulary_as_docs_stacks_md_has_it(tmp_path: Path) ->
             "blocks": (), "remap_only": (), "topics": [], "rows": [frame, words],
         }  # fmt: skip
         default = "{link}" if insert == "yes" else "{link} (not inserted)"
-        *lines, grid = inspect._details([section])
+        *lines, grid = inspect.details([section])
         never = "  never inserted into: it throws on unknown children"
         assert [it for it in lines if it != never] == [
             f"plugin mine (ROS 2)  {file}:1", "  about: a camera", "  in: jazzy+",
