@@ -229,7 +229,7 @@ def test_a_section_of_the_vocabulary_as_docs_stacks_md_has_it(tmp_path: Path) ->
         columns = ("type", "name", "ROS", "also called", "rows", "source")
         row = ("plugin", "mine", "2", "acme::Mine", "2", "acme/camera 1.0")
         assert [*inspect._list([section])] == [Grid(columns, [row])]
-    assert "" in [*inspect._details([section, section])], "an empty line is between two"
+    assert "" in [*inspect.details([section, section])], "an empty line is between two"
     said = "no plugin, class, element, sensor type, rule or file has this name"
     for name, hint in (
         ("qqqqqq", "multibot inspect lists all"), ("mines", "the nearest known: mine"),
