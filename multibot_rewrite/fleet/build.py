@@ -112,7 +112,10 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         more = (*tables, *moveit_parameters(plan, files))
         files = sorted((*kept, *more, *copied(plan)))
         brought = {it.name for it in fleet.bridged if PUBLISHES in it.bridge}
-        are_opened = bool(configs) or (_starts_rviz(plan) and not any(name for name, _ in shown))
+        # A launch file of the robots may start RViz. The plan has one for all of them.
+        launched = ((it, one.handed_on) for one in plan.evidence.values() for it in one.nodes)
+        rviz = any(it.kind == RVIZ and it.name in handed for it, handed in launched)
+        are_opened = bool(configs) or (rviz and not any(name for name, _ in shown))
         alone = windows(plan, opened_of(plan, opened)) if are_opened else []
         starts = fleet_starts(plan, each, files, brought, shown, alone)
         files = sorted((*files, launch_file(starts)))
@@ -120,12 +123,6 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         _check_paths_differ(files)
         said = tuple(said_once(plan, as_in_the_vendors_files(plan, [*findings, *told])))
         return Outputs(tuple(files), said, starts, planned)
-
-
-def _starts_rviz(plan: FleetPlan) -> bool:
-    """Does a launch file of the robots start RViz? The plan has one for all of them."""
-    launched = ((it, one.handed_on) for one in plan.evidence.values() for it in one.nodes)
-    return any(it.kind == RVIZ and it.name in handed for it, handed in launched)
 
 
 def _check_paths_differ(files: Sequence[OutputFile]) -> None:

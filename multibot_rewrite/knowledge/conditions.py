@@ -164,7 +164,7 @@ def _is_true(it: Condition, value_of: Values) -> bool | None:
         return any(one not in (None, "", []) for one in given) == (it.how == "set")
     others = (value_of(value[1:]) for value in it.values if value.startswith("$"))
     wanted = {value for value in it.values if not value.startswith("$")}
-    wanted |= {_word(other) for other in others if other is not None}
+    wanted |= {word_of(other) for other in others if other is not None}
     if it.how in ("has", "lacks"):
         # MoveIt splits a text (moveit2 move_group.cpp configureCapabilities).
         texts = (one.split() if isinstance(one, str) else one for one in given)
@@ -177,9 +177,10 @@ def _spellings(given: object) -> set[str]:
     """The words a value may be written with; none for a parameter that is not set."""
     if given is None:
         return set()
-    word = _word(given)
+    word = word_of(given)
     return {word, word.rpartition("::")[2], word.rpartition("/")[2]}
 
 
-def _word(value: object) -> str:
+def word_of(value: object) -> str:
+    """A value as a YAML file has it."""
     return str(value).lower() if isinstance(value, bool) else str(value)

@@ -5,8 +5,9 @@ below it, and what several nodes do alike, or one node does often, is one line."
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
+from multibot_rewrite.base.bounded import own_rows
 from multibot_rewrite.base.findings.finding import (
     ERROR,
     INCONCLUSIVE,
@@ -19,9 +20,6 @@ from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import SEVERAL, shorten, unique
 from multibot_rewrite.system.index import TF, Index, ends_of
 from multibot_rewrite.system.records import PUBLISHES, SERVES
-
-# Does the first finding explain the second?
-_Explains = Callable[[Index, Finding, Finding], bool]
 
 
 def _names(_: Index, cause: Finding, it: Finding) -> bool:
@@ -68,30 +66,14 @@ def _described(seen: Index, cause: Finding, it: Finding) -> bool:
     return it.robot in {cause.robot, *map(seen.frame_robot, links)} - {""}
 
 
-def _of_a_clock(seen: Index, cause: Finding, it: Finding) -> bool:
+def _clock(seen: Index, cause: Finding, it: Finding) -> bool:
     return is_about_a_clock(seen, cause) and cause.robot == it.robot
 
 
-# The code of the cause, those of what comes of it, and what both have in common.
-_EXPLAINS: Sequence[tuple[str, tuple[str, ...], _Explains]] = (
-    ("MG501", ("MG514", "MG415", "MG406", "MG413"), _robot),
-    ("MG303", ("MG503", "MG514"), _of_a_clock),
-    ("MG502", ("MG504", "MG417"), lambda *_: True),
-    ("MG101", ("MG301",), _same_node),
-    ("MG101", ("MG406", "MG415", "MG413", "MG208"), _sends_tf),
-    ("MG102", ("MG406", "MG415", "MG412", "MG413", "MG208"), _lacks_tf),
-    ("MG208", ("MG412", "MG413"), _names),
-    ("MG301", ("MG304",), _served),
-    ("MG301", ("MG402", "MG408", "MG401", "MG405", "MG325"), _two_robots),
-    ("MG314", ("MG312", "MG329"), _names),
-    ("MG310", ("MG320",), _names),
-    ("MG320", ("MG303",), _names),
-    ("MG420", ("MG208", "MG408", "MG402", "MG413"), _described),
-    ("MG403", ("MG401",), _names),
-    ("MG414", ("MG401",), _names),
-    ("MG402", ("MG406",), _robot),
-    ("MG405", ("MG406",), _robot),
-)
+# What a cause and what comes of it have in common -> does the first finding explain the second?
+_ALIKE = _names, _robot, _served, _same_node, _two_robots, _sends_tf, _lacks_tf, _described, _clock
+_IN_COMMON = {"anything": lambda *_: True, **{it.__name__[1:]: it for it in _ALIKE}}
+_EXPLAINS = own_rows(__file__, "explains.schema")
 # What several nodes have with one name is one of the first, what one node has so often of the second.
 _OF_NAMES = frozenset(("MG303", "MG306", "MG307"))
 _OF_NODES = {"MG102": 2, "MG304": 3}
@@ -113,11 +95,13 @@ def folded(seen: Index, found: Sequence[Finding]) -> list[Finding]:
     by_code = lists_by_key((it.code, at) for at, it in enumerate(found))
     below: dict[int, list[int]] = defaultdict(list)
     gone: set[int] = set()
-    for code, codes, explains in _EXPLAINS if len(found) > 1 else ():
+    for code, codes, common in _EXPLAINS if len(found) > 1 else ():
         causes = [it for it in by_code.get(code, ()) if it not in gone]
-        for at in (it for other in codes for it in by_code.get(other, ()) if it not in gone):
+        for at in (
+            it for other in codes.split() for it in by_code.get(other, ()) if it not in gone
+        ):
             # Each robot's cause has it, so that the robots' findings stay one.
-            why = [it for it in causes if explains(seen, found[it], found[at])]
+            why = [it for it in causes if _IN_COMMON[common](seen, found[it], found[at])]
             for cause in why:
                 below[cause].append(at)
             gone.update([at] if why else [])

@@ -133,7 +133,12 @@ def of_robot(
         starts,
         (*given.left.items(), *idle),
         not_bridged(robot.spec.name) if any(it.needs for it in relayed) else "",
-        tuple(_nodes(given)),
+        # The nodes that are started, and those in their processes.
+        tuple(
+            names.full_name(it)
+            for name in given.running
+            for it in (name, *(inner for inner in names.inside(name) if inner not in given.left))
+        ),
     )
 
 
@@ -159,14 +164,6 @@ class _Given(NamedTuple):
     def running(self) -> list[str]:
         """The nodes that are started, by their names in the stacks."""
         return [it for it in self.names.started if it not in self.left]
-
-
-def _nodes(given: _Given) -> Iterator[str]:
-    """The nodes that are started, and those in their processes."""
-    names = given.names
-    for name in given.running:
-        yield names.full_name(name)
-        yield from (names.full_name(it) for it in names.inside(name) if it not in given.left)
 
 
 def _left(given: _Given) -> Iterator[tuple[str, str]]:

@@ -13,7 +13,7 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import differ_in_numbers, slip_of
 from multibot_rewrite.companions.named_file import MOVEIT, PARAMS, NamedFile
-from multibot_rewrite.knowledge.conditions import holds
+from multibot_rewrite.knowledge.conditions import holds, word_of
 from multibot_rewrite.knowledge.declared import DEMANDED
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import load_nodes
@@ -124,15 +124,15 @@ def _with(it: Demand) -> str:
         there = other in {name.removeprefix(it.section.at) for name in it.section.whole}
         return "" if there else f"has no effect without {other}"
     # What is 0 is the default all the same; where nothing is said a launch file may say it.
-    if value is None or _text(value) == wanted[0]:
+    if value is None or word_of(value) == wanted[0]:
         return ""
-    return f"has no effect with {other}: {_text(value)}"
+    return f"has no effect with {other}: {word_of(value)}"
 
 
 def _without(it: Demand) -> str:
     other, unwanted = it.words
     value = value_of(it.section, other)
-    both = it.given.value is True and value is not None and _text(value) == unwanted
+    both = it.given.value is True and value is not None and word_of(value) == unwanted
     return f"cannot be true with {other}: {unwanted}" if both else ""
 
 
@@ -248,22 +248,7 @@ def _items(it: Demand) -> list[Any]:
     return it.given.value if isinstance(it.given.value, list) else []
 
 
-def _text(value: Value) -> str:
-    return str(value).lower() if isinstance(value, bool) else str(value)
-
-
-_OF_OTHERS = (
-    _with,
-    _without,
-    _unlike,
-    _among,
-    _as_many,
-    _instead,
-    _together,
-    _or_true,
-    _alone,
-    _period,
-)
-_OF_WORDS = _foreign, _is_one, _once, _renamed, _bonded, _listed
+_OF_OTHERS = _with, _without, _unlike, _among, _as_many, _instead, _together, _or_true, _alone
+_OF_WORDS = _period, _foreign, _is_one, _once, _renamed, _bonded, _listed
 _PAIRS = {it.__name__[1:]: it for it in (*_OF_OTHERS, *_OF_WORDS)}
 _ROUNDED = 1e-4

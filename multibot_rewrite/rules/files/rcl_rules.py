@@ -36,6 +36,7 @@ from multibot_rewrite.companions.params.sections import (
     scalars,
 )
 from multibot_rewrite.companions.yaml_text import line_of, pairs
+from multibot_rewrite.knowledge.conditions import word_of
 from multibot_rewrite.rules.declaration import remark, remark_at
 from multibot_rewrite.rules.files.section_facts import did_you_mean_at, given_in, is_in
 from multibot_rewrite.spelling.records import Given
@@ -144,13 +145,9 @@ def mixed_clocks(file: NamedFile) -> Iterator[Finding]:
     others = [(path, node) for path, node, given in found if given != most]
     first = next(path for path, _, value in found if value == most)
     names = shorten(path for path, _ in others)
-    message = f"{_TIME} is {_word(not most)} for {names}, and {_word(most)} for {first}"
+    message = f"{_TIME} is {word_of(not most)} for {names}, and {word_of(most)} for {first}"
     hint = "set it alike in all nodes of a robot: tf compares times"
     yield remark_at(others[0][1], message, hint)
-
-
-def _word(value: bool) -> str:
-    return str(value).lower()
 
 
 @rule("MB859", "repeated-key", WARNING, formats=(PARAMS, MOVEIT))

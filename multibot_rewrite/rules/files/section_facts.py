@@ -34,6 +34,7 @@ from multibot_rewrite.rules.files.plugins import plugins_in
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.parameters import Value
 from multibot_rewrite.system.records import NOWHERE, Place
+from multibot_rewrite.system.tool_nodes import last_word
 
 
 class Beside(NamedTuple):
@@ -61,12 +62,8 @@ def given_in(file: NamedFile) -> tuple[Run, ...]:
 
 def is_set_beside(file: NamedFile, title: str, name: str) -> bool:
     """Does a parameter file of the robot have it for the node of a section, or of its plugin?"""
-    node = _last(title.partition(":")[0])
-    return any(name in it.values for it in beside(file).given if _last(it.node) == node)
-
-
-def _last(name: str) -> str:
-    return name.rpartition("/")[2]
+    node = last_word(title.partition(":")[0])
+    return any(name in it.values for it in beside(file).given if last_word(it.node) == node)
 
 
 def is_in(file: NamedFile, place: Place) -> bool:

@@ -107,16 +107,12 @@ def _sizes(
         if given is None or not isinstance(value, float) or value <= 0 or measured is None:
             continue
         # Who corrects a size by its multiplier may correct a wrong one.
-        if not measured.holds(value) and not measured.holds(value * _multiplier(values, name)):
+        factors = [values.get(f"{side}{name}_multiplier") for side in ("", "left_")]
+        factor = next((it.value for it in factors if it and isinstance(it.value, float)), 1.0)
+        if not measured.holds(value) and not measured.holds(value * factor):
             robot = subject.document.root.get("name", "")
             message = f"{name} is {value:g} m, but the {words.format(measured.best)} in {robot!r}"
             yield remark_at(given.node, message, f"write {measured.best:.4g}")
-
-
-def _multiplier(values: _Values, name: str) -> float:
-    names = (f"{name}_multiplier", f"left_{name}_multiplier")
-    found = (values[it].value for it in names if it in values)
-    return next((it for it in found if isinstance(it, float)), 1.0)
 
 
 def _ways(node: yaml.Node, left: Sequence[Wheel], right: Sequence[Wheel]) -> Iterator[Finding]:
@@ -156,11 +152,16 @@ def robot_size(file: NamedFile) -> Iterator[Finding]:
 
 
 def _of_costmap(file: NamedFile, section: Section) -> Iterator[Finding]:
-    radius, footprint = _by_radius(section), _by_footprint(section)
+    given, footprint = section.whole.get(_ROBOT_RADIUS), _by_footprint(section)
+    value = given.value if given else None
+    radius = Size(given, value, value) if given and isinstance(value, float) and value > 0 else None
     size = footprint or radius
     if size is None:
         return
-    if radius and footprint and not _fits(radius, footprint):
+    fits = (
+        footprint and radius and footprint.inscribed * 0.9 <= radius.reach <= footprint.reach * 1.5
+    )
+    if radius and footprint and not fits:
         what = f"{_ROBOT_RADIUS} has no effect with a footprint, and is another size"
         message = f"{section.title}: {what}"
         yield remark_at(radius.given.node, message, f"leave out {_ROBOT_RADIUS}")
@@ -177,12 +178,6 @@ def _of_costmap(file: NamedFile, section: Section) -> Iterator[Finding]:
     elif size.reach * _TINY < reach:
         message = f"{reaches} {size.reach:g} m from the middle alone"
         yield remark_at(size.given.node, message, hint)
-
-
-def _by_radius(section: Section) -> Size | None:
-    given = section.whole.get(_ROBOT_RADIUS)
-    value = given.value if given else None
-    return Size(given, value, value) if given and isinstance(value, float) and value > 0 else None
 
 
 def _by_footprint(section: Section) -> Size | None:
@@ -204,10 +199,6 @@ def _to_edge(one: tuple[float, float], other: tuple[float, float]) -> float:
     length = hypot(u - x, v - y)
     along = max(0.0, min(1.0, -(x * (u - x) + y * (v - y)) / length**2)) if length else 0.0
     return hypot(x + along * (u - x), y + along * (v - y))
-
-
-def _fits(radius: Size, footprint: Size) -> bool:
-    return footprint.inscribed * 0.9 <= radius.reach <= footprint.reach * 1.5
 
 
 def _inflation(section: Section, size: Size) -> Iterator[Finding]:

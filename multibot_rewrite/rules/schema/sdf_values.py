@@ -113,20 +113,14 @@ def _color(text: str) -> Misread | None:
     return None if inside else Misread("has a number outside of 0 to 1", True)
 
 
-_whole = partial(_number, whole=True)
 CHECKS: dict[str, Callable[[str], Misread | None]] = {
-    "double": _number,
-    "float": _number,
-    "number": _number,
-    "int": _whole,
-    "integer": _whole,
+    **dict.fromkeys(("double", "float", "number"), _number),
+    **dict.fromkeys(("int", "integer"), partial(_number, whole=True)),
     "unsigned_int": _unsigned,
-    "bool": _boolean,
-    "boolean": _boolean,
+    **dict.fromkeys(("bool", "boolean"), _boolean),
     "truth": _truth,
     "vector2d": partial(_numbers, count=2),
-    "vector3": partial(_numbers, count=3),
-    "vector": partial(_numbers, count=3),
+    **dict.fromkeys(("vector", "vector3"), partial(_numbers, count=3)),
     "pose": partial(_pose, size=6),
     QUATERNION: partial(_pose, size=7),
     "color": _color,

@@ -50,7 +50,9 @@ def no_clock(seen: Index) -> Iterator[Finding]:
         bridge = f"start the simulator's bridge for {CLOCK}"
         cause = to_set(SIM_TIME, parameter_text(False), *nodes)
         cause = cause._replace(hint=f"{SIM_TIME}: false on a real robot, or {bridge}")
-        if any(_is_simulated_by_plan(seen, it) for it in nodes):
+        planned = seen.expected.by_key if seen.expected else ()
+        listens = any((it, TOPIC, SUBSCRIBES, CLOCK) in planned for it in nodes)
+        if listens or any(planned_clocks(seen).get(it) == parameter_text(True) for it in nodes):
             cause = Cause(bridge)
         if other := next((it for it in seen.topics if it.type == _TYPE and it.publishers), None):
             message += f"; {other.publishers[0].node} publishes {other.name}"
@@ -156,12 +158,6 @@ def mixed_clocks(seen: Index) -> Iterator[Finding]:
             message, cause, level=level, robot=robot, node=others[0], names=(CLOCK,),
             settings=tuple(Setting(it, SIM_TIME, parameter_text(True)) for it in every[robot]),
         )  # fmt: skip
-
-
-def _is_simulated_by_plan(seen: Index, node: str) -> bool:
-    key = node, TOPIC, SUBSCRIBES, CLOCK
-    listens = seen.expected is not None and key in seen.expected.by_key
-    return listens or planned_clocks(seen).get(node) == parameter_text(True)
 
 
 def planned_clocks(seen: Index) -> dict[str, str]:

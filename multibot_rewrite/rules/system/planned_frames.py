@@ -189,7 +189,9 @@ def _strays_of(plan: Index, tree: Tree, present: Set[str]) -> Strays:
         if len(bare) == 1:
             found[bare[0]].append(Stray(name, plain[bare[0]], bare=True))
         elif not plain:
-            home = own[0] if len(own) == 1 else _behind_prefix(plan, name)
+            # The robot whose frame it is but for a prefix: `foo_left_tool` of `left_tool`.
+            ends = (plan.of_frames.exact.get(name[at:]) for at in range(1, len(name)))
+            home = own[0] if len(own) == 1 else next((it for it in ends if it is not None), "")
             names[robot or home].append(name)
     for robot, strange in names.items():
         if robot and plan.declared[robot].frames:
@@ -226,12 +228,6 @@ def _meant_by(plan: Index) -> Mapping[str, Mapping[str, str]]:
         for plain, frame in frames.items():
             found[plain][robot] = frame
     return found
-
-
-def _behind_prefix(plan: Index, name: str) -> str:
-    """The robot of whom a frame is but for a prefix: ``foo_left_tool`` of ``left_tool``; else ""."""
-    exact = plan.of_frames.exact
-    return next((exact[name[at:]] for at in range(1, len(name)) if name[at:] in exact), "")
 
 
 def _with_meanings(plan: Index, robot: str, names: Sequence[str]) -> Iterator[Stray]:

@@ -149,7 +149,9 @@ def _read(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     # Without a robot's name before it, it is sent.
     usual = plain in USUAL_FRAMES or (bare in USUAL_FRAMES and bare in frames_in(edges))
     sender = _sender(seen, it.node, edges) if usual else None
-    if sender is None and usual and edges and not seen.in_doubt and _listens(seen, it.node):
+    # One that hears no transforms writes the frame into messages, or into what it sends.
+    hears = any(end.type == TF and end.role == SUBSCRIBES for end in seen.by_node.get(it.node, ()))
+    if sender is None and usual and edges and not seen.in_doubt and hears:
         message = f"reads frame {it.frame}, but no known node sends it"
         return _finding(seen, it, message, "name the node or node set that sends it", NOTE)
     if sender is None:
@@ -185,11 +187,6 @@ def _sender(seen: Index, node: str, edges: Sequence[Edge]) -> Edge | None:
     placed = [it for it in own if it.place != NOWHERE]
     found, robot = placed if placed or seen.in_doubt else own, seen.robot(node)
     return min(found, key=lambda it: robot not in map(seen.robot, it.publishers), default=None)
-
-
-def _listens(seen: Index, node: str) -> bool:
-    """Does it hear transforms? Another one writes the frame into messages, or into what it sends."""
-    return any(it.type == TF and it.role == SUBSCRIBES for it in seen.by_node.get(node, ()))
 
 
 def _state(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:

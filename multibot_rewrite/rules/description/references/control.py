@@ -21,7 +21,6 @@ from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.sources.packages import in_sources
 from multibot_rewrite.description.sources.read import XACRO
 from multibot_rewrite.description.sources.trace import alike
-from multibot_rewrite.description.steps.document import Document
 from multibot_rewrite.rules.description.structure.mimic import controlled_joints, mimic_of_none
 from multibot_rewrite.rules.facts.memo import driven_joints, level_of_absence, since_jazzy
 from multibot_rewrite.rules.facts.simulators import (
@@ -206,14 +205,19 @@ def no_controllers_file(subject: Subject) -> Iterator[Problem]:
         given = [it for it in plugin.iterchildren("parameters") if text_of(it)]
         if not given and library in GAZEBO.plugins:
             words = f"{library} has no <parameters>, so it makes no controller_manager"
-            level = WARNING if _is_told(subject, plugin) else ERROR
+            starts = starts_of(subject, list(plugin.iterchildren("parameters"))).values()
+            # The file may be an argument of xacro, which the launch file passes.
+            level = ERROR if all(is_fixed(subject, it, "") for it in starts) else WARNING
             yield Problem(plugin, words, None, "name the controllers' file", level=level)
         for it in given:
             path = text_of(it)
             if "$(" in path:
                 words = "is a substitution of xacro, which the plugin does not know"
                 hint = "expand the file with xacro first, and name it .xacro"
-                level = NOTE if _is_for_xacro(subject.document) else WARNING
+                # A description may say that xacro reads it, as the demos of gz_ros2_control do.
+                of_xacro = any(it.endswith("/xacro") for it in subject.document.root.nsmap.values())
+                of_xacro = of_xacro or XACRO in os.path.basename(subject.document.file)
+                level = NOTE if of_xacro else WARNING
                 yield Problem(it, f"<parameters> {path!r} {words}", "", hint, level=level)
                 continue
             # Where xacro has expanded $(find), the folder of the package is there.
@@ -224,18 +228,6 @@ def no_controllers_file(subject: Subject) -> Iterator[Problem]:
                 level = "" if is_folder(os.path.dirname(path)) else WARNING
                 message = f"there is no file {alike(path, os.curdir)}"
                 yield Problem(it, message, "", "correct the path", level=level)
-
-
-def _is_told(subject: Subject, plugin: _Element) -> bool:
-    """Is the file an argument of xacro, which the launch file passes?"""
-    starts = starts_of(subject, list(plugin.iterchildren("parameters")))
-    return any(not is_fixed(subject, it, "") for it in starts.values())
-
-
-def _is_for_xacro(document: Document) -> bool:
-    """Does a description say that xacro reads it first, as the demos of gz_ros2_control do?"""
-    spaces = (it for it in document.root.nsmap.values() if it.endswith("/xacro"))
-    return XACRO in os.path.basename(document.file) or any(spaces)
 
 
 @rule("MB242", "nothing-to-control", ERROR)

@@ -62,34 +62,25 @@ def references(subject: Subject) -> References:
     return References(claims, lists_by_key((it.code, it) for it in found))
 
 
-def _is_part(inventory: Inventory) -> bool:
-    """Is it only a part of a description: no link, or a robot without a name?"""
-    root = inventory.document.root
-    return not inventory.declared["link"] or (root.tag == "robot" and "name" not in root.attrib)
-
-
 def _elsewhere(loose: Loose, inventory: Inventory) -> bool:
     """Is it declared after all: in another file, with the robot's name as its scope (as in Gazebo
     Classic), or in the PROTO of a Webots robot?"""
     claim, part = loose
-    if _is_part(inventory) and part.kinds[0] != "group":
+    root = inventory.document.root
+    is_part = not inventory.declared["link"] or (root.tag == "robot" and "name" not in root.attrib)
+    if is_part and part.kinds[0] != "group":
         return True
     scope, _, name = part.text.rpartition("::")
-    if scope and scope == inventory.document.root.get("name"):
+    if scope and scope == root.get("name"):
         return any(name in inventory.declared.get(kind, ()) for kind in part.kinds)
-    if inventory.document.root.tag == "sdf" and _is_of_included(claim.element):
+    above = claim.element.iterancestors("include", "model") if root.tag == "sdf" else ()
+    # In an <include>, or in a model that another one is merged into.
+    if any(it.tag == "include" or it.find("include[@merge]") is not None for it in above):
         return True
     if claim.site.section != "element ros2_control":
         return False
     system = next(claim.element.iterancestors("ros2_control"), None)
     return system is not None and text_at(system, "hardware/plugin").startswith(WEBOTS)
-
-
-def _is_of_included(element: _Element) -> bool:
-    """Is it in an <include>, or in a model that another one is merged into?"""
-    if next(element.iterancestors("include"), None) is not None:
-        return True
-    return any(it.find("include[@merge]") is not None for it in element.iterancestors("model"))
 
 
 def undeclared(code: str, subject: Subject) -> Iterator[Problem]:
