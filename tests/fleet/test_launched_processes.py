@@ -1153,7 +1153,9 @@ def test_what_is_put_beside_the_robot_into_a_simulator_is_named(
     body = f"{spawn.format('robot_description')}, {spawn.format('dock/robot_description')},"
     found = actions(tmp_path, body, more="simulator: gazebo")
     assert told(found).count("create") == 1
-    (line,) = (it for it in capsys.readouterr().err.splitlines() if "in addition to the robot" in it)
+    (line,) = (
+        it for it in capsys.readouterr().err.splitlines() if "in addition to the robot" in it
+    )
     assert "up.launch.py:" in line and "create" in line and "warning: MF823" in line
 
 

@@ -738,7 +738,7 @@ def test_what_is_learned_gives_the_whole_table(
         == 0
     )
     note = "left out as tools: /rviz2; to learn one give its name to --node"
-    said = f"multibot: note: {note}\nmultibot: 2 nodes learned as stack mine (ROS 2 lyrical)\n"
+    said = f"multibot: note: {note}\nmultibot: 2 nodes learned as node set mine (ROS 2 lyrical)\n"
     assert capsys.readouterr() == ("", said)
     names = [node.name for node in stack_of(user_stack(mine, NEWEST_LTS), "mine")]
     assert names == ["driver", "eye"]
