@@ -109,8 +109,8 @@ def every_release() -> NodeLibrary:
 
 
 def older_node(name: str, release: str, type_: str = "") -> str:
-    """Say that what was read of a known node is older than a release, as ``packages.older``; empty for a
-    type that is not read of it: a bridge has the types of its file."""
+    """Say that what was read of a known node is older than a release, as ``packages.older``; nothing of
+    a type that was not read of it: a bridge has the types of its file."""
     found = every_release().nodes.get(name) if name and release else None
     if found is None or (type_ and all(it.type != type_ for it in found.endpoints)):
         return ""
