@@ -93,6 +93,8 @@ def as_planned(plan: System) -> System:
     ]
     nodes = [Node(it.name, "") for it in plan.nodes if it.robot]
     edges = [edge for robot in plan.robots for edge in robot_edges(robot)]
+    # What the plan itself has above the robots, such as start poses.
+    edges += [it._replace(topic="/tf_static") for it in plan.edges if it.static]
     ends += bridge(plan)
     return sent(System(tuple(nodes), tuple(ends), tuple(edges), environment()))
 
