@@ -92,8 +92,10 @@ class Rewrite(NamedTuple):
         rewrite is verified. Raises nothing."""
         return not_verified(self.findings)
 
-    # What scripts ask for that were written for 0.2.
-    not_proved = not_verified
+    @property
+    def not_proved(self) -> tuple[str, ...]:
+        """The same, for scripts written for 0.2."""
+        return self.not_verified
 
     @property
     def distro(self) -> str:

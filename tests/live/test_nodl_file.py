@@ -180,7 +180,7 @@ def test_nav2_from_its_own_graph_is_as_planned_and_a_leak_is_found(
     Path(seen).write_bytes(to_json(graph))
     given = ("--from", seen, "--namespace", "/robot1", "--form", "nodl", "-o", folder)
     assert main(["snapshot", *given]) == 0
-    robots = ("robot1", "robot2", "--layout", "L1", "--stack", "nav2")
+    robots = ("robot1", "robot2", "--layout", "L1", "--stack", "nav2", "--distro", NEWEST_LTS)
     assert main(["plan", str(ROVER), *robots, "--nodes", folder, "-o", plan]) == 0
     capsys.readouterr()
     assert main(["check", plan, "--from", seen]) == 0, capsys.readouterr().out
