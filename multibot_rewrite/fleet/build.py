@@ -143,20 +143,14 @@ def _descriptions(plan: FleetPlan, folder: str) -> FilesAndFindings:
         texts[spec.simulated or spec.description] = loading
         for source, data in texts.items():
             if data:
-                text = _without_folder(data, source)
+                # xacro's banner without the folder of the file: the same from every working directory.
+                names = (source, os.path.basename(source))
+                whole, bare = (f"{_BANNER}{it:<30} | -->".encode() for it in names)
+                text = data.replace(whole, bare, 1) if is_xacro(source) else data
                 yield OutputFile(path_for(robot, expanded_name(source)), text, (source,))
         for node, it in plan.evidence_of(robot).handed_on.items():
             if it.description:
                 yield OutputFile(described_path(robot, node), it.description.encode())
-
-
-def _without_folder(data: bytes, source: str) -> bytes:
-    """xacro's banner without the folder of the file: the same from every working directory."""
-    if not is_xacro(source):
-        return data
-    banner = f"{_BANNER}{{:<30}} | -->".format
-    name = os.path.basename(source)
-    return data.replace(banner(source).encode(), banner(name).encode(), 1)
 
 
 def _portable_plan(plan: FleetPlan, fleet: Fleet) -> System:

@@ -171,7 +171,10 @@ def facts_of(
     runs = {name: list(nodes_of(known, name)) for name in stacks}
     named = {node: name for name in reversed(stacks) for node in runs[name]}
     order = dict.fromkeys(node for name in stacks for node in runs[name])
-    found = [node._replace(origin=_origin(node, named[node])) for node in order]
+    # Without its folder: a plan is the same from every working directory.
+    files = ((node, os.path.basename(node.interface)) for node in order)
+    said = ((node, f", described in {file}" if file else "") for node, file in files)
+    found = [node._replace(origin=Origin(f"{named[node]}{where}")) for node, where in said]
     has_publisher = any(node.package == STATE_PUBLISHER for node in found)
     if not any(NO_STATE_PUBLISHER in with_included(library, name) for name in stacks):
         added = () if has_publisher else nodes_of(known, STATE_PUBLISHER)
@@ -180,12 +183,6 @@ def facts_of(
         hint = f"leave out one of the node sets, {NO_STATE_PUBLISHER} or the one that has it"
         raise UsageError(f"{STATE_PUBLISHER} is asked for and left out; {hint}")
     return tuple(found)
-
-
-def _origin(node: NodeFacts, stack: str) -> Origin:
-    # Without its folder: a plan is the same from every working directory.
-    file = os.path.basename(node.interface)
-    return Origin(f"{stack}, described in {file}" if file else stack)
 
 
 def known_nodes(nodes: str | None, release: str, nodl: Sequence[str]) -> NodeKnowledge:

@@ -15,10 +15,9 @@ from collections.abc import Iterator, Mapping
 from functools import cache, lru_cache
 from typing import NamedTuple
 
-from multibot_rewrite.base.bounded import read_text
+from multibot_rewrite.base.bounded import own_text
 
 FILE = os.path.join(os.path.dirname(__file__), "declared.schema")
-_DEMANDS = os.path.join(os.path.dirname(__file__), "demanded.schema")
 # How a source comes to a parameter: by a file of generate_parameter_library, in code, never declared;
 # or what its code demands of the value.
 YAML, DECLARED, READ, DEMANDED = "yaml", "declared", "read", "demanded"
@@ -95,14 +94,15 @@ def _fillings(path: str, name: str) -> list[str] | None:
 @lru_cache(maxsize=512)
 def declared_by(owner: str) -> tuple[Declared, ...]:
     """What a package or the class of a plugin declares and demands; nothing for an unknown one."""
-    declared = [it for it in _rows(_sections(FILE).get(owner, "")) if says_something(it.path)]
-    demanded = _rows(_sections(_DEMANDS).get(owner, ""))
+    every = _rows(_sections("declared.schema").get(owner, ""))
+    declared = [it for it in every if says_something(it.path)]
+    demanded = _rows(_sections("demanded.schema").get(owner, ""))
     return (*declared, *(it._replace(how=DEMANDED) for it in demanded))
 
 
 def is_known(owner: str) -> bool:
     """Is there a section of that name?"""
-    return owner in _sections(FILE)
+    return owner in _sections("declared.schema")
 
 
 def stands_for(path: str, name: str) -> dict[str, str]:
@@ -116,9 +116,9 @@ def says_something(path: str) -> bool:
 
 
 @lru_cache
-def _sections(path: str) -> Mapping[str, str]:
+def _sections(name: str) -> Mapping[str, str]:
     """The text of every section by its name; nothing is read of it yet."""
-    _, *parts = read_text(path).split("\n[")
+    _, *parts = own_text(__file__, name).split("\n[")
     return {part[: part.index("]")]: part for part in parts}
 
 
@@ -142,7 +142,6 @@ def _rows(section: str) -> Iterator[Declared]:
         yield Declared(path, "" if type_ == ANY else type_, bounds, releases, how, source)
 
 
-_FILE = os.path.join(os.path.dirname(__file__), "plugin_classes.schema")
 _NOW = "->"
 # Where an older name of ROS 2 is from: Nav2's own migration guides.
 _ENDED = "docs.nav2.org"
@@ -163,7 +162,7 @@ class Base(NamedTuple):
 @cache
 def plugin_bases() -> Mapping[str, Base]:
     """Every base by its name."""
-    _, *parts = read_text(_FILE).split("\n[")
+    _, *parts = own_text(__file__, "plugin_classes.schema").split("\n[")
     return {part[: part.index("]")]: _base(part) for part in parts}
 
 

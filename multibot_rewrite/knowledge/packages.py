@@ -4,16 +4,14 @@ read of them, as ``packages.schema`` has it, which ``python -m tools.interfaces.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Mapping
 from functools import cache, lru_cache
 from typing import NamedTuple
 
-from multibot_rewrite.base.bounded import read_text
+from multibot_rewrite.base.bounded import own_text
 from multibot_rewrite.base.releases import CAME, NEWEST_LTS, RELEASES
 
 COMMENT, NONE = "#", "-"
-_FILE = os.path.join(os.path.dirname(__file__), "packages.schema")
 
 
 class Versions(NamedTuple):
@@ -39,7 +37,7 @@ def packages() -> Mapping[str, Package]:
     """Every package of the table."""
     found: dict[str, Package] = {}
     rows: dict[str, Versions] = {}
-    for line in read_text(_FILE).splitlines():
+    for line in own_text(__file__, "packages.schema").splitlines():
         if line.startswith("["):
             repository, _, names = line[1:].partition("] ")
             rows = {}

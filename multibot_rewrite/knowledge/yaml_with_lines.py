@@ -19,7 +19,6 @@ from multibot_rewrite.knowledge.conditions import parse_condition
 from multibot_rewrite.knowledge.packages import by_version
 
 _BOOLEAN = "tag:yaml.org,2002:bool"
-_NULL = "tag:yaml.org,2002:null"
 Known = TypeVar("Known")
 Value: TypeAlias = "str | bool | Mapping[str, YamlItem] | tuple[YamlItem, ...] | None"
 
@@ -45,7 +44,7 @@ def read_yaml_with_lines(text: str, file: str, own: bool = False) -> YamlItem:
 
 def _item(node: yaml.Node, where: str, file: str) -> YamlItem:
     if isinstance(node.value, str):
-        if node.tag == _NULL:
+        if node.tag == "tag:yaml.org,2002:null":
             return YamlItem(where, None)
         return YamlItem(where, _truth(node.value) if node.tag == _BOOLEAN else node.value)
     import yaml

@@ -157,9 +157,6 @@ def inconclusive_where_in_doubt(found: list[Finding], graph: System) -> list[Fin
     ]
 
 
-_MISSING = frozenset((missing_node.code, missing_robot.code))
-
-
 def check_view(plan: System, seen: System) -> list[Finding]:
     """What is other than planned in one view of all nodes, each in the domain that it is planned in."""
     return check_domains(plan, seen_by_domain(plan, seen)) if plan.domains else check(plan, seen)
@@ -205,7 +202,9 @@ def _told(it: Finding, number: int, plan: System, seen: Mapping[int, System]) ->
     elsewhere = [
         other
         for other, view in seen.items()
-        if it.code in _MISSING and other != number and wanted & {own.name for own in view.nodes}
+        if it.code in (missing_node.code, missing_robot.code)
+        and other != number
+        and wanted & {own.name for own in view.nodes}
     ]
     said = _of_bridge(in_domain(it, number), plan)
     if not elsewhere:

@@ -42,7 +42,6 @@ ROW = ("role", "kind", "name", "type", "code_name")
 WHEN = "when"
 # Between the types of a row.
 OR = " | "
-_NOTHING_MORE = ("", None, "", NOWHERE)
 _ROLES, _KINDS = frozenset(ROLES), frozenset(KINDS)
 
 
@@ -102,7 +101,7 @@ def _is_plain(value: object) -> bool:
 def _row(end: End) -> object:
     """Return a row of the texts of an end; an object where more is known of it."""
     when = end.sure.why
-    if (end.type_hash, end.qos, end.process, end.place) == _NOTHING_MORE and (
+    if (end.type_hash, end.qos, end.process, end.place) == ("", None, "", NOWHERE) and (
         end.sure == RUNS or (when and end.sure == Sure(MAY.word, when))
     ):
         row = [end.role, end.kind, end.name, OR.join((end.type, *end.also)), end.code_name]

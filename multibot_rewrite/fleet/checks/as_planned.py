@@ -47,21 +47,12 @@ _OF_SOURCES = frozenset(
     )
 )
 # Both sides are known by the launch file, and they miss each other by name.
-_MISSED = frozenset(
-    it.code for it in (names.topic_names_miss, names.server_names_miss, command_to_nobody)
-)
+_MISSED = (names.topic_names_miss.code, names.server_names_miss.code, command_to_nobody.code)
 # What a simulator may give that the launch file does not start.
 _OF_OTHERS = clocks.no_clock.code
 # What a node of the launch file has is known, whatever else runs.
 _LACKS = planned_ends.missing_endpoint.code
-_OF_NODES = frozenset(
-    it.code
-    for it in (
-        planned_nodes.missing_node,
-        planned_nodes.missing_robot,
-        planned_ends.missing_endpoint,
-    )
-)
+_OF_NODES = (planned_nodes.missing_node.code, planned_nodes.missing_robot.code, _LACKS)
 
 
 def not_as_planned(
@@ -94,7 +85,7 @@ def not_as_planned(
 
 def is_of_sources(it: Finding) -> bool:
     """Does a robot alone have it, whatever it is called?"""
-    return bool(it.robot) and it.code in _OF_SOURCES | _MISSED
+    return bool(it.robot) and it.code in (*_OF_SOURCES, *_MISSED)
 
 
 def _key(by_plan: Index, it: Finding) -> tuple[str, ...]:

@@ -14,7 +14,6 @@ from multibot_rewrite.system.domains import USUAL_DOMAIN
 from multibot_rewrite.system.records import Domain
 
 DOMAINS, CROSSING, FREE_FLEET, SHARED = "domains", "crossing", "free_fleet", "shared_nodes"
-_NEED_DOMAINS = (CROSSING, FREE_FLEET)
 
 
 class FreeFleet(NamedTuple):
@@ -44,7 +43,7 @@ def apart_of(read: FleetData, robots: Mapping[str, str]) -> Apart:
     """What a fleet file says; ``robots`` are the names with the namespaces. Raises InputError with its
     line where that does not fit together."""
     data = read.data
-    for key in (it for it in _NEED_DOMAINS if it in data and DOMAINS not in data):
+    for key in (it for it in (CROSSING, FREE_FLEET) if it in data and DOMAINS not in data):
         file, line = read.places.get((key,), (read.file, 1))
         hint = f"write {DOMAINS} as well, with the domain of each robot"
         raise InputError(f"{file}:{line}: {key}: {hint}")

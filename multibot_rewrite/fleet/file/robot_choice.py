@@ -21,7 +21,6 @@ AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 # What each robot has for itself.
 OWN = ("namespace", "prefix", "postfix", "model")
 _NUMBERED = lazy_compile(r"(\w*[A-Za-z_])(\d+)")
-_TWO = 2
 _EXAMPLE = "write robot1={x: 1.0, y: 0}; robot2={x: 2.0}"
 
 
@@ -112,7 +111,7 @@ def _numbered(read: FleetData, count: int) -> tuple[str, int]:
     given = read.data["robots"]
     found = [_NUMBERED.fullmatch(robot[NAME]) for robot in given]
     names = [(it[1], int(it[2])) for it in found if it]
-    if len({stem for stem, _ in names}) == 1 and len(names) == len(given) and len(given) >= _TWO:
+    if len({stem for stem, _ in names}) == 1 and len(names) == len(given) and len(given) >= 2:
         return names[-1]
     hint = f"write count: {count} into one of its robots, or call them robot1 and robot2"
     raise UsageError(f"count {count}: {read.file} does not say what more robots are called; {hint}")

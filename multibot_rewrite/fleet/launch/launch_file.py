@@ -43,7 +43,9 @@ def fleet_starts(
     """What the launch file starts; ``each`` is every robot as a fleet of its own, ``files`` what else
     is built, ``bridged`` the topics that bridges bring, ``shown`` the windows of RViz, each with its
     robot; those of them that it ``opens``, somebody has asked for."""
-    paths = {it.path: _is_substituted(it.data) for it in files}
+    # Whether the launch can replace all substitutions of a file, and there are some.
+    found = ((it.path, [known for known, _ in _SUBSTITUTION.findall(it.data)]) for it in files)
+    paths = {path: bool(known) and all(known) for path, known in found}
     values = launched_values(plan).values
     robots = [launch_actions.of_robot(one, paths, bridged, values) for one in each]
     environment, robots = _environment(plan, robots)
@@ -76,12 +78,6 @@ def fleet_starts(
         launched.headless,
     )
     return with_switches(made, {name for it in idle for name, _ in it.asked})
-
-
-def _is_substituted(data: bytes) -> bool:
-    """Return whether the launch can replace all substitutions of a file, and there are some."""
-    found = [known for known, _ in _SUBSTITUTION.findall(data)]
-    return bool(found) and all(found)
 
 
 def _environment(

@@ -23,7 +23,6 @@ from multibot_rewrite.system.records import ACTION, SERVES, Robot, System
 
 ROBOTS_FILE = "robots.yaml"
 _BATTERY, _NAVIGATE = "battery_state", "navigate_to_pose"
-_ODOM = "odom"
 _MAP = "map"
 
 
@@ -90,7 +89,7 @@ def _robot_frame(plan: System, robot: Robot, whose: Whose) -> str:
     moved = (
         it.child
         for it in plan.edges
-        if not nodes.isdisjoint(it.publishers) and whose.plain_frame(it.parent) == _ODOM
+        if not nodes.isdisjoint(it.publishers) and whose.plain_frame(it.parent) == "odom"
     )
     plain = {whose.plain_frame(it): it for it in robot.frames}
     base = next((plain[it] for it in BODY_FRAMES if it in plain), BODY_FRAMES[0])

@@ -34,7 +34,6 @@ from multibot_rewrite.system.records import System
 ROUTER_FILE = "router.json5"
 # Where rmw_zenoh's sessions look for a router.
 LOCAL_ROUTER = "tcp/localhost:7447"
-_ROUTER_ENCLAVE = "/router"
 Config = dict[str, Any]
 # A subject without a property is everybody.
 _ANYBODY: Config = {"id": "anybody"}
@@ -60,7 +59,7 @@ def configurations(plan: System, setup: Setup) -> Iterator[tuple[str, bytes]]:
     protocol, _, address = _endpoint(setup).partition("/")
     listening = f"{protocol}/0.0.0.0:{address.rpartition(':')[2]}"
     config: Config = {"mode": "router", "listen": {"endpoints": [listening]}}
-    config |= _common(_ROUTER_ENCLAVE, setup)
+    config |= _common("/router", setup)
     about = f"The fleet's router: {_start(ROUTER_FILE)}."
     if setup.keystore:
         parts = [(_subject(f"/{it.robot}"), robot_rules(it, FLEET_ROUTER)) for it in known]

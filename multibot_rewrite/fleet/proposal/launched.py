@@ -42,7 +42,10 @@ def companions_launched(
     handed = "\n".join(value for it in lost for _, value in it.arguments)
     params = [it for it in found.params if it in found.meant or os.path.realpath(it) in handed]
     params += _of_stacks(companions_of(robot, found, release), asked, release) if asked else []
-    starts, makes = any(it.executable == _MOVEIT for it in graph.nodes), _makes_moveit(bringup)
+    starts = any(it.executable == _MOVEIT for it in graph.nodes)
+    # A launch file may start a move_group by a package that is not here.
+    texts = (text_of(it) for it in (bringup.order.file, *(one.file for one in graph.includes)))
+    makes = any(word in text for text in texts for word in _MAKE_MOVEIT)
     srdf = ""
     if starts or makes:
         read = {it.file for it in graph.read}
@@ -54,12 +57,6 @@ def companions_launched(
     files["params"] = [*dict.fromkeys(params)]
     kept = {kind: tuple(its) for kind, its in files.items() if its}
     return Companions(kept, srdf, {**stacks, **asked}, {})
-
-
-def _makes_moveit(it: Bringup) -> bool:
-    """Does one of its launch files start a move_group by a package that is not here?"""
-    files = (it.order.file, *(one.file for one in it.graph.includes))
-    return any(word in text_of(one) for one in files for word in _MAKE_MOVEIT)
 
 
 def _of_stacks(guessed: Companions, stacks: Mapping[str, str], release: str) -> list[str]:

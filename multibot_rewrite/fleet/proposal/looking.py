@@ -48,7 +48,6 @@ _NEEDED = lazy_compile(r"give it as (\w+):=VALUE$")
 MOST_ARGUMENTS = 20
 # An argument of a xacro that is empty where nobody gives it.
 _EMPTY = lazy_compile(r"""<xacro:arg\b(?=[^<>]*\bdefault=(?:""|''))[^<>]*\bname=["'](\w+)""")
-_MANAGER = "controller_manager"
 # A robot to expand a xacro for.
 ANY = "robot1"
 # A link of this name is where sdformat and MoveIt hold a robot.
@@ -234,7 +233,7 @@ def _switched(it: Looked, suits: Suits, reach: Reach) -> Looked:
 def with_controllers(it: Looked, files: Sequence[str], reach: Reach) -> Looked:
     """The same with the argument that names the file of controllers, where the plugin that makes the
     manager got none: launch files give it. The file is named from the description's folder."""
-    file = next((one for one in files if _MANAGER in text_of(one)), "")
+    file = next((one for one in files if "controller_manager" in text_of(one)), "")
     if not (it.control and file and it.path.endswith(".xacro") and _loads_nothing(it.root)):
         return it
     path = os.path.relpath(file, os.path.dirname(it.path))

@@ -40,7 +40,6 @@ from multibot_rewrite.fleet.outputs.output_file import PLAN
 from multibot_rewrite.fleet.proposal.launches import Reading, order_text, read_any, read_named
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder
 
-_BUILT = frozenset((MANIFEST, PLAN))
 # Files that are shown where nothing says which is meant.
 MOST_SHOWN = 6
 # Files that go with a description, never one themselves.
@@ -196,7 +195,7 @@ def _files(folder: str) -> Iterator[str]:
     ends = tuple(known_names()["ends"])
     for above, folders, names in os.walk(folder):
         # What a build has written is made of the robots that are meant.
-        if above != folder and _BUILT.issubset(names):
+        if above != folder and {MANIFEST, PLAN} <= {*names}:
             folders[:] = []
             continue
         folders[:] = (it for it in source_folders(above, folders) if it not in TESTS)

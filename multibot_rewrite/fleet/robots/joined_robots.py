@@ -88,7 +88,6 @@ def _with_files(robot: RobotSpec, made: Joined) -> RobotSpec:
 # Source: moveit2 2.12.4 robot_model.cpp (``buildModel``: a virtual joint counts only where its child is
 # the root link).
 _STANDING = Pose()
-_HINT = "set groups: rename"
 
 
 class Arm(NamedTuple):
@@ -137,7 +136,7 @@ def joined_arms(cell: Cell, world: str, arms: Sequence[Arm], tree: Tree) -> Mapp
                 what = f"its virtual joint {it.get('name')!r} is {it.get('type')}"
                 raise InputError(f"{arm.where}: {what}; arms of a cell are fixed: make it fixed")
         semantics.append(PartSemantics(read, arm.srdf, arm.where))
-    srdf = read_xml(joined_srdf(semantics, made.data, hint=_HINT).data, cell.place)
+    srdf = read_xml(joined_srdf(semantics, made.data, hint="set groups: rename").data, cell.place)
     _add_groups(srdf, cell)
     return {".urdf": without_marks(made.data), ".srdf": xml_text(srdf)}
 

@@ -75,14 +75,13 @@ BY_ARGUMENT = "an argument of the xacro makes it"
 NodeSources = tuple[
     tuple[str, ...], tuple[tuple[str, ...], ...], tuple[LaunchOrder, ...], str, str, Sources
 ]
-_DECIDING = ("params", "bridge", "rviz", "moveit")
 # What a launch hands on for any robot.
 _HANDED_ON = ("handed_on", "environment", "placing", "idle", "qos")
 
 
 def node_sources(spec: RobotSpec) -> NodeSources:
     """Robots for which this is equal run the same nodes."""
-    files = tuple(spec.companions.get(it, ()) for it in _DECIDING)
+    files = tuple(spec.companions.get(it, ()) for it in ("params", "bridge", "rviz", "moveit"))
     return spec.stacks, files, spec.launch, spec.srdf, spec.simulator, spec.sources
 
 

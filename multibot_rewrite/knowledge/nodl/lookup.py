@@ -211,7 +211,6 @@ EVERY_NODE = "every_node"
 NOT_IN_NODL = f"{OPEN_KIND}: {NODL}"
 TYPE_DESCRIPTION = Endpoint(SERVICE, SERVES, "~/get_type_description")
 _TF = ("/tf", "/tf_static")
-_TF_TYPE = "tf2_msgs/msg/TFMessage"
 _IMAGE = "sensor_msgs/msg/Image"
 _FRAME = lazy_compile(r"(?:.*[._])?frame(?:_id)?")
 
@@ -317,7 +316,7 @@ def _folded(ends: Iterable[Endpoint]) -> Iterator[Endpoint]:
         base, _, last = end.name.rpartition("/")
         if last in TRANSPORTS and (end.role, base) in images:
             continue
-        heard = end.role == SUBSCRIBES and end.name in _TF and end.type == _TF_TYPE
+        heard = end.role == SUBSCRIBES and end.name in _TF and end.type == "tf2_msgs/msg/TFMessage"
         yield end._replace(transport=(end.role, end.name) in images, helper=heard)
 
 

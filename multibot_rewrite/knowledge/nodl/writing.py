@@ -20,7 +20,6 @@ DEFAULT = "SYSTEM_DEFAULT"
 UNKNOWN_QOS: dict[str, object] = {"history": DEFAULT, "reliability": DEFAULT}
 # What is known of the QoS of a topic.
 QosOf: TypeAlias = Callable[[Endpoint], dict[str, object]]
-_WIDTH = 100
 _NAME = re.compile(r"[A-Za-z]|[/~A-Za-z][A-Za-z0-9_/]*[A-Za-z0-9_]")
 _TYPE = re.compile(r"[A-Za-z][A-Za-z0-9_]*/(?:msg|srv|action)/[A-Z][A-Za-z0-9]*")
 
@@ -61,7 +60,7 @@ def document_of(
     else:
         import yaml
 
-        text = yaml.safe_dump(document, sort_keys=False, width=_WIDTH, allow_unicode=True)
+        text = yaml.safe_dump(document, sort_keys=False, width=100, allow_unicode=True)
     try:
         read = parse(text, file_name(node)).endpoints
     except UsageError as error:

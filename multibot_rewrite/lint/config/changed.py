@@ -113,8 +113,10 @@ def _touched(paths: Iterable[str], changes: Changes) -> dict[str, bool]:
     """Which files changed, or read one that did; included files are looked at, too."""
     reads = _reads(paths, changes)
     changed_by_path = {path: _is_changed(path, changes) for path in reads}
-    names = set(_base_names(changes))
-    names.update(os.path.basename(path) for path, it in changed_by_path.items() if it)
+    names = {os.path.basename(path) for path, it in changed_by_path.items() if it}
+    for path in changes.changed:  # a nested repository changed as a whole
+        names.add(os.path.basename(path))
+        names.update(*(files for _, _, files in os.walk(os.path.join(changes.top, path))))
     left = {path: patterns for path, patterns in reads.items() if not changed_by_path[path]}
     while more := [
         path for path, patterns in left.items() if any(_matching(it, names) for it in patterns)
@@ -123,14 +125,6 @@ def _touched(paths: Iterable[str], changes: Changes) -> dict[str, bool]:
         names.update(os.path.basename(path) for path in more)
         left = {path: patterns for path, patterns in left.items() if not changed_by_path[path]}
     return changed_by_path
-
-
-def _base_names(changes: Changes) -> Iterator[str]:
-    """The names of what changed; a nested repository changed as a whole."""
-    for path in changes.changed:
-        yield os.path.basename(path)
-        for _, _, files in os.walk(os.path.join(changes.top, path)):
-            yield from files
 
 
 def _is_changed(path: str, changes: Changes) -> bool:

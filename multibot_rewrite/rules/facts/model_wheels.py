@@ -18,8 +18,6 @@ from multibot_rewrite.description.checks.numbers import Vector, numbers, vector
 from multibot_rewrite.description.checks.poses import Pose, turned
 from multibot_rewrite.description.checks.sdf_frames import Frames, Named, ends_of, named_in
 
-_Z: Vector = (0.0, 0.0, 1.0)
-
 
 class ModelWheels(NamedTuple):
     """The links of a model with their shapes, and its joints: each with the pose of its child in the
@@ -52,7 +50,7 @@ def model_wheels(model: _Element) -> ModelWheels | None:
 
 def _axis(frames: Frames, joint: Named) -> Vector | None:
     written = joint.element.find("axis/xyz")
-    axis = _Z if written is None else vector(written.text or "")
+    axis = (0.0, 0.0, 1.0) if written is None else vector(written.text or "")
     if axis is None or joint.text("axis/use_parent_model_frame") in ("1", "true"):
         return axis
     within = "" if written is None else written.get("expressed_in", "")

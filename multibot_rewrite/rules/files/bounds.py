@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from operator import eq, ge, gt, le, lt
 from typing import Any, TypeGuard
 
 from multibot_rewrite.base.bounded import load_yaml
@@ -17,17 +18,15 @@ from multibot_rewrite.base.model import InputError
 _Number = Callable[[float, float], bool]
 # Check -> whether a number holds it, and its words.
 _NUMBERS: dict[str, tuple[_Number, str]] = {
-    "gt": (lambda value, bound: value > bound, "above"),
-    "gt_eq": (lambda value, bound: value >= bound, "at least"),
-    "lower_bounds": (lambda value, bound: value >= bound, "at least"),
-    "lt": (lambda value, bound: value < bound, "below"),
-    "lt_eq": (lambda value, bound: value <= bound, "at most"),
-    "upper_bounds": (lambda value, bound: value <= bound, "at most"),
+    "gt": (gt, "above"),
+    "lt": (lt, "below"),
+    **dict.fromkeys(("gt_eq", "lower_bounds"), (ge, "at least")),
+    **dict.fromkeys(("lt_eq", "upper_bounds"), (le, "at most")),
 }
 _SIZES: dict[str, tuple[_Number, str]] = {
-    "fixed_size": (lambda size, bound: size == bound, "with a size of"),
-    "size_gt": (lambda size, bound: size > bound, "with a size above"),
-    "size_lt": (lambda size, bound: size < bound, "with a size below"),
+    "fixed_size": (eq, "with a size of"),
+    "size_gt": (gt, "with a size above"),
+    "size_lt": (lt, "with a size below"),
 }
 _OR_NAN = "_or_nan"
 

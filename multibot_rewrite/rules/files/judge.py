@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from functools import cache
+from typing import Any
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding, Rule
 from multibot_rewrite.base.lazy import lazy_compile
@@ -26,46 +27,40 @@ from multibot_rewrite.rules.files import (
 from multibot_rewrite.rules.system import clocks
 
 
-def _each(
-    *finders: Callable[[NamedFile], Iterator[Finding]],
-) -> Callable[[NamedFile], Iterator[Finding]]:
-    """What any of several functions finds, for a rule that they all answer."""
+def _of_files(
+    asked: Rule, *finders: Callable[[NamedFile], Iterator[Finding]], **changed: Any
+) -> Rule:
+    """A rule of descriptions, asked of a file: it finds what any of the finders does."""
 
     def found(file: NamedFile) -> Iterator[Finding]:
         for find in finders:
             yield from find(file)
 
-    return found
+    return asked._replace(check=found, **changed)
 
 
-# They are asked of a description as well; here a file is looked at.
-SHARED: tuple[Rule, ...] = (
-    reading.leftover._replace(check=_each(ros_names.placeholders, ros_names.unfilled)),
-    description_names.invalid_ros_name._replace(check=ros_names.invalid_names),
-    description_names.leading_slash._replace(check=ros_names.slashes),
-    rewriting.unclaimed_mention._replace(check=names.unknown_uses),
-    values.misspelt._replace(
-        check=_each(
-            declared.unknown_parameters, rcl_rules.misspelt_marks, plugin_names.renamed_nodes
-        )
+_UNREADABLE = declared.wrong_types, rcl_rules.rejected_values, rcl_rules.outside_of_marks
+SHARED = (
+    _of_files(reading.leftover, ros_names.placeholders, ros_names.unfilled),
+    _of_files(description_names.invalid_ros_name, ros_names.invalid_names),
+    _of_files(description_names.leading_slash, ros_names.slashes),
+    _of_files(rewriting.unclaimed_mention, names.unknown_uses),
+    _of_files(
+        values.misspelt,
+        declared.unknown_parameters,
+        rcl_rules.misspelt_marks,
+        plugin_names.renamed_nodes,
     ),
-    values.not_read._replace(
-        check=_each(declared.not_read, declared.below_unknown_names, declared.in_the_manager)
+    _of_files(
+        values.not_read, declared.not_read, declared.below_unknown_names, declared.in_the_manager
     ),
-    values.missing._replace(
-        check=_each(plugin_names.without_plugin, plugin_names.missing_parameters)
-    ),
-    values.unreadable_value._replace(
-        check=_each(declared.wrong_types, rcl_rules.rejected_values, rcl_rules.outside_of_marks),
-        level=WARNING,
-    ),
-    values.unknown_word._replace(check=plugin_names.unknown_classes),
-    clocks.clocks_mixed._replace(check=rcl_rules.mixed_clocks, level=WARNING, formats=(PARAMS,)),
-    declaration.ONE_DEVICE._replace(check=same_for_all.one_device, formats=(PARAMS,)),
-    named_robots.prefix_only._replace(check=same_for_all.prefix_only),
-    values.out_of_range._replace(
-        check=_each(declared.out_of_bounds, demands.above_others), level=WARNING
-    ),
+    _of_files(values.missing, plugin_names.without_plugin, plugin_names.missing_parameters),
+    _of_files(values.unreadable_value, *_UNREADABLE, level=WARNING),
+    _of_files(values.unknown_word, plugin_names.unknown_classes),
+    _of_files(clocks.clocks_mixed, rcl_rules.mixed_clocks, level=WARNING, formats=(PARAMS,)),
+    _of_files(declaration.ONE_DEVICE, same_for_all.one_device, formats=(PARAMS,)),
+    _of_files(named_robots.prefix_only, same_for_all.prefix_only),
+    _of_files(values.out_of_range, declared.out_of_bounds, demands.above_others, level=WARNING),
 )
 # Up to a reason, which is behind a dash.
 _COMMENT = lazy_compile(r"(?:#|--)\s*urdf-lint:\s*ignore\s+((?:MB\d+[,\s]*)+)(?:$|[-:])")

@@ -149,7 +149,9 @@ def _in_sources(package: str, file: str, roots: tuple[str, ...]) -> tuple[Declar
     """What the files of generate_parameter_library of a package declare, where its sources are."""
     folder = package_folder(package, file, roots)
     found: list[Declared] = []
-    for path in _files_of(folder) if folder else ():
+    places = [os.path.join(folder, it) for it in _FOLDERS] if folder else []
+    paths = (os.path.join(it, name) for it in places for name in sorted(entries(it)))
+    for path in (it for it in paths if _CALLED.fullmatch(os.path.basename(it))):
         try:
             text = read_file(path).decode()
         except (InputError, UnicodeDecodeError):
@@ -161,14 +163,6 @@ def _in_sources(package: str, file: str, roots: tuple[str, ...]) -> tuple[Declar
             if says_something(it.path)
         )
     return tuple(found)
-
-
-def _files_of(folder: str) -> Iterator[str]:
-    for place in _FOLDERS:
-        inner = os.path.join(folder, place) if place else folder
-        for name in sorted(entries(inner)):
-            if _CALLED.fullmatch(name):
-                yield os.path.join(inner, name)
 
 
 def of_release(facts: Sequence[Declared], release: str) -> list[Declared]:

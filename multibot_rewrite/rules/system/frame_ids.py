@@ -22,7 +22,6 @@ from multibot_rewrite.system.records import NOWHERE, TOPIC, Edge, Place
 _ODOMETRY = "nav_msgs/msg/Odometry"
 _MEASURED = ("sensor_msgs/", _ODOMETRY, "stereo_msgs/", "radar_msgs/")
 
-_IMU = "sensor_msgs/msg/Imu"
 # Of no use without a frame.
 _PLACED = types_of("placed")
 
@@ -90,7 +89,7 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
         topics, link = shorten([it.topic for it in messages]), messages[0].link
         # Of no use to their readers without a place; filters turn that of an IMU. Next to what a launch
         # file starts there may be what sends the transform.
-        placed = [it.topic for it in messages if it.type in (*_PLACED, _IMU)]
+        placed = [it.topic for it in messages if it.type in (*_PLACED, "sensor_msgs/msg/Imu")]
         needed = seen.is_live and any(_is_read(seen, it) for it in placed)
         yield frame_id_unknown.finding(
             f"{messages[0].field} of {topics} is {frame}, which is in no transform of"

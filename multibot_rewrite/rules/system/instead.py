@@ -30,7 +30,6 @@ _PLAIN_DATA = ("std_msgs/", "geometry_msgs/", "visualization_msgs/")
 # Shorter words of a name, and these, say nothing of what it is.
 _SAYING = 4
 _OF_ALL = frozenset({"data", "state", "status", "pose", "info", "robot", "topic"})
-_SENSED = "sensor_msgs/"
 # Of which the name says what they are for.
 _TRIGGERS = "std_srvs/"
 
@@ -310,7 +309,7 @@ def _may_be(seen: Index, ends: Ends, end: End) -> bool:
         return False
     own, twin = ("", seen.robot(end.node)), last_word(end.node)
     senders = _givers(ends)
-    if end.type.startswith(_SENSED):
+    if end.type.startswith("sensor_msgs/"):
         senders = [it for it in senders if team(it.node) == it.node]
     # A node of the same name elsewhere does the same for another robot.
     return any(last_word(it.node) != twin and seen.robot(it.node) in own for it in senders)

@@ -16,7 +16,6 @@ from multibot_rewrite.system.index import Ends, Index, at_work, nodes_of, once
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 from multibot_rewrite.system.tool_nodes import last_word
 
-_CONTROLLER = "controller_server"
 # What holds several networks, or a simulator, together.
 _BRIDGE = lazy_compile("bridge|gz|gazebo|isaac|webots|zenoh|domain|free_fleet")
 
@@ -63,7 +62,7 @@ def limits_left_out(seen: Index) -> Iterator[Finding]:
         nodes = nodes_of(ends.publishers)
         limits = [it for it in nodes if last_word(it) in LIMITS]
         for node in nodes if limits else ():
-            if last_word(node) == _CONTROLLER:
+            if last_word(node) == "controller_server":
                 yield limits_left_out.finding(
                     f"publishes {ends.name}, and so does {limits[0]}, which should limit it",
                     "pass it the rule cmd_vel:=cmd_vel_nav, so that velocity_smoother reads it first",

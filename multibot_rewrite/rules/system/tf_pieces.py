@@ -37,7 +37,6 @@ from multibot_rewrite.system.records import NOWHERE, OFF, Edge
 from multibot_rewrite.system.tf_copies import tree_topic
 from multibot_rewrite.system.tool_nodes import last_word
 
-_STATE_PUBLISHER = "robot_state_publisher"
 # So many pairs of frames of a robot are compared.
 _COMPARED = 20_000
 
@@ -247,7 +246,7 @@ def is_of_description(seen: Index, edge: Edge) -> bool:
 
 def publishes_description(seen: Index, node: str) -> bool:
     """Is it robot_state_publisher? Raises nothing."""
-    return last_word(seen.plain(node)).startswith(_STATE_PUBLISHER)
+    return last_word(seen.plain(node)).startswith("robot_state_publisher")
 
 
 def _joined(pairs: Iterable[tuple[str, str]]) -> Callable[[str], str]:

@@ -37,7 +37,6 @@ from multibot_rewrite.system.records import (
 # The server of an action sends its status.
 _STATUS = "/_action/status"
 _LISTED = 8
-_GIVES = (PUBLISHES, SERVES)
 _MISSES = (topic_names_miss, server_names_miss)
 
 
@@ -74,7 +73,7 @@ def _of_its_kind(seen: Index, name: str, robot: str) -> bool:
     other, nodes = seen.robot(name), nodes_of_each(seen)
     theirs, own = _frames(seen).get(other, {}), _frames(seen).get(robot, {})
     both = theirs.keys() & own.keys()
-    senders = {seen.plain(it.node) for it in ends_of(seen, name) if it.role in _GIVES}
+    senders = {seen.plain(it.node) for it in ends_of(seen, name) if it.role in (PUBLISHES, SERVES)}
     more = nodes.get(other, {}).keys() - nodes.get(robot, {}).keys()
     is_alike = more <= senders and all(theirs[it] == own[it] for it in both)
     return other not in ("", robot) and is_alike

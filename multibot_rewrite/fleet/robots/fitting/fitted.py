@@ -34,7 +34,6 @@ from multibot_rewrite.spelling.bridged_topics import TF_TYPE
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import Edge
 
-_BY_FILE = "open: file"
 RVIZ = "rviz2"
 
 
@@ -100,7 +99,7 @@ def _as_listed(node: NodeFacts, spec: RobotSpec) -> NodeFacts:
         # It is made at run time, in the namespace of its robot; an absolute one all would share.
         is_made_below = "<" in it.name and not it.name.startswith("/")
         may_come = is_made_below or (shows and it.type != TF_TYPE)
-        ends.append(it._replace(when=_BY_FILE) if may_come and not it.when else it)
+        ends.append(it._replace(when="open: file") if may_come and not it.when else it)
     return node._replace(endpoints=tuple(ends))
 
 
