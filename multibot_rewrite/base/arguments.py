@@ -134,26 +134,21 @@ def _path(what: str, value: object) -> object:
     raise _wrong(what, value, "write a path")
 
 
-def _source(what: str, value: object) -> object:
-    if isinstance(value, bytes):
-        return value
-    try:
-        return _path(what, value)
-    except UsageError:
-        raise _wrong(what, value, "write a path, XML text or bytes") from None
+def _path_or(other: type, write: str) -> Reader:
+    def read(what: str, value: object) -> object:
+        if isinstance(value, other):
+            return value
+        try:
+            return _path(what, value)
+        except UsageError:
+            raise _wrong(what, value, write) from None
+
+    return read
 
 
-def _fleet(what: str, value: object) -> object:
-    if isinstance(value, Mapping):
-        return value
-    try:
-        return _path(what, value)
-    except UsageError:
-        raise _wrong(what, value, "write a path, or a dict") from None
-
-
+_source = _path_or(bytes, "write a path, XML text or bytes")
 READERS: Mapping[str, Reader] = {
-    "str | os.PathLike[str] | Mapping[str, Any]": _fleet,
+    "str | os.PathLike[str] | Mapping[str, Any]": _path_or(Mapping, "write a path, or a dict"),
     "str": _text,
     "str | None": _or_none(_text),
     "bool": _switch,

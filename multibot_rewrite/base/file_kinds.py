@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import re
 from codecs import BOM_UTF8
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
+from multibot_rewrite.base.bounded import own_text
 from multibot_rewrite.base.conventions import FILES
 from multibot_rewrite.base.lazy import COMMENT, lazy_compile, without_comments
 from multibot_rewrite.base.model import TEMPLATE, InputError
@@ -29,106 +31,37 @@ class FileKind(NamedTuple):
 
 
 KINDS = {kind: FileKind(*words) for kind, words in FILES.items()}
-# Of XML: how the root begins; comments and declarations are left out before.
-_ROOT = rb"\A\s*(?:<!DOCTYPE[^<>\[]*(?:\[[^\]]*\]\s*)?>\s*)?<"
-_TREE = rb"<BehaviorTree\b|<root\b[^<>]*\b(?:BTCPP_format|main_tree_to_execute)\b"
-_XML = (
-    (CONFIG, lazy_compile(_ROOT + rb"model>")),
-    (LAUNCH, lazy_compile(_ROOT + rb"launch[\s>]")),
-    (TREE, lazy_compile(_TREE)),
-    (WORLD, lazy_compile(_ROOT + rb"sdf\b[^<>]*>\s*<world\b")),
-    (SDF, lazy_compile(_ROOT + rb"sdf\b")),
-    (XACRO, lazy_compile(_ROOT + rb"robot\b[^<>]*\sxmlns:xacro")),
-    (
-        SRDF,
-        lazy_compile(
-            _ROOT + rb"robot\b(?s:.*?)<(?:group|group_state|disable_collisions|virtual_joint)\s"
-        ),
-    ),
-    (URDF, lazy_compile(_ROOT + rb"robot\b")),
-    (MUJOCO, lazy_compile(_ROOT + rb"mujoco\b")),
-    (MESH, lazy_compile(_ROOT + rb"COLLADA\b")),
-    (MANIFEST, lazy_compile(_ROOT + rb"package\b")),
-)
-# Of YAML, Python, Lua: what only files of one kind have at the start of a line or an item. A file of
-# one node's sections may be MoveIt's as well: that is a parameter file for its reader.
-BESIDE = (
-    (PARAMS, lazy_compile(rb"^[^\S\n]+[\"']?ros_+parameters?[\"']?\s*:", re.MULTILINE)),
-    (RVIZ, lazy_compile(rb"^Visualization Manager\s*:", re.MULTILINE)),
-    (
-        BRIDGE,
-        lazy_compile(
-            rb"^(?:-\s*(?:\{\s*)?[\"']?(?:topic_name|service_name|(?:ros|gz)_topic_name)"
-            rb"|(?:ros|gz)_(?:topic|type)_name)[\"']?\s*:",
-            re.MULTILINE,
-        ),
-    ),
-    (
-        MOVEIT,
-        lazy_compile(
-            rb"^(?:joint_limits|moveit_simple_controller_manager|controller_names|controller_list"
-            rb"|planner_configs|planning_plugins?|request_adapters"
-            rb"|\w+:[^\S\n]*\n\s+(?:kinematics_solver|planner_configs|default_planner_config))\b",
-            re.MULTILINE,
-        ),
-    ),
-    (TREE, lazy_compile(_TREE)),
-    (
-        LUA,
-        lazy_compile(rb"^[^\S\n]*(?:tracking_frame|published_frame|map_frame)\s*=", re.MULTILINE),
-    ),
-)
-# What follows ``robots:`` in a fleet file is a list; a plan has its schema, or had its ignored nodes,
-# and rules alone have no more than a layout and a release.
+_ROOT = r"\A\s*(?:<!DOCTYPE[^<>\[]*(?:\[[^\]]*\]\s*)?>\s*)?<"
 ROBOTS = rb"^robots:(?:\s|#[^\n]*\n)*"
-_OTHERS = (
-    (PLAN, lazy_compile(rb"^(?:schema:[ ]?\d|ignored_nodes:)", re.MULTILINE)),
-    (FLEET, lazy_compile(ROBOTS + rb"[-\[]", re.MULTILINE)),
-    (RULES, lazy_compile(rb"^layout:[^\n]*\n(?:distro:[^\n]*\n)?robots:", re.MULTILINE)),
-    (LAUNCH, lazy_compile(rb"^def generate_launch_description\b|^launch:\s*-", re.MULTILINE)),
-    (BAG, lazy_compile(rb"^rosbag2_bagfile_information:", re.MULTILINE)),
-    (MAP, lazy_compile(rb"^image:(?:[^\n]*\n(?!image:))+?resolution:", re.MULTILINE)),
-    (STAGE, lazy_compile(rb"^(?:define\s+\w+\s+\w+|floorplan|window)\s*\(\s*$", re.MULTILINE)),
-)
-_ENDS = rb'"(?:nodes|ends|endpoints)"\s*:'
-_JSON = (
-    (BUILT, lazy_compile(rb'"format": "multibot build')),
-    (SESSION, lazy_compile(rb"\b(?:connect|listen)[\"']?\s*:\s*\{")),
-    (PLAN, lazy_compile(rb'\A(?=.*?"layout").*?' + _ENDS, re.DOTALL)),
-    # Of a graph without nodes it has the environment alone.
-    (SNAPSHOT, lazy_compile(_ENDS + rb'|"settled"\s*:')),
-    (FLEET, lazy_compile(rb'"robots"')),
-)
+_TEXT = own_text(__file__, "file_kinds.txt").replace("ROOT", _ROOT)
+_LINES = _TEXT.replace("ROBOTS", ROBOTS.decode()).splitlines()
+_ROWS = [it.split(None, 2) for it in _LINES if it and not it.startswith("#")]
+# The kinds with what is found in their files, by the texts that are asked.
+_MARKS: Mapping[str, Sequence[tuple[str, re.Pattern[bytes]]]] = {
+    texts: [
+        (kind, lazy_compile(mark.encode(), re.MULTILINE))
+        for of, kind, mark in _ROWS
+        if texts in of.split(",")
+    ]
+    for texts in ("text", "beside", "xml", "json")
+}
+BESIDE = _MARKS["beside"]
 # Of Jinja and its kin; ${{ is xacro's, and in a comment it is nothing.
 _TEMPLATE = lazy_compile(
     COMMENT + rb"|^[ \t]*#(?!\{)[^\n]*|((?<!\$)\{\{-?[ \t]*[A-Za-z_.][^{}\n]*\}\}"
     rb"|\{%[-+]?[ \t]*(?:if|for|set|macro|include|block|extends)\b[^{}\n]*%\})",
     re.DOTALL | re.MULTILINE,
 )
-_STARTS = {
-    b"\x89MCAP0\r\n": BAG,
-    b"SQLite format 3\0": BAG,
-    b"#VRML_SIM": WEBOTS,
-    b"#usda": USD,
-    b"PXR-USDC": USD,
-    b"glTF": MESH,
-    b"solid ": MESH,
-}
 
 
 def recognised(data: bytes) -> str:
     """Return the kind of a file by its contents, empty for one of no known kind."""
-    text = data[:_LOOKED_AT].removeprefix(BOM_UTF8).lstrip()
-    started = next((kind for start, kind in _STARTS.items() if text.startswith(start)), "")
-    if started:
-        return started
+    text, of = data[:_LOOKED_AT].removeprefix(BOM_UTF8).lstrip(), "text"
     if text.startswith(b"<"):
-        return _first(_XML, without_comments(data.removeprefix(BOM_UTF8))[:_LOOKED_AT])
-    return _first(_JSON if text.startswith(b"{") else (*BESIDE, *_OTHERS), text)
-
-
-def _first(marks: tuple[tuple[str, re.Pattern[bytes]], ...], text: bytes) -> str:
-    return next((kind for kind, mark in marks if mark.search(text)), "")
+        text, of = without_comments(data.removeprefix(BOM_UTF8))[:_LOOKED_AT], "xml"
+    elif text.startswith(b"{"):
+        of = "json"
+    return next((kind for kind, mark in _MARKS[of] if mark.search(text)), "")
 
 
 def refuse_others(data: bytes, file: str, *wanted: str) -> None:

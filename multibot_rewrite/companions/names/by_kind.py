@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 
 from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.lazy import lazy_compile
@@ -16,14 +17,9 @@ Speller = Callable[[Context, str], str]
 _WORD = lazy_compile(r"[\w./-]+")
 # What the code of a node puts between a joint_stem and a name.
 STEM_END = "_"
-# The kind of the names that a prefix of some kind is put before.
-PREFIXED = {
-    "stem": "frame",
-    "link_prefix": "link",
-    "joint_prefix": "joint",
-    "gpio_prefix": "gpio",
-    "joint_stem": "joint",
-}
+# Names that nodes put a prefix of the robot before, and the kind of these by that of the prefix.
+_PREFIXES = {f"{kind}_prefix": kind for kind in ("link", "joint", "gpio")}
+PREFIXED = {"stem": "frame", "joint_stem": "joint", **_PREFIXES}
 
 
 def is_plain(value: str) -> bool:
@@ -115,24 +111,9 @@ def stem(context: Context, value: str) -> str:
     return spell(context.names, "frame", value) if _prefixes(context) else value
 
 
-def link_prefix(context: Context, value: str) -> str:
-    """Return the prefix that the node puts before links; it may be empty."""
-    return _prefix(context, "link", value)
-
-
-def joint_prefix(context: Context, value: str) -> str:
-    """Return the prefix that the node puts before joints; it may be empty."""
-    return _prefix(context, "joint", value)
-
-
-def gpio_prefix(context: Context, value: str) -> str:
-    """Return the prefix that the node puts before gpios; it may be empty."""
-    return _prefix(context, "gpio", value)
-
-
 def joint_stem(context: Context, value: str) -> str:
     """Return the prefix that the node puts before joints, with _ after it, unless it is empty."""
-    whole = joint_prefix(context, f"{value}{STEM_END}" if value else "")
+    whole = _prefix("joint", context, f"{value}{STEM_END}" if value else "")
     return whole.removesuffix(STEM_END) if whole.endswith(STEM_END) else value
 
 
@@ -162,7 +143,8 @@ def _prefixes(context: Context) -> bool:
     return context.names.naming.affix == PREFIX
 
 
-def _prefix(context: Context, kind: str, value: str) -> str:
+def _prefix(kind: str, context: Context, value: str) -> str:
+    """Return the prefix that the node puts before names of this kind; it may be empty."""
     separator = context.names.naming.separators.get(kind)
     own = _own_prefix(context, kind)
     if own:
@@ -209,9 +191,7 @@ SPELLERS: Mapping[str, Speller] = {
     "node": node,
     "namespace": namespace,
     "stem": stem,
-    "link_prefix": link_prefix,
-    "joint_prefix": joint_prefix,
-    "gpio_prefix": gpio_prefix,
+    **{word: partial(_prefix, kind) for word, kind in _PREFIXES.items()},
     "joint_stem": joint_stem,
     "doubles": before_frames(""),
     "doubles_as_is": before_frames("/"),

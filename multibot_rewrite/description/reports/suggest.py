@@ -28,19 +28,11 @@ from multibot_rewrite.description.steps.collect import Host, Inventory
 if TYPE_CHECKING:
     from lxml.etree import _Element
 
-# The last word of a tag -> what its value names.
-WORDS = {
-    "joint": "joint",
-    "link": "link",
-    "body": "link",
-    "frame": "frame",
-    "topic": "topic",
-    "namespace": "namespace",
-    "service": "service",
-}
 # Names in the graph: what the tag says holds even where a link happens to be called the same.
 _GRAPH = ("topic", "namespace", "service")
 _LISTED = ("joint", "link", "frame")
+# The last word of a tag -> what its value names.
+WORDS = {"body": "link", **{word: word for word in (*_LISTED, *_GRAPH)}}
 # Words at the end of a tag that do not say what it names.
 _EMPTY = frozenset({"name", "names", "id", "ids", "list", "value", "text"})
 _PIECES = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+")

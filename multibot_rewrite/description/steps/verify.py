@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator
+from functools import partial
 from operator import attrgetter
 from typing import NamedTuple
 
@@ -84,8 +85,10 @@ def verify(
     """
     file = inventory.document.file
     beside = spelled_names(urdf_declarations, naming, robot)
+    # Byte offsets of elements are needed only if more than affixes has to be removed.
+    asks_places = MARKER in output or bool(naming.own) or _replaces(plan)
     try:
-        read = read_document(output, f"{file} for {robot}", _asks_places(plan, output, naming))
+        read = read_document(output, f"{file} for {robot}", asks_places)
         result = collect(read, tree, beside, naming.read_as)
         mine = [marker for marker in markers(result.document) if marker.robot == robot]
         inserted = removals(result.document, robot)
@@ -119,12 +122,6 @@ def _as_in(
         kinds = claim.site.kinds
         found.append((ResolvedName(0, claim.value, kinds[0], kinds),) if below else names)
     return found
-
-
-def _asks_places(plan: Plan, output: bytes, naming: Naming) -> bool:
-    """Return whether a check needs byte offsets of output elements. Only if more than affixes has to be
-    removed."""
-    return MARKER in output or bool(naming.own) or _replaces(plan)
 
 
 def _replaces(plan: Plan) -> bool:
@@ -171,10 +168,7 @@ def _named(claim: Claim, names: Names, naming: Naming) -> str:
 def _collisions(inventory: Inventory, naming: Naming) -> dict[tuple[int, str], str]:
     """Return the contact collisions that change, by the place of their elements."""
     document, claims, _, declared, *_ = inventory
-
-    def respell(kind: str, name: str) -> str:
-        return spelled(naming, ROBOT_SLOT, kind, name)
-
+    respell = partial(spelled, naming, ROBOT_SLOT)
     found = respell_collisions(document.root, claims, declared, respell)
     return {(claim.start, claim.attribute): new for claim, new in found}
 

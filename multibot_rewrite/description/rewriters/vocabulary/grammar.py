@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
+from multibot_rewrite.base.bounded import own_rows
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import SiteRow, VocabularyError
 from multibot_rewrite.base.naming import SEPARATORS
@@ -26,34 +27,14 @@ from multibot_rewrite.description.rewriters.vocabulary.values import (
 TYPES = ("element", "plugin", "hardware", "sensor", "block")
 # A section that names nothing: what some of the plugins of another section read, each for itself.
 OF_VALUES = "values"
-SETTINGS = (
-    "at",
-    "about",
-    "source",
-    "read",
-    "open",
-    "with",
-    "select",
-    "ros",
-    *WIRES,
-    "switches",
-    "insert",
-    "unique",
-    "process_wide",
-    "helper",
-    "hardwired",
-    "opens",
-    "releases",
-    "model_namespace",
-)
+_WORDS = {name: tuple(words.split()) for name, words in own_rows(__file__, "grammar.schema")}
+SETTINGS = (*_WORDS["settings"], *WIRES, *_WORDS["other settings"])
 _HEADERS = (*TYPES, OF_VALUES)
 # Settings that are one word out of few.
 VALUES = {
+    **dict.fromkeys(("insert", "open", "process_wide"), ("yes", "no")),
     "ros": ("1", "2"),
-    "insert": ("yes", "no"),
-    "open": ("yes", "no"),
     "unique": tuple(SEPARATORS),
-    "process_wide": ("yes", "no"),
 }
 ROLES = ("declares", "uses", "keep")
 KINDS = (*SEPARATORS, "collision")
@@ -66,10 +47,7 @@ MODEL = "{model}"
 # What stands for it in a name that is made of one: no XML can hold that character.
 SPAWNED = "\x01/"
 EMPTY = ("default", "model", "itself")
-FORMS = (
-    *("whole", "list", "scoped", "words", "suffixed", "member", "transport"),
-    *("regex", "prefix", "lettered", "remap", "argument", "below", "collision"),
-)
+FORMS = _WORDS["forms"]
 # A vocabulary has hundreds of paths, which are asked for again with every plugin.
 PATHS = 4096
 _NAME = r"[A-Za-z_][\w.:-]*"
