@@ -299,7 +299,7 @@ def clock_findings(heard: tuple[Heard, ...], example: str = TIMED) -> list[tuple
 def test_what_is_said_of_a_clock() -> None:
     ((level, message),) = clock_findings((Heard("/clock", "", math.inf),))
     assert level == "error"
-    assert "stands" in message and "/robot1/amcl waits" in message
+    assert "stopped" in message and "/robot1/amcl waits" in message
     ((level, message),) = clock_findings((Heard("/clock", "", back=12.5),))
     assert level == "warning"
     assert "went back by 12.5 s" in message
