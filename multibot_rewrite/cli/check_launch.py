@@ -78,13 +78,9 @@ def _with_remedies(
     return [it._replace(hint=remedy) if remedy and _is_open(it) else it for it in found]
 
 
-def _is_missing(it: Finding) -> bool:
-    return it.code == no_manager.code
-
-
 def _is_open(it: Finding) -> bool:
     """Is no controller manager there at all?"""
-    return _is_missing(it) and it.level == ERROR and len(it.names) == 1
+    return it.code == no_manager.code and it.level == ERROR and len(it.names) == 1
 
 
 def _argument(orders: Sequence[LaunchOrder], read: _Read) -> str:
@@ -94,7 +90,8 @@ def _argument(orders: Sequence[LaunchOrder], read: _Read) -> str:
         changed = [it._replace(arguments=(*others, (name, value))) for it, others in given]
         with suppress(MultibotError):
             other = read(changed)
-            if other.models.found and not any(map(_is_missing, judge_launch(other))):
+            missed = any(it.code == no_manager.code for it in judge_launch(other))
+            if other.models.found and not missed:
                 return f"add {name}:={value}, with which a manager is started"
     return ""
 

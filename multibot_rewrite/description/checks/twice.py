@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Iterator
 from typing import NamedTuple
 
+from multibot_rewrite.base.conventions import ROWS
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import Claim
 from multibot_rewrite.base.naming import (
@@ -25,14 +26,7 @@ from multibot_rewrite.description.steps.inserted import markers
 BETWEEN = ("/", "_", "-", ".")
 # A model may well be called like its robot without any rewrite, and a shape like a part of it.
 CARRYING = frozenset(SEPARATORS) - {"model", "shape"}
-# What parts of robots are called: names of most descriptions hold such a word by chance.
-_PARTS = """
-ankle arm arms back base body bottom cam camera caster center centre chassis chest elbow finger flange
-foot frame front gazebo gps gripper hand head hip imu inner joint knee laser left leg lidar lift link
-lower main mast middle mobile mount neck odom outer pan plate platform rear right robot scan scanner
-sensor shoulder sonar thumb tilt tool top torso trunk upper wheel wrist
-"""
-PART_WORDS = frozenset(_PARTS.split())
+PART_WORDS = frozenset(word for words, _ in ROWS["words of parts"] for word in words)
 # Names of these kinds are counted together where a robot is called like a part.
 GROUPS = {**dict.fromkeys(FRAME_KINDS, "link"), **dict.fromkeys(TOPIC_KINDS, "topic")}
 COUNTED = ("link", "joint", "namespace", "topic")

@@ -16,6 +16,7 @@ from math import inf
 from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.base.bounded import load_yaml, read_text
+from multibot_rewrite.base.conventions import ROWS
 from multibot_rewrite.base.file_kinds import BAG, refuse_others
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import InputError, Unusable
@@ -44,15 +45,7 @@ HEADERS, TRANSFORMS = 5, 50_000
 # The first field of a type that has a header, in the definition that the bag holds.
 _HEADER = re.compile(r"\s*(?:#[^\n]*\n\s*)*(?:std_msgs/(?:msg/)?)?Header\s+header\b")
 # Where a bag holds no definitions.
-_HEADED = frozenset(
-    f"{package}/msg/{name}"
-    for package, names in {
-        "sensor_msgs": "LaserScan PointCloud2 Image CompressedImage CameraInfo Imu Range NavSatFix",
-        "nav_msgs": "Odometry Path OccupancyGrid",
-        "geometry_msgs": "PoseStamped PoseWithCovarianceStamped TwistStamped",
-    }.items()
-    for name in names.split()
-)
+_HEADED = {f"{of}/msg/{name}" for (of, *names), _ in ROWS["headed"] for name in names}
 # What a file of a bag is unpacked to, at most: messages pack to a twentieth, images to less.
 LEAST_UNPACKED, MOST_PACKED, _PART = 2**30, 40, 2**20
 _NO_LIMIT_SECONDS = 9_223_372_036
