@@ -9,7 +9,7 @@ from functools import cache, lru_cache
 from typing import NamedTuple
 
 from multibot_rewrite.base.bounded import own_text
-from multibot_rewrite.base.releases import CAME, NEWEST_LTS, RELEASES
+from multibot_rewrite.base.releases import CAME, RELEASES
 
 COMMENT, NONE = "#", "-"
 
@@ -75,7 +75,7 @@ def older(name: str, release: str) -> str:
     """Say that what was read of a package is from before this release and of an earlier version; empty
     where that is not so or nothing of it is known."""
     it = versions_of(name).get(release, Versions())
-    came = CAME.get(release, CAME[NEWEST_LTS])
+    came = CAME.get(release, max(CAME.values()))
     if not it.date or it.date >= came or number(it.now)[:2] <= number(it.version)[:2]:
         return ""
     return f"{name} {it.version} of {it.date} was read, {release} has {it.now}"

@@ -19,7 +19,10 @@ from multibot_rewrite.system.json import from_yaml, to_json
 from multibot_rewrite.system.records import Caveat, System
 
 ROVER = str(FIXTURES / "robots" / "rover.urdf")
-FLEET = (ROVER, "robot1", "robot2", "--stack", "nav2,robot_state", "--layout", "both")
+FLEET = (
+    *(ROVER, "robot1", "robot2", "--stack", "nav2,robot_state", "--layout", "both"),
+    *("--distro", "lyrical"),
+)
 
 
 @pytest.fixture(scope="module")

@@ -709,4 +709,8 @@ def test_a_file_of_which_nothing_matches(
     text = yaml.safe_dump({it: {"ros__parameters": {"a": 1}} for it in sections})
     found = judged(known, "MB244", started(*node, parameters=of_file(text)))
     assert [it.hint for it in found] == said_of_it
-    assert all(it.file == "/ws/own.yaml" and it.level == "error" for it in found)
+    # Without a name that is nearly the node's, its nodes may be started elsewhere.
+    assert [it.level for it in found] == [
+        "error" if "nearly" in it.hint else "warning" for it in found
+    ]
+    assert all(it.file == "/ws/own.yaml" for it in found)
