@@ -133,6 +133,7 @@ ekf_filter_node:
 """
 FLEET = """\
 description: rover.urdf
+distro: jazzy
 simulator: gazebo
 stack: [robot_state, robot_localization]
 companions: {params: ekf.yaml}

@@ -37,7 +37,7 @@ def test_words_reach_the_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert ros2(*words) == main(words) == 0
     first, second = capsys.readouterr().out.split("# robot1: map_server", 1)
     assert second.count("# robot1: map_server") == 1
-    assert first == "# ROS 2 lyrical\n"
+    assert first == "# ROS 2 humble\n"
 
 
 def test_a_command_that_fails_fails(capsys: pytest.CaptureFixture[str]) -> None:

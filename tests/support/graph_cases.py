@@ -94,7 +94,9 @@ def as_planned(plan: System) -> System:
     nodes = [Node(it.name, "") for it in plan.nodes if it.robot]
     edges = [edge for robot in plan.robots for edge in robot_edges(robot)]
     # What the plan itself has above the robots, such as start poses.
-    edges += [it._replace(topic="/tf_static") for it in plan.edges if it.static]
+    has_parent = {it.child for it in edges}
+    above = (it for it in plan.edges if it.static and it.child not in has_parent)
+    edges += [it._replace(topic="/tf_static") for it in above]
     ends += bridge(plan)
     return sent(System(tuple(nodes), tuple(ends), tuple(edges), environment()))
 

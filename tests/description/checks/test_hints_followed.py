@@ -25,7 +25,8 @@ IMU = (
     '</hardware><sensor name="imu"/></ros2_control>'
 )
 HIT = (
-    '<gazebo reference="base"><sensor name="s" type="contact"><topic>{}</topic></sensor></gazebo>'
+    '<gazebo reference="base"><sensor name="s" type="contact"><contact><topic>{}</topic>'
+    "</contact></sensor></gazebo>"
     '<gazebo><plugin name="gz::sim::systems::TriggeredPublisher" '
     'filename="gz-sim-triggered-publisher-system"><input type="gz.msgs.Contacts" topic="hit"/>'
     '<output type="gz.msgs.Empty" topic="stop"/></plugin></gazebo>'
