@@ -133,7 +133,7 @@ ekf_filter_node:
 """
 FLEET = """\
 description: rover.urdf
-distro: jazzy
+distro: humble
 simulator: gazebo
 stack: [robot_state, robot_localization]
 companions: {params: ekf.yaml}
