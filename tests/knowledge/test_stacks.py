@@ -268,7 +268,7 @@ def test_what_a_file_says_anew_counts_in_its_stacks() -> None:
         ("stacks: {a: {include: [nav]}}", "stack 'nav' is not known; did you mean 'nav2'?"),
         (
             "stacks:\n  a: {include: [b]}\n  b: {include: [a]}",
-            "mine.yaml:2: stack 'a' includes itself: a -> b -> a",
+            "mine.yaml:2: node set 'a' includes itself: a -> b -> a",
         ),
         (
             "stacks: {a: {nodes: [amcl, {node: map_server, as: amcl}]}}",

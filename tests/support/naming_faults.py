@@ -176,7 +176,7 @@ def data_rows() -> tuple[Fault, ...]:
                 "/robot1/lifecycle_manager_localization",
                 (CALLS, "/robot2/amcl/change_state", CHANGE_STATE),
             ),
-            "MG302", ("/robot1/lifecycle_manager_localization", "another robot"),
+            "MG302", ("/robot1/lifecycle_manager_localization", "out of node_names"),
         ),
     )  # fmt: skip
 

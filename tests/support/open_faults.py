@@ -289,7 +289,7 @@ def place_rows() -> tuple[Fault, ...]:
         Fault(
             "amcl's odom_frame_id is misspelled", single,
             reframed(lambda it: it._replace(child="odom_error") if it.child == "odom" else it),
-            "MG415", ("/amcl", "map -> odom_error", "odom_frame_id to odom"),
+            "MG415", ("/amcl", "map -> odom_error", "odom_frame_id: odom"),
         ),
     )  # fmt: skip
 
