@@ -94,7 +94,7 @@ class Rewrite(NamedTuple):
 
     @property
     def not_proved(self) -> tuple[str, ...]:
-        """The same, for scripts written for 0.2."""
+        """Return the same, for scripts written for 0.2; raises nothing."""
         return self.not_verified
 
     @property

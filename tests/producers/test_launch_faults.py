@@ -564,7 +564,6 @@ SEEN: dict[str, tuple[str, bool, str, tuple[str, ...]]] = {
         ('SetLaunchConfiguration("a", "1")', _GROUP.format('LaunchConfiguration("a")')),
     ),
     "a condition that is a text": ("MG721", True, "", (_GROUP.format('"true"'),)),
-    "a file that includes itself": ("MG721", True, "", ("IncludeLaunchDescription(__file__)",)),
     "no condition": ("MG721", False, "", (_GROUP.format("None"),)),
     # mokh94519/new_mobile_manipulator: xacro of the launch itself writes it.
     "what a program may write": ("MG713", False, "", (_SPAWN.format('"/tmp/not_made_yet.urdf"'),)),
@@ -591,6 +590,14 @@ def test_what_public_bringups_showed(
     _, found = found_in(tmp_path, capsys)
     told = [it for it in found if it["code"] == code and it["level"] in ("error", "warning")]
     assert bool(told) is wrong, found
+
+
+def test_a_file_that_includes_itself_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    of_nodes(tmp_path, "IncludeLaunchDescription(__file__)", head=_HEAD)
+    assert main(["check-launch", str(tmp_path / LAUNCH)]) == 2
+    assert "it includes or calls itself without an end" in capsys.readouterr().err
 
 
 def test_a_file_says_what_it_has_to_be_given(

@@ -86,7 +86,9 @@ def visit(entity: Any, seen: Visit) -> None:
         for below in handle(entity, here) or ():
             visit(below, here)
     except (Exception, SystemExit) as error:
-        if isinstance(error, RecursionError) and not seen.every:
+        # Of a long chain of files what is there is read; one that includes itself has no end.
+        in_itself = len({*seen.includes}) < len(seen.includes)
+        if isinstance(error, RecursionError) and in_itself and not seen.every:
             raise
         # A launch file is a program: it may raise anything.
         _failed(entity, error, here)
