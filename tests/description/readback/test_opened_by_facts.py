@@ -26,8 +26,10 @@ def both(text: bytes, layout: str, known: set[str]) -> tuple[set[Opened], set[Op
         return None
     if one.not_verified:
         return None
-    # ROS 1 loads no plugin of a robot that ROS 2 controls; ROS 2 does not read its parameters (MB904).
-    ros_1 = "noetic" if b"<ros2_control" in text else "no such branch"
+    # ROS 1 loads no plugin of a robot that ROS 2 controls, or of which one reads <ros>
+    # (gazebo_ros/src/node.cpp); ROS 2 does not read its parameters (MB904).
+    of_ros_2 = b"<ros2_control" in text or b"<ros>" in text
+    ros_1 = "noetic" if of_ros_2 else "no such branch"
     pair = (opened(it.data, it.robot, known) for it in (one, other))
     first, second = ({it for it in its if ros_1 not in it.source} for its in pair)
     return first, second
