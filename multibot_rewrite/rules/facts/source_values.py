@@ -41,11 +41,9 @@ def starts_of(subject: Subject, elements: Collection[_Element]) -> Mapping[_Elem
 
 
 def is_fixed(subject: Subject, start: int, attribute: str, *, constants: bool = True) -> bool:
-    """The same for a value by the start of its element's tag; ``attribute`` is empty for text.
-
-    False where that cannot be known. With ``constants`` $(find ...) and the like, which are the same
-    for every robot on a machine, count as text.
-    """
+    """Return whether no caller of xacro can set another value. ``start`` is that of the element's
+    tag; ``attribute`` is empty for text. False where that cannot be known. With ``constants``
+    $(find ...) and the like count as text."""
     if not subject.origins:
         return True
     origin = subject.origins.of(bisect_left(subject.document.starts, start))
@@ -86,7 +84,7 @@ def _raw(source: bytes, start: int, attribute: str) -> bytes | None:
 
 
 def _given(raw: bytes, call: Mapping[bytes, bytes]) -> bytes | None:
-    """What a macro's call passes for the names in ``raw``; None if it does not pass one of them."""
+    """Return what a macro's call passes for the names in ``raw``; None if it does not pass one."""
     if b"$(" in raw:
         return None
     names = _names_in(raw)

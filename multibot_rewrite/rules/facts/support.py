@@ -22,7 +22,7 @@ LEVEL = 0.05
 
 
 def ground_of(subject: Subject) -> float | None:
-    """The height on which the wheels of all drives stand; None where it is unknown."""
+    """Return the height of the ground below the wheels of all drives; None where it is unknown."""
     heights = [
         wheel.pose.at[2] - max(found)
         for drive in drives(subject)
@@ -68,7 +68,7 @@ def _touching(shape: _Element, pose: Pose, height: float) -> Iterator[Point]:
 
 
 def hull(points: Sequence[Point]) -> list[Point]:
-    """The corners of the smallest convex area around points, counter-clockwise."""
+    """Return the corners of the smallest convex area around points, counter-clockwise."""
     ordered = sorted(set(points))
     lower, upper = _chain(ordered), _chain(ordered[::-1])
     return lower[:-1] + upper[:-1]

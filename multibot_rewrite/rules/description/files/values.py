@@ -137,7 +137,7 @@ def sees_nothing(subject: Subject) -> Iterator[Problem]:
 
 
 def unusable_numbers(subject: Subject) -> Iterator[Problem]:
-    """Steps of no time, reductions of 0, minima of a plugin above their maxima."""
+    """Yield steps of no time, reductions of 0, and minima of a plugin above their maxima."""
     every = subject.elements.every
     for physics in every("physics"):
         above = physics.getparent()
@@ -269,7 +269,7 @@ def library_of_ignition(subject: Subject) -> Iterator[Problem]:
 
 
 def _slip_of_library(name: str, known: Iterable[str]) -> str:
-    """The same for a library: what all of a family have in common does not make two alike."""
+    """Return the known library that was meant; what all of a family share does not make two alike."""
     start, end = next((it for it in FAMILIES if name.startswith(it[0])), ("", ""))
     stems = {
         it.removeprefix(start).removesuffix(end): it
@@ -280,7 +280,7 @@ def _slip_of_library(name: str, known: Iterable[str]) -> str:
 
 
 def _slip(name: str, known: Iterable[str]) -> str:
-    """The known name that was meant; one that is a part of the other is a name of its own."""
+    """Return the known name that was meant; empty if one is part of the other, or another word."""
     near = slip_of(name, known)
     part = near in name or name in near
     # Is a word in place of another one without a letter of it, as ``my`` of ``uuv``?

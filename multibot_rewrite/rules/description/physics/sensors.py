@@ -58,7 +58,7 @@ def optical_frame_not_rotated(subject: Subject) -> Iterator[Problem]:
 
 
 def _is_straight(pose: Pose | None) -> bool:
-    """Does x point forward and z up?"""
+    """Return whether x points forward and z up."""
     return (
         pose is not None and turned(pose.matrix, X)[0] > SAME and turned(pose.matrix, Z)[2] > SAME
     )
@@ -122,7 +122,7 @@ _BOUNDS = (
 
 @rule("MB629", "camera-clip", WARNING)
 def camera_clip(subject: Subject) -> Iterator[Problem]:
-    """The planes of each camera; a value that is left out is one of sdformat's, 0.1 and 100."""
+    """Yield cameras whose near plane is not before the far one; sdformat's defaults are 0.1 and 100."""
     for it in subject.elements.every("clip"):
         near, far = number_at(it, "near"), number_at(it, "far")
         near, far = (0.1 if near is None else near), (100.0 if far is None else far)
