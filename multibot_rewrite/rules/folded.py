@@ -114,7 +114,7 @@ def folded(seen: Index, found: Sequence[Finding]) -> list[Finding]:
 
 
 def _with_explained(it: Finding, explained: Sequence[Finding]) -> Finding:
-    """A cause is as bad as what comes of it."""
+    """Return a cause with its consequences in the hint, at the worst of their levels."""
     if not explained:
         return it
     first, *others = explained
@@ -129,14 +129,14 @@ def _with_explained(it: Finding, explained: Sequence[Finding]) -> Finding:
 
 
 def of_one_target(rules: Iterable[Remap]) -> tuple[Remap, ...]:
-    """The rules without those that lead one name of a node to two: it serves several robots."""
+    """Return the rules, except those that lead one name of a node to two targets."""
     each = tuple(dict.fromkeys(rules))
     targets = Counter((it.node, it.old) for it in each)
     return tuple(it for it in each if targets[it.node, it.old] == 1)
 
 
 def _alike(found: Iterable[Finding]) -> Iterator[Finding]:
-    """What nodes have alike, each group at the place of its first and worst."""
+    """Yield the findings; those that several nodes share become one, at the first and worst."""
     groups: dict[tuple[object, ...], list[Finding]] = {}
     for it in found:
         key: tuple[object, ...] = (it,)
@@ -168,7 +168,7 @@ def _one_of(own: Sequence[Finding], code: str) -> Finding:
 
 
 def _without_unplanned(seen: Index, found: Iterable[Finding]) -> list[Finding]:
-    """A node that is not planned is said with the error that it makes, if there is one."""
+    """Return the findings; an unplanned node is named in the error that it causes, if there is one."""
     every = [*found]
     nodes = {it.node: at for at, it in enumerate(every) if it.code == _UNPLANNED}
     gone = set()
@@ -183,7 +183,7 @@ def _without_unplanned(seen: Index, found: Iterable[Finding]) -> list[Finding]:
 
 
 def _makers(seen: Index, it: Finding) -> Sequence[str]:
-    """The nodes that send or serve what a finding is about."""
+    """Return the nodes that send or serve what a finding is about."""
     ends = (end for name in it.names for end in ends_of(seen, name))
     sent = (end.node for end in ends if end.role in (PUBLISHES, SERVES))
     edges = (one for tree in seen.trees for one in tree.edges if one.child in it.names)
@@ -198,7 +198,7 @@ def is_about_a_clock(seen: Index, it: Finding) -> bool:
 
 
 def in_order(seen: Index, found: Iterable[Finding]) -> list[Finding]:
-    """The findings by their kind of cause, then by level: notes come last."""
+    """Return the findings by their kind of cause, then by level; notes come last."""
     return sorted(found, key=lambda it: (it.level == NOTE, *_place(seen, it), it.code))
 
 

@@ -37,8 +37,8 @@ def one_for_a_cause(
     rules: Mapping[str, Rule],
     in_doubt: bool,
 ) -> list[Finding]:
-    """The findings about a system, and those that only its plan shows, without those of one cause.
-    ``in_doubt``: more may be there than is seen."""
+    """Return the findings about a system and those that only its plan shows, one for each cause.
+    ``in_doubt``: the system may have more than was seen."""
     left = [it for it in found if not _is_meant(plan, seen, it, rules[it.code])]
     # What is there counts before what is missing, then the first.
     places: list[dict[_About, int]] = [{}, {}]
@@ -88,7 +88,7 @@ def _is_of_an_end(it: Finding, rules: Mapping[str, Rule]) -> bool:
 
 
 def _same(seen: Index, it: Finding, rules: Mapping[str, Rule]) -> Iterator[_About]:
-    """What another finding is about that has the same cause as one by the plan."""
+    """Yield the keys of findings that have the same cause as one by the plan."""
     if it.code == unplanned_node.code:
         yield it.node, ""
     elif it.code in (sender_not_planned.code, frame_without_robot_name.code):
@@ -121,7 +121,7 @@ def _is_there(it: Finding) -> bool:
 def _with_cause(
     it: Finding, by_plan: Sequence[Finding], rules: Mapping[str, Rule], in_doubt: bool
 ) -> Finding:
-    """The finding with what the plan says of it, or what it says for certain in place of it."""
+    """Return the finding with the plan's remedy, or the plan's finding if that is the certain one."""
     known = [one for one in by_plan if one.code != unplanned_node.code]
     if known and in_doubt and _is_absence(it, rules) and not _is_absence(known[0], rules):
         return known[0]
@@ -139,7 +139,7 @@ def _with_cause(
 def _hint(
     it: Finding, by_plan: Sequence[Finding], rules: Mapping[str, Rule]
 ) -> tuple[str, tuple[Remap, ...]]:
-    """What the plan says to do, and the rules that it names; those of all who are named."""
+    """Return the plan's hint with the remap rules that it names, those of all nodes named."""
     first, *others = by_plan
     if not _is_of_an_end(first, rules):
         return first.hint, first.remaps

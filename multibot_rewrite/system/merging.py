@@ -164,7 +164,7 @@ def _words(words: Iterable[str]) -> str:
 
 
 def _caveats(looks: Sequence[Look]) -> Iterator[Caveat]:
-    """What was said of each look, unless it is asked of all of them again."""
+    """Yield the limitations of each snapshot, without those that are checked again for all of them."""
     files = [look.file for look in looks]
     more = f" and {len(files) - _MANY} more" if len(files) > _MANY else ""
     text = f"made of {len(files)} looks: {', '.join(files[:_MANY])}{more}"

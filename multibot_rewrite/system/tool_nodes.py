@@ -30,7 +30,7 @@ def _patterns(more: tuple[str, ...]) -> tuple[re.Pattern[str], re.Pattern[str]]:
 
 
 def is_viewer(node: str) -> bool:
-    """Does the node only look, or pass on what a person asks for?"""
+    """Return whether a node only looks, or passes on what a person asks for."""
     return only_looks(last_word(node))
 
 
@@ -40,17 +40,17 @@ def is_hidden(node: str) -> bool:
 
 
 def is_spawner(node: str) -> bool:
-    """Does the node load controllers, and wait for a manager until then?"""
+    """Return whether a node loads controllers, and waits for a manager until then."""
     return last_word(node).startswith("spawner_")
 
 
 def last_word(name: str) -> str:
-    """The last segment of a name."""
+    """Return the last segment of a name."""
     return name.rpartition("/")[2]
 
 
 def in_namespaces_above(node: str, name: str) -> Iterator[str]:
-    """A name directly in a node's namespace, moved to each of the namespaces above."""
+    """Yield a name directly in a node's namespace, moved to each of the namespaces above."""
     namespace = node.rpartition("/")[0]
     while namespace and name.startswith(f"{namespace}/"):
         rest = name.removeprefix(namespace)

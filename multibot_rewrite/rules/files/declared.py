@@ -108,7 +108,7 @@ def _is_known(section: Section, it: Setting) -> bool:
 def _meant(
     name: str, known: Sequence[str], groups: Mapping[str, Mapping[str, str]], guesses: Guesses
 ) -> str:
-    """The parameter in the same place, or the same one in another, that differs by little."""
+    """Return the known parameter that was meant: a near name in its place, or the same elsewhere."""
     above, _, last = name.rpartition(".")
     beside = groups.get(above, {})
     if RENAMED.get(last) in beside:

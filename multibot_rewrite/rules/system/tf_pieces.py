@@ -74,7 +74,7 @@ def _by_frames(seen: Index) -> Iterator[Finding]:
 
 
 def _odometry_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
-    """The odometry frames of a tree that are not connected with the base of their robot."""
+    """Yield the odometry frames of a tree that are not connected with the base of their robot."""
     above = above_each(tree)
     if len({(edge.child, edge.parent) for edge in tree.edges}) > len(above):
         # A frame with two parents is a finding of its own.
@@ -101,8 +101,8 @@ def _odometry_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
 
 
 def _misspelled(seen: Index) -> Iterator[Finding]:
-    """A parent that nothing sends, and that is called nearly as a frame is which is sent; a frame that
-    is sent and has nothing below it, while a root is called nearly so."""
+    """Yield misspelt frames: a parent that nothing sends and that is nearly a sent frame, or a sent
+    frame with nothing below it that is nearly a root."""
     for tree in seen.trees:
         children, parents = ({getattr(it, end) for it in tree.edges} for end in ("child", "parent"))
         near_sent, near_root = _near(seen, children), _near(seen, parents - children)
@@ -142,7 +142,7 @@ def _near(seen: Index, frames: Collection[str]) -> Callable[[str, str], str]:
 
 
 def _meant(name: str, others: Collection[str]) -> str:
-    """The frame that is called nearly so; names that differ in their numbers alone are two things."""
+    """Return the frame with nearly this name; names that differ in numbers alone are two things."""
     near = nearest(name, sorted(others), MISTYPED)
     slip = near and near not in name and name not in near and not differ_in_numbers(name, near)
     return near if slip and nearest(*_unlike(name, near), MISTYPED) else ""
@@ -168,13 +168,13 @@ def _slipped(
 
 
 def in_pieces(robot: str, topic: str, roots: Sequence[str]) -> str:
-    """The sentence for a tree of several roots."""
+    """Return the sentence for a tree of several roots."""
     whose = f"the tf tree of {robot}" if robot else "the tf tree"
     return f"{whose} on {topic} has {len(roots)} roots: {', '.join(roots)}"
 
 
 def told_not_to(seen: Index) -> Iterator[Finding]:
-    """Transforms that no node sends, and that nodes could which are told not to."""
+    """Yield transforms that no node sends, because parameters of those that could forbid it."""
     sent = {(tree.topic, edge.child) for tree in seen.trees for edge in tree.edges}
     off: dict[tuple[str, str], list[Edge]] = defaultdict(list)
     for it in (it for it in seen.system.edges if it.sure == OFF):
@@ -240,7 +240,7 @@ def is_sure(seen: Index, found: Finding, moved: bool) -> bool:
 
 
 def is_of_description(seen: Index, edge: Edge) -> bool:
-    """Does robot_state_publisher send it?"""
+    """Return whether robot_state_publisher sends a transform."""
     return any(publishes_description(seen, it) for it in edge.publishers)
 
 

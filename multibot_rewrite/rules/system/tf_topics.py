@@ -154,9 +154,9 @@ def _has_names_of(
 def _frames_beside(
     seen: Index, senders: Mapping[str, Mapping[str, Sequence[str]]]
 ) -> Iterator[Finding]:
-    """A robot's frames on a topic that none of its nodes has, sent by a node of no robot that does not
-    hear the robot's tree: what does may be a relay. A node that is not known may pass on the rest. Of
-    frames of which no sender is known only a plan says where they belong."""
+    """Yield a robot's frames on a topic of none of its nodes, from a node of no robot. A node that
+    hears the robot's tree may be a relay; an unknown node may pass on the rest. Without a known
+    sender only a plan says where frames belong."""
     level = WARNING if incomplete(seen.system) else ERROR
     trees = {it.topic: it for it in seen.trees}
     elsewhere = taken_elsewhere(seen.expected) if seen.expected else ()
@@ -183,8 +183,8 @@ def _frames_beside(
 
 
 def _whose(seen: Index, edge: Edge) -> Sequence[str]:
-    """The robot of a transform; of one without a robot's name the robots that have it by the plan and
-    lack it, where it is not known which nodes run."""
+    """Return the robots that a transform belongs to. If it has no robot's name and no nodes are
+    known, these are the robots that have it by the plan and lack it."""
     robot, plan = seen.frame_robot(edge.child), seen.expected
     if robot:
         known = edge.publishers or robot in seen.home
@@ -222,7 +222,7 @@ def _is_meant(seen: Index, node: str, role: str, topic: str) -> bool:
 
 
 def _home(seen: Index, robot: str, topics: Mapping[str, Sequence[str]]) -> str:
-    """The tf topic of a robot: the known one, its own one, or where most of its nodes send."""
+    """Return a robot's tf topic: the known one, its own, or the one where most of its nodes send."""
     if robot in seen.home:
         return seen.home[robot]
     own = [it for it in topics if seen.robot(it) == robot and seen.plain(it).strip("/") == TF]

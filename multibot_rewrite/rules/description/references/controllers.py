@@ -206,7 +206,7 @@ def _resolved_path(subject: Subject, text: str) -> str:
 
 
 def _interfaces(subject: Subject, path: str, is_sure: bool) -> tuple[Interface, ...]:
-    """What a description exports and the controllers of a file claim; none of what is for another."""
+    """Return the interfaces exported, and claimed by a file's controllers; none of another robot."""
     # Most descriptions have no such file, and a lint of them loads nothing of this.
     from multibot_rewrite.companions.yaml_text import read_yaml
     from multibot_rewrite.knowledge.parameters import load_known_nodes
