@@ -154,7 +154,7 @@ def _descriptions(plan: FleetPlan, folder: str) -> FilesAndFindings:
 
 
 def _portable_plan(plan: FleetPlan, fleet: Fleet) -> System:
-    """The plan with its places relative to the fleet file: the same from every working directory."""
+    """Return the plan with its places relative to the fleet file: equal for every working directory."""
     folder = os.path.dirname(os.path.abspath(plan.file.file))
     made = expected(fleet)
     nodes = (
@@ -188,7 +188,7 @@ def _from(folder: str, place: Place) -> Place:
 
 
 def _portable(plan: FleetPlan, folder: str, gap: Finding) -> Finding:
-    """A finding with its files as seen from a folder."""
+    """Return a finding with its files relative to a folder."""
     message, hint = gap.message, gap.hint
     for path in input_files(plan.file):
         own = os.path.relpath(path, folder)
@@ -198,8 +198,8 @@ def _portable(plan: FleetPlan, folder: str, gap: Finding) -> Finding:
 
 
 def _remappings(table: Table) -> str:
-    """The rules of every node, in the shape of ``multibot plan --form json``; the names that result
-    are in the plan. Written as text: PyYAML takes longer than all the rest."""
+    """Return the remap rules of every node as in ``multibot plan --form json``; the names that
+    result are in the plan. It is written as text, since PyYAML takes longer than all the rest."""
     scalar = cache(quoted)
     robots: dict[str, list[str]] = {}
     for robot, given in standing_by_robot(table):

@@ -63,7 +63,7 @@ class FleetPlan(NamedTuple):
     evidence: Mapping[NodeSources, RobotEvidence]
 
     def evidence_of(self, robot: RewrittenRobot) -> RobotEvidence:
-        """What one robot's own files say; raises nothing."""
+        """Return what one robot's own files say of its nodes."""
         return self.evidence[node_sources(robot.spec)]
 
     @property
@@ -139,8 +139,8 @@ def plan_fleet(
 def _evidence(
     file: FleetFile, robots: Sequence[RewrittenRobot], notes: Mapping[str, Sequence[Finding]]
 ) -> tuple[dict[NodeSources, RobotEvidence], frozenset[str]]:
-    """What the files say of the nodes of each kind of robot, and the namespaces of those robots that
-    may be real ones, which is said once."""
+    """Return what the files say of the nodes of each kind of robot, and the namespaces of robots
+    that may be real, which is reported once."""
     specs = {node_sources(it): it for it in reversed(file.robots)}
     first = {node_sources(it.spec): it for it in reversed(robots)}
     found = {

@@ -99,15 +99,16 @@ def rewrite_files(
     trust: bool = False,
     distro: str = "",
 ) -> Iterator[RewrittenFile]:
-    """The same for several robots, in their order. What a bridge carries for all of them, such as the
-    clock, is in the file of the first. Raises as ``rewrite_file``, before the first result."""
+    """Yield the file rewritten for several robots, in their order. What a bridge carries for all,
+    such as the clock, is in the file of the first. Raises as ``rewrite_file``, before the first
+    result."""
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     given = (urdf, xacro_args, vocabulary, file, trust, release_here(distro))
     return _rewritten(source, tuple(robots), naming, *given)
 
 
 def names_in_file(data: bytes, file: str, urdf: bytes) -> NamedFile:
-    """The names in a file beside the description ``urdf``. Raises what ``rewrite_file`` does."""
+    """Return the names in a related file of the description ``urdf``; raises as ``rewrite_file``."""
     naming, release = make_naming(), release_here("")
     job = read_jobs(["r"], urdf, naming, None, None, (), "", False, release)["r"]
     return read_named(kind_alone(data, file), data, file, _context(job, naming, release))

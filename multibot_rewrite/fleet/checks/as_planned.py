@@ -62,9 +62,9 @@ def not_as_planned(
     told: Sequence[Finding],
     real: Set[str] = frozenset(),
 ) -> Iterator[Finding]:
-    """What ``multibot check`` would say of the running fleet, as errors; ``started`` are the planned
-    nodes that the launch file is to start. What the build has ``told`` is said as it was told. Robots
-    that are ``real`` have drivers that no file names."""
+    """Yield as errors what ``multibot check`` would report of the running fleet. ``started`` are
+    the planned nodes that the launch file starts. What the build has ``told`` is reported as there.
+    Robots that are ``real`` have drivers that no file names."""
     running = {it.name: it for it in seen.nodes}
     found = check_view(planned, seen._replace(environment=Environment()))
     if not found:
@@ -84,12 +84,12 @@ def not_as_planned(
 
 
 def is_of_sources(it: Finding) -> bool:
-    """Does a robot alone have it, whatever it is called?"""
+    """Return whether a finding is about one robot alone, whatever its name."""
     return bool(it.robot) and it.code in (*_OF_SOURCES, *_MISSED)
 
 
 def _key(by_plan: Index, it: Finding) -> tuple[str, ...]:
-    """The code and the names without those of robots."""
+    """Return the code and the names without those of robots."""
     return (it.code, *map(by_plan.plain, it.names)) if it.names else (it.code, str(it))
 
 

@@ -137,6 +137,6 @@ def unmoved(robot: RewrittenRobot, facts: Sequence[NodeFacts], system: System) -
 
 
 def _words(ends: Iterable[End]) -> str:
-    """The names in the code, each with its node."""
+    """Return the names in the code, each with its node, for a message."""
     each = (f"{it.code_name or it.name} of {it.node.rpartition('/')[2]}" for it in ends)
     return shorten(dict.fromkeys(each))

@@ -51,7 +51,7 @@ class Sample(NamedTuple):
 
 
 def two_of_each(made: Outputs, robots: Sequence[RobotSpec]) -> Sample:
-    """The sample; all robots where the launch file and the plan have not one part for each."""
+    """Return the sample; all robots if launch file and plan do not have one part for each."""
     words = {word for it in robots for word in it.words}
     cut = ((word, it.start()) for word in words for it in re.finditer("[_/]", word))
     # Names of two robots could be one, such as those of ``arm`` and ``arm_left``.
@@ -128,7 +128,7 @@ def _but_for(poses: Collection[tuple[float, float]], one: str, other: str) -> bo
 
 
 def _without(made: Outputs, left: Sequence[RobotSpec]) -> Outputs:
-    """The outputs without some robots."""
+    """Return the outputs without some robots."""
     names = {it.name for it in left}
     files = [it for it in made.files if it.path.partition("/")[0] not in names]
 
@@ -144,7 +144,7 @@ def _without(made: Outputs, left: Sequence[RobotSpec]) -> Outputs:
 
 
 def _planned(plan: System, robots: Collection[str]) -> System:
-    """The plan without some robots, and without what only they have."""
+    """Return the plan without some robots, and without what only they have."""
     names = {it.name for it in plan.nodes if it.robot in robots}
     owner = whose_by_plan(plan).robot
     gone: dict[str, bool] = defaultdict(lambda: True)

@@ -118,7 +118,7 @@ def read_fleet(
 
 
 def _policy(read: FleetData) -> tuple[Policy, Naming]:
-    """The options of ``make_naming`` that a fleet file sets, and the naming; raises InputError."""
+    """Return the options of ``make_naming`` in a fleet file, and the naming; raises InputError."""
     data = read.data
     given = {key: data[key] for key in POLICY if key in data}
     lists = {key: tuple(listed(given[key])) for key in LISTS if key in given}
@@ -135,7 +135,7 @@ def _policy(read: FleetData) -> tuple[Policy, Naming]:
 
 
 def _check_world(read: FleetData, naming: Naming) -> None:
-    """Raises InputError for a world that is no frame of all robots."""
+    """Raise InputError for a world that is no frame of all robots."""
     world = read.data.get("world", "")
     if world and world not in naming.shared_frames:
         file, line = read.places["world",]
@@ -149,7 +149,7 @@ def _nodes(data: Mapping[str, Any], key: str) -> tuple[str, ...]:
 
 
 def _release(data: Mapping[str, Any], given: str, environment: Mapping[str, str]) -> SaidRelease:
-    """The release, and what says it."""
+    """Return the release, and what it comes from."""
     asked = given or data.get("distro", "")
     chosen = chosen_release(asked, environment)
     if why := why_told(asked, environment):

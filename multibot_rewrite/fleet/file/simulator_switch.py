@@ -47,7 +47,7 @@ def other_values(value: str) -> list[str]:
 
 
 def hardware_classes(root: _Element) -> list[str]:
-    """The hardware classes of a description's ``<ros2_control>``."""
+    """Return the hardware classes of a description's ``<ros2_control>``."""
     found = (it.text or "" for it in root.iterfind(".//ros2_control/hardware/plugin"))
     return [it.strip() for it in found if it.strip()]
 
@@ -89,8 +89,8 @@ def _lacks_a_class(root: _Element) -> bool:
 def switch_for(
     path: str, given: Mapping[str, str], suits: Suits, reach: Reach
 ) -> tuple[str, str] | None:
-    """The one argument and its other value with which the description suits; None where it does as it
-    is, or with none."""
+    """Return the one argument and its other value with which the description suits; None if it
+    already does, or no value does."""
     if not path.endswith(".xacro"):
         return None
     with suppress(InputError):
@@ -129,6 +129,6 @@ def _switches(sources: Mapping[str, bytes], given: Mapping[str, str]) -> Iterato
 
 
 def _compared(name: str, text: str) -> list[str]:
-    """The words that an argument is compared with, those of a simulator or its hardware first."""
+    """Return the words that an argument is compared with, those of simulators first."""
     found = re.findall(rf"""\b{re.escape(name)}\)?["']?\s*==\s*["']([\w-]+)["']""", text)
     return sorted(dict.fromkeys(found), key=lambda it: _SIMULATED.search(it.lower()) is None)

@@ -34,11 +34,9 @@ def launched_robot(
     parameters: KnownNodes,
     release: str,
 ) -> Launched | None:
-    """The nodes of a robot with these launch files, in a release; None without any.
-
+    """Return the nodes of a robot with these launch files, in a release; None without any.
     ``words`` stand for the robot in names, the first one for ``{robot}`` in arguments. Raises
-    InputError for a launch file that cannot be read, and UsageError for an unknown placeholder.
-    """
+    InputError for a launch file that cannot be read, and UsageError for an unknown placeholder."""
     if not orders:
         return None
     mine = _own(orders, words[0])
@@ -52,7 +50,7 @@ def launched_robot(
 def known_here(
     known: Mapping[str, NodeFacts], orders: Sequence[LaunchOrder], robot: str, release: str
 ) -> dict[str, NodeFacts]:
-    """The known nodes, and what these launch files start, by its source; raises as
+    """Return the known nodes, and by their sources those that launch files start; raises as
     ``launched_robot``."""
     return with_sources(known, launch_of(orders, robot).nodes if orders else (), orders, release)
 
@@ -107,7 +105,7 @@ def nodes_with(
     given: Sequence[Run],
     known: Mapping[str, NodeFacts],
 ) -> RobotNodes:
-    """The nodes that a robot runs, by its launch files, its other files and its stacks."""
+    """Return the nodes that a robot runs, by its launch files, its other files and its node sets."""
     if launched is None:
         return nodes_of(stack, given, known)
     # Controllers of which launch files say whether they run -> the condition; empty for always.
@@ -122,15 +120,15 @@ def nodes_with(
 def under_plugins(
     nodes: Sequence[NodeFacts], launched: Launched | None, rules: Sequence[RemapRule], release: str
 ) -> tuple[NodeFacts, ...]:
-    """The nodes, with the controllers under the rules of the plugin in the description that loads them,
-    unless a launch file starts their controller manager."""
+    """Return the nodes; controllers get the remap rules of the plugin that loads them, unless a
+    launch file starts their controller manager."""
     if launched and MANAGER in launched.started:
         return tuple(nodes)
     return tuple(under_plugin(it, rules, release) for it in nodes)
 
 
 def given_with(launched: Launched | None, given: Sequence[Run]) -> tuple[Run, ...]:
-    """What a robot's files set and what its launch files do: these come last, so they count."""
+    """Return the settings of a robot's files, then those of its launch files, which override them."""
     if launched is None:
         return tuple(given)
     started = {it.node: it for it in launched.given}
@@ -140,7 +138,7 @@ def given_with(launched: Launched | None, given: Sequence[Run]) -> tuple[Run, ..
 
 
 def _both(own: Run, launched: Run) -> Run:
-    """A value that both have keeps its place in the robot's own file."""
+    """Return both settings as one; a value that both have keeps its place in the robot's own file."""
     same = {
         k: it
         for k, it in own.values.items()

@@ -37,11 +37,9 @@ OTHER_CONTROLLER_FILE = declare(
 
 
 def with_own_controllers(robot: RewrittenRobot, folder: str) -> tuple[bytes, tuple[Finding, ...]]:
-    """What the simulator gets, with the paths of the files that are made for this robot in ``folder``.
-
-    Without a ``folder`` nothing is written, and it stays as it is. So does that of a real robot, which
-    loads no file for its simulator's plugin.
-    """
+    """Return what the simulator gets, with the paths of the files made for this robot in
+    ``folder``. Without a ``folder`` nothing is written, and it stays as it is. So does that of a
+    real robot, which loads no file for its simulator's plugin."""
     if robot.spec.simulator == REAL:
         return robot.description, ()
     source = robot.member.inventory.document.source
@@ -125,11 +123,9 @@ NOT_FOLLOWED = declare("MF834", "loaded-file-not-found", NOTE, formats=("fleet",
 
 
 def with_loaded_files(robot: RewrittenRobot) -> RewrittenRobot:
-    """The robot with the files that its description loads among its parameter files.
-
-    One that has the name of a listed file is left out: ``OTHER_CONTROLLER_FILE`` says so. A real robot
-    loads none.
-    """
+    """Return the robot with the files that its description loads among its parameter files. One
+    that has the name of a listed file is left out: ``OTHER_CONTROLLER_FILE`` reports it. A real
+    robot loads none."""
     spec = robot.spec
     file, params = spec.simulated or spec.description, spec.companions.get(PARAMS, ())
     more: list[str] = []
@@ -150,7 +146,7 @@ def with_loaded_files(robot: RewrittenRobot) -> RewrittenRobot:
 
 
 def _found(path: str, description: str) -> Iterator[str]:
-    """The file that a description names, where it can be."""
+    """Yield the existing files that a path in a description may name."""
     plain = path.removeprefix("file://")
     match = IN_PACKAGE.fullmatch(plain)
     if match:

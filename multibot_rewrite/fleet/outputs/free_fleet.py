@@ -84,7 +84,7 @@ def _bridge(robot: Robot, domain: int, setup: FreeFleet) -> bytes:
 
 
 def _robot_frame(plan: System, robot: Robot, whose: Whose) -> str:
-    """What odometry moves: a fixed frame is on tf_static, which the adapter does not read."""
+    """Return the frame that odometry moves; fixed ones are on tf_static, not read by the adapter."""
     nodes = {it.name for it in plan.nodes if it.robot == robot.name}
     moved = (
         it.child

@@ -93,7 +93,7 @@ def _told_apart(path: str, alike: Collection[str]) -> str:
 
 
 def expanded_name(path: str) -> str:
-    """The file's name once xacro is expanded, or parts are joined."""
+    """Return the file's name once xacro is expanded, or parts are joined."""
     name = os.path.basename(path).removesuffix(XACRO).removesuffix(JOIN)
     return name if "." in name else f"{name}.urdf"
 
@@ -107,18 +107,18 @@ def params_paths(robot: RewrittenRobot, files: Collection[str]) -> tuple[str, ..
 
 
 def params_of(spec: RobotSpec) -> dict[str, YamlText]:
-    """A robot's parameter files by path, as a launch fills them; raises InputError as ``read_yaml``."""
+    """Return a robot's parameter files by path, as a launch fills them; raises as ``read_yaml``."""
     return {it: own_yaml(spec, it) for it in spec.companions.get("params", ())}
 
 
 def text_of(spec: RobotSpec, path: str) -> bytes:
-    """The bytes of a file of a robot, which may be made for it; raises as ``read_file``."""
+    """Return the bytes of a file of a robot, which may be made for it; raises as ``read_file``."""
     filled = dict(spec.filled)
     return filled[path].encode() if path in filled else read_file(path)
 
 
 def own_yaml(spec: RobotSpec, path: str) -> YamlText:
-    """A YAML file of a robot; raises as ``yaml_of``."""
+    """Return a YAML file of a robot; raises as ``yaml_of``."""
     return read_yaml(text_of(spec, path), path)
 
 
@@ -128,7 +128,7 @@ def yaml_of(path: str) -> YamlText:
 
 
 def line_in_source(file: OutputFile, line: int) -> tuple[str, int]:
-    """The source of a file, and its line that a line of the file was made from."""
+    """Return the source of a file, and its line that a line of the file was made from."""
     for start, end, first, last in _changes(file):
         if first < line <= last:
             return file.sources[0], max(1, min(start + line - first, end))
@@ -137,7 +137,7 @@ def line_in_source(file: OutputFile, line: int) -> tuple[str, int]:
 
 @lru_cache(maxsize=16)
 def _changes(file: OutputFile) -> tuple[tuple[int, int, int, int], ...]:
-    """The lines of the source, and those of the file that were made from them, piece by piece."""
+    """Return the changed ranges: lines of the source, and lines of the file made from them."""
     from difflib import SequenceMatcher
 
     try:

@@ -102,8 +102,8 @@ def _obeyed(ends: Sequence[CommandEnd]) -> list[str]:
 
 
 def _bridged(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, str]]:
-    """The topics that go to the simulator, with their types: those of the robot's bridge files, then
-    those of the bridge that is made."""
+    """Yield the topics that go to the simulator, with their types: those of the robot's bridge
+    files, then those of the generated bridge."""
     for path in robot.spec.companions.get("bridge", ()):
         for end in bridge_ends(own_yaml(robot.spec, path), robot.spec.bridge_namespace_of(path)):
             if end.role == SUBSCRIBES:

@@ -53,11 +53,9 @@ class Rights(NamedTuple):
 
 
 def rights(plan: System, domain: int) -> list[Rights]:
-    """What each robot of the plan may do in its domain, which is this one where the plan has none.
-
-    All below its namespace is its own, unless another robot has names there too. Of all other names
-    it has those that its nodes have in the plan.
-    """
+    """Return what each robot of the plan may do in its domain, which is this one where the plan has
+    none. All below its namespace is its own, unless another robot has names there too. Of all other
+    names it has those that its nodes have in the plan."""
     numbers, bridged = domain_of(plan), beyond(plan)
     bridges = {it.name for it in plan.nodes if it.stack == DOMAIN_BRIDGE}
     whole = plan
@@ -142,7 +140,7 @@ def _rights(
 
 
 def _key(domain: int, end: End) -> str:
-    """An action has its services and topics below ``_action``."""
+    """Return the key of an end; an action has its services and topics below ``_action``."""
     return f"{domain}{end.name}/_action/*/*/*" if end.kind == ACTION else f"{domain}{end.name}/*/*"
 
 
@@ -151,7 +149,7 @@ def _latched(keys: Sequence[str]) -> tuple[str, ...]:
 
 
 def robot_rules(given: Rights, side: str = SESSION) -> list[Rule]:
-    """The rules of a robot where they are applied: its sessions, its own router, the fleet's router."""
+    """Return the rules of a robot for one side: its sessions, its own router, the fleet's router."""
     out, back = _FLOWS[side]
     name = given.robot
     found = [

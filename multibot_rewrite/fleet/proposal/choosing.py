@@ -65,7 +65,7 @@ class Chosen(NamedTuple):
 
 
 def chosen(robots: Sequence[Looked], found: Found) -> Chosen:
-    """The descriptions by how likely each is the robot; a house or a shelf is none."""
+    """Return the descriptions, the likeliest to be the robot first; a house or a shelf is none."""
     said = names_of_files(found)
     used = {it.path for it in robots if any(_uses(one, it) for one in robots if one.links > 1)}
     made = [_candidate(it, said, found) for it in robots]
@@ -183,14 +183,13 @@ def processes_with(path: str, found: Found) -> int:
 
 
 def launched_descriptions(found: Found) -> list[str]:
-    """The descriptions that the launch file loads which was named, or else those that do which start a
-    robot."""
+    """Return the descriptions loaded by the named launch file, or by all that start a robot."""
     each = (paths for it, paths in loaded(found) if found.named or processes_of_robot(it))
     return [*dict.fromkeys(path for paths in each for path in paths.values())]
 
 
 def loaded(found: Found) -> list[tuple[Reading, Mapping[str, str]]]:
-    """The launch files, each with the descriptions that it loads, by their real paths."""
+    """Return the launch files, each with the descriptions that it loads, by their real paths."""
     return once_kept(
         ("loaded", found), lambda: [(it, loaded_by(it.graph, found)) for it in found.read]
     )
@@ -220,7 +219,7 @@ def _package(path: str) -> str:
 
 
 def _stem(path: str) -> str:
-    """What a description is called: by its file, a model by its folder."""
+    """Return the name of a description: that of its file, for a model that of its folder."""
     stem = os.path.basename(path).partition(".")[0]
     is_model = _COPY.sub("", stem).strip() == "model"
     return os.path.basename(os.path.dirname(path)) if is_model else stem

@@ -99,12 +99,9 @@ class Found(NamedTuple):
 
 
 def search(paths: Sequence[str], launch: Sequence[LaunchOrder] = ()) -> Found:
-    """What there is for the descriptions and folders that are named, or for the ``launch`` file: no
-    other one counts then.
-
-    With a description goes what is in its package; raises UsageError for a path that is not there,
-    InputError for a file of another kind.
-    """
+    """Return the files found for the named descriptions and folders, or for the ``launch`` file,
+    which then is the only one. A description brings the files of its package; raises UsageError for
+    a path that does not exist, InputError for a file of another kind."""
     for path in paths:
         if not os.path.exists(path):
             link = os.path.islink(path)
@@ -137,8 +134,8 @@ def search(paths: Sequence[str], launch: Sequence[LaunchOrder] = ()) -> Found:
 
 
 def loaded_by(graph: LaunchGraph, found: Found) -> Mapping[str, str]:
-    """The descriptions that a launch file loads, by their real paths: it reads the file, gives it to a
-    node, or starts a world with the model."""
+    """Return the descriptions that a launch file loads, by their real paths: it reads the file,
+    gives it to a node, or starts a world with the model."""
     known = {os.path.realpath(it): it for it in found.every}
     ends = tuple(known_names()["ends"])
     words = (it for node in graph.nodes for it in node.arguments if it.endswith(ends))
@@ -166,12 +163,12 @@ class Undecided(UsageError):
         super().__init__(f"{what}: {shown}; name one: {command}")
 
     def said(self, path: str) -> str:
-        """A file as it is shown."""
+        """Return a file as a message shows it."""
         return f"{path} ({self.files[path]})" if self.files[path] else path
 
 
 def without(found: Found, paths: Container[str]) -> Found:
-    """The same without some files, of whatever kind."""
+    """Return what was found, without some files of whatever kind."""
     kept = {
         kind: tuple(it for it in its if it not in paths) for kind, its in found._asdict().items()
     }
@@ -179,7 +176,7 @@ def without(found: Found, paths: Container[str]) -> Found:
 
 
 def home_of(file: str) -> str:
-    """The package of a file, as a path like the file's; its folder where it is in none."""
+    """Return the package of a file, as a path like the file's; its folder where it is in none."""
     package = package_of(file)
     return os.path.relpath(package[1]) if package else os.path.dirname(file) or os.curdir
 
@@ -237,12 +234,12 @@ def _sorted(paths: Iterable[str], named: Sequence[Reading]) -> Iterator[tuple[st
 
 @lru_cache(maxsize=512)
 def text_of(path: str) -> str:
-    """The text of a file such as a launch file; empty where it cannot be read."""
+    """Return the text of a file such as a launch file; empty where it cannot be read."""
     return data_of_file(path).decode("utf-8", "replace")
 
 
 def _kind(path: str, data: bytes) -> str:
-    """The field of ``Found`` that a file goes into; empty for none."""
+    """Return the field of ``Found`` that a file goes into; empty for none."""
     stem, end = os.path.splitext(os.path.basename(path))
     above = os.path.basename(os.path.dirname(path))
     if stem.endswith((".launch", "_launch")) or (above == "launch" and _LAUNCH.search(data)):

@@ -35,7 +35,7 @@ ABOUT_PARTS = declare("MF848", "joined-parts", NOTE, formats=("fleet",))
 
 
 def with_joined(file: FleetFile, trust: bool) -> tuple[FleetFile, Mapping[str, Sequence[Finding]]]:
-    """The fleet with the descriptions of robots that have parts, and what a person should know of the
+    """Return the fleet with the descriptions of robots that have parts, and findings about the
     first robot of each kind; raises InputError as ``join_plain``."""
     found: dict[str, Joined] = {}
     notes: dict[str, Sequence[Finding]] = {}
@@ -65,7 +65,7 @@ def with_joined(file: FleetFile, trust: bool) -> tuple[FleetFile, Mapping[str, S
 
 
 def _with_files(robot: RobotSpec, made: Joined) -> RobotSpec:
-    """The robot with its texts; an SRDF of its own is taken instead of the parts'."""
+    """Return the robot with its texts; an SRDF of its own replaces that of the parts."""
     folder, name = os.path.split(robot.description)
     below = robot.description if name.endswith(JOIN) else folder
     stem = os.path.join(below, name.removesuffix(JOIN).removesuffix(".urdf"))

@@ -24,7 +24,7 @@ from multibot_rewrite.spelling.records import Run
 def left_idle(
     nodes: Sequence[NodeFacts], given: Iterable[Run], known: Mapping[str, NodeFacts]
 ) -> Iterator[Finding]:
-    """What starts and does nothing, by the robot's own files of parameters."""
+    """Yield what starts and does nothing, by the robot's own parameter files."""
     own = {it.node: it for it in given}
     yield from _unlisted(nodes, own)
     yield from _unbonded(nodes, own)
@@ -62,5 +62,5 @@ def _unbonded(nodes: Sequence[NodeFacts], own: Mapping[str, Run]) -> Iterator[Fi
 
 
 def _listed(managers: Sequence[NodeFacts]) -> Set[str]:
-    """The nodes whose services managers call."""
+    """Return the nodes whose services managers call."""
     return {end.name.strip("/").partition("/")[0] for it in managers for end in it.endpoints}

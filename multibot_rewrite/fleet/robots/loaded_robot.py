@@ -47,7 +47,7 @@ class KeptFiles:
         self._folder: TemporaryDirectory[str] | None = None
 
     def path(self, robot: str, file: str, text: str) -> str:
-        """The path of a robot's file with this text; raises OSError where none can be written."""
+        """Return the path of a robot's file with this text; raises OSError if none can be written."""
         if self._folder is None:
             self._folder = TemporaryDirectory(prefix="multibot_")
         path = os.path.join(self._folder.name, robot, os.path.basename(file))
@@ -131,8 +131,9 @@ class LoadedRobot:
         return self._robot.srdf.decode()
 
     def to_dict(self) -> dict[str, Any]:
-        """The parameters of its move_group, as ``to_dict()`` of moveit_configs_utils has them for one
-        robot: description, SRDF and the files of ``companions: moveit``. Raises as ``text``."""
+        """Return the parameters of its move_group, as moveit_configs_utils' ``to_dict()`` has them
+        for one robot: description, SRDF and the files of ``companions: moveit``. Raises as
+        ``text``."""
         files = self._robot.spec.companions.get("moveit", ())
         texts = {it: self.text(it) for it in files}
         return move_group_parameters(self.description, self.srdf, texts)
@@ -169,19 +170,17 @@ class LoadedRobot:
 
     @checked
     def spawner(self, controller: str, *paths: str) -> dict[str, Any]:
-        """What loads a controller of its stacks, with its remappings, for ``Node(**...)``.
-
-        ``paths`` are parameter files for it. Raises UsageError for a node that is no controller or
-        that no stack has.
-        """
+        """Return what loads a controller of its node sets, with its remap rules, for
+        ``Node(**...)``. ``paths`` are parameter files for it. Raises UsageError for a node that is
+        no controller or that no node set has."""
         made = self.table.spawner(controller)
         files = (word for path in paths for word in ("-p", path))
         return {**made, "arguments": [*made["arguments"], *files]}
 
     @checked
     def program(self, node: str) -> Program | None:
-        """What is started for a node of its stacks, its class where it is a component; None where no
-        source says it. Raises UsageError for a node that no stack has."""
+        """Return what is started for a node of its node sets, its class if it is a component; None
+        if no source says it. Raises UsageError for a node that no node set has."""
         self.table.name(node)
         runs = self._fleet.plan.evidence_of(self._robot).nodes
         facts = next((it for it in runs if it.name == node), None)
@@ -189,12 +188,10 @@ class LoadedRobot:
 
     @checked
     def params(self, file: str, node: str) -> dict[str, Value]:
-        """The parameters of a node in a rewritten parameter file of the fleet, by dotted names.
-
-        ``node`` is its name in the stack or in the file. A node of a stack without a section gets an
-        empty dict. Raises UsageError for an unknown node, and as ``text`` and
-        ``LoadedFleet.parameters`` for the file.
-        """
+        """Return the parameters of a node in a rewritten parameter file of the fleet, by dotted
+        names. ``node`` is its name in the node set or in the file. A node of a node set without a
+        section gets an empty dict. Raises UsageError for an unknown node, and as ``text`` and
+        ``LoadedFleet.parameters`` for the file."""
         document = self._fleet.parameters(self._own(file))
         known = node in self.table.nodes
         release, naming = self._fleet.planned.table.release, self._robot.topics.naming
@@ -208,16 +205,14 @@ class LoadedRobot:
 
     @checked
     def text(self, file: str) -> str:
-        """This robot's version of a file of the fleet, such as ``params.yaml`` or ``bridge.yaml``.
-
-        Raises as ``LoadedFleet.text``.
-        """
+        """Return this robot's version of a file of the fleet, such as ``params.yaml`` or
+        ``bridge.yaml``. Raises as ``LoadedFleet.text``."""
         return self._fleet.text(self._path(file))
 
     @checked
     def node_text(self, file: str) -> str:
-        """The same of a parameter file for nodes that are started here: with their full names,
-        also where the fleet file wants files for nav2_bringup. Raises as ``text``."""
+        """Return the text of a parameter file for nodes that are started here: with full node
+        names, also if the fleet file wants files for nav2_bringup. Raises as ``text``."""
         return self._fleet.node_text(self._path(file))
 
     def _path(self, file: str) -> str:
@@ -234,26 +229,24 @@ class LoadedRobot:
 
     @checked
     def frame(self, name: str) -> str:
-        """This robot's name of a frame: a link, or one that its nodes or nodes of any robot send.
-
-        Raises UsageError for another.
-        """
+        """Return this robot's name of a frame: a link, or one that its nodes or any robot's nodes
+        send. Raises UsageError for another."""
         runs = self._fleet.plan.evidence_of(self._robot).nodes
         sent = (it.default for node in runs for it in node.frames)
         return self._known("frame", name, (*SENT_FRAMES, *sent))
 
     @checked
     def link(self, name: str) -> str:
-        """This robot's name of a link of the description; raises UsageError for another name."""
+        """Return this robot's name of a link of the description; raises UsageError for another name."""
         return self._known("link", name)
 
     @checked
     def joint(self, name: str) -> str:
-        """This robot's name of a joint of the description; raises as ``link``."""
+        """Return this robot's name of a joint of the description; raises as ``link``."""
         return self._known("joint", name)
 
     def _known(self, word: str, name: str, more: Iterable[str] = ()) -> str:
-        """The robot's version of a name that the description has, or that is one of ``more``."""
+        """Return the robot's version of a name that the description or ``more`` has."""
         names = self._robot.names
         described = [it for kind in KINDS[word] for it in names.declared.get(kind, ())]
         if name not in {*described, *more}:
@@ -262,7 +255,7 @@ class LoadedRobot:
 
     @checked
     def topic(self, name: str) -> str:
-        """This robot's absolute name of a single robot's topic ``name``; raises as ``frame``."""
+        """Return this robot's absolute name of a single robot's topic ``name``; raises as ``frame``."""
         plan = self._fleet.plan
         known = fleet_topics(plan.fleet.table, plan.fleet.facts, self._graph)
         full = robot_topic(self._robot.topics, name, known)

@@ -60,11 +60,9 @@ class Member(NamedTuple):
 def member(
     source: Rewrite, data: bytes, tag: str, real: bool = False, described: Member | None = None
 ) -> Member:
-    """The robot of a rewrite; ``data`` is its final description, of which a ``real`` robot takes
-    nothing that is for a simulator. ``described`` has what it publishes, if that is another one.
-
-    Raises InputError where ROS refuses the names of a plugin.
-    """
+    """Return the robot of a rewrite; ``data`` is its final description, of which a ``real`` robot
+    takes nothing that is for a simulator. ``described`` has what it publishes, if that is another
+    one. Raises InputError where ROS refuses the names of a plugin."""
     document, tree = source.template.inventory.document, source.template.tree
     data = without_simulator(data, document.file) if real else data
     written = collect(read_document(data, document.file), tree)
@@ -94,7 +92,7 @@ def member(
 
 
 def with_text(it: Member, data: bytes) -> Member:
-    """The robot with another text of what the simulator gets."""
+    """Return the robot with another text of what the simulator gets."""
     file = it.inventory.document.file
     written = collect(read_document(data, file), it.tree)
     described = written if it.described is it.inventory else it.described
@@ -103,7 +101,7 @@ def with_text(it: Member, data: bytes) -> Member:
 
 
 def without_simulator(data: bytes, file: str) -> bytes:
-    """A description without its plugins and sensors for simulators; raises InputError."""
+    """Return a description without its plugins and sensors for simulators; raises InputError."""
     root = read_xml(data, file)
     tags = ("plugin", "sensor") if root.tag == "sdf" else ("gazebo",)
     for element in list(root.iter(*tags)):
@@ -114,7 +112,7 @@ def without_simulator(data: bytes, file: str) -> bytes:
 
 
 def line_of(document: Document, tag: str, number: int) -> int:
-    """The line of the ``number``-th element with this tag, 1 where there is none."""
+    """Return the line of the ``number``-th element with this tag, 1 without one."""
     element = next(islice(document.root.iter(tag), number, None), document.root)
     line: int = element.sourceline or 1  # type: ignore[assignment]
     return line

@@ -33,11 +33,9 @@ class NodeNames(NamedTuple):
 
     @checked
     def for_node(self, node: str) -> Rules:
-        """The node's remappings, as ``launch_ros.actions.Node`` and ``ComposableNode`` take them.
-
-        Rules for nodes in its process come first: rcl applies the first rule that matches. Raises
-        UsageError for a node that no stack of the fleet has, and for a controller.
-        """
+        """Return the node's remap rules, as ``launch_ros.actions.Node`` and ``ComposableNode`` take
+        them. Rules for nodes in its process come first: rcl applies the first rule that matches.
+        Raises UsageError for a node that no node set of the fleet has, and for a controller."""
         own = self._found(node)
         it = self.started.get(node)
         if it is None:
@@ -65,14 +63,14 @@ class NodeNames(NamedTuple):
         return node in self.started and self.started[node].way == SPAWNER
 
     def container(self, node: str) -> str:
-        """The full name of the container that this node is loaded into, empty for other nodes; raises
-        nothing."""
+        """Return the full name of the container that this node is loaded into, empty for other
+        nodes; raises nothing."""
         it = self.started.get(node)
         return self.full_name(it.node.fact.container) if it and it.way == COMPONENT else ""
 
     def inside(self, node: str) -> list[str]:
-        """The other nodes in the process that is started for this one: costmaps, components; raises
-        nothing."""
+        """Return the other nodes in the process that is started for this one: costmaps, components;
+        raises nothing."""
         homes = {it.node: it.fact.host or it.fact.container for it in self.nodes.values()}
         found = []
         for name in homes:
@@ -85,17 +83,17 @@ class NodeNames(NamedTuple):
 
     @checked
     def name(self, node: str) -> str:
-        """The name the node runs under, without its namespace; raises as ``for_node``."""
+        """Return the name the node runs under, without its namespace; raises as ``for_node``."""
         return self._found(node).name
 
     @checked
     def namespace(self, node: str) -> str:
-        """The namespace the node runs in, from the root; raises as ``for_node``."""
+        """Return the namespace the node runs in, from the root; raises as ``for_node``."""
         return self._found(node).namespace
 
     @checked
     def full_name(self, node: str) -> str:
-        """The node's name with its namespace; raises as ``for_node``."""
+        """Return the node's name with its namespace; raises as ``for_node``."""
         return f"{self.namespace(node).rstrip('/')}/{self.name(node)}"
 
     def _found(self, node: str) -> Run:
@@ -107,7 +105,7 @@ class NodeNames(NamedTuple):
 
 
 def names_of(table: Table, robot: str) -> NodeNames:
-    """The nodes of one robot in a fleet's table; of those for all robots if it is empty."""
+    """Return the nodes of one robot in a fleet's table; of those for all robots if it is empty."""
     nodes: dict[str, Run] = {}
     own = [it for it in table.runs if it.robot == robot]
     for it in own:

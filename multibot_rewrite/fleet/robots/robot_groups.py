@@ -32,7 +32,7 @@ class RobotGroup(NamedTuple):
 
 
 def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
-    """The groups of a fleet, in the order of their first robots."""
+    """Yield the groups of a fleet, in the order of their first robots."""
     for robots in lists_by_key((_key(it.spec), it) for it in plan.robots).values():
         spec = robots[0].spec
         evidence = plan.evidence_of(robots[0])
@@ -62,7 +62,7 @@ def split_per_robot(plan: FleetPlan) -> Iterator[FleetPlan]:
 
 
 def said_once(plan: FleetPlan, findings: Iterable[Finding]) -> list[Finding]:
-    """Findings sorted by place; what is the same for many robots is one finding."""
+    """Return findings sorted by place; what is the same for many robots is one finding."""
     specs = [it.spec for it in plan.robots]
     ordered = sorted(
         set(findings), key=lambda it: (it.file, it.line, it.column, it.code, it.message, it)

@@ -97,7 +97,7 @@ def _in_files(nodes: Iterable[NodeFacts], free: Collection[str]) -> Iterator[Edg
 
 
 def sends_too(nodes: Iterable[NodeFacts], free: Collection[str], sent: Sequence[Edge]) -> bool:
-    """Does a node that surely runs and is not ``free`` send a transform that plugins have ``sent``?"""
+    """Return whether a node that surely runs and is not ``free`` sends what plugins have ``sent``."""
     bodies = {*BODY_FRAMES, *(it.child for it in sent)}
     sure = (it for it in nodes if not it.when)
     own = {_place(it, bodies) for it in _in_files(sure, free)}
