@@ -93,11 +93,9 @@ class NodeLibrary(NamedTuple):
 
 
 def stack_of(library: NodeLibrary, name: str) -> tuple[NodeFacts, ...]:
-    """The nodes of a stack, each once; nodes of included stacks come first.
-
-    The name of a node is a stack of that node alone. Raises UsageError for other names, and for
-    what the library's release lacks.
-    """
+    """Return the nodes of a node set, each once; nodes of included node sets come first. The name
+    of a node is a node set of that node alone. Raises UsageError for other names, and for what the
+    library's release lacks."""
     if name in library.elsewhere:
         hint = "name one of these releases, or leave the node set out"
         has = f"it is in {library.elsewhere[name]}"
@@ -118,7 +116,7 @@ def stack_of(library: NodeLibrary, name: str) -> tuple[NodeFacts, ...]:
 
 
 def with_included(library: NodeLibrary, name: str) -> Iterator[str]:
-    """The names of a stack and of all stacks that it includes; a node is no stack."""
+    """Yield the names of a node set and of all that it includes; a node is no node set."""
     yield name
     for other in library.stacks[name].include if name in library.stacks else ():
         yield from with_included(library, other)
@@ -134,7 +132,7 @@ def _gathered(library: NodeLibrary, name: str, above: tuple[str, ...]) -> Iterat
 
 
 def _in_stack(node: NodeFacts, stack: Stack) -> NodeFacts:
-    """The node under the rules of the stack, as a component if the stack has a container for it."""
+    """Return the node under a node set's rules, as a component if the node set has a container."""
     rules = {given: target for name, given, target in stack.remaps if name == node.name}
     ends = (it._replace(remapped=rules.get(it.name, it.remapped)) for it in node.endpoints)
     node = node._replace(endpoints=tuple(ends)) if rules else node
@@ -222,7 +220,7 @@ def _stack(item: YamlItem, library: NodeLibrary, stacks: Iterable[str]) -> Stack
 
 
 def _placed(item: YamlItem, library: NodeLibrary) -> NodeFacts:
-    """A node with the changes that a stack makes to it."""
+    """Return a node with the changes that a node set makes to it."""
     if isinstance(item.value, str):
         return known_word(item, "node", library.nodes)
     keys = table(item, "an entry", ENTRY_KEYS)
@@ -249,7 +247,7 @@ def _placed(item: YamlItem, library: NodeLibrary) -> NodeFacts:
 
 
 def _usual(values: Mapping[str, YamlItem]) -> Iterator[tuple[str, str | float]]:
-    """The parameters that the stack's own file gives a node."""
+    """Yield the parameters that the node set's own file gives a node."""
     for name, item in values.items():
         if not isinstance(item.value, str | float | int):
             wrong(item, f"parameter {name} is no word or number")
@@ -262,7 +260,7 @@ def _usual(values: Mapping[str, YamlItem]) -> Iterator[tuple[str, str | float]]:
 
 
 def _named(endpoints: tuple[Endpoint, ...], keys: Mapping[str, YamlItem]) -> tuple[Endpoint, ...]:
-    """The endpoints with the names that parameters set."""
+    """Return the endpoints with the names that parameters set."""
     for given, item in table_of(keys, "names").items():
         if not any(_has(endpoint, given) for endpoint in endpoints):
             wrong(item, unknown("name", given, {endpoint.name for endpoint in endpoints}))
@@ -289,7 +287,7 @@ def _has(endpoint: Endpoint, given: str) -> bool:
 def _remapped(
     endpoints: tuple[Endpoint, ...], keys: Mapping[str, YamlItem]
 ) -> tuple[Endpoint, ...]:
-    """The endpoints with the remap rules of the usual launch file."""
+    """Return the endpoints with the remap rules of the usual launch file."""
     for given, item in table_of(keys, "remaps").items():
         _check_rule(item, given, endpoints)
         target = word(item, f"remaps {given}")

@@ -49,7 +49,7 @@ def packages() -> Mapping[str, Package]:
 
 
 def number(version: str) -> tuple[int, ...]:
-    """A version as it is compared."""
+    """Return a version in a form that can be compared."""
     return tuple(int(it) for it in version.split(".") if it.isdecimal())
 
 
@@ -82,5 +82,5 @@ def older(name: str, release: str) -> str:
 
 
 def versions_of(name: str) -> Mapping[str, Versions]:
-    """The versions of a package by release; none of one that the table lacks."""
+    """Return the versions of a package by release; empty for one that the table lacks."""
     return packages()[name].versions if name in packages() else {}

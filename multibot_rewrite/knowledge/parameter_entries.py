@@ -50,7 +50,7 @@ PARAM_KEYS = ("kind", "default", "absolute", "deprecated", "own", "instead", "no
 def read_parameters(
     name: str, keys: Mapping[str, YamlItem], old: NodeParameters | None
 ) -> NodeParameters:
-    """What an entry says of a node's parameters, added to what is known of it; raises UsageError."""
+    """Return an entry's parameters, added to what is known of the node; raises UsageError."""
     if old is None:
         old = NodeParameters(name.rpartition("/")[2], "")
     absolute = releases_of(keys, "absolute")
@@ -84,7 +84,7 @@ def read_parameters(
 
 
 def has_default(param: Param) -> bool:
-    """Does the parameter have a default, and a path without placeholders?"""
+    """Return whether the parameter has a default, and a path without placeholders."""
     return bool(param.default or param.kind in PREFIX_KINDS) and "<" not in param.path
 
 

@@ -38,15 +38,13 @@ class KnownNodes(NamedTuple):
 
 @lru_cache
 def built_in_nodes(release: str) -> KnownNodes:
-    """The nodes that this package knows, with the defaults of a release."""
+    """Return the nodes that this package knows, with the defaults of a release."""
     return _known(every_release(), release)
 
 
 def load_known_nodes(path: str, release: str) -> KnownNodes:
-    """The built-in nodes, and those that a user's file of nodes adds or changes.
-
-    Raises UsageError, with file and line, for whatever is wrong in it.
-    """
+    """Return the built-in nodes, and those that a user's file of nodes adds or changes. Raises
+    UsageError, with file and line, for whatever is wrong in it."""
     return _known(with_file(path), release) if path else built_in_nodes(release)
 
 
@@ -69,7 +67,7 @@ def is_called(param: Param, name: str) -> bool:
 
 
 def guess(known: KnownNodes, path: str) -> str:
-    """The kind that the last word of a path suggests; empty for none."""
+    """Return the kind that the last word of a path suggests; empty for none."""
     found = known.guessing.fullmatch(path, path.rfind(".") + 1)
     return (found.lastgroup or "") if found else ""
 
@@ -94,8 +92,8 @@ def _known(library: NodeLibrary, release: str) -> KnownNodes:
 
 
 def _node(facts: NodeParameters, release: str) -> NodeParameters:
-    """A node in a release. What this lacks is known as the last had it that did: where a file sets it,
-    it is for a release that has it."""
+    """Return a node in a release. What this lacks is kept as the last release with it had it: a
+    file that sets it is for such a release."""
     params: dict[str, Param] = {}
     for it in facts.forms:
         if it.path not in params or not has_release(params[it.path].releases, release):

@@ -34,8 +34,8 @@ class Program(NamedTuple):
 
 
 def program_of(node: NodeFacts, release: str) -> Program | None:
-    """The program of a node in a release; None where no package is known, and for one that is only a
-    component."""
+    """Return the program of a node in a release; None if no package is known, and for one that is
+    only a component."""
     known = node.kind
     if known == CONTAINER:
         return container_of(release)
@@ -45,7 +45,7 @@ def program_of(node: NodeFacts, release: str) -> Program | None:
 
 
 def started_as(node: NodeFacts, release: str) -> Program | None:
-    """The same, and the class of one that is only a component: its executable is empty."""
+    """Return the program, or the class of what is only a component, with an empty executable."""
     alone = program_of(node, release)
     if alone is None and node.package and node.component:
         return Program(node.package, "", node.component)
@@ -53,7 +53,7 @@ def started_as(node: NodeFacts, release: str) -> Program | None:
 
 
 def known_program(name: str, release: str) -> Program:
-    """The program of a node of ``NAV2`` that the release has."""
+    """Return the program of a node of ``NAV2`` that the release has."""
     program = program_of(built_in(release).nodes[name], release)
     assert program is not None
     return program
@@ -68,7 +68,7 @@ def runs(node: NodeFacts, program: str) -> bool:
 
 
 def container_of(release: str) -> Program:
-    """The program of a container in a release."""
+    """Return the program of a container in a release."""
     if has_release("lyrical+", release):
         words = ("--isolated", "--executor-type", "single-threaded")
         return Program("rclcpp_components", CONTAINER, words=words)

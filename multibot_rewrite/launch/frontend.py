@@ -84,7 +84,7 @@ def place(entity: Any, parser: Any) -> Parsed:
 
 
 def action_options(entity: Any, parser: Any) -> dict[str, Any]:
-    """The options of every action in an XML or YAML launch file, such as its condition."""
+    """Return the options of every action in an XML or YAML launch file, such as its condition."""
     options: dict[str, Any] = of_launch().Action.parse(entity, parser)[1]
     return options
 
@@ -101,7 +101,7 @@ def expose(
 
 
 def _node(word: str, base: Any, entity: Any, parser: Any) -> dict[str, Any]:
-    """The options of a node that its class ``base`` reads, and ours."""
+    """Return the options of a node that its class ``base`` reads, and ours."""
     _, given = base.parse(_Programless(entity), parser)
     if entity.get_attr("exec", optional=True) is None:
         given.pop("executable", None)
@@ -135,7 +135,7 @@ def _ours(entity: Any, parser: Any) -> dict[str, Any]:
 
 
 def _component(entity: Any, parser: Any) -> dict[str, Any]:
-    """The options of a component: launch_ros reads them only where its name is given."""
+    """Return the options of a component: launch_ros reads them only where its name is given."""
     given: dict[str, Any] = {
         option: parser.parse_substitution(text)
         for option, word in (("package", "pkg"), ("plugin", "plugin"))
@@ -149,7 +149,7 @@ def _component(entity: Any, parser: Any) -> dict[str, Any]:
 
 
 def _nested(entity: Any, word: str) -> list[Any]:
-    """The elements of this name in an element."""
+    """Return the elements of this name in an element."""
     several = _SEVERAL[of_launch("frontend").Entity]
     return entity.get_attr(word, data_type=several, optional=True) or []
 
@@ -175,7 +175,7 @@ def _program(entity: Any, parser: Any) -> dict[str, Any]:
 
 
 def _texts(entity: Any, parser: Any, *names: str) -> dict[str, Any]:
-    """The attributes that are set, with their substitutions."""
+    """Return the attributes that are set, with their substitutions."""
     found = {name: entity.get_attr(name, optional=True) for name in names}
     return {name: parser.parse_substitution(it) for name, it in found.items() if it is not None}
 

@@ -27,7 +27,7 @@ def may_stop(rule: Rule) -> bool:
 
 
 def in_use(found: Iterable[Finding], document: Document, simulated: bool) -> Iterator[Finding]:
-    """The findings of a document that count for a robot which runs with it, with their level there."""
+    """Yield the findings that count for a robot with this document, with their level there."""
     for it in found:
         level = _in_simulator(it) if simulated else _only_sent(it, document)
         if level:

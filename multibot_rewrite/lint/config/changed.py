@@ -55,8 +55,8 @@ def changed_since(rev: str, paths: Sequence[str]) -> list[str]:
 
 
 def _differing(top: str, base: str) -> tuple[frozenset[str], frozenset[str]]:
-    """What differs from a commit, in submodules as well, and what git does not have. A submodule is
-    asked by itself: git would run its filters."""
+    """Return what differs from a commit, in submodules as well, and what git does not have. A
+    submodule is asked by itself: git would run its filters."""
     diff = [
         "diff",
         "--name-only",
@@ -80,7 +80,7 @@ def _submodules(top: str) -> Iterator[str]:
 
 
 def _base(rev: str) -> str:
-    """The last commit that HEAD and the revision have in common."""
+    """Return the last commit that HEAD and the revision have in common."""
     try:
         _git(".", "rev-parse", "--verify", "--quiet", f"{rev}^{{commit}}")
     except UsageError:
@@ -105,7 +105,7 @@ def _git(where: str, *words: str) -> bytes:
 
 
 def _names(listed: bytes) -> frozenset[str]:
-    """The names in a list with zeros between them; a nested repository ends in a slash."""
+    """Return the names in a list with zeros between them; a nested repository ends in a slash."""
     return frozenset(os.fsdecode(it).rstrip("/") for it in listed.split(b"\0") if it)
 
 

@@ -46,11 +46,9 @@ def after_comments(
     sources: Mapping[str, bytes],
     settings: Settings,
 ) -> list[Finding]:
-    """The findings that no comment suppresses, and those about comments; ``codes`` are all that were
-    found.
-
-    The first of ``sources`` is the file that is linted, the others are those it includes.
-    """
+    """Return the findings that no comment suppresses, and those about comments; ``codes`` are all
+    that were found. The first of ``sources`` is the file that is linted, the others are those it
+    includes."""
     comments = [it for file, source in sources.items() for it in _comments(file, source)]
     left, used = _apply(findings, comments)
     faults = ((it, fault) for it in comments for fault in it.it.faults)
@@ -75,7 +73,7 @@ def _comments(file: str, source: bytes) -> Iterator[Comment]:
 def _apply(
     findings: Iterable[Finding], comments: Iterable[Comment]
 ) -> tuple[list[Finding], set[tuple[str, int]]]:
-    """The findings that are left, and the codes that suppressed one, by file and offset."""
+    """Return the findings that are left, and the codes that suppressed one, by file and offset."""
     by_code = lists_by_key((code.text, (it, code)) for it in comments for code in it.it.codes)
     left, used = [], set()
     for finding in findings:
@@ -160,7 +158,7 @@ def _removals(comment: Comment, idle: Sequence[CodeName]) -> Iterator[tuple[Edit
 
 
 def _removal(comment: Comment) -> tuple[Edit, ...]:
-    """The whole comment, with its line if nothing else is on it; none where it is inside a text."""
+    """Return the edit that removes a comment, with a line that has nothing else; none inside a text."""
     source, it = comment.source, comment.it
     start = len(source[: it.start].rstrip())
     end = len(source) - len(source[it.end :].lstrip())

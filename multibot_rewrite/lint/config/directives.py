@@ -81,7 +81,7 @@ class Directive(NamedTuple):
 
 
 def read_directives(source: bytes) -> list[Directive]:
-    """The ``urdf-lint:`` comments of a file, in order."""
+    """Return the ``urdf-lint:`` comments of a file, in order."""
     parts = list(_parts(source))
     ends = _element_ends(parts)
     spans = ((parts[at], end) for at, end in ends.items())
@@ -114,7 +114,7 @@ def _parts(source: bytes) -> Iterator[TagPart]:
 
 
 def _element_ends(parts: Sequence[TagPart]) -> dict[int, int]:
-    """Number of an element's first tag -> the offset where the element ends."""
+    """Return by the number of an element's first tag the offset where the element ends."""
     ends: dict[int, int] = {}
     opened: list[int] = []
     for at, part in enumerate(parts):
@@ -149,7 +149,7 @@ def _directive(source: bytes, part: TagPart) -> Directive | None:
 
 
 def _codes(source: bytes, comment: re.Match[bytes]) -> tuple[list[CodeName], list[DirectiveFault]]:
-    """The valid codes, and what is wrong with the others."""
+    """Return the valid codes, and what is wrong with the others."""
     reason = _REASON.search(source, comment.start(3), comment.end(3))
     end = reason.start() if reason else comment.end(3)
     codes: list[CodeName] = []
@@ -208,7 +208,7 @@ def _has_its_lines(source: bytes, comment: TagPart, last: int) -> bool:
 
 
 def _in_place(it: Directive, tags: Sequence[TagPart]) -> Directive:
-    """An ignore-file has no effect after the root's first child."""
+    """Return the comment; an ignore-file after the root's first child has no codes but a fault."""
     if it.word != IGNORE_FILE or len(tags) < 2 or it.start < tags[1].start:
         return it
     late = DirectiveFault(

@@ -15,7 +15,7 @@ def of_launch(module: str = "") -> Any:
 
 
 def of_launch_ros(module: str) -> Any:
-    """A module of launch_ros; raises ImportError."""
+    """Return a module of launch_ros; raises ImportError."""
     import launch_ros
 
     return import_module(f"{launch_ros.__name__}.{module}")

@@ -36,7 +36,7 @@ def has_sections(it: ParameterText) -> bool:
 
 @lru_cache(maxsize=64)
 def document_of(file: str, text: str) -> YamlText:
-    """A parameter file, or with no ``file`` what a launch file sets itself; raises InputError."""
+    """Return a parameter file, or without ``file`` what a launch file sets; raises InputError."""
     return read_yaml(text.encode(), file or OWN)
 
 

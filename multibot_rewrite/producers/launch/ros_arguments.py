@@ -26,7 +26,7 @@ class RosArguments(NamedTuple):
 
 
 def ros_arguments(words: Sequence[str]) -> RosArguments:
-    """What rcl reads in these words."""
+    """Return what rcl reads in these words."""
     own: list[str] = []
     given: list[str] = []
     inside = False
@@ -65,6 +65,6 @@ def _pair(text: str) -> tuple[str, str]:
 
 
 def params_text(values: Iterable[tuple[str, str]]) -> str:
-    """A parameter file for any node with these values, each as YAML has it."""
+    """Return a parameter file for any node with these values, each as YAML has it."""
     lines = "".join(f"    {name}: {value}\n" for name, value in values)
     return f"/**:\n  ros__parameters:\n{lines}" if lines else ""

@@ -113,10 +113,8 @@ ROOTS = "source its workspace, or give the folder of its sources with --roots (l
 
 
 def file_of_package(package: str, name: str, roots: tuple[str, ...]) -> str:
-    """The path of a file in a package that is installed or, as sources, below ``roots``.
-
-    Raises UsageError where there is no such package, and not one file of that name in it.
-    """
+    """Return the path of a file in a package that is installed or, as sources, below ``roots``.
+    Raises UsageError unless the package is found and has exactly one file of that name."""
     # What is installed counts first, as for the includes of a launch.
     folders = package_folders(package, os.sep, ()) or package_folders(package, os.sep, roots)
     if not folders:

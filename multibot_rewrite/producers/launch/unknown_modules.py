@@ -54,7 +54,7 @@ class Unknown:
         return found
 
     def __mro_entries__(self, _: tuple[object, ...]) -> tuple[type]:
-        """A class that has it for its base: what it takes of the base is unknown."""
+        """Return a base class for one that extends this: what it takes from the base is unknown."""
         own = {"_multibot_module": self._multibot_module, "__init__": lambda *_, **__: None}
         return (type("Base", (Unknown,), own),)
 
@@ -111,7 +111,7 @@ class _Finder:
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """The module itself, and whatever is below it."""
+        """Return the module itself, and whatever is below it."""
         mine = fullname == self._name or fullname.startswith(f"{self._name}.")
         return ModuleSpec(fullname, cast(Any, self), is_package=True) if mine else None
 

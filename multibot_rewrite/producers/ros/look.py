@@ -46,7 +46,7 @@ class GraphSession(NamedTuple):
         return time.monotonic() - self.started
 
     def domain(self) -> int:
-        """The ROS_DOMAIN_ID that is observed."""
+        """Return the ROS_DOMAIN_ID that is observed."""
         return int(self.ros.context.get_domain_id())
 
     def over(self) -> bool:
@@ -104,7 +104,7 @@ def receive(session: GraphSession, seconds: float) -> None:
 
 
 def overview(session: GraphSession) -> tuple[list[str], list[End]]:
-    """The nodes and their endpoints: enough to see whether anything changed."""
+    """Return the nodes and their endpoints: enough to see whether anything changed."""
     names = queries.node_names(session.node)
     found = queries.endpoints_by_node(
         session.node, names, queries.NODE_QUERIES, ros.node_gone_error()
@@ -174,7 +174,7 @@ class Ears:
             self.descriptions.update(endpoints)
 
     def silent(self) -> list[str]:
-        """The topics on which nothing has come."""
+        """Return the topics on which nothing has come."""
         return sorted({*self.tf.silent(), *self.headers.silent()})
 
     def keep_waiting(self) -> bool:

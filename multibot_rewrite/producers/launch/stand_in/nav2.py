@@ -140,7 +140,7 @@ def _replace(found: Any, values: Mapping[str, Any]) -> None:
 
 
 def _set(found: Any, path: list[str], value: Any) -> None:
-    """The value of a whole path: one that is there, or is to be in the parameters of a node."""
+    """Set the value of a whole path: one that exists, or is to be in the parameters of a node."""
     *above, last = path
     if not above:
         return

@@ -166,7 +166,7 @@ def _is_substituted(value: Any) -> bool:
 
 
 def _read(text: str, name: str) -> Any:
-    """The text of a substitution as YAML has it."""
+    """Return the text of a substitution as YAML has it."""
     wrapped = "try wrapping it in launch_ros.parameter_descriptions.ParameterValue"
     hint = f"If the parameter is meant to be a string, {wrapped}(value, value_type=str)"
     try:

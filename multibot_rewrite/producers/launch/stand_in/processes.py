@@ -40,7 +40,7 @@ class EventHandler(Kept):
         self.actions: Any = vars(self)[self.names[-1]] or []
 
     def describe(self) -> tuple[str, list[Any]]:
-        """The actions that are known before the event."""
+        """Return the actions that are known before the event."""
         several = self.actions if isinstance(self.actions, list) else [self.actions]
         return "", [it for it in several if not callable(it)]
 
