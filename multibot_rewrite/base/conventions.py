@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is everybody's, by convention: topics, frames, tools, words, each with its source; and tables
-of words that several rooms say.
+"""What is everybody's, by convention: topics, frames, tools, words, each with its source; and
+tables of words that several packages use.
 
 Rows are in ``conventions.txt``, lines of words and no YAML: the start of every command reads them, and
 none pays for a parser.

@@ -194,7 +194,8 @@ def _row_json(site: SiteRow, section: VocabularySection) -> dict[str, object]:
 
 
 def draft(options: argparse.Namespace) -> int:
-    """Write a vocabulary for what a description loads and nothing knows; returns the exit code."""
+    """Write plugin definitions for what a description loads and nothing knows; returns the exit
+    code."""
     if plain_words(options) or options.form == JSON:
         raise UsageError("--suggest goes with --vocabulary only: leave out NAME and --form")
     check_xacro(options, [options.suggest])

@@ -63,7 +63,8 @@ def deliver(options: argparse.Namespace, data: bytes, schema: str = "") -> None:
 
 def with_schema(path: str, data: bytes, schema: str) -> list[tuple[str, bytes]]:
     """Return the files to write for a YAML file: its own with a comment for editors, and the schema
-    that the comment names. A device has none, nor a file beside another one of the schema's name."""
+    that the comment names. A device has none, nor a file next to another one of the schema's
+    name."""
     beside = os.path.join(os.path.dirname(path), editors.schema_name(schema))
     is_file = os.path.isfile(path) or not os.path.exists(path)
     if not (schema and is_file and editors.may_be_written(schema, beside)):

@@ -48,9 +48,8 @@ class Site(NamedTuple):
 
     ``is_sure`` is false for a kind that is only guessed; ``in_key`` is true for a name in a key.
     ``together`` is the same for names of one list. ``bare`` says that the reader takes a slash in
-    front off. ``node`` is the node that reads it, as the stacks call it, ``reach`` where that resolves
-    a relative name, ``param`` what is known of the parameter.
-    """
+    front off. ``node`` is the node that reads it, as the node sets call it, ``reach`` where that
+    resolves a relative name, ``param`` what is known of the parameter."""
 
     kind: str
     text: str

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A description, its robots and their stacks -> the remap table and the expected graph."""
+"""A description, its robots and their node sets -> the remap table and the expected graph."""
 
 from __future__ import annotations
 
@@ -62,10 +62,10 @@ FRAME_PREFIX = "frame_prefix"
 
 class Fleet(NamedTuple):
     """A fleet's remap table, what each robot's rewritten description holds, and the transforms that
-    each robot's nodes publish. ``facts`` are the nodes of the stacks, ``tags`` the robots whose
-    prefix or postfix differs from their namespace, with it. ``read`` are the files that were read for
-    descriptions, ``gaps`` what is open in the robots, ``bridged`` what a ros_gz_bridge has to bridge;
-    ``maybe_real`` are robots of which nothing says that they are simulated, ``clocks`` the
+    each robot's nodes publish. ``facts`` are the nodes of the node sets, ``tags`` the robots whose
+    prefix or postfix differs from their namespace, with it. ``read`` are the files that were read
+    for descriptions, ``gaps`` what is open in the robots, ``bridged`` what a ros_gz_bridge has to
+    bridge; ``maybe_real`` are robots of which nothing says that they are simulated, ``clocks`` the
     ``use_sim_time`` of robots for which the fleet file says it, ``described`` the descriptions of
     robots whose simulator gets another file, ``apart`` the domains of robots that are not in one,
     ``models`` what each robot's model is spawned as, if not as the robot is called, ``placed`` the
@@ -111,10 +111,10 @@ def make_fleet(
     """Rewrite a description for every robot and return the fleet with its table, by the facts of the
     release that the rewrite is for: ``release``, or where it is empty what ``rewrite_all`` takes.
 
-    ``nodes`` is a file with more nodes and stacks, ``nodl`` are NoDL files, see ``find_interfaces``;
-    ``trust`` lets a xacro file do anything; ``launch`` are the launch files that start each robot's
-    nodes. Raises as ``rewrite_all``, and UsageError for an unknown stack.
-    """
+    ``nodes`` is a file with more nodes and node sets, ``nodl`` are NoDL files, see
+    ``find_interfaces``; ``trust`` lets a xacro file do anything; ``launch`` are the launch files
+    that start each robot's nodes. Raises as ``rewrite_all``, and UsageError for an unknown node
+    set."""
     how: dict[str, Any] = {
         "vocabulary": vocabulary,
         "xacro_args": xacro_args,

@@ -106,8 +106,8 @@ def plan_fleet(
     The parameter files that launch files and descriptions name are rewritten, too.
 
     ``jobs`` are the descriptions if they have been read already; ``trust`` lets xacro files do
-    anything, and launch files run. Raises as ``rewrite_all``, and UsageError for an unknown stack.
-    """
+    anything, and launch files run. Raises as ``rewrite_all``, and UsageError for an unknown node
+    set."""
     file, joined = with_joined(file, trust)
     file, notes = with_launched_files(_trusted(with_shape(file)) if trust else with_shape(file))
     file = with_launched_world(with_one_map(with_bridge_namespaces(file)))

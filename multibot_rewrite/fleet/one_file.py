@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A file beside a description, rewritten for robots without a fleet file: parameters, RViz, MoveIt, a
-bridge, a behavior tree, Lua."""
+"""A related file of a description, rewritten for robots without a fleet file: parameters, RViz,
+MoveIt, a bridge, a behavior tree, Lua."""
 
 from __future__ import annotations
 
@@ -69,8 +69,8 @@ def rewrite_file(
     trust: bool = False,
     distro: str = "",
 ) -> RewrittenFile:
-    """Rewrite a file beside a description for ``robot``: parameters, RViz, MoveIt, ros_gz_bridge, a
-    behavior tree of Nav2, Cartographer's Lua, told by what is in it.
+    """Rewrite a related file of a description for ``robot``: parameters, RViz, MoveIt,
+    ros_gz_bridge, a behavior tree of Nav2, Cartographer's Lua, told by what is in it.
 
     ``urdf`` is the robot's description, not rewritten; the other options are those of ``rewrite``.
     Raises InputError (cannot be read), UsageError (a wrong argument, or a description is needed).

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files of nodes and stacks -> records; errors name file and line."""
+"""Files of nodes and node sets -> records; errors name file and line."""
 
 from __future__ import annotations
 
@@ -57,13 +57,12 @@ NO_GUESSES: Mapping[str, tuple[str, ...]] = {}
 
 
 class Stack(NamedTuple):
-    """Nodes that are started together; ``include`` are stacks that it contains, ``releases`` the
+    """Nodes that are started together; ``include`` are node sets that it contains, ``releases`` the
     words for the releases that have it.
 
     ``container`` is the node among them that all others are loaded into as components, if any.
-    ``remaps`` are a node of it or of an included stack, a name of the node, and what that is remapped
-    to here.
-    """
+    ``remaps`` are a node of it or of an included node set, a name of the node, and what that is
+    remapped to here."""
 
     about: str
     include: tuple[str, ...]
@@ -74,13 +73,12 @@ class Stack(NamedTuple):
 
 
 class NodeLibrary(NamedTuple):
-    """Known parts (endpoints that many nodes have), nodes and stacks.
+    """Known parts (endpoints that many nodes have), nodes and node sets.
 
     It is of one release, or of all of them, with ``release`` empty. ``elsewhere`` says of nodes and
-    stacks that this release lacks which releases have them. ``parameters`` are those of nodes, by the
-    last name of each, in all releases; ``guesses`` the last words of other parameters by the kind that
-    they suggest, ``sent`` frames that nodes send.
-    """
+    node sets that this release lacks which releases have them. ``parameters`` are those of nodes,
+    by the last name of each, in all releases; ``guesses`` the last words of other parameters by the
+    kind that they suggest, ``sent`` frames that nodes send."""
 
     parts: Mapping[str, tuple[Endpoint, ...]]
     nodes: Mapping[str, NodeFacts]

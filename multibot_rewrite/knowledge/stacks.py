@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Known nodes and stacks of nodes of a release, from ``nodes/*.yaml``, ``stacks.yaml`` and files of
+"""Known nodes and node sets of a release, from ``nodes/*.yaml``, ``stacks.yaml`` and files of
 users: what a release lacks is left out, what came late is conditional."""
 
 from __future__ import annotations
@@ -138,7 +138,7 @@ def in_release(library: NodeLibrary, release: str) -> NodeLibrary:
 
 
 def _has_stack(library: NodeLibrary, name: str, release: str) -> bool:
-    """Is a node of the stack in the release? A stack may have none in any."""
+    """Is a node of the node set in the release? A node set may have none in any."""
     stack = library.stacks[name]
     if not has_release(stack.releases, release):
         return False

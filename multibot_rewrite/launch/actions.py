@@ -70,12 +70,10 @@ def node(of_stack: Text = "", **options: Any) -> Action:
     parameters.
 
     For a controller it is that of its spawner, with its parameter files as ``-p``; a component is
-    loaded into its container.
-    ``of_stack`` is its name in the stack; ``files`` are parameter files of the fleet, with commas or as
-    a list; ``describe`` adds ``robot_description``; ``robot`` and ``fleet`` say whose it is,
-    ``use_sim_time`` which clock it has. All others are Node's own, and override. Raises
-    UsageError for a name or a namespace, which the fleet has.
-    """
+    loaded into its container. ``of_stack`` is its name in the node set; ``files`` are parameter
+    files of the fleet, with commas or as a list; ``describe`` adds ``robot_description``; ``robot``
+    and ``fleet`` say whose it is, ``use_sim_time`` which clock it has. All others are Node's own,
+    and override. Raises UsageError for a name or a namespace, which the fleet has."""
     return _node("node", node_class(), of_stack, options)
 
 

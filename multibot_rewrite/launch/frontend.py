@@ -112,7 +112,7 @@ def _node(word: str, base: Any, entity: Any, parser: Any) -> dict[str, Any]:
 
 
 class _Programless:
-    """An element whose program need not be said, since the node's stack has it."""
+    """An element whose program need not be said, since the node's node set has it."""
 
     def __init__(self, entity: Any) -> None:
         self._entity = entity

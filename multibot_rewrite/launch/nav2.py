@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Nav2 for all robots of a fleet: what ``ros2 launch multibot_rewrite nav2.launch.py`` starts.
 
-The fleet file decides what that is: the nodes of Nav2 and slam_toolbox that its stacks have, composed
-or not, in any layout, with the names, rules and parameter files of each robot.
-Sources: nav2_bringup launch/ of humble (1.1.20) to rolling (a3a97043e), slam_toolbox
+The fleet file decides what that is: the nodes of Nav2 and slam_toolbox that its node sets have,
+composed or not, in any layout, with the names, rules and parameter files of each robot. Sources:
+nav2_bringup launch/ of humble (1.1.20) to rolling (a3a97043e), slam_toolbox
 launch/online_sync_launch.py; nav2_lifecycle_manager lifecycle_manager.cpp and nav2_util
 lifecycle_node.cpp: a manager and its node meet by the node's name without namespace (bond);
-lifecycle_msgs msg/Transition.msg.
-"""
+lifecycle_msgs msg/Transition.msg."""
 
 from __future__ import annotations
 
@@ -195,7 +194,7 @@ def _window(context: Context, file: str, window: RvizText) -> Action:
 
 
 def kind_of(name: str) -> str:
-    """Return the name in ``NAV2`` of a node of a stack; its own where that has it not."""
+    """Return the name in ``NAV2`` of a node of a node set; its own where that has it not."""
     return MANAGER if name.startswith(MANAGER) else _KINDS.get(name, name)
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A file beside a description, with what its package declares -> what the rules for its kind find."""
+"""A related file of a description, with what its package declares -> what the rules for its kind
+find."""
 
 from __future__ import annotations
 

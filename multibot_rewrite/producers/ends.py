@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ends that a robot's sources name: its stacks with their parameters, plugins, bridges; the
+"""The ends that a robot's sources name: its node sets with their parameters, plugins, bridges; the
 transforms that they name, and those that they tell nodes not to send."""
 
 from __future__ import annotations

@@ -3,9 +3,8 @@
 ROS domains: a plan and what was seen in each of them.
 
 Where the view may be incomplete, a finding about something missing is *inconclusive*. Each domain
-is held against its part of the plan, or against the whole of one for robots without names: who is
-in another one is never met. Robots are held against each other wherever they are.
-"""
+is compared with its part of the plan, or against the whole of one for robots without names: who is
+in another one is never met. Robots are compared with each other wherever they are."""
 
 from __future__ import annotations
 

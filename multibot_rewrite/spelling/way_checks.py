@@ -123,9 +123,8 @@ NOT_TAKEN = declare(
 def not_taken(table: Table) -> Iterator[Finding]:
     """Names of the code or of another robot that a node has because its rule does not reach it.
 
-    One finding a node. Of what a plugin's controllers are known to publish the second reading of the
-    description says it, where no stack names them.
-    """
+    One finding a node. Of what a plugin's controllers are known to publish the second reading of
+    the description says it, where no node set names them."""
     of_manager = controller_way(table.release).of_manager
     robots = _robots_worth_a_look(table)
     some = table._replace(runs=tuple(it for it in table.runs if it.robot in robots))

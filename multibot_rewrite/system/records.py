@@ -69,7 +69,7 @@ _STACK = "stack"
 
 
 class Origin(NamedTuple):
-    """What names a node: a stack, or a place in a file; as a text, it is what a plan writes."""
+    """What names a node: a node set, or a place in a file; as a text, it is what a plan writes."""
 
     stack: str = ""
     place: Place = NOWHERE
@@ -407,7 +407,7 @@ def incomplete(system: System) -> tuple[Caveat, ...]:
 
 
 def doubts(system: System) -> tuple[Caveat, ...]:
-    """Return the caveats that make a view incomplete.
+    """Return the limitations that make a view incomplete.
 
     That an expected node did not come is not one of them: once the graph is quiet it is missing.
     """

@@ -34,8 +34,8 @@ WITH_TOPICS = (
 
 
 class Reading(NamedTuple):
-    """What a description starts. ``unknown`` are the plugins that the vocabulary does not have, each
-    as its number among the plugins and its library; ``missed`` the frames below a model's name, which
+    """What a description starts. ``unknown`` are the plugins without plugin definitions, each as
+    its number among the plugins and its library; ``missed`` the frames below a model's name, which
     are in the tree of no robot, though nothing else of the model sends their transform;
     ``other_ends`` those of topics that are the world's or left as they are, and of what is below a
     word that ``names`` have."""

@@ -67,10 +67,9 @@ class Explanation(NamedTuple):
     """One value: its place, the site that claims or keeps it if any, and in words what follows.
 
     ``new`` is the value for the robot; ``inserted`` are elements the plugin at this place gets.
-    ``source`` is where the vocabulary has it from, empty where it does not say. ``made_of`` are the
-    pieces that a xacro makes the value of, in words. ``within`` is the description that includes the
-    file of the line, empty where the file is that itself.
-    """
+    ``source`` is where the plugin definitions have it from, or empty. ``made_of`` are the pieces
+    that a xacro makes the value of, in words. ``within`` is the description that includes the file
+    of the line, empty where the file is that itself."""
 
     line: int
     column: int

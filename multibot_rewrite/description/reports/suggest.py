@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A first vocabulary for what a description loads and nothing knows: guessed, each with its why."""
+"""First plugin definitions for what a description loads and nothing knows: guessed, each with its
+why."""
 
 from __future__ import annotations
 

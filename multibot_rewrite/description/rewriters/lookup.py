@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sections of the vocabulary for a person: found by whatever name is at hand, and what they say."""
+"""Sections of the plugin definitions for a person: found by whatever name is at hand, and what they
+say."""
 
 from __future__ import annotations
 

@@ -5,9 +5,9 @@ A ``Node`` answers, for one element, which of its attributes and text are sites 
 serves each child tag. Which plugin or hardware class an element is decides its node; those nodes
 are made when a document first asks for them.
 
-Threads share a tree without a lock: what is made late follows from the vocabulary alone, is made
-whole, and only then put where others find it. Threads that make one thing at once make it alike.
-"""
+Threads share a tree without a lock: what is made late follows from the plugin definitions alone, is
+made whole, and only then put where others find it. Threads that make one thing at once make it
+alike."""
 
 from __future__ import annotations
 
@@ -132,7 +132,7 @@ class TreeNode:
 
 
 class Tree:
-    """The whole tree for one vocabulary; sections are read when a document first needs them.
+    """The whole tree for some plugin definitions; sections are read when a document first needs them.
 
     ``formats`` maps the sections of root elements to their nodes; ``tags`` are all tags worth a
     visit so far.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names that two robots of a fleet declare, each in its own description; and topics that have a robot's
-name from an argument of its xacro, and once more from its namespace; controller managers
-that a plugin makes under another name than that of the robot's stack."""
+"""Names that two robots of a fleet declare, each in its own description; and topics that have a
+robot's name from an argument of its xacro, and once more from its namespace; controller managers
+that a plugin makes under another name than that of the robot's node set."""
 
 from __future__ import annotations
 

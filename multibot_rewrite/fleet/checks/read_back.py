@@ -166,7 +166,7 @@ def _not_open(found: list[Finding], made: Outputs) -> list[Finding]:
 
 def _remedy(plan: FleetPlan) -> str:
     """Return what to write where nothing starts a controller manager: the argument of a description
-    with which a simulator's plugin makes one, else the stack that has one."""
+    with which a simulator's plugin makes one, else the node set that has one."""
     for it in (it.spec for it in plan.robots):
         given = filled(it.arguments, it.name)
         if found := switch_for(it.simulated or it.description, given, loads_hardware, BOUNDED):

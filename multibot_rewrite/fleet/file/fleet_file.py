@@ -34,16 +34,16 @@ IN_FILE = "the fleet file says so"
 
 class FleetFile(NamedTuple):
     """A fleet file with its includes. ``policy`` are the options of ``make_naming`` that it sets,
-    ``files`` all files of the fleet except the robots' own: the fleet file, what it includes, nodes,
-    parameters, vocabulary. ``shared_nodes`` are nodes that run once for all robots, ``own_nodes`` those
-    that each robot has though others of the kind run once.
-    ``sros2`` asks for a policy, ``params_style`` says how parameter files are written,
-    ``relayed`` asks for each robot's tf on /tf as well, ``cell`` for one move_group for all robots,
-    ``shape`` for outputs as the launch files of a vendor take them, ``zenoh`` for configurations;
-    ``apart`` are the domains of robots that are not in one; ``why`` is what says the release.
-    ``installed`` is where the results are when they are used, empty for where
-    they are written. ``simulator_world`` is the user's world for it, which the file names at
-    ``world_place``. ``shared_places`` are the file and line of the lists of shared names, by key."""
+    ``files`` all files of the fleet except the robots' own: the fleet file, what it includes,
+    nodes, parameters, plugin definitions. ``shared_nodes`` are nodes that run once for all robots,
+    ``own_nodes`` those that each robot has though others of the kind run once. ``sros2`` asks for a
+    policy, ``params_style`` says how parameter files are written, ``relayed`` asks for each robot's
+    tf on /tf as well, ``cell`` for one move_group for all robots, ``shape`` for outputs as the
+    launch files of a vendor take them, ``zenoh`` for configurations; ``apart`` are the domains of
+    robots that are not in one; ``why`` is what says the release. ``installed`` is where the results
+    are when they are used, empty for where they are written. ``simulator_world`` is the user's
+    world for it, which the file names at ``world_place``. ``shared_places`` are the file and line
+    of the lists of shared names, by key."""
 
     file: str
     policy: Policy

@@ -162,7 +162,7 @@ class _Given(NamedTuple):
 
     @property
     def running(self) -> list[str]:
-        """The nodes that are started, by their names in the stacks."""
+        """The nodes that are started, by their names in the node sets."""
         return [it for it in self.names.started if it not in self.left]
 
 

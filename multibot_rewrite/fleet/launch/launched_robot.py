@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The launch files of a robot -> its nodes: its stacks as the launch files start them."""
+"""The launch files of a robot -> its nodes: its node sets as the launch files start them."""
 
 from __future__ import annotations
 

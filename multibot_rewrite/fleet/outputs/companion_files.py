@@ -53,7 +53,7 @@ _KINDS = {"params": PARAMS, "moveit": MOVEIT, "behavior_trees": TREE, "lua": LUA
 
 
 def companion_files(plan: FleetPlan) -> FilesAndFindings:
-    """Every companion file that is one text with slots for the robot.
+    """Every related file that is one text with slots for the robot.
 
     Raises InputError for a file that cannot be read or rewritten.
     """

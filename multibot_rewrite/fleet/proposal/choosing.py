@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which of several descriptions is the robot: what launch files load that start one, and whose names
-the files beside them have. Where nothing says it, the likeliest has rivals.
-"""
+"""Which of several descriptions is the robot: what launch files load that start one, and whose
+names their related files have. Where nothing says it, the likeliest has rivals."""
 
 from __future__ import annotations
 
@@ -33,9 +32,10 @@ _MORE = 2
 
 
 class Candidate(NamedTuple):
-    """A description and what speaks for it: how many processes the launch file starts that loads it,
-    whether its package is named after it, how many of its names the files beside it have; ``part`` is
-    whether it is called like a part, or the package of another description uses its package."""
+    """A description and what speaks for it: how many processes the launch file starts that loads
+    it, whether its package is named after it, how many of its names their related files have;
+    ``part`` is whether it is called like a part, or the package of another description uses its
+    package."""
 
     robot: Looked
     started: int
@@ -52,7 +52,7 @@ class Candidate(NamedTuple):
 
     @property
     def share(self) -> float:
-        """How many of a hundred of its names are known to the files beside it."""
+        """How many of a hundred of its names are known to its related files."""
         return self.named / max(1, len(self.links) + len(self.moving))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The files beside a description -> those that it runs with, and the stacks that they say.
+"""The related files of a description -> those that it runs with, and the node sets that they say.
 
 Where several files are for the same thing (parameters of a node, an RViz config), the nearest is taken.
 """
@@ -42,7 +42,7 @@ _WORD = re.compile(r"[a-z0-9]+")
 
 
 class Companions(NamedTuple):
-    """What goes with a description: files by kind, its SRDF, its stacks each with the reason.
+    """What goes with a description: files by kind, its SRDF, its node sets each with the reason.
 
     ``left`` are files of the same kind that were not taken, each with the reason.
     """

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which files beside a description belong to another one, by place and by what they name, and which of
-several parameter files for one node goes with it."""
+"""Which related files of a description belong to another one, by place and by what they name, and
+which of several parameter files for one node goes with it."""
 
 from __future__ import annotations
 

@@ -64,10 +64,9 @@ def known_names() -> Mapping[str, Any]:
 class Found(NamedTuple):
     """Files by what they are for, each sorted; ``srdf`` are xacros, too. ``folders`` were searched.
 
-    ``descriptions`` are those that were named, if any were; ``every`` are all that are there. ``meant``
-    are files beside them that were named, ``follows`` those with the description that was named before
-    each, ``named`` is the launch file that was.
-    """
+    ``descriptions`` are those that were named, if any were; ``every`` are all that are there.
+    ``meant`` are related files that were named, ``follows`` those with the description that was
+    named before each, ``named`` is the launch file that was."""
 
     descriptions: tuple[str, ...] = ()
     params: tuple[str, ...] = ()

@@ -78,10 +78,9 @@ class OfFleet(Protocol):
 class LoadedRobot:
     """One robot of a fleet: what its nodes, its simulator and its tf need, as plain values.
 
-    ``namespace`` is absolute; ``tag`` is the prefix or postfix of its frames and joints; ``pose`` is
-    None if the fleet file has none; ``stack`` are the nodes of its stacks. It can be copied and
-    pickled, with its fleet.
-    """
+    ``namespace`` is absolute; ``tag`` is the prefix or postfix of its frames and joints; ``pose``
+    is None if the fleet file has none; ``stack`` are the nodes of its node sets. It can be copied
+    and pickled, with its fleet."""
 
     def __init__(self, fleet: OfFleet, robot: RewrittenRobot) -> None:
         self._fleet, self._robot = fleet, robot
@@ -146,14 +145,13 @@ class LoadedRobot:
 
     @checked
     def node(self, node: str, *files: str) -> dict[str, Any]:
-        """Name, namespace, remappings and parameters of a node of its stacks, for ``Node(**...)``.
+        """Name, namespace, remappings and parameters of a node of its node sets, for ``Node(**...)``.
 
-        ``files`` are parameter files of the fleet; amcl gets its start pose as well, and
-        each node the clock that the fleet file says. Where other nodes run in its process, such as
-        costmaps or components, these are paths of files, which go with this process: only files
-        reach them. Raises UsageError for a node that no stack has and for a controller
-        (``spawner``), and as ``params`` for a file.
-        """
+        ``files`` are parameter files of the fleet; amcl gets its start pose as well, and each node
+        the clock that the fleet file says. Where other nodes run in its process, such as costmaps
+        or components, these are paths of files, which go with this process: only files reach them.
+        Raises UsageError for a node that no node set has and for a controller (``spawner``), and as
+        ``params`` for a file."""
         clock = {} if self.use_sim_time is None else {"use_sim_time": self.use_sim_time}
         given: list[Any] = [self.params(file, node) for file in files]
         if self.table.inside(node):
@@ -263,7 +261,8 @@ class LoadedRobot:
 
     @property
     def tf_remappings(self) -> Rules:
-        """The remappings with which a node outside the stacks reads this robot's tf; raises nothing."""
+        """The remappings with which a node outside the node sets reads this robot's tf; raises
+        nothing."""
         names = self._robot.topics
         targets = {
             f"/{it}": target_of(f"/{it}", TOPIC, self._graph, names.naming) for it in TF_TOPICS

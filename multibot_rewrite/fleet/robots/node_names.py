@@ -20,7 +20,7 @@ SPAWNED = "is a controller: its spawner takes its remappings, robot.spawner({nod
 
 
 class NodeNames(NamedTuple):
-    """Names and remappings of a robot's nodes, by their names in the stacks.
+    """Names and remappings of a robot's nodes, by their names in the node sets.
 
     ``started`` is what is started for the nodes, with all rules that it takes; ``managed`` are the
     nodes whose life cycle each of them manages, in their order.

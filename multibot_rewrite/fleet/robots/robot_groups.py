@@ -19,7 +19,7 @@ from multibot_rewrite.knowledge.records import NodeFacts
 
 
 class RobotGroup(NamedTuple):
-    """Robots of one description, with the same nodes and companion files."""
+    """Robots of one description, with the same nodes and related files."""
 
     robots: tuple[RewrittenRobot, ...]
     facts: tuple[NodeFacts, ...]
@@ -27,7 +27,7 @@ class RobotGroup(NamedTuple):
 
     @property
     def companions(self) -> dict[str, tuple[str, ...]]:
-        """The companion files that all robots of the group have, by kind."""
+        """The related files that all robots of the group have, by kind."""
         return dict(self.robots[0].spec.companions)
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The nodes that a robot of a fleet file runs: its stacks, as its own files have them. Some run once
-for all robots, as one map_server with one map."""
+"""The nodes that a robot of a fleet file runs: its node sets, as its own files have them. Some run
+once for all robots, as one map_server with one map."""
 
 from __future__ import annotations
 
@@ -87,12 +87,13 @@ def node_sources(spec: RobotSpec) -> NodeSources:
 
 class RobotEvidence(NamedTuple):
     """What a robot's files set for nodes, the nodes that are known by name, those that it runs,
-    where its files and stacks disagree, the controllers that its launch files spawn, whether these
-    start all of its nodes and no simulator, the arguments of all that they start, the frames that it
-    has in the place of defaults, the transforms that a simulator sends, whether a node of its files
-    sends one of these, which no bridge file of its own has, what its launch files hand on to nodes, the
-    processes of these that are no nodes, the environment of all, what places it, what they do not
-    start on a condition, and the quality of service of topics that their bridges set."""
+    where its files and node sets disagree, the controllers that its launch files spawn, whether
+    these start all of its nodes and no simulator, the arguments of all that they start, the frames
+    that it has in the place of defaults, the transforms that a simulator sends, whether a node of
+    its files sends one of these, which no bridge file of its own has, what its launch files hand on
+    to nodes, the processes of these that are no nodes, the environment of all, what places it, what
+    they do not start on a condition, and the quality of service of topics that their bridges
+    set."""
 
     given: tuple[Run, ...]
     known: Mapping[str, NodeFacts]

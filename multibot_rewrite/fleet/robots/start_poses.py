@@ -62,7 +62,7 @@ class StaticTransform(NamedTuple):
 
 
 class InitialPose(NamedTuple):
-    """The start pose as parameters of the localisation ``node`` (its name in the stack)."""
+    """The start pose as parameters of the localisation ``node`` (its name in the node set)."""
 
     robot: str
     node: str

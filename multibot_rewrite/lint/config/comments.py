@@ -85,7 +85,7 @@ def _apply(
 
 
 def _reaches(comment: Comment, finding: Finding) -> bool:
-    """A comment at a macro definition or at its call reaches findings in the macro's output."""
+    """Return whether a comment reaches a finding; a comment at a macro reaches those in its output."""
     if comment.it.word == IGNORE_FILE:
         return file_of(finding) == comment.file
     if finding.file == comment.file and _holds(comment, (finding.line, finding.column)):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What files beside a description are called, and the robots in them: loaded for kept results, too."""
+"""The names of related files of a description, and the robots in them: loaded for kept results, too."""
 
 from __future__ import annotations
 

@@ -31,8 +31,8 @@ Ids = Mapping[str, str]
 def filled(node: NodeFacts, given: Run, known: NodeFacts | None = None) -> NodeFacts:
     """``node`` with the names that its parameters set, under the name that it has there.
 
-    ``known`` is the node without what a stack makes of it: where the parameters do not say more, what
-    the stack says stays. Raises InputError for a word of a list that makes no valid name.
+    ``known`` is the node without what a node set makes of it: where the parameters do not say more,
+    what the node set says stays. Raises InputError for a word of a list that makes no valid name.
     """
     values, value_of = given.values, lookup(node, given.values)
     whole = known or node

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The nodes of a stack and what a robot's own files say of them -> the nodes that the robot runs,
-under the remap rules of a launch file or a plugin that loads them.
+"""The nodes of a node set and what a robot's own files say of them -> the nodes that the robot
+runs, under the remap rules of a launch file or a plugin that loads them.
 
-A file and a stack that disagree: the file wins, and the disagreement is a note.
+A file and a node set that disagree: the file wins, and the disagreement is a note.
 
 Of controllers that command the same joint, sensor or gpio only one can be active. Source: ros2_control
 controller_manager.cpp and resource_manager.cpp (a command interface is claimed by one active
@@ -40,7 +40,7 @@ ALWAYS: Mapping[str, str] = {}
 
 
 class RobotNodes(NamedTuple):
-    """The nodes that a robot runs, each with its origin, and where files and stacks disagree."""
+    """The nodes that a robot runs, each with its origin, and where files and node sets disagree."""
 
     nodes: tuple[NodeFacts, ...]
     findings: tuple[Finding, ...]

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The nodes of a robot's stacks and what its launch files start -> the nodes that it runs.
+"""The nodes of a robot's node sets and what its launch files start -> the nodes that it runs.
 
-A node that is launched runs: that is the surest evidence there is. What a stack has and no launch file
-starts is left out, if all of the launch files is known.
-"""
+A node that is launched runs: that is the surest evidence there is. What a node set has and no
+launch file starts is left out, if all of the launch files is known."""
 
 from __future__ import annotations
 
@@ -73,11 +72,11 @@ _SPAWNED = "{} spawns something in addition to the robot, which is not started; 
 
 
 class Launched(NamedTuple):
-    """The nodes of stacks and launch files, what these set for nodes, what each launched node is by
-    its name, the controllers that are spawned by theirs, if that is all that runs, findings, if they
-    start a simulator, or what is for one, what each of them is given by its name, and the processes
-    that are no nodes. ``environment`` is what all processes have, ``placing`` is what puts the robot
-    into its simulator, ``qos`` what parameters of bridges to it set for topics."""
+    """The nodes of node sets and launch files, what these set for nodes, what each launched node is
+    by its name, the controllers that are spawned by theirs, if that is all that runs, findings, if
+    they start a simulator, or what is for one, what each of them is given by its name, and the
+    processes that are no nodes. ``environment`` is what all processes have, ``placing`` is what
+    puts the robot into its simulator, ``qos`` what parameters of bridges to it set for topics."""
 
     nodes: tuple[NodeFacts, ...]
     given: tuple[Run, ...]

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a launch starts -> its nodes as they run, with their parameters and remap rules.
 
-Every launched node stands for itself: nothing is known here of robots, stacks and layouts. A launch
-file that is wrong is to be seen as it is.
-"""
+Every launched node stands for itself: nothing is known here of robots, node sets and layouts. A
+launch file that is wrong is to be seen as it is."""
 
 from __future__ import annotations
 

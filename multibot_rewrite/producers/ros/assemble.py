@@ -124,7 +124,7 @@ def cut_short(names: Sequence[str], endpoints: Iterable[End]) -> Iterator[Caveat
 
 
 def unannounced(announced: int, here: int, nodes: int, lost: int) -> Iterator[Caveat]:
-    """Yield a caveat where fewer participants of this machine ``announced`` themselves than are
+    """Yield a limitation if fewer participants of this machine ``announced`` themselves than are
     ``here`` by their ports (both with the observer's); ``nodes`` were seen, datagrams ``lost``."""
     silent = here - announced
     if silent <= 0:
@@ -140,7 +140,7 @@ def unannounced(announced: int, here: int, nodes: int, lost: int) -> Iterator[Ca
 
 
 def seen_by_one(nodes: Sequence[str]) -> Iterator[Caveat]:
-    """Yield a caveat where two participants of this process see different ends of these nodes."""
+    """Yield a limitation if two participants of this process see different ends of these nodes."""
     if nodes:
         text = (
             f"two participants of this look see different topics or services of"

@@ -122,7 +122,7 @@ def take_snapshot(session: GraphSession) -> System:
 
 
 def _unannounced(session: GraphSession, names: Sequence[str]) -> Iterator[Caveat]:
-    """Yield a caveat where programs of this machine have ports of the domain and announce nothing."""
+    """Yield a limitation if programs of this machine have ports of the domain and announce nothing."""
     here, node = participants_here(session.domain()) or 0, session.node
     if here and here > len(queries.on_this_machine(node, queries.participants(node))):
         # What is no ROS program says on no topic of the middleware what it has, and may have topics.

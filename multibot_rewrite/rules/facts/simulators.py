@@ -2,9 +2,8 @@
 """What a description has for a simulator: hardware, plugins that load it, plugins that drive joints.
 
 Sources: gz_hardware_plugins.xml and gz_system.cpp:326 of gz_ros2_control (jazzy), the same of
-ign_ros2_control (humble), gazebo_hardware_plugins.xml and gazebo_system.cpp of gazebo_ros2_control; for
-the plugins the vocabulary.
-"""
+ign_ros2_control (humble), gazebo_hardware_plugins.xml and gazebo_system.cpp of gazebo_ros2_control;
+for the plugins the plugin definitions."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A file beside a description -> what the rules for its kind find in it."""
+"""A related file of a description -> what the rules for its kind find in it."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names in files beside a description that the description does not have, whose use is not known, or
-that are in another file."""
+"""Names in related files that their description does not have, whose use is not known, or that are
+in another file."""
 
 from __future__ import annotations
 

@@ -67,7 +67,7 @@ def _moves(model: Model, launched: Launched, seen: Index) -> bool:
 
 def as_one_of_several(found: Iterable[Finding], plan: System, seen: System) -> Iterator[Finding]:
     """Yield the findings; a missing node is inconclusive if the launch file starts no node of its
-    stack or parameter file, which another launch file may do."""
+    node set or parameter file, which another launch file may do."""
     sources = {it.name: it.stack or it.place.file for it in plan.nodes}
     begun = {"", *(sources.get(it.name, "") for it in seen.nodes)}
     for it in found:
@@ -76,8 +76,8 @@ def as_one_of_several(found: Iterable[Finding], plan: System, seen: System) -> I
 
 
 def _source(node: str, sources: Mapping[str, str]) -> str:
-    """Return the stack or file of a planned node. One that a node makes for itself has that of its
-    maker, with whose name its own begins: /move_group_private_*."""
+    """Return the node set or file of a planned node. One that a node makes for itself has that of
+    its maker, with whose name its own begins: /move_group_private_*."""
     if source := sources.get(node, ""):
         return source
     makers = (it for it in sources if it != node and node.startswith(it))

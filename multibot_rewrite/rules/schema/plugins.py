@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The parameters of a ``<plugin>`` and of ros2_control hardware against what their code reads.
 
-What it reads is in the rows of the vocabulary. A parameter counts as known where any release reads
-it: what only other releases read is a fault of its own.
-"""
+What it reads is in the rows of the plugin definitions. A parameter counts as known where any
+release reads it: what only other releases read is a fault of its own."""
 
 from __future__ import annotations
 

@@ -118,7 +118,7 @@ def why_not_remapped(plan: Index, planned: End) -> Cause:
 
 
 def how_to_remap(plan: Index, planned: End) -> str:
-    """How to pass the rule to a node of the stack; empty for a plugin's node, which has a file."""
+    """How to pass the rule to a node of the node set; empty for a plugin's node, which has a file."""
     rule = remap_rule(planned)
     if not rule or plugin_of(plan, planned.node)[1]:
         return ""
@@ -193,7 +193,7 @@ _Rest = tuple[int | str, ...]
 
 
 class Spelled:
-    """Known names by how they are spelled: no name is held against all."""
+    """Known names by how they are spelled: no name is compared with all."""
 
     def __init__(self, names: Iterable[str]) -> None:
         self.by_letters: dict[str, list[str]] = defaultdict(list)

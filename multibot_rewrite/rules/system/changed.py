@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A system held against an earlier look at it: what is new, gone or other in ends, transforms, frames
-of messages and parameters. Which nodes came and went is asked by the rules of a plan."""
+"""A system compared with an earlier snapshot of it: what is new, gone or other in ends, transforms,
+frames of messages and parameters. Which nodes came and went is asked by the rules of a plan."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Robots with the same nodes held against each other: parameters, types, QoS and fixed transforms."""
+"""Robots with the same nodes compared with each other: parameters, types, QoS and fixed transforms."""
 
 from __future__ import annotations
 

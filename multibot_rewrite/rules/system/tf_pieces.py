@@ -123,7 +123,7 @@ def _misspelled(seen: Index) -> Iterator[Finding]:
 
 def _near(seen: Index, frames: Collection[str]) -> Callable[[str, str], str]:
     """Of some frames the one that another one may be meant for, but for one that it is not: of its
-    robot, or of none; of very many frames of a robot the last ones are not held against others."""
+    robot, or of none; of very many frames of a robot the last ones are not compared with others."""
     own = sets_by_key((seen.frame_robot(it), it) for it in frames)
     left: dict[str, int] = defaultdict(lambda: _COMPARED)
 

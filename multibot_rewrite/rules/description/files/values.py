@@ -219,7 +219,7 @@ def _misspelt_library(
 
 
 def misspelt_libraries(subject: Subject) -> Iterator[Problem]:
-    """Libraries in no vocabulary."""
+    """Yield the libraries without a plugin definition."""
     for host in subject.inventory.hosts:
         section, name = host.node.section, host.element.get("filename", "").strip()
         if host.element.tag != "plugin" or not section or not is_unknown(section) or not name:
@@ -232,8 +232,8 @@ def misspelt_libraries(subject: Subject) -> Iterator[Problem]:
 
 
 def misspelt_hardware(subject: Subject) -> Iterator[Problem]:
-    """Yield the classes that are in no vocabulary and in none of the sources; another package may have
-    what the known ones do not."""
+    """Yield the classes without a plugin definition that are in none of the sources; another
+    package may have what the known ones do not."""
     for system in subject.elements.tops("ros2_control"):
         for it in system.iterfind("hardware/plugin"):
             name = text_of(it)
