@@ -109,7 +109,7 @@ def own_text(module: str, name: str) -> str:
 
 
 def own_rows(module: str, name: str) -> list[list[str]]:
-    """Return the rows of a table of this package, beside ``module``; ``|`` is between columns."""
+    """Return the rows of a table of this package, next to ``module``; ``|`` is between columns."""
     lines = own_text(module, name).splitlines()
     rows = (it.split("|") for it in lines if it and not it.startswith("#"))
     return [[column.strip() for column in row] for row in rows]

@@ -89,8 +89,8 @@ USUAL_FRAMES = tuple(it.name for it in FRAMES if it.expected)
 
 
 class ToolNode(NamedTuple):
-    """Nodes beside any fleet, by a pattern of the name without its namespace. ``looks``: it only looks,
-    or passes on what a person asks for, so it is no sender of its own."""
+    """Nodes in addition to any fleet, by a pattern of the name without its namespace. ``looks``: it
+    only looks, or passes on what a person asks for, so it is no sender of its own."""
 
     pattern: str
     looks: bool

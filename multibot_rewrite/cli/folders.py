@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """A folder of results that changes as a whole: whoever looks sees the old files or the new ones.
 
-The new folder is made beside the old one, of links to what stays, and one call of the kernel swaps
+The new folder is made next to the old one, of links to what stays, and one call of the kernel swaps
 the two. Where that cannot be (a mount point, the working directory, no right to write next to it),
 files are replaced one by one, all or none, and a note of what they are to be tells the next build
-what a killed one has left.
-"""
+what a killed one has left."""
 
 from __future__ import annotations
 
@@ -94,7 +93,7 @@ def _removed_unless_done(made: list[str]) -> Iterator[None]:
 
 
 def clear_leftovers(folder: str) -> None:
-    """Remove what builds that were killed have left, beside the folder and in it."""
+    """Remove what builds that were killed have left, next to the folder and in it."""
     real = os.path.realpath(folder)
     above, name = os.path.split(real)
     with suppress(OSError):

@@ -91,7 +91,7 @@ def report_first(
 
 
 def report_beside(options: argparse.Namespace, findings: Sequence[Finding], about: About) -> bool:
-    """Write the findings beside the result: as text to standard error, else to standard output."""
+    """Write the findings in addition to the result: as text to standard error or standard output."""
     if options.format == TEXT and not findings:
         return False
     if options.format == TEXT:

@@ -67,7 +67,7 @@ def check_use(options: argparse.Namespace, names: list[str]) -> None:
 
 
 def _check_together(options: argparse.Namespace) -> None:
-    """Options of which one would silently do nothing beside the other."""
+    """Raise UsageError for options of which one would silently have no effect with the other."""
     if options.output is not None and options.in_place:
         raise UsageError("--output and --in-place exclude each other")
     if options.diff and (options.output is not None or options.in_place):

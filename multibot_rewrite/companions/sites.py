@@ -43,8 +43,8 @@ AS_IS, XML, UNCLEAR = "as it is", "xml", "unclear"
 
 
 class Site(NamedTuple):
-    """A text in a file: its kind (empty where its use is not known), the name as it is for one robot,
-    what it stands at, and its slot, of whose value it is the ``size`` characters from ``at``.
+    """A text in a file: its kind (empty where its use is not known), the name as it is for one
+    robot, what it is at, and its slot, of whose value it is the ``size`` characters from ``at``.
 
     ``is_sure`` is false for a kind that is only guessed; ``in_key`` is true for a name in a key.
     ``together`` is the same for names of one list. ``bare`` says that the reader takes a slash in

@@ -142,9 +142,8 @@ def strip(
 ) -> bytes:
     """Undo a rewrite for ``robot``; the result is verified by rewriting it again.
 
-    ``urdf_declarations`` is what the rewritten URDF beside a rewritten SRDF declares. ``before`` is
-    what the robot's own xacro arguments make, where the naming has names of these.
-    """
+    ``urdf_declarations`` is what the rewritten URDF of a rewritten SRDF declares. ``before`` is
+    what the robot's own xacro arguments make, where the naming has names of these."""
     if b" numbered from " in source:
         from multibot_rewrite.description.own_ports import without_numbers
 

@@ -75,7 +75,7 @@ def _may_be(path: str, name: str) -> bool:
 
 
 def _fillings(path: str, name: str) -> list[str] | None:
-    """Return what stands in a name for each word in brackets of a path, the first as long as it can be;
+    """Return what is in a name for each word in brackets of a path, the first as long as it can be;
     None for a name that is not of the path."""
     if not _may_be(path, name):
         return None

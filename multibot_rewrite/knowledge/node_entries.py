@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Entries of nodes -> what is known of their endpoints, frames, transforms and claims. Names and types
-are checked where they stand."""
+"""Entries of nodes -> what is known of their endpoints, frames, transforms and claims. Names and
+types are checked where they are written."""
 
 from __future__ import annotations
 

@@ -5,8 +5,8 @@ The fleet file decides what that is: the nodes of Nav2 and slam_toolbox that its
 composed or not, in any layout, with the names, rules and parameter files of each robot. Sources:
 nav2_bringup launch/ of humble (1.1.20) to rolling (a3a97043e), slam_toolbox
 launch/online_sync_launch.py; nav2_lifecycle_manager lifecycle_manager.cpp and nav2_util
-lifecycle_node.cpp: a manager and its node meet by the node's name without namespace (bond);
-lifecycle_msgs msg/Transition.msg."""
+lifecycle_node.cpp: a manager and its node find each other by the node's name without namespace
+(bond); lifecycle_msgs msg/Transition.msg."""
 
 from __future__ import annotations
 

@@ -129,7 +129,7 @@ _CLOCK = bridges.GzTopic("gz.msgs.Clock", DIRECTIONS["in"])
 
 
 class _Told(NamedTuple):
-    """The rows of a bridge: of a file, or of its arguments, which stand at a place."""
+    """The rows of a bridge: of a file, or of its arguments, which are at a place."""
 
     file: str
     text: str

@@ -4,7 +4,7 @@ ROS domains: a plan and what was seen in each of them.
 
 Where the view may be incomplete, a finding about something missing is *inconclusive*. Each domain
 is compared with its part of the plan, or against the whole of one for robots without names: who is
-in another one is never met. Robots are compared with each other wherever they are."""
+in another one is never met. Robots are compared wherever they are."""
 
 from __future__ import annotations
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """How a rule about a system, a launch or a file is declared, on the function that finds it, and how
-it says where: at the place of a record, and of what is beside it.
-"""
+it says where: at the place of a record, and of what is next to it."""
 
 from __future__ import annotations
 

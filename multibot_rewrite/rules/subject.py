@@ -84,12 +84,10 @@ class Subject(NamedTuple):
     """One document to lint.
 
     ``format`` is ``urdf``, ``srdf`` or ``xacro`` (the source as it is written). ``beside`` is the
-    robot of an SRDF's URDF, if it was found. Where the document was expanded, ``origins``
-    says where its elements were written, in document order, and ``sources`` has those files,
-    or that which includes models;
-    ``arguments`` are the ones it was expanded with, ``given`` their names.
-    ``memo`` is each subject's own, and filled while rules look at it (``facts.memo``).
-    """
+    robot of an SRDF's URDF, if it was found. Where the document was expanded, ``origins`` says
+    where its elements were written, in document order, and ``sources`` has those files, or that
+    which includes models; ``arguments`` are the ones it was expanded with, ``given`` their names.
+    ``memo`` is each subject's own, and filled while rules check it (``facts.memo``)."""
 
     format: str
     document: Document

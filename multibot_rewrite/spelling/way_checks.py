@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The rules that rcl has for each node once it runs, from where they stand, and those that a node needs
-and does not get there, by release.
+"""The rules that rcl has for each node once it runs, from where they are written, and those that a
+node needs and does not get there, by release.
 
 The first match counts: a node's own arguments come before those of its process.
 """
@@ -42,8 +42,8 @@ class _Standing(NamedTuple):
 
 
 def running_nodes(table: Table, left_out: Collection[str] = ()) -> Iterator[tuple[Delivery, Run]]:
-    """Where the rules of each node are written, and the node with the rules that rcl has for it and its
-    process; those that stand at one of the ways ``left_out`` are missing."""
+    """Where the rules of each node are written, and the node with the rules that rcl has for it and
+    its process; those at one of the ways ``left_out`` are missing."""
     meant = deliveries(table)
     given = [it for it in meant if it.way not in left_out]
     standing = _Standing(

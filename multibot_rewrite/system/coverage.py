@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How much of what is there a system holds: what every verdict says beside it."""
+"""How much of what is there a system holds: which every verdict reports."""
 
 from __future__ import annotations
 

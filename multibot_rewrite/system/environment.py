@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The environment variables for discovery, how far a look reached (which machines were seen, how to
-look from others), and whether a view of the graph is complete. Pure.
+"""The environment variables for discovery, how far a snapshot reached (which machines were seen,
+how to observe from others), and whether a view of the graph is complete. Pure.
 
 Sources: rcl ``domain_id.c``, ``discovery_options.c``; rmw_fastrtps ``participant.cpp`` (32 peers
 on a machine under LOCALHOST, else Fast DDS's own 4); the ROS 2 domain id page (0 to 232).

@@ -112,8 +112,8 @@ def _namespaces(graph: System) -> list[str]:
 
 
 def _alike(graph: System, nodes: Iterable[str]) -> Iterator[str]:
-    """Yield namespaces beside each other with nodes of the same names, one of which has a topic of a
-    whole robot in each of them."""
+    """Yield namespaces next to each other with nodes of the same names, one of which has a topic of
+    a whole robot in each of them."""
     whole = {end.node for end in graph.ends if end.name.rpartition("/")[2] in _WHOLE}
     below: dict[str, dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
     for node in (it for it in nodes if it in whole):
@@ -172,8 +172,8 @@ def _above(frames: Iterable[str], parents: Mapping[str, Set[str]]) -> Set[str]:
 
 
 def _by_frames(frames: Iterable[str], parents: Mapping[str, Set[str]]) -> Iterator[GuessedRobot]:
-    """Two or more words that are beside the usual names of frames in the same way, none of which hangs
-    on another: that would be a part of it."""
+    """Yield two or more words that are next to the usual names of frames in the same way, none of
+    which hangs on another: that would be a part of it."""
     ways: dict[tuple[str, bool], dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
     for frame in frames:
         for separator in ("/", *SEPARATORS):

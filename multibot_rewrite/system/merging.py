@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Several looks at one system, from several machines -> one snapshot. Pure.
+"""Several snapshots of one system, from several machines -> one snapshot. Pure.
 
-A look from one machine may miss what the network hides from it, so a node is in the result once
-any look has seen it.
-"""
+A snapshot from one machine may miss what the network hides from it, so a node is in the result if
+any snapshot has it."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes that run beside any fleet and are no part of a robot: tools, and what simulators start."""
+"""Nodes that run with any fleet and are no part of a robot: tools, and what simulators start."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from multibot_rewrite.base.conventions import is_tool_word, only_looks
 
 
 def is_tool(node: str, more: tuple[str, ...] = ()) -> bool:
-    """Is the node with this full name a tool? ``more`` are patterns beside the usual ones; without a
-    slash they are of any namespace."""
+    """Is the node with this full name a tool? ``more`` are patterns in addition to the usual ones;
+    without a slash they are of any namespace."""
     word = node.rpartition("/")[2]
     if is_tool_word(word):
         return True

@@ -186,7 +186,7 @@ def all_sections(context: Context, known: KnownNodes, at_run_time: Collection[st
 
 
 def takes_sections(document: YamlText) -> bool:
-    """Can a section stand behind its last line?"""
+    """Return whether a section can follow its last line."""
     root = document.root
     plain = isinstance(root, yaml.MappingNode) and not root.flow_style
     ends = re.search(r"^(?:\.\.\.|---)", document.text[1:], re.MULTILINE)

@@ -126,7 +126,7 @@ def shared_below(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
 
 
 def bare_lookups(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
-    """Consumers that find things by bare name in the whole world, where those names stay bare."""
+    """Yield consumers that find things by name in the whole world, where no robot's name is added."""
     declared = {claim.site.kinds[0] for claim in inventory.claims if claim.site.role == "declares"}
     for section, host in _known_hosts(inventory):
         kind = section.unique

@@ -2,16 +2,15 @@
 """What two parts both say is said once: ``<gazebo>`` blocks of the whole robot, a
 ``<ros2_control>`` for parts that one driver serves, materials of one name.
 
-A plugin that makes a controller manager is there once for all parts, with the parameter files of
-all (gz_ros2_control_plugin.cpp and gazebo_ros2_control_plugin.cpp read each ``<parameters>``). The
+A plugin that makes a controller manager exists once for all parts, with the parameter files of all
+(gz_ros2_control_plugin.cpp and gazebo_ros2_control_plugin.cpp read each ``<parameters>``). The
 first part's other settings count. Joints, sensors and gpios of a part's system go into an earlier
 one with the same type and ``<hardware>``.
 
 Sources: ros2_control component_parser.cpp (``parse_resource_from_xml``): a system has one hardware,
 and any number of joints, sensors, gpios and transmissions; urdfdom model.cpp (``parseURDF``: a
 material below ``<robot>`` that is there twice is an error; ``assignMaterial``: of a name that the
-model has, whatever stands in the visual is not read).
-"""
+model has, whatever is in the visual is not read)."""
 
 from __future__ import annotations
 

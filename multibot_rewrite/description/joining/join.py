@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Parts -> one description: each text is kept as it is, behind those before it, with a joint between.
 
-The first part's file goes on: its declaration, name and attributes are those of the whole. A root link
-``world`` of a later part is left out, and what stands on it is fixed to ``at`` itself.
-"""
+The first part's file goes on: its declaration, name and attributes are those of the whole. A root
+link ``world`` of a later part is left out, and what is fixed to it is fixed to ``at`` itself."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How a joined text says what it was made of, so that each part can be taken out byte by byte.
 
-A part stands in front of ``</robot>`` of the first one, between two comments:
+A part is in front of ``</robot>`` of the first one, between two comments:
 
     <!-- multibot part gripper prefix=left_ materials=grey HEAD -->
     <!-- multibot end gripper TAIL -->

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The SRDFs of parts as one: groups, end effectors, states, passive joints and disabled collisions.
 
-A virtual joint says where a robot stands: that of the first part stays, a later part stands on a
-link. Links that meet at a joint between two parts are adjacent; of other pairs of links of two parts
+A virtual joint tells the place of a robot: that of the first part stays, a later part is on a link.
+Links that meet at a joint between two parts are adjacent; of other pairs of links of two parts
 random poses tell, where they are asked for.
 
 Sources: moveit2 robot_model.cpp (``buildModel``: a virtual joint counts only where its child is the

@@ -4,7 +4,7 @@ it is known what it opens.
 
 One rule: it is known by fields of the plugin definitions, that is by a name that its section holds
 or by the section's ``opens:``; else it is not known. Where elements are found: sdformat
-src/Root.cc, Model.cc and parser_urdf.cc (plugins stand anywhere in a ``<gazebo>``), gz-sim
+src/Root.cc, Model.cc and parser_urdf.cc (plugins are anywhere in a ``<gazebo>``), gz-sim
 SystemManager.cc (a plugin of a plugin is its own matter), webots_ros2_driver WebotsNode.cpp,
 ros2_control component_parser.cpp."""
 

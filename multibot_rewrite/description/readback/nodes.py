@@ -85,11 +85,10 @@ class ReadNode(NamedTuple):
     """The node of a plugin, which is the ``number``-th of the file.
 
     ``name`` and ``namespace`` are those that its rules ``__node`` and ``__ns`` make, ``rules`` the
-    other ones; ``stems`` are parameters with what further topics are below; ``frames`` are parameters
-    with the frames they hold, ``sends`` the parameters of parent and child of a transform it publishes.
-    ``helper`` is a node that it starts beside its own, ``manager`` the full name of the controller
-    manager that it makes, if any.
-    """
+    other ones; ``stems`` are parameters with what further topics are below; ``frames`` are
+    parameters with the frames they hold, ``sends`` the parameters of parent and child of a
+    transform it publishes. ``helper`` is a node that it starts in addition to its own, ``manager``
+    the full name of the controller manager that it makes, if any."""
 
     section: VocabularySection
     number: int

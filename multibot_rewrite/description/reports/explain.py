@@ -142,7 +142,7 @@ def _reasons(
 
 
 def _stays(naming: Naming, kind: str, name: str, namespaced: bool) -> str:
-    """Why a name is not spelled; empty where it is, or where only its look forbids it."""
+    """Return why a name is not renamed; empty where it is, or where only its form forbids it."""
     bare = name.strip("/")
     reasons = (
         (not kind, "not declared, so it is not renamed"),

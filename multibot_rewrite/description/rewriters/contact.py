@@ -45,7 +45,7 @@ def respell_collisions(
 
 
 def _scopes(names: list[str], declared: Declared, respell: Respell) -> Iterator[str]:
-    """``model::link`` before a collision, spelled; as it is where the model is not of this file."""
+    """``model::link`` before a collision, renamed; as it is where the model is not of this file."""
     elsewhere = len(names) > 1 and names[0] not in declared["model"]
     for name in names:
         kinds = [kind for kind in ("model", "link") if name in declared[kind]]

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Gazebo's own namespaces: what ``<model namespace="...">`` and ``<include><namespace>`` do to claims.
 
-A release whose Gazebo does not read them leaves them out, and so does a rewrite. Where they are read,
-they get the robot's name, and relative topics of the systems that stand below them are left alone:
-they would have the name twice. Which systems do is ``model_namespace:`` in the plugin definitions.
+A release whose Gazebo does not read them leaves them out, and so does a rewrite. Where they are
+read, they get the robot's name, and relative topics of the systems below them are left alone: they
+would have the name twice. Which systems do is ``model_namespace:`` in the plugin definitions.
 
-Sources: gazebosim/sdformat 43fa4a69 (#1663, in sdformat17_17.0.0-pre1) sdf/1.12/model.sdf, world.sdf;
-gazebosim/gz-sim #3777 (scopedNamespace: those of nested models are joined, one with a leading slash
-stands alone).
-"""
+Sources: gazebosim/sdformat 43fa4a69 (#1663, in sdformat17_17.0.0-pre1) sdf/1.12/model.sdf,
+world.sdf; gazebosim/gz-sim #3777 (scopedNamespace: those of nested models are joined, one with a
+leading slash is absolute)."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The names in each claimed value: where they are, of what kind, and how they are spelled.
+"""The names in each claimed value: where they are, of what kind, and how they are renamed.
 
 The plan knows names by kind only. SDF looks a name up in the model it is in, where a link and a joint
 cannot share it; where two models of a file use one name for two kinds, the model that the reference
@@ -170,9 +170,8 @@ def resolve(
 ) -> str:
     """Which of ``kinds`` a name is; empty for a use of something that must be declared and is not.
 
-    A frame that names a link is spelled like the link, one leading slash aside; not if frames are
-    ``apart`` from links, since nodes name them at run time.
-    """
+    A frame that names a link is renamed like the link, one leading slash aside; not if frames are
+    ``apart`` from links, since nodes name them at run time."""
     if role == "declares":
         return kinds[0]
     for kind in kinds:

@@ -39,8 +39,8 @@ class Host(NamedTuple):
 
 class Inventory(NamedTuple):
     """Everything a plan needs. ``declared`` maps a kind to its declarations by name, those of the
-    URDF beside an SRDF included; ``format`` is the section of the root element; ``names`` are the
-    names in each of the ``claims``, in their order; ``release`` is that of the facts."""
+    URDF of an SRDF included; ``format`` is the section of the root element; ``names`` are the names
+    in each of the ``claims``, in their order; ``release`` is that of the facts."""
 
     document: Document
     claims: list[Claim]
@@ -72,8 +72,8 @@ def collect(
     """Walk the document in order along the tree of rewriters.
 
     ``urdf_declarations`` is what the URDF of an SRDF declares. In a ``layout`` that names frames at
-    run time these are not spelled as links are, and in one that keeps the names of models no topic is.
-    """
+    run time these are not renamed as links are, and in one that keeps the names of models no topic
+    is."""
     format_ = _format(document, tree, SRDF if urdf_declarations else "")
     claims, hosts = _walk(document, tree, format_)
     release = tree.vocabulary.release

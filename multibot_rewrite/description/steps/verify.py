@@ -80,9 +80,8 @@ def verify(
 ) -> None:
     """Raise ProofError unless ``output`` is the input with its names renamed and nothing else changed.
 
-    ``slots`` says how often the robot's name was put in; ``urdf_declarations`` is what the URDF
-    beside an SRDF declares.
-    """
+    ``slots`` says how often the robot's name was put in; ``urdf_declarations`` is what the URDF of
+    an SRDF declares."""
     file = inventory.document.file
     beside = spelled_names(urdf_declarations, naming, robot)
     # Byte offsets of elements are needed only if more than affixes has to be removed.

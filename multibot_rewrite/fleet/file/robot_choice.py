@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which robots a fleet has, where that is said when it starts: as a text, or as a number.
 
-A robot of the file with ``count`` is a pattern: ``{name: robot, count: 3, step: {y: 2}}`` stands for
-robot1, robot2 and robot3, each 2 m beside the one before.
-"""
+A robot of the file with ``count`` is a pattern: ``{name: robot, count: 3, step: {y: 2}}`` stands
+for robot1, robot2 and robot3, each 2 m from the one before."""
 
 from __future__ import annotations
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A prefix of frames that a launch file gives robot_state_publisher, beside the built description.
+"""A prefix of frames that a launch file gives robot_state_publisher, in addition to the built
+description.
 
 Source: robot_state_publisher src/robot_state_publisher.cpp: frame_prefix is put before each frame; tf2
 takes a leading slash away.

@@ -3,9 +3,8 @@
 and each robot's description loads the one that was made for it.
 
 gz_ros2_control and gazebo_ros2_control hand ``<parameters>`` on as ``--params-file``
-(gz_ros2_control_plugin.cpp), and rcl opens it as it stands: there is no ``package://`` and no
-``$(find ...)``, and a relative path is one from where Gazebo was started.
-"""
+(gz_ros2_control_plugin.cpp), and rcl opens it as it is: there is no ``package://`` and no ``$(find
+...)``, and a relative path is one from where Gazebo was started."""
 
 from __future__ import annotations
 
@@ -66,7 +65,7 @@ def with_own_controllers(robot: RewrittenRobot, folder: str) -> tuple[bytes, tup
 
 
 def loaded_files(robot: RewrittenRobot) -> Iterator[tuple[str, tuple[int, int]]]:
-    """Each file that a plugin with a controller manager loads, and where its path stands."""
+    """Yield each file that a plugin with a controller manager loads, and the span of its path."""
     inventory = robot.member.inventory
     document = inventory.document
     starts = dict(zip(document.elements, document.starts, strict=True))

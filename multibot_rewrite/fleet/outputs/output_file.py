@@ -45,7 +45,7 @@ FilesAndFindings: TypeAlias = Iterator[OutputFile | Finding]
 
 
 def described_path(robot: RewrittenRobot, node: str) -> str:
-    """Return where the description is that a node publishes beside the robot's."""
+    """Return the path of the description that a node publishes in addition to the robot's."""
     return path_for(robot, f"{node.replace('/', '_')}.urdf")
 
 

@@ -198,8 +198,8 @@ def _with_others_names(robot: Looked, found: Found) -> dict[str, str]:
 
 
 def _of_other_packages(found: Found, own: Collection[tuple[str, str] | None]) -> dict[str, str]:
-    """RViz configs of packages that neither have nor launch the robot, and that show none of its links:
-    those of a vendor's driver beside it."""
+    """RViz configs of packages that neither have nor launch the robot, and that show none of its
+    links: those of a vendor's driver next to it."""
     own = {*own, None}
     apart = (it for it in found.rviz if package_of(it) not in own and it not in found.meant)
     reason = "it is of a package that does not launch the robot"

@@ -242,8 +242,8 @@ class Fitting(NamedTuple):
 def fitting(
     robot: Looked, path: str, nodes: Sequence[Run], known: KnownNodes, bridges: Iterable[str]
 ) -> Fitting:
-    """How a file goes with a robot: frames, links and joints are those of its description, a sensor's
-    topic of several words stands in it or in a bridge."""
+    """How a file goes with a robot: frames, links and joints are those of its description, a
+    sensor's topic of several words is in it or in a bridge."""
     own = own_names(robot) | {*SENT_FRAMES}
     text = etree.tostring(robot.root).decode() if robot.root is not None else ""
     said = "\n".join((text, *map(text_of, bridges)))
@@ -258,8 +258,8 @@ def fitting(
 
 def not_started(path: str, nodes: Sequence[Run], known: KnownNodes) -> str:
     """Why a file of another package than the description's is not the robot's, where no launch file
-    starts that; empty where it may be: it is an example beside the code of a node, or nobody knows its
-    nodes."""
+    starts that; empty where it may be: it is an example next to the code of a node, or nobody knows
+    its nodes."""
     own = package_of(path)
     packages = {known.nodes[it.fact.known].package for it in nodes if it.fact.known in known.nodes}
     if own and own[0] in packages:

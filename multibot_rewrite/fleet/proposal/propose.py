@@ -160,8 +160,8 @@ def two_simulators(members: Sequence[Member]) -> str:
 
 
 def worlds_of(members: Sequence[Member], is_real: bool) -> dict[str, Choice]:
-    """Where descriptions fix their robots to the world, each real robot gets a world of its own, which
-    stands at its pose in the map. A simulator needs the one world."""
+    """Where descriptions fix their robots to the world, each real robot gets a world of its own,
+    which is at its pose in the map. A simulator needs the one world."""
     if not is_real or not any(holds_the_world(it.looked) for it in members):
         return {}
     why = "the description fixes the robot to a link `world`: each robot has its own, placed in map"

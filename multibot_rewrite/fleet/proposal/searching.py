@@ -152,7 +152,8 @@ class Undecided(UsageError):
     """Nothing says which of some files is meant: ``files`` have what is to be said of each."""
 
     def __init__(self, what: str, files: Mapping[str, str], found: Found, *before: str) -> None:
-        """``before`` are files that are named beside the one that is meant, as are those that were."""
+        """``before`` are files that are named in addition to the one that is meant, as are those
+        that were."""
         self.files = files
         named = [*before, *found.meant, next(iter(files))]
         home = os.path.abspath(home_of(named[0]))

@@ -49,11 +49,11 @@ MOST_PARTNERS = 5
 
 
 class Wanted(NamedTuple):
-    """What is asked for: files and folders, robots of each description or their names, values of xacro
-    arguments, the release and whether somebody named it, a layout if not the one that the files are
-    made for, metres from robot to robot if not as they are wide, whether xacros may do anything, a
-    simulator or "none" if not what the files are for. ``file`` is the fleet file to be written,
-    ``tell`` is told what is looked at."""
+    """What is asked for: files and folders, robots of each description or their names, values of
+    xacro arguments, the release and whether somebody named it, a layout if not the one that the
+    files are made for, metres from robot to robot if not as they are wide, whether xacros may do
+    anything, a simulator or "none" if not what the files are for. ``file`` is the fleet file to be
+    written, ``tell`` is told what is being checked."""
 
     paths: tuple[str, ...]
     each: int

@@ -91,8 +91,8 @@ _STANDING = Pose()
 
 
 class Arm(NamedTuple):
-    """A robot of a cell: its written URDF and SRDF, the word in its frames, where it stands; ``place``
-    is its line of the fleet file."""
+    """A robot of a cell: its written URDF and SRDF, the word in its frames, its place; ``place`` is
+    its line of the fleet file."""
 
     name: str
     tag: str
@@ -109,7 +109,7 @@ class Arm(NamedTuple):
 
 def joined_arms(cell: Cell, world: str, arms: Sequence[Arm], tree: Tree) -> Mapping[str, bytes]:
     """One URDF and one SRDF of all arms, by their endings: each arm is fixed to the link ``world``
-    where it stands, and the cell's own groups are there besides.
+    at its place, and the cell's own groups are there besides.
 
     Raises InputError for an arm that has no place or moves, for groups that are not there, and as
     ``join_texts`` and ``joined_srdf``.

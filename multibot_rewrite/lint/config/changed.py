@@ -110,7 +110,7 @@ def _names(listed: bytes) -> frozenset[str]:
 
 
 def _touched(paths: Iterable[str], changes: Changes) -> dict[str, bool]:
-    """Which files changed, or read one that did; included files are looked at, too."""
+    """Which files changed, or read one that did; included files are checked, too."""
     reads = _reads(paths, changes)
     changed_by_path = {path: _is_changed(path, changes) for path in reads}
     names = {os.path.basename(path) for path, it in changed_by_path.items() if it}
@@ -173,7 +173,7 @@ def _includes(path: str) -> Iterator[str]:
 
 
 def _located(path: str, asked: Iterable[str], there: dict[str, list[str]]) -> Iterator[str]:
-    """Files of these names, wherever they are; git may not have the one beside the file."""
+    """Files of these names, wherever they are; git may not have the one next to the file."""
     for it in asked:
         name = os.path.basename(it)
         beside = os.path.join(os.path.dirname(path), it)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What MoveIt makes of an SRDF beside its URDF (groups, passive and virtual joints), and which joints
+"""What MoveIt makes of an SRDF and its URDF (groups, passive and virtual joints), and which joints
 its controllers move.
 
 Sources: srdfdom model.cpp; moveit2 robot_model.cpp (fixed and mimic joints are no variables of a

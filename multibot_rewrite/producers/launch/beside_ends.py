@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What launched nodes have beside their ends: the transforms that they send, what they put before
-frames, the interfaces of ros2_control that managers export and spawned controllers claim."""
+"""What launched nodes have in addition to their ends: the transforms that they send, what they put
+before frames, the interfaces of ros2_control that managers export and spawned controllers claim."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The share folder of a package that is there as sources: as they stand, and as a build installs them.
+"""The share folder of a package that exists as sources: as they are, and as a build installs them.
 
-By the install rules of its CMakeLists.txt (``install(DIRECTORY config/ DESTINATION share/x/params)``);
-of a package in Python the folders inside of its module are beside those of the package, too.
-"""
+By the install rules of its CMakeLists.txt (``install(DIRECTORY config/ DESTINATION
+share/x/params)``); of a package in Python the folders inside of its module are next to those of the
+package, too."""
 
 from __future__ import annotations
 

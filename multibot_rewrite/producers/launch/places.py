@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where an action of a launch file stands: kept when it is made."""
+"""The line of an action in a launch file: kept when it is made."""
 
 from __future__ import annotations
 

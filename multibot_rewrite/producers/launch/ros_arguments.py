@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The words behind a program's name -> what rcl makes of them.
 
-Source: rcl arguments.c (what stands between ``--ros-args`` and ``--`` is ROS's own).
-"""
+Source: rcl arguments.c (what is between ``--ros-args`` and ``--`` is ROS's own)."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a launch starts -> its nodes as they run, with their parameters and remap rules.
 
-Every launched node stands for itself: nothing is known here of robots, node sets and layouts. A
+Every launched node is taken as it is: nothing is known here of robots, node sets and layouts. A
 launch file that is wrong is to be seen as it is."""
 
 from __future__ import annotations

@@ -36,7 +36,7 @@ NOT_INSTALLED = "not_installed"
 
 
 def link_sources(file: str, roots: Iterable[str], folder: str) -> None:
-    """Fill a folder with links to the packages below ``roots``, and to those beside the one of the
+    """Fill a folder with links to the packages below ``roots``, and to those next to the one of the
     launch ``file``."""
     for name, path in packages_for(file, roots).items():
         link_share(name, path, _shared(name, os.path.join(folder, SOURCES)))

@@ -96,7 +96,8 @@ class ObservationClock(NamedTuple):
         )
 
     def starved(self) -> Iterator[Caveat]:
-        """Where a look waited for a processor so long that nodes may have come too late."""
+        """Yield a limitation if a snapshot waited for a processor so long that nodes may have come
+        too late."""
         part = self.delayed / max(self.observed + self.delayed, DELAY_SECONDS)
         if part > STARVED:
             text = (

@@ -124,7 +124,7 @@ def complete_view(session: GraphSession, cache: queries.TopicCache) -> tuple[lis
 
 
 def own_ends(session: ros.Session) -> list[tuple[str, str, str]]:
-    """Node, role and name of each end that the nodes of this process have, as a look gives them."""
+    """Node, role and name of each end that the nodes of this process have, as a snapshot has them."""
     nodes = list(session.executor.get_nodes())
     names = [it.get_fully_qualified_name() for it in nodes]
     found = [
@@ -158,7 +158,7 @@ HEADER_SECONDS = 1.5
 
 
 class Ears:
-    """What is received while the graph is looked at: transforms, and headers if they are asked for."""
+    """What is received while the graph is observed: transforms, and headers if they are asked for."""
 
     def __init__(self, session: GraphSession) -> None:
         self._request = session.request

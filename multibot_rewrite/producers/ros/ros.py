@@ -174,8 +174,8 @@ def _file_name(name: str) -> str:
 
 
 def begins_with_header(type_: str) -> bool:
-    """Whether the first field of an installed message type is a header: read in its source, beside
-    which nothing is imported."""
+    """Whether the first field of an installed message type is a header: read in its source, without
+    importing anything else."""
     package, kind, name = type_.split("/")
     spec = find_spec(package)
     folders = (spec and spec.submodule_search_locations) or ()

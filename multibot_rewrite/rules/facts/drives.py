@@ -299,7 +299,7 @@ def _shapes(robot: Robot, wheel: Wheel, tag: str) -> Iterator[tuple[_Element, Po
 
 
 def middles(robot: Robot, wheel: Wheel) -> list[Vector]:
-    """Where a wheel may be said to stand: at its joint, in the middle of its shapes."""
+    """Return where a wheel may be: at its joint, in the middle of its shapes."""
     found = [wheel.pose.at]
     for tag in ("collision", "visual"):
         extents = (extent_of(shape, pose) for shape, pose in _shapes(robot, wheel, tag))

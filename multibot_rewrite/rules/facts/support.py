@@ -89,6 +89,6 @@ def side(start: Point, end: Point, point: Point) -> float:
 
 
 def beyond(corners: Sequence[Point], point: Point) -> float:
-    """How far a point is outside of a convex area, or beside a line; below 0 inside of it."""
+    """Return how far a point is outside of a convex area, or from a line; below 0 inside of it."""
     edges = zip(corners, [*corners[1:], corners[0]], strict=True)
     return max(-side(a, b, point) / hypot(b[0] - a[0], b[1] - a[1]) for a, b in edges)

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a file, and the parameter files of the same robot, set for each node and plugin, beside what
-declares it: of a parameter file, and of a file of MoveIt as the parameters that it becomes.
-"""
+"""What a file, and the parameter files of the same robot, set for each node and plugin, and what
+declares it: of a parameter file, and of a file of MoveIt as the parameters that it becomes."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is wrong with the models that a launch spawns: two of one name, at one place, on one topic,
-and in a world that does not run what they need; and with the rows of the bridges beside them.
+and in a world that does not run what they need; and with the rows of their bridges.
 
 Source: ros_gz_sim jazzy create.cpp (``-name``, ``-x`` ... and ``-allow_renaming``); gz-sim8
 src/systems/user_commands/UserCommands.cpp (an entity of a name that is there is not created);

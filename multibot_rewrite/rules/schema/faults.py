@@ -114,7 +114,7 @@ def _to_check(
 def _with_odd_values(
     alike: Sequence[etree._Element], typed: Iterable[tuple[int, Kind]]
 ) -> Iterable[etree._Element]:
-    """Elements of the same attributes, looked at by columns: most values come again and again."""
+    """Elements of the same attributes, checked by columns: most values come again and again."""
     columns = list(zip(*[it.values() for it in alike], strict=True))
     found: dict[etree._Element, None] = {}
     for at, kind in typed:

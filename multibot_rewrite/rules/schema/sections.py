@@ -31,9 +31,8 @@ NO_LATER: Mapping[str, Version] = {}
 class Kind(NamedTuple):
     """What an attribute must hold: a type of ``urdf.schema``, or one of ``choices``.
 
-    It is read from version ``since`` on, and not beside the attribute ``instead_of``. A number out of
-    range is refused from version ``refused`` on.
-    """
+    It is read from version ``since`` on, and not with the attribute ``instead_of``. A number out of
+    range is refused from version ``refused`` on."""
 
     type: str
     required: bool

@@ -127,7 +127,7 @@ def how_to_remap(plan: Index, planned: End) -> str:
 
 
 def how_to_pass(plan: Index, node: str, rule: str, what: str = "") -> str:
-    """Where a rule for a node stands, and how it is written there; ``what`` is what to call it."""
+    """Return where a rule for a node goes, and how it is written there; ``what`` is what to call it."""
     way, taker = _way(plan, node)
     what = what or rule
     if way == PLUGIN:
@@ -193,7 +193,7 @@ _Rest = tuple[int | str, ...]
 
 
 class Spelled:
-    """Known names by how they are spelled: no name is compared with all."""
+    """Known names by how they are written: no name is compared with all."""
 
     def __init__(self, names: Iterable[str]) -> None:
         self.by_letters: dict[str, list[str]] = defaultdict(list)

@@ -71,7 +71,7 @@ def command_for_several_robots(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG308", "command-without-reader", ERROR, absence=True, drawn="leak")
 def command_to_nobody(seen: Index) -> Iterator[Finding]:
-    """Where the other name has no sender, its reader is the finding, but for the drive beside a
+    """Where the other name has no sender, its reader is the finding, but for the drive past a
     twist_mux: what it chooses is meant for the drive. What RViz offers is a note."""
     obeyed, plainly = defaultdict(list), defaultdict(list)
     unread: dict[str, Ends] = {}

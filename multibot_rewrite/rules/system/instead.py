@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What nodes wait for in vain while their robot has it under another name: by what it is, not by how
-it is spelled."""
+"""What nodes wait for in vain while their robot has it under another name: by what it is, not by
+how it is written."""
 
 from __future__ import annotations
 

@@ -113,7 +113,7 @@ def _why(seen: Index, tree: Tree, node: str, body: _Body, start: str) -> Cause:
 
 @system_rule("MG414", "odometry-of-another-robot", ERROR)
 def odometry_of_another(seen: Index) -> Iterator[Finding]:
-    """Yield frames below the odometry of another robot; on its links a robot may stand."""
+    """Yield frames below the odometry of another robot; on its links a robot may be."""
     for tree in seen.trees:
         for edge in tree.edges:
             owner, robot = seen.frame_robot(edge.parent), seen.frame_robot(edge.child)

@@ -231,8 +231,8 @@ def _meant_by(plan: Index) -> Mapping[str, Mapping[str, str]]:
 
 
 def _with_meanings(plan: Index, robot: str, names: Sequence[str]) -> Iterator[Stray]:
-    """One frame may be another one of its own (``front_laser`` beside ``laser``): a prefix is in front
-    of both ends of a transform, and of all that a robot_state_publisher sends."""
+    """One frame may be another one of its own (``front_laser`` next to ``laser``): a prefix is in
+    front of both ends of a transform, and of all that a robot_state_publisher sends."""
     declared, whose = plan.declared[robot], plan.of_frames
     frames, tag = (*declared.frames, *declared.other_frames), whose.tag(robot)
     plain = {**{whose.without_robot(it, robot): it for it in frames}, **_planned(plan)[robot]}
@@ -263,7 +263,7 @@ def _in_front(frames: Sequence[str], name: str) -> str:
 @planned_rule("MG208", "frame-not-received", ERROR, absence=True, drawn="missing")
 def frame_not_received(plan: Index, seen: Index) -> Iterator[Finding]:
     """One finding for a robot whose senders all run. Where no transform was received at all, tf may
-    not have been looked at. A frame under another name has a finding of its own."""
+    not have been observed. A frame under another name has a finding of its own."""
     senders = _senders(plan) if seen.system.edges else {}
     heard: dict[str, set[str]] = defaultdict(set)
     for tree, strays in _strays(plan, seen):

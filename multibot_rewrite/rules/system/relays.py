@@ -56,7 +56,7 @@ def _of_bodies(seen: Index) -> Sequence[Ends]:
 
 @system_rule("MG315", "limits-left-out", ERROR, meant=(PUBLISHES, SUBSCRIBES))
 def limits_left_out(seen: Index) -> Iterator[Finding]:
-    """docking_server sends beside collision_monitor, as it is made."""
+    """Yield nodes that send past what limits commands, except docking_server: it is meant to."""
     yield from _mux_left_out(seen)
     for ends in _velocities(seen):
         nodes = nodes_of(ends.publishers)

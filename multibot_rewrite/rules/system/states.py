@@ -115,7 +115,7 @@ def interface_commanded_twice(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG513", "no-controller-active", WARNING)
 def no_controller_active(seen: Index) -> Iterator[Finding]:
-    """Yield managers without an active controller; some inactive ones beside active ones are usual."""
+    """Yield managers without an active controller; some inactive ones next to active ones are usual."""
     kept = lists_by_key((it.manager, it) for it in seen.system.controllers)
     for manager, own in kept.items():
         if all(it.state != ACTIVE for it in own):
@@ -129,8 +129,8 @@ def no_controller_active(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG514", "use-sim-time-differs", WARNING)
 def use_sim_time_differs(seen: Index) -> Iterator[Finding]:
-    """Tools and bridges have the machine's time beside any robot. MG503 says it of a whole robot, and
-    of planned parameters ``parameter_not_planned``."""
+    """Yield robots' nodes with other clocks; tools and bridges have the machine's time with any
+    robot. MG503 says it of a whole robot, and of planned parameters ``parameter_not_planned``."""
     told, planned = {it.robot for it in mixed_clocks(seen)}, planned_clocks(seen)
     by_robot: dict[str, dict[bool, list[str]]] = defaultdict(lambda: defaultdict(list))
     for node, simulated in clocks(seen.system).items():

@@ -65,17 +65,16 @@ _PATH = lazy_compile(rf"(?=.)(?:{_STEP}(?:/{_STEP})*)?(?:@{_NAME})?")
 class VocabularySection(NamedTuple):
     """One section: what is known about an element, a plugin, a hardware class or a shared block.
 
-    ``wired`` are topics and services that its code names. ``switches`` are parameters that turn one of
-    them off, each as ``parameter=name``.
-    ``inserts`` is false where the consumer throws on children it does not know.
-    ``unique`` is a kind whose bare names the plugin looks up in the whole world. ``process_wide``
-    tells that its remap rules hold for every node of the process. ``hardwired`` are names it looks
-    for whatever the file says, each as ``kind:name``. ``model_namespace`` are the releases in which
-    its relative topics stand below the namespace of the model. ``releases`` are the words for the only
-    releases that have it. ``tags`` are those of the child elements that its rows know. ``opens`` is
-    what it opens beside names, or that it opens nothing, or that this is not known. ``helper`` is a
-    node that it starts beside its own, which only its namespace moves.
-    """
+    ``wired`` are topics and services that its code names. ``switches`` are parameters that turn one
+    of them off, each as ``parameter=name``. ``inserts`` is false where the consumer throws on
+    children it does not know. ``unique`` is a kind whose names the plugin looks up in the whole
+    world. ``process_wide`` tells that its remap rules hold for every node of the process.
+    ``hardwired`` are names it looks for whatever the file says, each as ``kind:name``.
+    ``model_namespace`` are the releases in which its relative topics are below the namespace of the
+    model. ``releases`` are the words for the only releases that have it. ``tags`` are those of the
+    child elements that its rows know. ``opens`` is what it opens in addition to names, or that it
+    opens nothing, or that this is not known. ``helper`` is a node that it starts in addition to its
+    own, which only its namespace moves."""
 
     type: str
     names: tuple[str, ...]

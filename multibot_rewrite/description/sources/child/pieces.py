@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Texts that know where they were written: what xacro makes of them, piece by piece.
 
-A value of an expansion is put together from what stands in an element, a property, the call of a macro,
-an argument or a YAML file. While xacro runs, each of these is a ``PiecedText``: a str with its pieces.
-What an expression makes in any other way is a piece that has only the place of the expression.
+A value of an expansion is put together from what is in an element, a property, the call of a macro,
+an argument or a YAML file. While xacro runs, each of these is a ``PiecedText``: a str with its
+pieces. What an expression makes in any other way is a piece that has only the place of the
+expression.
 
 Source: xacro 2.1.1 __init__.py (``eval_text``, ``grab_macro``, ``load_yaml``), substitution_args.py.
 """
@@ -25,8 +26,8 @@ TEXT_NODE = "#"
 class Spot(NamedTuple):
     """Where a piece was written: the file's number, or GIVEN for an argument of the caller; the
     element's; the attribute, ``#0`` for the first text in it; the offset there, in characters.
-    ``length`` is that of an expression whose result the piece is, 0 for a piece that stands there as it
-    is."""
+    ``length`` is that of an expression whose result the piece is, 0 for a piece that is written
+    there."""
 
     file: int
     element: int

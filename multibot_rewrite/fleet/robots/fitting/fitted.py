@@ -3,7 +3,7 @@
 files have.
 
 What the user's files say stays. A node that a node set adds gets the type of commands, the frames
-and the transforms with which it works beside them."""
+and the transforms with which it works with them."""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ def to_the_drive(node: NodeFacts) -> NodeFacts:
 def through_a_mux(
     nodes: Sequence[NodeFacts], added: Collection[str], usual: Usual, of_package: NodeFacts
 ) -> Sequence[NodeFacts]:
-    """Return the nodes, ``added`` ones that send commands beside the twist_mux with an input of it.
+    """Return the nodes, ``added`` ones that send commands past the twist_mux with an input of it.
 
     ``usual`` are the node set's own parameters of the twist_mux, ``of_package`` is what its code
     has. Where the user's file has no input for a sender, the twist_mux gets the node set's."""
@@ -119,7 +119,8 @@ def _name_of_topic(role: str) -> str:
 def _with_inputs(
     node: NodeFacts, roles: Iterable[str], usual: Usual, of_package: NodeFacts
 ) -> NodeFacts:
-    """Return the twist_mux with inputs that the node set has, beside those of the user's file."""
+    """Return the twist_mux with inputs that the node set has, in addition to those of the user's
+    file."""
     (like,) = _commands(of_package, SUBSCRIBES)
     for role in roles:
         values = [it for it in usual.items() if it[0].startswith(_INPUT.format(role))]

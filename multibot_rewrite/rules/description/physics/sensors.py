@@ -159,7 +159,7 @@ def _way_out(sensor: Sensor) -> float:
 
 @rule("MB637", "lidar-without-rays", WARNING)
 def lidar_without_rays(subject: Subject) -> Iterator[Problem]:
-    """Lidars beside what only Gazebo loads, where nothing is for Gazebo Classic."""
+    """Yield lidars in addition to what only Gazebo loads, where nothing is for Gazebo Classic."""
     libraries = {simulators.library_of(it) for it in simulators.simulator_plugins(subject)}
     hardware = {simulator.name for _, _, simulator in simulators.simulated(subject)}
     gazebo = simulators.GAZEBO.name in hardware or any(it.startswith(_GAZEBOS) for it in libraries)
