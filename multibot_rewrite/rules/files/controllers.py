@@ -28,7 +28,7 @@ from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import ACTION, SERVES, Place
 
 
-@rule("MB857", "undeclared-controller-beside", WARNING, formats=(MOVEIT, PARAMS))
+@rule("MB857", "undeclared-controller-in-file", WARNING, formats=(MOVEIT, PARAMS))
 def undeclared_controller(file: NamedFile) -> Iterator[Finding]:
     """Yield the controllers of ``moveit_simple_controller_manager`` that none of the files declares."""
     found = [*managers(file.document.root)] if file.document else []

@@ -51,13 +51,13 @@ _FEWEST = 3
 WORLD = "world"
 
 
-@rule("MB853", "undeclared-frame-beside", WARNING, formats=EVERY)
+@rule("MB853", "undeclared-frame-in-file", WARNING, formats=EVERY)
 def undeclared_frame(file: NamedFile) -> Iterator[Finding]:
     """Frames and links."""
     return _undeclared(file, _FRAMES)
 
 
-@rule("MB854", "undeclared-joint-beside", NOTE, formats=EVERY)
+@rule("MB854", "undeclared-joint-in-file", NOTE, formats=EVERY)
 def undeclared_joint(file: NamedFile) -> Iterator[Finding]:
     """Joints, sensors and groups."""
     return _undeclared(file, _PARTS)
