@@ -116,8 +116,8 @@ class Naming(NamedTuple):
 
 
 def leaves(world_systems: str | None, robots: Sequence[str]) -> bool:
-    """Are they left to the world? Where nothing is said, those of several robots are: each would be
-    loaded twice. Raises UsageError for a word that is not known."""
+    """Return whether world systems are left to the world. By default those of several robots are:
+    each would be loaded twice. Raises UsageError for an unknown word."""
     if world_systems is None:
         return len(robots) > 1
     _one_of("world_systems", world_systems, WORLD_SYSTEMS)
@@ -247,10 +247,9 @@ def spelled(naming: Naming, robot: str, kind: str, text: str, namespaced: bool =
 
 
 def is_of_world(topic: str) -> bool:
-    """Is it a topic or service of the world, as ``/world/w/set_pose``, and not of a model in it?
-
-    Source: gazebosim/gz-sim src/SimulationRunner.cc, systems/user_commands/UserCommands.cc,
-    systems/scene_broadcaster/SceneBroadcaster.cc."""
+    """Return whether it is a topic or service of the world, as ``/world/w/set_pose``, and not of a
+    model in it. Source: gazebosim/gz-sim src/SimulationRunner.cc,
+    systems/user_commands/UserCommands.cc, systems/scene_broadcaster/SceneBroadcaster.cc."""
     parts = topic.split("/")
     return parts[:2] == ["", "world"] and len(parts) > 3 and parts[3] != "model"
 

@@ -38,7 +38,7 @@ def slip_of(name: str, known: Iterable[str]) -> str:
 
 
 def differ_in_numbers(name: str, other: str) -> bool:
-    """Are two names the same but for their digits? They are of two things then: robot1, robot2."""
+    """Return whether two names differ in digits alone. Then they are two things: robot1, robot2."""
     bare, rest = ("".join(c for c in it if not c.isdigit()) for it in (name, other))
     return bare == rest
 

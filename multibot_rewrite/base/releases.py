@@ -161,7 +161,7 @@ def releases_with(words: str) -> tuple[str, ...]:
 
 
 def share_release(words: str, others: str) -> bool:
-    """Is there a release in which both facts hold?"""
+    """Return whether there is a release in which both facts hold."""
     return any(has_release(words, it) and has_release(others, it) for it in RELEASES)
 
 
@@ -172,7 +172,7 @@ def since_version(words: str, release: str) -> str:
 
 
 def is_release_words(words: str) -> bool:
-    """Are these release words? See above."""
+    """Return whether these are release words, as above."""
     try:
         found = list(_terms(words))
     except UsageError:

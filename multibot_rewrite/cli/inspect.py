@@ -223,12 +223,12 @@ _CODE = re.compile(r"M[A-Z](\d\w*)?", re.IGNORECASE)
 
 
 def are_codes(words: Sequence[str]) -> bool:
-    """Is a code among these words, or are they the name of a rule?"""
+    """Return whether a code is among these words, or they are the name of a rule."""
     return any(map(_CODE.fullmatch, _split(words)))
 
 
 def is_name(word: str) -> bool:
-    """Has a rule this name?"""
+    """Return whether a rule has this name."""
     return any(it.name == word for it in rules().values())
 
 

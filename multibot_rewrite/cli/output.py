@@ -150,7 +150,7 @@ def watched(items: Iterable[_T], total: int, doing: str) -> Iterable[_T]:
 
 
 def is_screen(stream: TextIO | None) -> TypeGuard[TextIO]:
-    """Can a line on it be replaced by another?"""
+    """Return whether a line on the stream can be replaced by another."""
     return stream is not None and stream.isatty() and os.environ.get("TERM") != "dumb"
 
 
@@ -205,7 +205,7 @@ def print_lines(lines: Iterable[object]) -> None:
 
 
 def prints_colour(options: argparse.Namespace) -> bool:
-    """Is what goes to standard output coloured?"""
+    """Return whether standard output is coloured."""
     return not goes_to_file(options) and is_coloured(options.color, sys.stdout)
 
 

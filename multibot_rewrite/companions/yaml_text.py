@@ -177,7 +177,7 @@ class Block(NamedTuple):
 
 
 def is_block(node: yaml.Node | None) -> bool:
-    """Is it a list or map in block style, without brackets or braces?"""
+    """Return whether it is a list or map in block style, without brackets or braces."""
     return isinstance(node, yaml.CollectionNode) and not node.flow_style
 
 

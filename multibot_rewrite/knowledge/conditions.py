@@ -129,7 +129,7 @@ def _words(text: str) -> tuple[str, ...]:
 
 
 def holds(text: str, value_of: Values) -> bool:
-    """Is it surely true of these parameters? ``value_of`` gives None for one that is not set."""
+    """Return whether a condition surely holds; ``value_of`` gives None for an unset parameter."""
     return not text or verdict(text, value_of) is True
 
 
@@ -139,7 +139,7 @@ def chosen_type(types: Iterable[tuple[str, str]], value_of: Values) -> str:
 
 
 def verdict(text: str, value_of: Values) -> bool | None:
-    """Is it true of these parameters? None where they do not say it."""
+    """Return whether a condition holds with these parameters; None if they do not tell."""
     found = []
     for terms in parse_condition(text):
         each = [_is_true(it, value_of) for it in terms]

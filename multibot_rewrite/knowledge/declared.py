@@ -41,7 +41,7 @@ class Declared(NamedTuple):
     source: str
 
     def has_name(self, name: str) -> bool:
-        """Is it a name of the path, something in place of each word in brackets?"""
+        """Return whether it is a name of the path, something in place of each word in brackets."""
         if "<" not in self.path:
             return name == self.path
         # A pattern takes longer to compile than most paths to refuse.
@@ -101,7 +101,7 @@ def declared_by(owner: str) -> tuple[Declared, ...]:
 
 
 def is_known(owner: str) -> bool:
-    """Is there a section of that name?"""
+    """Return whether there is a section of that name."""
     return owner in _sections("declared.schema")
 
 
@@ -111,7 +111,7 @@ def stands_for(path: str, name: str) -> dict[str, str]:
 
 
 def says_something(path: str) -> bool:
-    """Has a path a word of its own?"""
+    """Return whether a path has a word of its own."""
     return _EVERY.fullmatch(path) is None
 
 

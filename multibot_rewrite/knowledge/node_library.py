@@ -278,7 +278,7 @@ def _named(endpoints: tuple[Endpoint, ...], keys: Mapping[str, YamlItem]) -> tup
 
 
 def _has(endpoint: Endpoint, given: str) -> bool:
-    """Is this its name, or a run-time part of its name?"""
+    """Return whether this is its name, or a run-time part of its name."""
     return given in endpoint.name if given.startswith("<") else given == endpoint.name
 
 

@@ -49,17 +49,17 @@ def load_known_nodes(path: str, release: str) -> KnownNodes:
 
 
 def is_absolute(param: Param, release: str) -> bool:
-    """Is a relative topic in it outside of the robot's namespace in this release?"""
+    """Return whether a relative topic in it is outside the robot's namespace in this release."""
     return bool(param.absolute) and has_release(param.absolute, release)
 
 
 def is_below_costmap(plugin: str) -> bool:
-    """Is it the one filter that resolves its topics below the costmap in every release?"""
+    """Return whether it is the one filter with topics below the costmap in every release."""
     return "BinaryFilter" in plugin
 
 
 def is_called(param: Param, name: str) -> bool:
-    """May a parameter of this dotted name be the known one?"""
+    """Return whether a parameter of this dotted name may be the known one."""
     own, words = param.path.split("."), name.split(".")
     return len(own) == len(words) and all(
         a in (b, "*") or a.startswith("<") for a, b in zip(own, words, strict=True)

@@ -60,7 +60,7 @@ def known_program(name: str, release: str) -> Program:
 
 
 def runs(node: NodeFacts, program: str) -> bool:
-    """Is the node what ``package/executable`` or ``package/class`` runs?"""
+    """Return whether the node is what ``package/executable`` or ``package/class`` runs."""
     own = (*node.programs, node.component) if node.component else node.programs
     if not own:
         return False
@@ -76,5 +76,5 @@ def container_of(release: str) -> Program:
 
 
 def is_unmanaged(node: NodeFacts, release: str) -> bool:
-    """Has it a life cycle that no lifecycle manager of Nav2 takes care of?"""
+    """Return whether it has a life cycle that no lifecycle manager of Nav2 takes care of."""
     return bool(node.unmanaged) and has_release(node.unmanaged, release)

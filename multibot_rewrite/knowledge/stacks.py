@@ -138,7 +138,7 @@ def in_release(library: NodeLibrary, release: str) -> NodeLibrary:
 
 
 def _has_stack(library: NodeLibrary, name: str, release: str) -> bool:
-    """Is a node of the node set in the release? A node set may have none in any."""
+    """Return whether a node of the node set is in the release. A node set may have none in any."""
     stack = library.stacks[name]
     if not has_release(stack.releases, release):
         return False

@@ -91,7 +91,7 @@ def _handled(handle: Callable[..., Any], group: Here) -> Callable[..., Any]:
 
 
 def _is_of_timers(handler: Any) -> bool:
-    """Is it the one handler that a launch has for all of its timers, which keep locals themselves?"""
+    """Return whether it is the one handler for all timers of a launch, which keep locals."""
     event = of_launch("events").TimerEvent(timer_action=None)
     return type(handler).__name__ == "EventHandler" and bool(handler.matches(event))
 

@@ -109,7 +109,7 @@ def _of_value(text: str) -> str:
 
 
 def is_of_network(text: str) -> bool:
-    """Is it the address of another computer, alone or with a port?"""
+    """Return whether it is the address of another computer, alone or with a port."""
     try:
         it = IPv4Address(text.partition(":")[0])
         return not (it.is_loopback or it.is_unspecified or text.startswith("255."))

@@ -31,35 +31,35 @@ def _robot(_: Index, cause: Finding, it: Finding) -> bool:
 
 
 def _served(seen: Index, cause: Finding, it: Finding) -> bool:
-    """Is what the second is about served by the node of the first?"""
+    """Return whether the node of the first finding serves what the second is about."""
     return any(end.node == cause.node for name in it.names for end in ends_of(seen, name))
 
 
 def _same_node(seen: Index, cause: Finding, it: Finding) -> bool:
-    """Is the missing node of the first the one of the second, without its robot's name?"""
+    """Return whether the first finding's missing node is the second's, robots' names aside."""
     return seen.plain(cause.node) == it.node
 
 
 def _two_robots(_: Index, cause: Finding, it: Finding) -> bool:
-    """Are the nodes of a whole robot there twice, and so what they send?"""
+    """Return whether the nodes of a whole robot run twice, and so what they send."""
     return len(cause.names) > 1 and cause.robot == it.robot
 
 
 def _sends_tf(seen: Index, cause: Finding, it: Finding) -> bool:
-    """Has the missing node to send its robot's tf, by the plan?"""
+    """Return whether the missing node has to send its robot's tf, by the plan."""
     planned = seen.expected.by_node.get(cause.node, ()) if seen.expected else ()
     tf = any((end.type, end.role) == (TF, PUBLISHES) for end in planned)
     return tf and cause.robot == it.robot
 
 
 def _lacks_tf(seen: Index, cause: Finding, it: Finding) -> bool:
-    """Is it tf that the node of the first lacks, by the plan?"""
+    """Return whether the node of the first finding lacks tf, by the plan."""
     planned = ends_of(seen.expected, cause.names[0]) if seen.expected and cause.names else ()
     return any(end.type == TF for end in planned) and cause.robot == it.robot
 
 
 def _described(seen: Index, cause: Finding, it: Finding) -> bool:
-    """Is it of the robot whose description it is, or of which it has the frames?"""
+    """Return whether it is about the robot whose description it is, or whose frames it has."""
     links = (
         link for one in seen.system.descriptions if one.topic in cause.names for link in one.links
     )
@@ -192,7 +192,7 @@ def _makers(seen: Index, it: Finding) -> Sequence[str]:
 
 
 def is_about_a_clock(seen: Index, it: Finding) -> bool:
-    """Is it about the time that nodes get?"""
+    """Return whether it is about the time that nodes get."""
     ends = (end for name in it.names for end in ends_of(seen, name))
     return any(end.type == "rosgraph_msgs/msg/Clock" for end in ends)
 

@@ -83,7 +83,7 @@ def _abouts(it: Finding, rules: Mapping[str, Rule]) -> Iterator[_About]:
 
 
 def _is_of_an_end(it: Finding, rules: Mapping[str, Rule]) -> bool:
-    """Is it of ``missing_endpoint``, whatever it is called?"""
+    """Return whether it is of ``missing_endpoint``, whatever its name."""
     return it.code == missing_endpoint.code or not rules[it.code].options["planned"]
 
 
@@ -107,14 +107,14 @@ def _same(seen: Index, it: Finding, rules: Mapping[str, Rule]) -> Iterator[_Abou
 
 
 def _has_to_give(seen: Index, it: Finding) -> bool:
-    """Has a node to send or serve, by the plan, what others wait for?"""
+    """Return whether a node has to send or serve, by the plan, what others wait for."""
     plan = seen.expected.by_key if seen.expected else ()
     gives = ((TOPIC, PUBLISHES), (SERVICE, SERVES), (ACTION, SERVES))
     return any((it.node, *way, it.names[0]) in plan for way in gives)
 
 
 def _is_there(it: Finding) -> bool:
-    """Has the node something in place of what it lacks?"""
+    """Return whether the node has something in place of what it lacks."""
     return len(it.names) > 1 or it.code != missing_endpoint.code
 
 
@@ -159,7 +159,7 @@ def _hint(
 
 
 def _is_meant(plan: Index, seen: Index, it: Finding, rule: Rule) -> bool:
-    """Are all who do with its names what it is about planned to?"""
+    """Return whether all nodes with its names are planned to do what it is about."""
     key, memo = (it.code, it.names), seen.memo.setdefault(_is_meant, {})
     if key not in memo:
         roles = rule.options["meant"]

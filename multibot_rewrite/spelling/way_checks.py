@@ -97,10 +97,9 @@ def _in_process(run: Run, rules: Rules, namespace: str, wide: Rules) -> Run:
 
 
 def is_stand_in(node: Run, endpoint: Endpoint) -> bool:
-    """Is this a topic of a controller of the plugin, and not of the controller manager itself?
-
-    Those are what the plugin is known to publish, and without a role what its rules name.
-    """
+    """Return whether this is a topic of a controller of the plugin, and not of the controller
+    manager itself. Those are what the plugin is known to publish, and without a role what its rules
+    name."""
     return node.process_wide and endpoint.role in (PUBLISHES, "")
 
 

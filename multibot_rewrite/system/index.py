@@ -278,7 +278,7 @@ class Index(NamedTuple):
         return "no known node" if incomplete(self.system) else "no node"
 
     def is_tool(self, node: str) -> bool:
-        """Is the node none of the robots', but one that comes and goes with any?"""
+        """Return whether the node is no robot's, but one that comes and goes with any."""
         plan = self.expected
         if plan is None:
             # /amcl_bridge of a robot called bridge is none.

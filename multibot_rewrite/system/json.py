@@ -87,7 +87,7 @@ def _scalar(value: object) -> str:
 
 
 def is_json(data: bytes) -> bool:
-    """Is the file JSON? YAML begins with a comment or a key."""
+    """Return whether the file is JSON. YAML begins with a comment or a key."""
     return data.removeprefix(BOM_UTF8)[:1000].lstrip().startswith(b"{")
 
 

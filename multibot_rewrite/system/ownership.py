@@ -142,7 +142,7 @@ def whose_by_plan(plan: System) -> Whose:
 
 
 def is_alone(plan: System) -> bool:
-    """Is it the plan of one robot, whose name is in no name of its nodes and ends?"""
+    """Return whether it is the plan of one robot, whose name no node or end has."""
     if len(plan.robots) != 1:
         return False
     word = plan.robots[0].name

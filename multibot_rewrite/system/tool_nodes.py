@@ -12,8 +12,8 @@ from multibot_rewrite.base.conventions import is_tool_word, only_looks
 
 
 def is_tool(node: str, more: tuple[str, ...] = ()) -> bool:
-    """Is the node with this full name a tool? ``more`` are patterns in addition to the usual ones;
-    without a slash they are of any namespace."""
+    """Return whether the node with this full name is a tool. ``more`` are patterns in addition to
+    the usual ones; without a slash they are of any namespace."""
     word = node.rpartition("/")[2]
     if is_tool_word(word):
         return True
@@ -35,7 +35,7 @@ def is_viewer(node: str) -> bool:
 
 
 def is_hidden(node: str) -> bool:
-    """Is it a node of the ``ros2`` command, or another that hides itself?"""
+    """Return whether it is a node of the ``ros2`` command, or another that hides itself."""
     return last_word(node).startswith("_")
 
 

@@ -70,12 +70,12 @@ def kind_of_data(name: str, type_: str) -> str:
 
 
 def is_description(name: str, type_: str) -> bool:
-    """Is it the topic of a robot's description?"""
+    """Return whether it is the topic of a robot's description."""
     return type_ == _TEXT and name.endswith(("description", "urdf"))
 
 
 def is_of_a_body(type_: str) -> bool:
-    """Is it what the body of a single robot measures: its joints, its way, its scan?"""
+    """Return whether a single robot's body measures it: its joints, its way, its scan."""
     return type_ in _BODY
 
 
@@ -85,7 +85,7 @@ def is_of_one_sensor(type_: str) -> bool:
 
 
 def is_of_one_robot(plain: str, type_: str) -> bool:
-    """Would data of two robots be mixed on the topic: sensors, odometry, maps, commands, a
-    description?"""
+    """Return whether data of two robots would be mixed on the topic: sensors, odometry, maps,
+    commands, a description."""
     sensors = type_.startswith(_OF_ONE_ROBOT)
     return sensors or moves(plain, type_) or plain.endswith(DESCRIPTION)

@@ -23,12 +23,12 @@ PREFIXED = {"stem": "frame", "joint_stem": "joint", **_PREFIXES}
 
 
 def is_plain(value: str) -> bool:
-    """Is it a name, without substitutions or placeholders for a launch file?"""
+    """Return whether it is a name, without substitutions or placeholders for a launch file."""
     return bool(value) and "<" not in value and NOT_PLAIN.isdisjoint(value)
 
 
 def is_filled(value: str) -> bool:
-    """Is it a text without placeholders, though perhaps no name?"""
+    """Return whether it is a text without placeholders, though perhaps no name."""
     return bool(value) and not PLACEHOLDER.search(value)
 
 
@@ -204,7 +204,7 @@ SPELLERS: Mapping[str, Speller] = {
 
 
 def expressible(context: Context, kind: str) -> bool:
-    """Can a prefix parameter of this kind express the fleet's naming?"""
+    """Return whether a prefix parameter of this kind can express the fleet's naming."""
     of = PREFIXED.get(kind)
     if of is None or of not in context.names.naming.separators or _own_prefix(context, of):
         return True

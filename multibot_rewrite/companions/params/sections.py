@@ -225,7 +225,7 @@ def controller_types(found: Iterable[RawSection]) -> dict[str, str]:
 
 
 def is_for(section: str, full: str) -> bool:
-    """Is a section of this name for the node with this full name? Raises nothing."""
+    """Return whether a section of this name is for the node with this full name. Raises nothing."""
     if "*" not in section:
         return section.strip("/") == full.strip("/")
     parts = section.strip("/").split("/")

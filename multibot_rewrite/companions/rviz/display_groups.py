@@ -87,7 +87,7 @@ def for_one_process(one: RvizItem) -> bool:
 
 
 def has_own_windows(config: RvizConfig, robot: RvizRobot) -> bool:
-    """Is there anything that works for one robot, in an rviz2 of its own?"""
+    """Return whether anything works for one robot only, in an rviz2 of its own."""
     return robot.has_process and any(map(is_for_one, shown_in(config)))
 
 

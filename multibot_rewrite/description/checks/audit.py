@@ -81,7 +81,7 @@ _SUBSTITUTION = lazy_compile(r"\$\{\s*[^\s{}]|\$\(arg\s+[^\s()]")
 
 
 def uses_xacro(document: Document) -> bool:
-    """Is a prefix bound to xacro, and is it used? A cheap look first; a comment does not count."""
+    """Return whether a prefix is bound to xacro and used; comments do not count."""
     spaces = document.root.nsmap.items()
     prefixes = {f"<{prefix}:" for prefix, uri in spaces if prefix and "/xacro" in uri}
     seen = any(prefix.encode() in document.source for prefix in prefixes | {"<xacro:"})

@@ -107,8 +107,9 @@ def unclaimed_mentions(
 
 
 def _is_unread(element: etree._Element, attribute: str, vocabulary: Vocabulary) -> bool:
-    """Is it text that urdfdom does not read (model.cpp, link.cpp, joint.cpp), or in a parameter that a
-    plugin or hardware does not read, in no release, for ROS 1 or 2? All is known then that it reads."""
+    """Return whether it is text that urdfdom does not read (model.cpp, link.cpp, joint.cpp), or is
+    in a parameter that a plugin or hardware reads in no release, for ROS 1 or 2. Then all that it
+    reads is known."""
     parent = element.getparent()
     if not attribute and element.tag in NO_TEXT and parent is not None and parent.tag == "robot":
         return True
@@ -131,7 +132,7 @@ def _is_unread(element: etree._Element, attribute: str, vocabulary: Vocabulary) 
 
 
 def _is_meant(element: etree._Element, attribute: str, value: str) -> bool:
-    """Is a usual frame at a key for frames? A topic of tf is meant wherever it is."""
+    """Return whether it is a usual frame at a key for frames. A topic of tf is meant anywhere."""
     return value.startswith("/") or _FRAME_KEY.search(attribute or str(element.tag)) is not None
 
 

@@ -71,7 +71,7 @@ def rpy_of(matrix: Matrix) -> Vector:
 
 
 def is_same(one: Matrix, other: Matrix) -> bool:
-    """Are two matrices one rotation?"""
+    """Return whether two matrices are one rotation."""
     pairs = ((a, b) for rows in zip(one, other, strict=True) for a, b in zip(*rows, strict=True))
     return all(abs(a - b) <= SAME for a, b in pairs)
 

@@ -96,7 +96,7 @@ def carrying(known: list[UsedName], robot: str, own: OwnNames = NO_OWN_NAMES) ->
 
 
 def is_part(robot: str) -> bool:
-    """Is a robot called as parts of robots are: ``left``, ``base``, ``left_arm``, ``lf``?"""
+    """Return whether a robot is named as a part: ``left``, ``base``, ``left_arm``, ``lf``."""
     words = robot.split("_")
     return all(word in PART_WORDS or (len(word) < 3 and word.isalpha()) for word in words)
 
@@ -115,10 +115,8 @@ def _carries_name(name: UsedName, robot: str) -> bool:
 
 
 def _most(found: Iterable[UsedName], known: Iterable[UsedName], robot: str) -> bool:
-    """Are these more than half of the links, joints, namespaces or topics?
-
-    In a topic the robot is a word between slashes: ``left_scan`` is the scan of a part.
-    """
+    """Return whether these are more than half of the links, joints, namespaces or topics. In a
+    topic the robot is a word between slashes: ``left_scan`` is the scan of a part."""
     counted = (it for it in found if it.kind not in TOPIC_KINDS or robot in it.text.split("/"))
     carried, all_ = (
         Counter(GROUPS.get(it.kind, it.kind) for it in names) for names in (counted, known)

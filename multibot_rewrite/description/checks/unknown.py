@@ -73,7 +73,7 @@ def _by_ros(parts: Iterable[ActivePart], vocabulary: Vocabulary) -> dict[str, li
 
 
 def is_unknown(section: VocabularySection) -> bool:
-    """Is the plugin in no section? Then the element's own is used, or the one for any ROS node."""
+    """Return whether a plugin has no section. Then its element's is used, or that for any ROS node."""
     return section.select == "plugin" or section.names[0] == ANY_WITH_ROS
 
 

@@ -153,7 +153,7 @@ def driven(system: _Element) -> Sequence[_Element]:
 
 
 def has_all(system: _Element, others: Iterable[_Element]) -> bool:
-    """Has one of some systems all that another one drives?"""
+    """Return whether one of some systems has all that another one drives."""
     wanted = [plain(it) for it in driven(system)]
     every = ([plain(it) for it in driven(other)] for other in others)
     return any(all(it in own for it in wanted) for own in every)

@@ -57,12 +57,12 @@ class KeptText(NamedTuple):
 
 
 def is_joined(text: bytes) -> bool:
-    """Has it a comment of a join?"""
+    """Return whether it has a comment of a join."""
     return _OURS.search(text) is not None
 
 
 def is_joined_whole(text: bytes) -> bool:
-    """Is it the result of a join?"""
+    """Return whether it is the result of a join."""
     return _BASE.search(text) is not None
 
 

@@ -178,7 +178,7 @@ def plugin_name(plugin: _Element) -> str:
 
 
 def _is_simulated(sensor: _Element) -> bool:
-    """Is it Gazebo's? Those of urdfdom and of ros2_control run nothing."""
+    """Return whether it is a sensor of Gazebo; those of urdfdom and of ros2_control run nothing."""
     parent = sensor.getparent()
     if parent is None or parent.tag in ("robot", "ros2_control"):
         return False
@@ -219,5 +219,5 @@ def opened(host: _Element, section: VocabularySection) -> Iterator[tuple[str, st
 
 
 def is_device(text: str) -> bool:
-    """Is this the name of a device of a computer, whatever parameter has it?"""
+    """Return whether this is the name of a computer's device, whatever parameter has it."""
     return _DEVICE.fullmatch(text) is not None

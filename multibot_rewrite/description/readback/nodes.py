@@ -160,10 +160,11 @@ def _manager(plugin: _Element, section: VocabularySection, name: str, namespace:
 
 
 def wheels_in(element: _Element) -> bool:
-    """May a controller of the description with this element send odometry, and so /tf? Those that do
-    command velocities of joints that turn (ros2_controllers: diff_drive_controller,
-    tricycle_controller, mecanum_drive_controller, omni_wheel_drive_controller and
-    steering_controllers_library, command_interface_configuration)."""
+    """Return whether a controller of the description with this element may send odometry, and so
+    /tf. Those that do command velocities of joints that turn (ros2_controllers:
+    diff_drive_controller, tricycle_controller, mecanum_drive_controller,
+    omni_wheel_drive_controller and steering_controllers_library,
+    command_interface_configuration)."""
     root = element.getroottree().getroot()
     joints = {it.get("name"): it for it in root.iter("joint") if it.get("type")}
     systems = list(root.iter("ros2_control"))
@@ -177,7 +178,7 @@ def wheels_in(element: _Element) -> bool:
 
 
 def _turns_on(joint: _Element | None) -> bool:
-    """May it be the joint of a wheel? Limits that it reaches after some turns are those of an arm."""
+    """Return whether it may be a wheel's joint. Limits reached after some turns are an arm's."""
     if joint is None:
         return True
     limit = joint.find("limit") if joint.get("type") == "revolute" else None
@@ -294,13 +295,13 @@ def _asked_for(
 
 
 def holds_topic(site: SiteRow) -> bool:
-    """Is its value a topic or service? Where a word topics are made of is set, they are below it."""
+    """Return whether its value is a topic or service, or a word that topics are below."""
     whole = site.form == "whole" and site.role != "keep" and site.when != SENT
     return whole and site.kinds[0] in TOPIC_KINDS and "qos" not in site.path
 
 
 def is_of_others(site: SiteRow) -> bool:
-    """Is its value a topic that the robot does not have for itself: of the world, or left as it is?"""
+    """Return whether its value is a topic that is not the robot's own: the world's, or one kept."""
     return site.when == SENT or (site.role == "keep" and "topic" in site.path.lower())
 
 

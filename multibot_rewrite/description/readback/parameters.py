@@ -39,7 +39,7 @@ def values_of(host: _Element, site: SiteRow) -> list[str]:
 
 
 def _applies(host: _Element, site: SiteRow) -> bool:
-    """Has the sibling that decides this text? It is next to the last step of the path."""
+    """Return whether the sibling that decides this text exists, next to the path's last step."""
     sibling, _, wanted = site.when.partition("=")
     above = site.path.rpartition("/")[0]
     texts = set(wanted.split("|"))
@@ -92,7 +92,7 @@ def switched_off(host: _Element, section: VocabularySection) -> dict[str, str]:
 
 
 def sends_odometry(host: _Element, section: VocabularySection) -> bool:
-    """Is the transform of odometry on? Its switch is the first one of /tf."""
+    """Return whether the transform of odometry is on. Its switch is the first one of /tf."""
     found = [is_set for _, topic, is_set in _switches(host, section) if topic == "/tf"]
     return not found or found[0]
 

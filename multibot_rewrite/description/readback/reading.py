@@ -184,8 +184,8 @@ def _of_hosts(
 
 
 def _is_of_either(host: _Host) -> bool:
-    """May ROS 1 load it, too? Its plugin of that name takes no rules, and reads a namespace in
-    addition to its other parameters; only ROS 2 reads a <ros>."""
+    """Return whether ROS 1 may load it, too. Its plugin of that name takes no rules, and reads a
+    namespace in addition to its other parameters; only ROS 2 reads a <ros>."""
     if host.section.ros or host.element.find("ros") is not None:
         return False
     return any(it.kinds == ("namespace",) and "/" not in it.path for it in host.section.sites)

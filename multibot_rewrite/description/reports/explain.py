@@ -247,7 +247,7 @@ class _Line(NamedTuple):
     line: int
 
     def has(self, start: int, end: int) -> bool:
-        """Is some of these bytes of the file on it?"""
+        """Return whether some of these bytes of the file are on the line."""
         source = self.read.sources[self.file]
         return locate(source, start)[0] <= self.line <= locate(source, end)[0]
 

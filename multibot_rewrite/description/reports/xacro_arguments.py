@@ -131,7 +131,7 @@ class XacroArguments(NamedTuple):
 
 
 def names_robots(name: str) -> bool:
-    """Is an argument of this name for a robot's own names, as vendors have it?"""
+    """Return whether an argument of this name is for a robot's own names, as vendors have it."""
     return _NAMING.search(name) is not None
 
 

@@ -122,7 +122,7 @@ def _apart(
 def lacks_namespace(
     host: etree._Element, section: VocabularySection, declared: Declared, naming: Naming
 ) -> bool:
-    """Is a namespace among what a host needs beyond what it says itself?"""
+    """Return whether a host needs a namespace that it does not set itself."""
     sites = tuple([it for it in section.sites if "namespace" in it.kinds])
     if not sites or not section.inserts:
         return False

@@ -78,7 +78,7 @@ def _word_of(claim: Claim, plugins: Container[_Element]) -> Claim:
 
 
 def has_own_names(section: VocabularySection) -> bool:
-    """Has the code of a ROS 1 plugin, which reads no <ros>, names that its namespace alone moves?"""
+    """Return whether a ROS 1 plugin has names in its code that only its namespace changes."""
     if not any(it.name[:1] not in "/{" for it in section.wired):
         return False
     paths = {it.path for it in section.sites}
@@ -91,7 +91,7 @@ def _word(site: SiteRow) -> SiteRow:
 
 
 def stands_below(claim: Claim) -> bool:
-    """Has a model around this value a namespace? The root is none."""
+    """Return whether a model around this value has a namespace. The root is none."""
     element: _Element | None = claim.element
     if is_model_namespace(claim.site) and not claim.attribute:
         element = claim.element.getparent()

@@ -115,7 +115,7 @@ def names_in(claim: Claim, declared: Declared) -> tuple[NamePart, ...]:
 
 
 def is_reached(claim: Claim, naming: Naming) -> bool:
-    """Can the naming change this value? No postfix can be where the consumer wants a prefix."""
+    """Return whether the naming can change this value. A postfix cannot where a prefix is expected."""
     site = claim.site
     if site.form not in IN_FRONT:
         return True

@@ -226,8 +226,8 @@ class Tree:
 
 
 def _is_another(element: _Element, key: str, section: VocabularySection) -> bool:
-    """Is it a class of gz-sim, by its name, in a library that is called as one of Gazebo Classic, where
-    the name is that of a node?"""
+    """Return whether it is a class of gz-sim, by its name, in a library with a name of Gazebo
+    Classic's, where the name is that of a node."""
     of_node = any(it.path == "@name" and it.role == "declares" for it in section.sites)
     return of_node and "::" in element.get("name", "") and not key.startswith("gazebo_ros")
 

@@ -101,7 +101,7 @@ def _xacros(folder: str) -> list[str]:
 
 
 def _means(included: str, path: str, by: str) -> bool:
-    """May the included file be this one? Of a path that a xacro fills in the base name counts."""
+    """Return whether the included file may be this one; with a xacro's parts by the base name."""
     if path == by:
         return False
     package = _FIND.match(included)

@@ -125,7 +125,7 @@ def _is_marked(text: str) -> bool:
 
 
 def has_mark(data: bytes) -> bool:
-    """Is there a mark anywhere in a text?"""
+    """Return whether a mark is anywhere in a text."""
     return any(mark.encode() in data for mark in MARKS)
 
 

@@ -57,7 +57,7 @@ def package_of(file: str) -> tuple[str, str] | None:
 
 @outside
 def is_for_ros_1(file: str) -> bool:
-    """Is a file in a package that catkin builds, and nothing of ROS 2?"""
+    """Return whether a file is in a package that catkin builds, with nothing of ROS 2."""
     own = _own_package(os.path.dirname(os.path.abspath(file)))
     if own is None:
         return False

@@ -294,7 +294,7 @@ def a_slot_each(it: Evidence) -> None:
 
 
 def _is_own_namespace(claim: Claim, it: Evidence) -> bool:
-    """Is it the namespace that a plugin needs in a layout that has none?"""
+    """Return whether it is the namespace that a plugin needs in a layout that has none."""
     return "namespace" not in it.naming.separators and claim.value == f"/{it.robot}"
 
 

@@ -127,7 +127,7 @@ def _level(it: Finding, planned: System, seen: System, started: Set[str]) -> str
 
 
 def _is_of_a_lack(it: Finding, planned: System, seen: System, started: Set[str]) -> bool:
-    """Is it about a planned name that a node of the launch file lacks? What it has instead is known."""
+    """Return whether it is about a planned name that a node of the launch file lacks."""
     there = {(one.node, one.kind, one.role, one.name) for one in seen.ends}
     named = (one for one in surely(planned).ends if one.name in it.names)
     lacks = [one.node for one in named if (one.node, one.kind, one.role, one.name) not in there]
@@ -147,13 +147,13 @@ def is_for_driver(it: Finding, planned: System, started: Set[str]) -> bool:
 
 
 def _is_read(seen: System) -> bool:
-    """Is all that the launch file starts known, with its parameters?"""
+    """Return whether all that the launch file starts is known, with its parameters."""
     return all(it.code != NOT_WHOLE for it in doubts(seen))
 
 
 def _is_of_launch(it: Finding, planned: System, seen: System, started: Set[str]) -> bool:
-    """Is the node, or one of the robot, to be started by the launch file? What a node has rests on its
-    parameters, a controller on its manager; of a program that is not known nothing is."""
+    """Return whether the launch file is to start the node, or one of the robot. What a node has
+    depends on its parameters, a controller on its manager; nothing does on an unknown program."""
     if it.code == planned_nodes.missing_robot.code:
         return any(one.robot == it.robot and one.name in started for one in planned.nodes)
     own = next((one for one in planned.nodes if one.name == it.node), None)

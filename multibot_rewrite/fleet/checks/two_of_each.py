@@ -81,7 +81,7 @@ def two_of_each(made: Outputs, robots: Sequence[RobotSpec]) -> Sample:
 
 
 def names_one_of(graph: LaunchGraph, words: Collection[str]) -> bool:
-    """Is one of the words in what the launch gives to a node?"""
+    """Return whether one of the words is in what the launch gives to a node."""
     every = "|".join(map(re.escape, sorted(words, reverse=True)))
     found = re.compile(rf"(?<![A-Za-z0-9])(?:{every})(?![A-Za-z0-9])")
     texts = {it.text for _, it in graph.files}
@@ -119,7 +119,7 @@ def _alike(one: _Sort, other: _Sort) -> bool:
 
 
 def _but_for(poses: Collection[tuple[float, float]], one: str, other: str) -> bool:
-    """Are two texts the same but for numbers of the poses?"""
+    """Return whether two texts are the same but for numbers of the poses."""
     ours, theirs = _NUMBER.split(one), _NUMBER.split(other)
     if len(ours) != len(theirs) or ours[::2] != theirs[::2]:
         return False

@@ -117,7 +117,7 @@ def _choice(it: Argument, naming: Naming, robot: RobotSpec) -> _Choice:
 
 
 def _makes_other_names(use: Use, naming: Naming) -> bool:
-    """Are names with the argument others than the layout's?"""
+    """Return whether names with the argument differ from the layout's."""
     if use.kind in ROS_KINDS:
         return naming.topics != NAMESPACE or use.how == POSTFIX
     if use.kind not in _KNOWN:

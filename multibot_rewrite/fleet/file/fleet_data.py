@@ -116,7 +116,7 @@ def _joined(folder: str, path: str) -> str:
 
 
 def _of_package(text: str) -> bool:
-    """Is it a package and the name of a file in it, not a path?"""
+    """Return whether it is a package and the name of a file in it, not a path."""
     package, rest = _file_and_rest(text)
     file = next(iter(rest.split()), "")
     return bool(file) and "=" not in package + file

@@ -37,7 +37,7 @@ Suits = Callable[[_Element], bool]
 
 
 def is_called_as_switch(argument: str) -> bool:
-    """Is an argument called as those are that switch between the simulated and the real robot?"""
+    """Return whether an argument is named as a switch between the simulated and the real robot."""
     return _NAME.search(argument.lower()) is not None
 
 
@@ -53,36 +53,36 @@ def hardware_classes(root: _Element) -> list[str]:
 
 
 def of_simulator(hardware: str) -> bool:
-    """Is a hardware class surely one of a simulator?"""
+    """Return whether a hardware class is surely one of a simulator."""
     return any(hardware in it.hardware for it in SIMULATORS)
 
 
 def may_be_simulated(hardware: str) -> bool:
-    """Is it one of a simulator, or called as a vendor's own one is?"""
+    """Return whether it is a simulator's class, or is named as a vendor's own one is."""
     return _SIMULATED.search(hardware.lower()) is not None
 
 
 def loads_hardware(root: _Element) -> bool:
-    """Has it a plugin of a simulator that makes a controller manager?"""
+    """Return whether it has a plugin of a simulator that makes a controller manager."""
     blocks = [root] if root.tag == "sdf" else root.findall("gazebo")
     files = (it.get("filename") or "" for block in blocks for it in block.iter("plugin"))
     return any("ros2_control" in it for it in files)
 
 
 def suits_simulator(root: _Element) -> bool:
-    """Can a simulator's controller manager load its hardware?"""
+    """Return whether a simulator's controller manager can load its hardware."""
     if _lacks_a_class(root):
         return False
     return not loads_hardware(root) or all(map(may_be_simulated, hardware_classes(root)))
 
 
 def suits_real(root: _Element) -> bool:
-    """Is none of its hardware a simulator's?"""
+    """Return whether none of its hardware is a simulator's."""
     return not (_lacks_a_class(root) or any(map(of_simulator, hardware_classes(root))))
 
 
 def _lacks_a_class(root: _Element) -> bool:
-    """Is there hardware of which another argument names the class?"""
+    """Return whether another argument names the class of some hardware."""
     return any(it.find("plugin") is None for it in root.iterfind(".//ros2_control/hardware"))
 
 

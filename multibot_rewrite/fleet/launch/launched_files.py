@@ -143,7 +143,7 @@ def _with(spec: RobotSpec, named: Sequence[_Named]) -> tuple[RobotSpec, list[Fin
 
 
 def _is_filled(it: _Named, text: str, spec: RobotSpec) -> bool:
-    """Is what the launch makes of the file the same for all robots, line by line that file?"""
+    """Return whether the launch makes the same of the file for all robots, line by line that file."""
     same = len(it.text.splitlines()) == len(text.splitlines())
     named = {word for word in spec.words if word in it.text and word not in text}
     return same and not named and _SUBSTITUTED not in it.text

@@ -80,7 +80,7 @@ def loaded_files(robot: RewrittenRobot) -> Iterator[tuple[str, tuple[int, int]]]
 
 
 def is_same(path: str, file: str, description: str) -> bool:
-    """Is ``path``, as ``description`` names it, this ``file`` or an installed copy of it?"""
+    """Return whether ``path``, as ``description`` names it, is this ``file`` or an installed copy."""
     plain = path.removeprefix("file://")
     for it in (plain, os.path.join(os.path.dirname(description), plain)):
         # What stands in the fleet file itself is no file.
@@ -113,7 +113,7 @@ def _in_sources(path: str, description: str) -> Iterator[str]:
 
 
 def named_alike(path: str, file: str) -> bool:
-    """Has ``path`` the file name of this ``file``?"""
+    """Return whether ``path`` has the file name of this ``file``."""
     return os.path.basename(path) == os.path.basename(file)
 
 

@@ -49,7 +49,7 @@ _OMPL = "ompl"
 
 
 def has_moveit(robot: RewrittenRobot) -> bool:
-    """Has the robot what the file is made of?"""
+    """Return whether the robot has what the file is made of."""
     return bool(robot.srdf and robot.spec.companions.get("moveit"))
 
 

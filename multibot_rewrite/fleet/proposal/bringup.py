@@ -226,7 +226,7 @@ def _own(graph: LaunchGraph) -> list[LaunchedNode]:
 
 
 def _tries(it: Reading, simulated: bool) -> bool:
-    """Is a launch file called as a trial, or as one of a simulator that nothing here is known of?"""
+    """Return whether a launch file is named as a trial, or as one of an unknown simulator."""
     words = {*_WORD.findall(os.path.basename(it.file).lower())}
     kinds = ("trials",) if simulated else ("trials", "simulations")
     return any(not words.isdisjoint(known_names()[it]) for it in kinds)

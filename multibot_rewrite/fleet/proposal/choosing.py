@@ -102,12 +102,12 @@ def _bare_links(it: Looked) -> set[str]:
 
 
 def is_model(path: str) -> bool:
-    """Is it an SDF, or a xacro of one? Gazebo Classic's may end with .model."""
+    """Return whether it is an SDF, or a xacro of one. Gazebo Classic's may end with .model."""
     return ".sdf" in os.path.basename(path) or path.endswith(".model")
 
 
 def acts(it: Looked) -> bool:
-    """Can it move, or does it sense? A model of a thing has at most a plugin of its own."""
+    """Return whether it can move, or senses. A model of a thing has at most a plugin of its own."""
     if it.tag != "sdf" or it.links > 1 or any(_moving(it)):
         return True
     return it.root is not None and next(it.root.iter("sensor"), None) is not None

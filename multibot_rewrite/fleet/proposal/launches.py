@@ -157,7 +157,7 @@ def starts_simulator(graph: LaunchGraph) -> bool:
 
 
 def is_of_robot(it: LaunchedNode) -> bool:
-    """Is it a process of a robot, no simulator, and no program that ends or only looks?"""
+    """Return whether it is a process of a robot: no simulator, no program that ends or only looks."""
     ways = programs()
     passes = f"{it.package}/{it.executable}" in ways.passing or it.package in ways.simulators
     return not passes and not is_viewer(it.executable)

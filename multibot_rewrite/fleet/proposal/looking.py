@@ -246,7 +246,7 @@ def with_controllers(it: Looked, files: Sequence[str], reach: Reach) -> Looked:
 
 
 def _loads_nothing(root: etree._Element | None) -> bool:
-    """Has the plugin that makes a controller manager a file of parameters, and is it named nowhere?"""
+    """Return whether the plugin that makes a controller manager has a file that nothing names."""
     parts = _parts(root) if root is not None else []
     plugins = (it for part in parts for it in part.iter("plugin"))
     made = (it for it in plugins if "ros2_control" in (it.get("filename") or ""))
@@ -305,13 +305,13 @@ def _simulator(root: etree._Element) -> str:
 
 
 def holds_the_world(it: Looked) -> bool:
-    """Is the robot fixed to the world by its own description?"""
+    """Return whether the robot is fixed to the world by its own description."""
     links = it.root.iterfind("link") if it.root is not None else ()
     return any(link.get("name") == WORLD for link in links)
 
 
 def is_placed(it: Looked) -> bool:
-    """Is a real robot fixed to a frame of all robots, such as map, by its own description?"""
+    """Return whether a real robot's description fixes it to a shared frame, such as map."""
     links = it.root.iterfind("link") if it.root is not None else ()
     shared = {*WORLD_FRAMES} - {WORLD}
     return it.simulator == NO_SIMULATOR and any(link.get("name") in shared for link in links)

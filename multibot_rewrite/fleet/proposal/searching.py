@@ -182,7 +182,7 @@ def home_of(file: str) -> str:
 
 
 def is_below(path: str, folder: str) -> bool:
-    """Is it in the folder, however both are written?"""
+    """Return whether it is in the folder, however both are written."""
     above = os.path.join(os.path.abspath(folder), "")
     return os.path.abspath(path).startswith(above)
 
@@ -207,7 +207,7 @@ def _files(folder: str) -> Iterator[str]:
 
 
 def _can_be_named(path: str) -> bool:
-    """May a fleet file, which is UTF-8, name a path?"""
+    """Return whether a fleet file, which is UTF-8, can name a path."""
     return path.isascii() or not any("\ud800" <= it <= "\udfff" for it in path)
 
 
@@ -278,7 +278,7 @@ def _of_yaml(stem: str, data: bytes) -> str:
 
 
 def _is_list(data: bytes) -> bool:
-    """Is a YAML text a list, as those of bridges are?"""
+    """Return whether a YAML text is a list, as those of bridges are."""
     lines = (it.strip() for it in data.splitlines())
     first = next((it for it in lines if it and not it.startswith((b"#", b"%", b"---"))), b"")
     return first.startswith((b"-", b"["))

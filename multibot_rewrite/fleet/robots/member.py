@@ -119,8 +119,8 @@ def line_of(document: Document, tag: str, number: int) -> int:
 
 
 def is_for_simulator(member: Member) -> bool:
-    """May a simulator run it? Not where nothing in its description is for one, and it drives hardware
-    or has no mass: Gazebo spawns nothing of that."""
+    """Return whether a simulator may run it. It may not if nothing in its description is for one,
+    and it drives hardware or has no mass: Gazebo spawns nothing of that."""
     root: etree._Element = member.inventory.document.root
     if root.tag == "sdf" or has_parts_for_simulator(member):
         return True
@@ -128,7 +128,7 @@ def is_for_simulator(member: Member) -> bool:
 
 
 def has_parts_for_simulator(member: Member) -> bool:
-    """Has its description a plugin or sensor of a simulator?"""
+    """Return whether its description has a plugin or sensor of a simulator."""
     root: etree._Element = member.inventory.document.root
     parts = [root] if root.tag == "sdf" else root.findall("gazebo")
     return any(it.find(f".//{tag}") is not None for it in parts for tag in ("plugin", "sensor"))

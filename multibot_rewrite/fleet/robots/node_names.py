@@ -59,7 +59,7 @@ class NodeNames(NamedTuple):
         return launch_arguments(it)
 
     def is_controller(self, node: str) -> bool:
-        """Is this node a controller, which a spawner loads? Raises nothing."""
+        """Return whether this node is a controller, which a spawner loads. Raises nothing."""
         return node in self.started and self.started[node].way == SPAWNER
 
     def container(self, node: str) -> str:

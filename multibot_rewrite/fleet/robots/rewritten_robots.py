@@ -206,7 +206,7 @@ def rewrite_robots(
 
 
 def _names_simulator(it: RewrittenRobot) -> bool:
-    """Has its description what one simulator alone loads: plugins, sensors, hardware, an SDF?"""
+    """Return whether its description has what one simulator alone loads: plugins, hardware, SDF."""
     root = it.member.inventory.document.root
     parts = ("gazebo//plugin", "gazebo//sensor", "ros2_control")
     return root.tag == "sdf" or any(root.find(part) is not None for part in parts)

@@ -97,7 +97,7 @@ def _other(robot: RewrittenRobot, wrong: str) -> Finding:
 
 
 def may_be_real(robot: RewrittenRobot, evidence: RobotEvidence) -> bool:
-    """Has its description something for a simulator, and does nothing say that it runs in one?"""
+    """Return whether its description is for a simulator, and nothing says that it runs in one."""
     return evidence.unsimulated and not is_said(robot) and has_parts_for_simulator(robot.member)
 
 
@@ -172,7 +172,7 @@ def _named(part: ActivePart, root: etree._Element) -> str:
 
 
 def _has_drive(robot: RewrittenRobot, parts: Iterable[ActivePart]) -> bool:
-    """Is there hardware that somebody has read, or a plugin that names a joint or hears commands?"""
+    """Return whether there is known hardware, or a plugin that names a joint or reads commands."""
     root: etree._Element = robot.member.source.root
     ends = (it for node in robot.member.reading.nodes for it in node.endpoints)
     topics, _ = bridged_topics({"": robot.member.inventory}, robot.topics.naming)

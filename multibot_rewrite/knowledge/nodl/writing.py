@@ -72,7 +72,7 @@ def document_of(
 
 
 def _fits(end: Endpoint) -> bool:
-    """Has NoDL a form for its name and type? Types of an action's parts have none."""
+    """Return whether NoDL has a form for its name and type. Types of an action's parts have none."""
     group = f"/{GROUP[end.kind]}/"
     return bool(_NAME.fullmatch(end.name) and _TYPE.fullmatch(end.type) and group in end.type)
 

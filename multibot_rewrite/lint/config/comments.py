@@ -137,7 +137,7 @@ def _unused(
 
 
 def _is_asked(code: str, file: str, settings: Settings) -> bool:
-    """Is a rule on in that file, with the settings that it needs and without other files?"""
+    """Return whether a rule is on in that file, with its settings and without other files."""
     rule = RULES[code]
     possible = not rule.page.beside and all(getattr(settings, it, True) for it in rule.options)
     return possible and is_on(settings, code) and not is_silent(settings, file, code)

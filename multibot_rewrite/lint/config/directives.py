@@ -201,7 +201,7 @@ def _elements_below(
 
 
 def _has_its_lines(source: bytes, comment: TagPart, last: int) -> bool:
-    """Is nothing else on the lines of a comment? ``last`` is the end of the part before it."""
+    """Return whether a comment is alone on its lines; ``last`` is the end of the part before it."""
     before = source[last : comment.start].rpartition(b"\n")
     begins = not before[2].strip() and (bool(before[1]) or last == 0)
     return begins and _LINE_END.match(source, comment.end) is not None
@@ -218,14 +218,14 @@ def _in_place(it: Directive, tags: Sequence[TagPart]) -> Directive:
 
 
 def _is_idle(it: Directive, tags: Sequence[TagPart], before: int) -> bool:
-    """Is there no element below the comment, and no tag or text on its lines?"""
+    """Return whether no element is below the comment, and no tag or text on its lines."""
     last = bisect_left(tags, it.lines[1], key=lambda tag: tag.start) - 1
     on_the_lines = last >= 0 and tags[last].end > it.lines[0]
     return not it.element and not on_the_lines and before != _OPEN
 
 
 def _meets(it: Directive, reached: tuple[list[int], list[int]]) -> bool:
-    """Is what the comment is about in one of the spans, in part at least?"""
+    """Return whether what the comment is about is in one of the spans, at least in part."""
     starts, ends = reached
     if it.word == IGNORE_FILE:
         return bool(starts)

@@ -164,7 +164,7 @@ def _wanted(ids: Mapping[str, str], *texts: str) -> list[str]:
 
 
 def _are_listed(lists: Iterable[str], values: Mapping[str, Given]) -> bool:
-    """Is each of these lists given?"""
+    """Return whether each of these lists is given."""
     return all(_called(it, values) for it in lists)
 
 

@@ -66,7 +66,7 @@ def services_in(words: Iterable[str]) -> dict[str, Row]:
 
 
 def passes_topics_on(package: str, program: str) -> bool:
-    """Is a program a bridge to a simulator, which the bridges of a build stand for?"""
+    """Return whether a program is a bridge to a simulator, which the bridges of a build replace."""
     return f"{package}/{program}" in (*_BRIDGES, *_OF_IMAGES, "ros_gz_bridge/bridge_node")
 
 

@@ -22,7 +22,7 @@ def of_launch_ros(module: str) -> Any:
 
 
 def is_installed(package: str) -> bool:
-    """Is a package of ROS installed? Raises ImportError."""
+    """Return whether a package of ROS is installed. Raises ImportError."""
     from ament_index_python.packages import PackageNotFoundError, get_package_prefix
 
     try:
@@ -33,7 +33,7 @@ def is_installed(package: str) -> bool:
 
 
 def is_there() -> bool:
-    """Can launch and launch_ros be imported?"""
+    """Return whether launch and launch_ros can be imported."""
     try:
         of_launch_ros("actions")
     except ImportError:

@@ -168,7 +168,7 @@ def missing_module(error: BaseException) -> str:
 
 
 def is_unset(error: BaseException) -> bool:
-    """Is a launch configuration not set, or an argument not given?"""
+    """Return whether a launch configuration is not set, or an argument not given."""
     return bool(_no_value(error))
 
 
@@ -195,18 +195,18 @@ def is_of_file(error: BaseException) -> bool:
 
 
 def is_without(error: BaseException) -> bool:
-    """Has the file no function that makes a description?"""
+    """Return whether the file has no function that makes a description."""
     inner = error.__cause__ or error
     return isinstance(inner, AttributeError) and getattr(inner.obj, "__name__", "") == _MODULE
 
 
 def is_no_text(error: BaseException) -> bool:
-    """Is a path or another value given where launch takes texts and substitutions alone?"""
+    """Return whether a path or other value is given where launch takes only texts and substitutions."""
     return isinstance(error, TypeError) and _NO_TEXT in str(error)
 
 
 def is_no_condition(error: BaseException) -> bool:
-    """Is a text or a substitution given where launch takes conditions alone?"""
+    """Return whether a text or a substitution is given where launch takes only conditions."""
     if not isinstance(error, AttributeError) or error.name != "evaluate":
         return False
     is_text = hasattr(error.obj, "perform") and not hasattr(error.obj, "visit")

@@ -28,8 +28,8 @@ _REST = r"[^\s'\"<>:;,|)]*"
 
 
 def is_made(path: str) -> bool:
-    """Is it a file of the launch itself? A text of several lines is no path: a description has
-    thousands of slashes, and each would be a folder to ask for."""
+    """Return whether it is a file of the launch itself. A text of several lines is no path: a
+    description has thousands of slashes, and each would be a folder to ask for."""
     return "\n" not in path and os.path.realpath(path).startswith(os.path.realpath(_top()) + os.sep)
 
 

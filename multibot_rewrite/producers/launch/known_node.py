@@ -88,7 +88,7 @@ def as_heard(node: NodeFacts, heard: Collection[str], bound: BoundNode) -> NodeF
 
 
 def asks_who_listens(node: NodeFacts) -> bool:
-    """Has the node an endpoint only while somebody listens?"""
+    """Return whether the node has an endpoint only while it has subscribers."""
     return any(True for end in node.endpoints for _ in words_in(end.when, HEARD))
 
 
@@ -99,7 +99,7 @@ def _as_decided(node: NodeFacts, decide: Decide) -> NodeFacts:
 
 
 def _has(path: str, words: Sequence[str]) -> bool:
-    """Is one of the words in a file, but for its comments and how it is spaced?"""
+    """Return whether one of the words is in a file, except in comments and however it is spaced."""
     if not os.path.isfile(path):
         return False
     text = read_file(path).decode("utf-8", "replace")

@@ -160,7 +160,7 @@ def with_launched(
 
 
 def _may_spawn(it: _Pair, handed: Mapping[str, HandedOn], release: str) -> bool:
-    """Is a program of the vendor's own called a spawner, and given the robot's description?"""
+    """Return whether a vendor's program is named as a spawner and gets the robot's description."""
     own = handed[it.facts.name]
     called = "spawn" in it.node.executable.lower() and _is_own(it, release)
     return called and _DESCRIPTION in (*own.texts, *own.arguments)
@@ -232,7 +232,7 @@ def _handed(
 
 
 def _is_built(it: LaunchedNode) -> bool:
-    """Is it what a build makes of the robot's own files: a spawner, or of a simulator?"""
+    """Return whether a build makes it from the robot's own files: a spawner, or of a simulator."""
     is_simulator = it.package in SIMULATORS and it.executable == SIMULATOR
     return is_simulator or is_spawner(it) or _is_spawner_of_robot(it)
 
@@ -357,7 +357,7 @@ def _only_named(it: LaunchedNode, facts: NodeFacts, name: str) -> Iterator[Endpo
 
 
 def is_of_robot(namespace: str, words: Collection[str]) -> bool:
-    """Is a namespace that of a robot, or below it?"""
+    """Return whether a namespace is that of a robot, or below it."""
     return namespace.strip("/").partition("/")[0] in words
 
 

@@ -54,7 +54,7 @@ def add_sources(file: str, roots: Iterable[str], folder: str) -> None:
 
 @cache
 def _has_python(name: str, folder: str) -> bool:
-    """Has it a Python package of its own name, or does its CMakeLists.txt install another one?"""
+    """Return whether it has a Python package of its own name, or CMakeLists.txt installs another."""
     if os.path.isfile(os.path.join(folder, name, "__init__.py")):
         return True
     with suppress(OSError, UnicodeDecodeError):

@@ -26,7 +26,7 @@ def add_unknown(name: str) -> None:
 
 
 def is_unknown(value: object) -> bool:
-    """Is it such a package, or something taken of it?"""
+    """Return whether it is such a package, or something taken from it."""
     return isinstance(value, Unknown | _Module)
 
 

@@ -55,7 +55,7 @@ ONLY_TOPICS = Caveat("topics-only", True, _NO_SERVICE)
 
 
 def is_message(value: object) -> bool:
-    """Is it a message and not a snapshot of ours, which has a schema?"""
+    """Return whether it is a message and not a snapshot of ours, which has a schema."""
     return (
         isinstance(value, dict) and "nodes" in value and not value.keys() & {"schema", "endpoints"}
     )

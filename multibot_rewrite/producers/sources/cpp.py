@@ -136,7 +136,7 @@ def _asked(node: Node) -> str:
 
 
 def _is_built_sometimes(node: Node) -> bool:
-    """Is a function only there as its code was built? That of ``#ifndef`` is what guards a header."""
+    """Return whether a function exists only as its code was built, header guards aside."""
     above = node.parent
     while above is not None:
         if above.type.startswith("preproc_") and not text_of(above)[:60].startswith("#ifndef"):

@@ -62,7 +62,7 @@ def template_arguments(type_: str) -> tuple[str, ...]:
 
 
 def is_node(text: str) -> bool:
-    """Is this argument a node, or a part of one?"""
+    """Return whether this argument is a node, or a part of one."""
     return _NODE.fullmatch(text) is not None
 
 

@@ -237,7 +237,7 @@ def _each(nodes: list[Any], part: _Part) -> Iterator[_Part]:
 
 
 def _may_leave(node: ast.AST) -> bool:
-    """May a function end in this statement, without an error?"""
+    """Return whether a function may end in this statement, without an error."""
     inner = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ClassDef)
     if isinstance(node, (ast.Return, ast.Continue, ast.Break)):
         return True

@@ -225,7 +225,7 @@ def _call(walk: _Walk, spot: Spot, call: Call) -> Iterator[Event]:
 
 
 def _is_new_node(names: Names, text: str) -> bool:
-    """Is it a node that the program has made?"""
+    """Return whether it is a node that the program has made."""
     if text.startswith("<Node:") or text in ("<new Node>", "<new LifecycleNode>"):
         return True
     rows = names.classes.get(text[5:-1], ()) if text.startswith("<new ") else ()
@@ -348,7 +348,7 @@ def _taken(
 
 
 def _is_base(spot: Spot, call: Call, name: str) -> bool:
-    """Is it the constructor of a base that its class calls?"""
+    """Return whether it is the constructor of a base that its class calls."""
     if name == "__init__":
         return True
     inside = spot.function in ("", spot.owner) and not call.on

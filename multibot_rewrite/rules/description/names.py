@@ -241,5 +241,5 @@ def odd_interface(subject: Subject) -> Iterator[Problem]:
 
 
 def _is_odd(tag: str, words: Collection[str]) -> bool:
-    """Is white space inside a name a slip, not the way a driver calls its registers?"""
+    """Return whether white space inside a name is a slip, not the way a driver names its registers."""
     return len(words) > 1 and (not tag.endswith("_interface") or not STANDARD.isdisjoint(words))

@@ -185,7 +185,7 @@ class Measured(NamedTuple):
     best: float
 
     def holds(self, value: float) -> bool:
-        """Is a size one of these?"""
+        """Return whether a size is one of these."""
         return self.low <= value <= self.high
 
 
@@ -255,7 +255,7 @@ def rolling_faults(robot: Robot, left: Wheel, right: Wheel) -> Iterator[str]:
 
 
 def lies_flat(robot: Robot, wheel: Wheel) -> bool:
-    """Is a wheel that touches the ground nothing but cylinders across its axis?"""
+    """Return whether a wheel that touches the ground is nothing but cylinders across its axis."""
     link = robot.link.get(wheel.joint.child)
     shapes = list(shapes_of(link.element, "collision")) if link else []
     across = [

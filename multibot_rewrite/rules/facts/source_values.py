@@ -29,7 +29,7 @@ _OF_ARGUMENT = lazy_compile(
 
 
 def claim_is_fixed(subject: Subject, claim: Claim) -> bool:
-    """Is a claimed value the same for every robot, whatever xacro is given?"""
+    """Return whether a claimed value is the same for every robot, whatever xacro is given."""
     return is_fixed(subject, claim.start, claim.attribute)
 
 
@@ -60,7 +60,7 @@ def is_fixed(subject: Subject, start: int, attribute: str, *, constants: bool = 
 
 
 def is_argument(sources: Mapping[str, bytes], origin: WrittenAt, attribute: str) -> bool:
-    """Is a value in part what a caller of xacro gives: $(arg ...), or a property that is made of it?"""
+    """Return whether a value comes in part from a caller of xacro, as $(arg ...)."""
     raw = _raw(sources[origin.file], origin.start, attribute) or b""
     for call in origin.calls:
         if b"$(arg" in raw:

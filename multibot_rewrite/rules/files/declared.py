@@ -100,7 +100,7 @@ def _beside(above: str, paths: Sequence[str]) -> Iterator[str]:
 
 
 def _is_known(section: Section, it: Setting) -> bool:
-    """Has every node such a parameter, or does it hold names?"""
+    """Return whether every node has such a parameter, or it holds names."""
     of_node = section.node is not None and bool(params_at(section.node, it.name, it.key))
     return of_node or _EVERYWHERE.fullmatch(it.name) is not None
 
@@ -247,7 +247,7 @@ def out_of_bounds(file: NamedFile) -> Iterator[Finding]:
 
 
 def _is_filled_in(value: Value | None) -> bool:
-    """Is it a word in capitals, which a launch file of Nav2 puts a value in place of?"""
+    """Return whether it is a word in capitals, which a launch file of Nav2 replaces by a value."""
     return isinstance(value, str) and _CAPITALS.fullmatch(value) is not None
 
 
@@ -261,13 +261,13 @@ def _declared(section: Section, release: str) -> Iterator[tuple[Setting, list[De
 
 
 def _is_misspelt(value: Value | None, facts: Sequence[Declared]) -> bool:
-    """Is a word in capitals nearly one of those that there are?"""
+    """Return whether a word in capitals is nearly one of the known ones."""
     words = (word for fact in facts for check in fact.checks for word in _WORD.findall(check[1]))
     return isinstance(value, str) and nearest(value, words, MISTYPED) not in ("", value)
 
 
 def _is_of(fact: Declared, it: Setting) -> bool:
-    """Has a value the type of a declaration? An empty list is one of any."""
+    """Return whether a value has the type of a declaration. An empty list is one of any."""
     type_ = _expected(fact.type)
     if it.value == []:
         return type_.endswith("_array")

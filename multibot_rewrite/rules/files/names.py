@@ -89,7 +89,7 @@ def _kind_of(site: Site) -> str:
 
 
 def _is_sure(file: NamedFile, site: Site) -> bool:
-    """Is what the description lacks wrong, whatever it is near to? RViz shows frames of drivers."""
+    """Return whether what the description lacks is surely wrong; RViz shows frames of drivers."""
     return file.is_certain and not (file.kind == RVIZ and site.kind == "frame")
 
 
@@ -254,8 +254,8 @@ def _is_claimed(file: NamedFile, site: Site) -> bool:
 
 
 def _is_interface(file: NamedFile, value: str) -> bool:
-    """Is it ``elbow/position``? ``imu/data`` is more likely a topic than an interface of a sensor,
-    ``imu/orientation.x`` can be no topic."""
+    """Return whether it is an interface like ``elbow/position``. ``imu/data`` is more likely a
+    topic than an interface of a sensor, ``imu/orientation.x`` can be no topic."""
     *chain, interface = value.split("/")
     kinds = ("joint", "gpio", "sensor") if "." in interface else ("joint", "gpio")
     names = file.context.names

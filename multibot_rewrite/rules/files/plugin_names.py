@@ -191,7 +191,7 @@ def without_plugin(file: NamedFile) -> Iterator[Finding]:
 
 
 def _is_misspelt(it: Demand, word: str, words: Sequence[str]) -> bool:
-    """Has nearly that name parameters, which MB877 says?"""
+    """Return whether nearly that name has parameters, which MB877 reports."""
     own = {name.removeprefix(it.section.at).partition(".")[0] for name in it.section.whole}
     return bool(nearest(word, own - set(words)))
 

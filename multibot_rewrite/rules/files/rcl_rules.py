@@ -95,7 +95,7 @@ def _lists(node: yaml.Node) -> Iterator[yaml.Node]:
 
 
 def _is_read(node: yaml.Node) -> bool:
-    """Is it one of values? rcl 9.2 takes ``- key: [a]``, and rejects maps of two keys."""
+    """Return whether it is a list of values; rcl 9.2 takes ``- key: [a]``, and no maps of two keys."""
     maps = [it for it in node.value if isinstance(it, yaml.MappingNode)]
     return not maps or any(len(it.value) > 1 for it in maps)
 

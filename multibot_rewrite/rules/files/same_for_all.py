@@ -222,7 +222,7 @@ def source_without_topic(file: NamedFile) -> Iterator[Finding]:
 
 
 def _resolves_below(section: ParamSection, context: Context) -> bool:
-    """Is the id of a source another name than that of the robot's topic?"""
+    """Return whether the id of a source is another name than that of the robot's topic."""
     param = section.node.params.get("<id>.<id>.topic") if section.node else None
     namespaced = context.topics.naming.topics == NAMESPACE
     return param is not None and (not namespaced or is_absolute(param, context.distro))

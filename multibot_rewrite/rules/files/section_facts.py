@@ -66,7 +66,7 @@ def is_set_beside(file: NamedFile, title: str, name: str) -> bool:
 
 
 def is_in(file: NamedFile, place: Place) -> bool:
-    """Is the place in this file?"""
+    """Return whether the place is in this file."""
     return os.path.abspath(place.file) == os.path.abspath(file.file)
 
 
@@ -234,7 +234,7 @@ def _of_plugins(
 
 
 def _is_surely(node: NodeParameters, name: str, type_: str, given: Sequence[Setting]) -> bool:
-    """Is it this controller, not another one that is often called the same?"""
+    """Return whether it is this controller, not another one that often has the same name."""
     if not node.types or type_ in node.types:
         return True
     words = {it.name.partition(".")[0] for it in given}

@@ -54,8 +54,8 @@ def _is_moved(it: Finding, launched: Launched, seen: Index) -> bool:
 
 
 def _moves(model: Model, launched: Launched, seen: Index) -> bool:
-    """Has a model a plugin that is known to move it: one that takes velocities, sends odometry or has
-    controllers? A sensor does not; of a plugin that is not known nobody can say."""
+    """Return whether a model has a plugin that is known to move it: one that takes velocities,
+    sends odometry or has controllers. A sensor does not; an unknown plugin may."""
     nodes = model.reading.nodes
     inside = (one for it in launched.simulated if it.text == model.text for one in it.topics)
     orders = [(f"/{one.ros.lstrip('/')}", one.ros_type) for one in inside]

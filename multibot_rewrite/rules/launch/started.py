@@ -110,7 +110,7 @@ def _is(it: Run, known: str) -> bool:
 
 
 def _is_known(launched: Launched) -> bool:
-    """Are all nodes of the launch known?"""
+    """Return whether all nodes of the launch are known."""
     nodes = all(it.is_known for it in launched.nodes)
     return nodes and all(it.parameters or it.fails for it in launched.graph.notes)
 
@@ -204,8 +204,9 @@ def not_listed(launched: Launched) -> Iterator[Finding]:
 
 
 def keeps_no_bond(node: NodeFacts) -> bool:
-    """Has it a life cycle, and no bond with its manager, by its parameters? nav2_lifecycle_manager
-    jazzy, lifecycle_manager.cpp: without one it aborts after ``bond_timeout``."""
+    """Return whether it has a life cycle, and no bond with its manager, by its parameters.
+    nav2_lifecycle_manager jazzy, lifecycle_manager.cpp: without one it aborts after
+    ``bond_timeout``."""
     names = [it.name for it in node.endpoints]
     return f"~{_CHANGE}" in names and _BOND not in names
 

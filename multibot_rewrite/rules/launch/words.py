@@ -227,7 +227,7 @@ _TEMPORARY = ("/tmp", "/var/tmp", "/dev/shm")
 
 
 def _is_ours(path: str) -> bool:
-    """May it be judged here? What another machine has, or a program makes, may not."""
+    """Return whether it may be judged here. What another machine has, or a program makes, may not."""
     folder = os.path.dirname(path)
     return os.path.isdir(folder) and folder not in _TEMPORARY
 

@@ -274,7 +274,7 @@ def _value(
 
 
 def _is_unread(element: etree._Element) -> bool:
-    """Is it the axis of a joint whose axis is not read?"""
+    """Return whether it is the axis of a joint whose axis is not read."""
     joint = element.getparent()
     return element.tag == "axis" and joint is not None and joint.get("type") in _AXIS_FREE
 

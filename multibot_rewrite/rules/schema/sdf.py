@@ -246,7 +246,7 @@ def _word(element: _Element, at: str, name: str, text: str, version: Version) ->
 
 
 def _is_for_classic(element: _Element) -> bool:
-    """Has the sensor of a value a plugin of Gazebo Classic?"""
+    """Return whether the sensor of a value has a plugin of Gazebo Classic."""
     sensor = next(element.iterancestors("sensor"), None)
     plugins = sensor.iterchildren("plugin") if sensor is not None else ()
     return any("gazebo_ros_" in it.get("filename", "") for it in plugins)

@@ -146,7 +146,7 @@ def _version_behind(start: str, words: Sequence[str]) -> Version:
 
 
 def is_own(name: object) -> bool:
-    """Is it a tag or attribute of URDF: no comment, nothing in another program's namespace?"""
+    """Return whether it is a tag or attribute of URDF: no comment, nothing in another's namespace."""
     return isinstance(name, str) and "{" not in name and ":" not in name
 
 

@@ -63,8 +63,9 @@ _SYSTEMS = ("ignition-gazebo", "gz-sim", "ign_ros2_control", "gz_ros2_control")
 
 
 def may_be_classics(root: _Element, release: str) -> bool:
-    """May Gazebo Classic read it? Its libsdformat 9 has no ranges and reads what it can of poses and
-    colours (src/Param.cc), and it goes on with a model that it has errors about."""
+    """Return whether Gazebo Classic may read it. Its libsdformat 9 has no ranges and reads what it
+    can of poses and colours (src/Param.cc), and it goes on with a model that it has errors
+    about."""
     version = read_version(root.get("version", "")) if root.tag == "sdf" else None
     if release != OF_OLD and not (version and version <= _NEWEST):
         return False

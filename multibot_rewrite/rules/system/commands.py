@@ -257,8 +257,8 @@ def _of_others(seen: Index, owner: str, ends: Iterable[End]) -> list[End]:
 
 
 def _is_waited_for(seen: Index, ends: Ends) -> bool:
-    """Has the robot of a sender the same topic, with readers and nobody who sends? As an emergency stop
-    with the other robot's name."""
+    """Return whether the robot of a sender has the same topic, with readers and no sender. As an
+    emergency stop with the other robot's name."""
     plain = seen.plain(ends.name)
     if ends.kind != TOPIC or ends.name in EVERYBODYS or ends.type == TF:
         return False

@@ -80,8 +80,8 @@ def _orphan(seen: Index, end: End) -> Ends | None:
 
 
 def _waits_itself(seen: Index, ends: Ends, end: End) -> bool:
-    """Is it made of what is missing, as slam_toolbox shows the scan that it reads, or by way of others
-    of its type, as an image is rectified of one that is debayered?"""
+    """Return whether it is made from what is missing, as slam_toolbox shows the scan that it reads,
+    or by way of others of its type, as an image is rectified from one that is debayered."""
     readers = _readers(seen)(end.name, end.type)
     return bool(ends.publishers) and readers.issuperset(it.node for it in ends.publishers)
 
@@ -122,7 +122,7 @@ def _unread(seen: Index) -> Mapping[tuple[str, str], Sequence[Ends]]:
 
 
 def _begin_alike(one: str, other: str) -> bool:
-    """Is the last word of one the beginning of the other's: joy, joystick?"""
+    """Return whether the last word of one is the beginning of the other's: joy, joystick."""
     short, long = sorted((last_word(one), last_word(other)), key=len)
     return long.startswith(short)
 
@@ -257,7 +257,7 @@ def listed_in_vain(seen: Index, end: End) -> str:
 
 
 def is_needed(end: End) -> bool:
-    """Must something of the robot give it, as far as is known? What chooses seldom has all inputs."""
+    """Return whether something of the robot must give it; a chooser seldom has all inputs."""
     by_code = end.role in (SUBSCRIBES, CALLS) and end.code_name and end.sure == RUNS
     outside = is_from_outside(end.name) or is_from_outside(end.code_name)
     idle = is_viewer(end.node) or (end.role == SUBSCRIBES and chooses(end.node))

@@ -171,8 +171,9 @@ def _waiting(
 
 
 def _is_needy(end: End) -> bool:
-    """Is it useless alone? A reader and a client are, a managed node, joints, and who drives; a server
-    or a sensor of which one robot's program makes use is not, nor what seldom has all its inputs."""
+    """Return whether it is useless alone. A reader and a client are, a managed node, joints, and
+    who drives; a server or a sensor of which one robot's program makes use is not, nor what seldom
+    has all its inputs."""
     if end.role == SUBSCRIBES and chooses(end.node):
         return False
     wants = end.role in (SUBSCRIBES, CALLS) or end.name.endswith(words.CHANGE_STATE)

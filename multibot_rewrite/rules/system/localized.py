@@ -194,7 +194,7 @@ def part_far_away(seen: Index) -> Iterator[Finding]:
 
 
 def _is_of_a_body(seen: Index, frame: str, above: Mapping[str, str]) -> bool:
-    """Is it the base of a robot, or below it?"""
+    """Return whether it is the base of a robot, or below it."""
     way = [frame]
     while way[-1] in above and above[way[-1]] not in way:
         way.append(above[way[-1]])

@@ -170,7 +170,7 @@ def _difference(
 
 
 def _by_a_switch(some: Set[str], others: Set[str]) -> bool:
-    """Is one side stamped and the other not?"""
+    """Return whether one side is stamped and the other not."""
     return any({f"{it}{STAMPED}" for it in a} & b for a, b in ((some, others), (others, some)))
 
 

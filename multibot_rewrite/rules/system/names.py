@@ -152,7 +152,7 @@ def _published_instead(
 
 
 def _is_of_other_robot(seen: Index, name: str, other: str) -> bool:
-    """Are these names of two robots? Robots ``left_arm`` and ``arm_left`` are two, however alike."""
+    """Return whether these are names of two robots, such as ``left_arm`` and ``arm_left``."""
     robot, another = seen.robot(name), seen.robot(other)
     return bool(robot and another) and robot != another
 
@@ -343,9 +343,9 @@ def _unserved(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
 
 
 def _waits(seen: Index, end: End) -> bool:
-    """Is it an own program that calls what nobody serves? Nav2's and MoveIt's nodes, tools and what
-    every node serves are left out, and a view in which nodes are missing. What is known by code alone
-    is told by ``nothing_known_sends``."""
+    """Return whether it is an own program that calls what nobody serves. Nav2's and MoveIt's nodes,
+    tools and what every node serves are left out, and a view in which nodes are missing.
+    ``nothing_known_sends`` reports what is known by code alone."""
     theirs = is_viewer(end.node) or seen.is_tool(end.node) or team(end.node) != end.node
     usual = end.type.startswith(COMMON) or is_from_outside(end.name)
     # Beside other robots it may be one that is not started yet, if it is not its own.

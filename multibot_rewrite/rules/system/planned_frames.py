@@ -109,8 +109,8 @@ def _frames(names: Sequence[str]) -> str:
 
 
 def _of_a_sensor(plan: Index, robot: str, name: str, children: Mapping[str, Edge]) -> bool:
-    """Is it a frame that a driver adds below its sensor's link? Its name begins like the link's:
-    camera_depth_frame is below camera_link."""
+    """Return whether it is a frame that a driver adds below its sensor's link. Its name begins like
+    the link's: camera_depth_frame is below camera_link."""
     above, passed = name, set()
     while above in children and children[above].static and above not in passed:
         passed.add(above)

@@ -31,7 +31,7 @@ def state_publisher(plan: Index, robot: Robot) -> str:
 
 
 def is_described(plan: Index, robot: Robot) -> bool:
-    """Has the plan a node that sends the transforms of the robot's description?"""
+    """Return whether the plan has a node that sends the transforms of the robot's description."""
     ends = (end for node in plan.own[robot.name] for end in plan.by_node.get(node, ()))
     told = (it.name for it in ends if (it.kind, it.role) == (TOPIC, PUBLISHES))
     return bool(state_publisher(plan, robot)) or any(it.endswith(words.DESCRIPTION) for it in told)

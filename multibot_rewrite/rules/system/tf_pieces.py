@@ -228,10 +228,10 @@ def _senders_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
 
 
 def is_sure(seen: Index, found: Finding, moved: bool) -> bool:
-    """Is a tree in pieces in which all is that a launch file starts? Of a robot that is not ``moved``
-    by a plugin in a simulator a driver that is started apart may send the odometry, and what is sent on
-    another topic of the robot somebody may bring to its tree; pieces without the usual frames may be
-    meant."""
+    """Return whether all of a tree in pieces is in the launch file. For a robot that is not
+    ``moved`` by a plugin in a simulator a driver that is started apart may send the odometry, and
+    what is sent on another topic of the robot somebody may bring to its tree; pieces without the
+    usual frames may be meant."""
     loose = [it for it in loose_odometry(seen) if {*found.names} & {*it}]
     lacking = [(odom, it) for odom, root in loose for it in found.names if it not in (odom, root)]
     if (loose and not moved) or any(sent_elsewhere(seen, found.robot, *it) for it in lacking):
@@ -245,7 +245,7 @@ def is_of_description(seen: Index, edge: Edge) -> bool:
 
 
 def publishes_description(seen: Index, node: str) -> bool:
-    """Is it robot_state_publisher? Raises nothing."""
+    """Return whether it is robot_state_publisher. Raises nothing."""
     return last_word(seen.plain(node)).startswith("robot_state_publisher")
 
 

@@ -125,7 +125,7 @@ def collide(seen: Index, tree: Tree) -> str:
 
 
 def _may_meet(seen: Index, tree: Tree) -> bool:
-    """May two robots have one frame here? So, too, where it is not known what a node of them sends."""
+    """Return whether two robots may have one frame here, also by nodes with unknown frames."""
     owners: dict[str, set[str]] = defaultdict(set)
     for edge in tree.edges:
         for frame in (edge.child, edge.parent):

@@ -68,8 +68,8 @@ def nothing_known_sends(seen: Index) -> Iterator[Finding]:
 
 
 def _of_its_kind(seen: Index, name: str, robot: str) -> bool:
-    """Is a name of another robot that runs nothing which the robot has not, but for its sender, and of
-    which the nodes that both have send the same frames?"""
+    """Return whether a name is of another robot that runs nothing which the robot has not, except
+    its sender, and of which the nodes that both have send the same frames."""
     other, nodes = seen.robot(name), nodes_of_each(seen)
     theirs, own = _frames(seen).get(other, {}), _frames(seen).get(robot, {})
     both = theirs.keys() & own.keys()

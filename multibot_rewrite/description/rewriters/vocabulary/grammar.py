@@ -293,7 +293,7 @@ def _check_words(place: str, path: str, kinds: Iterable[str], options: dict[str,
 
 
 def is_step(text: str) -> bool:
-    """Is this one step of a path, as a definition file may have it?"""
+    """Return whether this is one step of a path, as a definition file may have it."""
     return _ONE_STEP.fullmatch(text) is not None
 
 

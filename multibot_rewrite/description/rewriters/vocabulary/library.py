@@ -95,7 +95,7 @@ class Vocabulary:
         return not self.release or has_release(words, self.release)
 
     def has(self, type_: str, name: str) -> bool:
-        """Is there a section of that type and name, in this release or another?"""
+        """Return whether a section of that type and name exists, in this release or another."""
         return (type_, name) in self._raw
 
     def names(self, type_: str) -> Iterator[str]:

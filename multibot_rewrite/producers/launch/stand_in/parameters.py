@@ -159,7 +159,7 @@ def _are_alike(values: list[Any]) -> bool:
 
 
 def _is_substituted(value: Any) -> bool:
-    """Is it a substitution, or texts with one?"""
+    """Return whether it is a substitution, or texts with one."""
     several = value if isinstance(value, list | tuple) else ()
     texts = all(isinstance(it, str) or hasattr(it, "perform") for it in several)
     return hasattr(value, "perform") or (texts and any(hasattr(it, "perform") for it in several))

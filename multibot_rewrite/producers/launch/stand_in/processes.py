@@ -133,7 +133,7 @@ UnregisterEventHandler = kept(Action, "UnregisterEventHandler", "event_handler")
 
 
 def matches_action(target_action: Any) -> Any:
-    """Is an event that of this action?"""
+    """Return a function that tells whether an event is that of this action."""
     return lambda event: event is target_action
 
 

@@ -84,7 +84,7 @@ def scopes(root: _Element) -> list[Scope]:
 
 
 def _declares(element: _Element) -> bool:
-    """Is it a link or joint of the robot itself: right below the robot or an element of xacro?"""
+    """Return whether it is a link or joint right below the robot or an element of xacro."""
     if element.tag == "joint" and element.find("parent") is None:
         return False
     above = element.getparent()
@@ -135,7 +135,7 @@ def prefixes(names: list[str]) -> list[str]:
 
 
 def is_xacro(element: _Element) -> bool:
-    """Is it an element of xacro?"""
+    """Return whether it is an element of xacro."""
     tag = element.tag
     return isinstance(tag, str) and "xacro}" in tag
 

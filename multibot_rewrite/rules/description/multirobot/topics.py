@@ -50,7 +50,7 @@ def _claims_by_kind(subject: Subject) -> Mapping[str, Sequence[tuple[int, Claim]
 
 
 def is_plain(text: str) -> bool:
-    """Is it a name: not empty and not a placeholder?"""
+    """Return whether it is a name: not empty and not a placeholder."""
     return bool(text.strip("/")) and NOT_PLAIN.isdisjoint(text) and not text.startswith("__")
 
 
@@ -151,7 +151,7 @@ def _is_gz(claim: Claim) -> bool:
 
 
 def _is_classic(subject: Subject) -> bool:
-    """Is it for Gazebo Classic, which itself puts the model's name before sensor topics?"""
+    """Return whether it is for Gazebo Classic, which puts the model's name before sensor topics."""
     from multibot_rewrite.spelling.bridged_topics import GZ_LIBRARIES, plugin_libraries
 
     keys = plugin_libraries(subject.inventory)

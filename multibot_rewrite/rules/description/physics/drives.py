@@ -139,7 +139,7 @@ _PUSHING = frozenset(("gazebo_ros_planar_move", "gz-sim-velocity-control-system"
 
 
 def _is_pushed(subject: Subject) -> bool:
-    """Has the robot a plugin that moves its body, or one of which nothing is known?"""
+    """Return whether the robot has a plugin that moves its body, or an unknown one."""
     blocks = set(subject.elements.tops("gazebo"))
     return any(
         is_unknown(section) or not _PUSHING.isdisjoint(section.names)

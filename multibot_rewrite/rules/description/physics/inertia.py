@@ -47,7 +47,7 @@ def part_of(inertial: Inertial, tag: str) -> _Element:
 
 
 def moves(robot: Robot, name: str) -> bool:
-    """Is a link the child of a joint that is not fixed?"""
+    """Return whether a link is the child of a joint that is not fixed."""
     return name in robot.above and robot.above[name][0].type != "fixed"
 
 
@@ -136,7 +136,7 @@ def _of_models(subject: Subject) -> Iterator[Problem]:
 
 
 def _is_static(link: _Element) -> bool:
-    """Is it of a static model, whose masses are nothing to Gazebo Classic (Link.cc)?"""
+    """Return whether it is of a static model, whose masses Gazebo Classic ignores (Link.cc)."""
     model = link.getparent()
     static = "" if model is None else (model.findtext("static") or "").strip()
     return static in ("1", "true")
@@ -200,14 +200,14 @@ ROUNDING = 0.01
 
 
 def _is_possible(moments: tuple[float, ...]) -> bool:
-    """Is it certainly possible? Values off the diagonal shift the moments by ``off`` at most."""
+    """Return whether it is certainly possible; off-diagonal values shift moments by ``off`` at most."""
     xx, xy, xz, yy, yz, zz = moments
     off = abs(xy) + abs(xz) + abs(yz)
     return min(xx, yy, zz) >= off and max(xx, yy, zz) + off <= (xx + yy + zz) / 2
 
 
 def is_negative(moments: Vector) -> bool:
-    """Is the smallest moment below 0, by more than rounding?"""
+    """Return whether the smallest moment is below 0, by more than rounding."""
     return moments[0] < -1e-6 * abs(moments[2])
 
 

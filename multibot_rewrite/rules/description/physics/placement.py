@@ -148,7 +148,7 @@ def _shapes(subject: Subject) -> Mapping[_Element, tuple[_Shapes, _Shapes]]:
 def _alike(
     subject: Subject, one: tuple[_Element, _Element], other: tuple[_Element, _Element]
 ) -> bool:
-    """Are two shapes written alike, at one place? Most are, and nothing has to be computed."""
+    """Return whether two shapes are written alike, at one place. Most are, and need no computation."""
     (here, shape), (there, same) = one, other
     if shape.tag != same.tag or shape.items() != same.items():
         return False
@@ -197,8 +197,8 @@ def _apart(one: Extent, other: Extent) -> float:
 
 
 def _covers_next(subject: Subject, link: Link, hard: _Shapes) -> bool:
-    """Is the collision where a link below is seen? A cylinder of a leg's hip is around the motor that
-    the thigh shows."""
+    """Return whether the collision is where a link below is seen. A cylinder of a leg's hip is
+    around the motor that the thigh shows."""
     own = _around(subject, hard)
     for joint in subject.robot.below.get(link.name, ()):
         child, pose = subject.robot.link.get(joint.child), _pose(subject, joint.element)

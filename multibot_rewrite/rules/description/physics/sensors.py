@@ -79,7 +79,7 @@ def camera_at_optical_frame(subject: Subject) -> Iterator[Problem]:
 
 
 def _is_optical(pose: Pose) -> bool:
-    """Is x to the right of the parent, and z forward?"""
+    """Return whether x is to the right of the parent, and z forward."""
     return dot(turned(pose.matrix, X), Y) < -SAME and turned(pose.matrix, Z)[0] > SAME
 
 

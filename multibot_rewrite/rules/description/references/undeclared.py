@@ -61,8 +61,8 @@ def references(subject: Subject) -> References:
 
 
 def _elsewhere(loose: Loose, inventory: Inventory) -> bool:
-    """Is it declared after all: in another file, with the robot's name as its scope (as in Gazebo
-    Classic), or in the PROTO of a Webots robot?"""
+    """Return whether it is declared after all: in another file, with the robot's name as its scope
+    (as in Gazebo Classic), or in the PROTO of a Webots robot."""
     claim, part = loose
     root = inventory.document.root
     is_part = not inventory.declared["link"] or (root.tag == "robot" and "name" not in root.attrib)

@@ -193,7 +193,7 @@ def _ends(joint: Joint) -> frozenset[str]:
 
 
 def _both_checked(joint: Joint, robot: Robot, alone: set[str]) -> bool:
-    """Are both links of a joint checked against each other?"""
+    """Return whether both links of a joint are checked against each other."""
     ends = _ends(joint)
     return len(ends) == 2 and all(
         it in robot.link and it not in alone and _has_shape(robot, it) for it in ends

@@ -188,7 +188,7 @@ def prismatic_units(subject: Subject) -> Iterator[Problem]:
 
 
 def _moves_nothing(robot: Robot, joint: Joint) -> bool:
-    """Is its child an empty link at the end of a robot whose other links have a body?"""
+    """Return whether its child is an empty link at the end of a robot whose other links have a body."""
     child = robot.link.get(joint.child)
     empty = child is not None and not len(child.element) and joint.child not in robot.below
     return empty and any(len(it.element) for it in robot.links)
