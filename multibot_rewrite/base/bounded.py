@@ -201,7 +201,7 @@ def _digits(number: str) -> str:
 
 
 def _json_depth(data: bytes) -> int:
-    """How deeply brackets are nested, those in strings aside."""
+    """Return how deeply brackets are nested, those in strings aside."""
     plain = re.sub(rb"\\.", b"", data, flags=re.DOTALL) if b"\\" in data else data
     # Without what is between two quotes, whether they are of one string or of two: what is left of
     # many megabytes is little, and a bracket is inside a string or outside as before.

@@ -86,7 +86,7 @@ class Affix(NamedTuple):
     after: str
 
     def spell(self, text: str, robot: str) -> str:
-        """``text`` with the name of ``robot`` in it."""
+        """Return ``text`` with the name of ``robot`` in it."""
         return f"{text[: self.at]}{self.before}{robot}{self.after}{text[self.at :]}"
 
 
@@ -204,10 +204,8 @@ def _active(layout: Layout, topics: str, separators: dict[str, str]) -> dict[str
 
 
 def affix(naming: Naming, kind: str, text: str, namespaced: bool = False) -> Affix | None:
-    """Where the robot's name goes in ``text``, a name of ``kind``; None where it is not renamed.
-
-    ``namespaced`` is true where a ROS namespace reaches the value.
-    """
+    """Return where the robot's name goes in ``text``, a name of ``kind``; None where it is not
+    renamed. ``namespaced`` is true where a ROS namespace reaches the value."""
     if naming.own and (kind, text) in naming.own:
         return naming.own[kind, text]
     separator = naming.separators.get(kind)
@@ -315,7 +313,7 @@ def removal(
 
 
 def _affix_places(side: str, separator: str, robot: str, text: str) -> Iterator[tuple[int, int]]:
-    """Where in ``text`` an affix may be, the likely place first."""
+    """Yield where in ``text`` an affix may be, the likely place first."""
     end = separator + robot
     if side == POSTFIX and text.endswith(end):
         yield len(text) - len(end), len(text)
@@ -326,11 +324,9 @@ def _affix_places(side: str, separator: str, robot: str, text: str) -> Iterator[
 
 
 def overlap(naming: Naming, robots: Iterable[str]) -> list[tuple[str, str, str]]:
-    """Pairs of robots one of whose names ends (begins) like the other's affix, with that separator.
-
-    Only for such pairs can two different old names become one: with a postfix, ``arm`` of
-    ``left_b`` and ``arm_left`` of ``b`` are both ``arm_left_b``.
-    """
+    """Return pairs of robots one of whose names ends (begins) like the other's affix, with that
+    separator. Only for such pairs can two different old names become one: with a postfix, ``arm``
+    of ``left_b`` and ``arm_left`` of ``b`` are both ``arm_left_b``."""
     names = set(robots)
     pairs = set()
     sides = {naming.affix, POSTFIX if naming.topics == POSTFIX else PREFIX}

@@ -121,7 +121,7 @@ def _unknown(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> UsageEr
 
 
 def _list(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
-    """One line a section."""
+    """Yield a table with one line a section."""
     rows = [
         (it.type, it.names[0], it.ros, shorten(it.names[1:], 1), str(len(it.sites)), it.source)
         for it in sections
@@ -130,7 +130,7 @@ def _list(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
 
 
 def details(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
-    """Everything known, a block of lines a section."""
+    """Yield everything known, a block of lines a section."""
     for number, section in enumerate(sections):
         yield from [""] * (number > 0)
         yield f"{section.name}  {section.file}:{section.line}"
@@ -258,7 +258,7 @@ def rule_grid(found: Iterable[Rule] | None = None) -> Grid:
 
 
 def rules_json(found: Iterable[Rule] | None = None) -> list[dict[str, object]]:
-    """Rules (all by default) as ``--form json`` writes them; docs/stacks.md describes it."""
+    """Return rules (by default all) as ``--form json`` writes them; docs/stacks.md describes it."""
     fields = ("code", "name", "level", "what", "why", "fix")
     return [
         {**{name: getattr(it, name) for name in fields}, "examples": dict(examples(it))}

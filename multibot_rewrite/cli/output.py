@@ -41,7 +41,7 @@ _CLEARED = "\r\033[K"
 
 
 def is_coloured(when: str, stream: TextIO | None) -> bool:
-    """``--color``, else NO_COLOR, else FORCE_COLOR, else whether a terminal reads the stream."""
+    """Return whether output is coloured: by ``--color``, NO_COLOR, FORCE_COLOR, or for a terminal."""
     if when != AUTO:
         return when == ALWAYS
     if os.environ.get("NO_COLOR"):
@@ -172,7 +172,7 @@ def status() -> Callable[[str], None]:
 
 @contextmanager
 def shown(text: str) -> Iterator[Callable[[str], None]]:
-    """``status`` with a line as long as the block runs, which may show another one."""
+    """Show ``status`` with a line as long as the block runs, which may show another one."""
     show = status()
     show(text)
     try:

@@ -84,7 +84,7 @@ def _check_together(options: argparse.Namespace) -> None:
 
 
 def _check_targets(options: argparse.Namespace, targets: list[str]) -> None:
-    """No result may land on the input, nor on a file that is read for it."""
+    """Raise UsageError for a result that would overwrite the input, or a file that is read for it."""
     for path in targets:
         if os.path.isfile(path) and _same_file(path, options.input):
             raise UsageError(f"{path} is the input file; choose another name, or --in-place")

@@ -82,7 +82,7 @@ class Site(NamedTuple):
 
 
 def slot_of(node: yaml.Node) -> Slot:
-    """Where a node of YAML is written, with its anchor and tag."""
+    """Return where a node of YAML is written, with its anchor and tag."""
     start, end = node.start_mark, node.end_mark
     style = getattr(node, "style", None) or ""
     return Slot(start.line + 1, start.column + 1, start.index, end.index, str(node.value), style)

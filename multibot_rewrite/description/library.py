@@ -196,7 +196,7 @@ def rewrite_all(
 
 
 def _with_own_ports(made: Iterator[Rewrite]) -> Iterator[Rewrite]:
-    """Of several robots each has ports of its own, where it is known what they are for."""
+    """Yield rewrites in which each of several robots has its own ports, if their use is known."""
     first = next(made, None)
     served = first.template.inventory.served if first else ()
     words = (word for _, section in served for word in section.opens)

@@ -37,11 +37,9 @@ def prepare(
     urdf_declarations: Declared = NOTHING,
     own: OwnSource = OF_ALL,
 ) -> Template:
-    """Everything that does not depend on a robot's name; raises InputError and RewriteRefused.
-
+    """Return everything that does not depend on a robot's name; raises InputError, RewriteRefused.
     ``urdf_declarations`` is what the URDF of an SRDF declares. ``own`` says more of a source that
-    is one robot's own.
-    """
+    is one robot's own."""
     inventory = collect(read_document(source, file), tree, urdf_declarations, naming.read_as)
     check_urdf(inventory, urdf_declarations)
     plan = make_plan(inventory, naming)

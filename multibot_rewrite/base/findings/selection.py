@@ -92,7 +92,7 @@ def grouped(findings: Iterable[Finding], names: Mapping[str, str]) -> list[Findi
 def with_members(
     findings: Iterable[Finding], names: Mapping[str, str]
 ) -> list[tuple[Finding, list[Finding]]]:
-    """As ``grouped``, each with the findings that it stands for."""
+    """Return the findings as ``grouped``, each with the findings that it replaces."""
     order = {robot: at for at, robot in enumerate(dict.fromkeys(names.values()))}
     groups: dict[Finding, list[tuple[str, Finding]]] = {}
     for it in findings:

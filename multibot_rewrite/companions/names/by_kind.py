@@ -43,7 +43,7 @@ def joint(context: Context, value: str) -> str:
 
 
 def interface(context: Context, value: str) -> str:
-    """``elbow/position``, or another controller's ``controller/elbow/position``."""
+    """Return ``elbow/position``, or another controller's ``controller/elbow/position``, renamed."""
     owner, slash, last = value.rpartition("/")
     if not slash:
         return value
@@ -128,7 +128,7 @@ def before_frames(between: str) -> Speller:
 
 
 def words(context: Context, value: str) -> str:
-    """Text with names of the description in it: ``joints(shoulder,elbow)``."""
+    """Return a text with names of the description renamed: ``joints(shoulder,elbow)``."""
 
     return _WORD.sub(lambda found: _word(context, found[0]), value)
 
@@ -213,7 +213,7 @@ def expressible(context: Context, kind: str) -> bool:
 
 
 def is_shared_frame(context: Context, value: str) -> bool:
-    """One frame for all robots, such as map."""
+    """Return whether it is one frame for all robots, such as map."""
     return value.strip("/") in context.names.naming.shared_frames
 
 

@@ -85,9 +85,10 @@ def unclaimed_mentions(
     tree: Tree,
     usual: Collection[str] = (),
 ) -> list[Mention]:
-    """Each unclaimed value that is one of ``names`` or holds one as a list item, path segment,
-    scope or side of a remap rule, or is a ``usual`` frame or topic of tf; ``values`` are all of
-    ``slot_values``. Values with a ``keep`` site are no mention, nor what a plugin does not read."""
+    """Return each unclaimed value that is one of ``names`` or holds one as a list item, path
+    segment, scope or side of a remap rule, or is a ``usual`` frame or topic of tf; ``values`` are
+    all of ``slot_values``. Values with a ``keep`` site are no mention, nor what a plugin does not
+    read."""
     if not (names or usual):
         return []
     telling = _telling(values, frozenset(names)) | {it: it for it in {*usual}.intersection(values)}
@@ -188,7 +189,7 @@ def _without_files(value: str) -> str:
 def _unclaimed(
     inventory: Inventory, suspects: set[str]
 ) -> Iterator[tuple[etree._Element, int, str, str]]:
-    """(element, start, attribute or "", value) of the suspect slots without a site, in order."""
+    """Yield (element, start, attribute or "", value) of suspect slots without a site, in order."""
     claimed = {(claim.start, claim.attribute) for claim in inventory.claims}
     document = inventory.document
     for element, start in zip(document.elements, document.starts, strict=True):

@@ -48,12 +48,10 @@ def already_rewritten(
     own: OwnNames = NO_OWN_NAMES,
     kinds: Collection[str] = CARRYING,
 ) -> Iterator[Problem]:
-    """Robots whose name is in names of the document, or in a marker of inserted elements.
-
+    """Yield robots whose name is in names of the document, or in a marker of inserted elements.
     ``again`` rewrites it once more, but not where it has inserted elements of the same robot. Names
     of ``own`` are the robot's by an argument of its xacro: they stay as they are. ``kinds`` are
-    those that get this word of the robot.
-    """
+    those that get this word of the robot."""
     marked = {mark.robot for mark in markers(inventory.document)}
     asked = list(robots)
     text = "\n".join({name.text for names in inventory.names for name in names}) if asked else ""
@@ -74,7 +72,7 @@ def rewritten_before(inventory: Inventory) -> Iterator[Problem]:
 
 
 def _names(inventory: Inventory, kinds: Collection[str]) -> list[UsedName]:
-    """Every name of these kinds that some rewrite changes, once."""
+    """Return every name of these kinds that some rewrite changes, once."""
     found: dict[tuple[str, str], UsedName] = {}
     for claim, names in zip(inventory.claims, inventory.names, strict=True):
         for name in names if claim.site.role != "keep" else ():

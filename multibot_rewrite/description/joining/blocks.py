@@ -216,7 +216,7 @@ def bare(text: bytes, file: str, prefix: str, names: Collection[str]) -> bytes:
 
 
 def _starts(document: Document, names: Collection[str]) -> Iterator[int]:
-    """Where these names begin; in a block a material is one of Gazebo's."""
+    """Yield where these names begin; in a block a material is one of Gazebo's."""
     for element, start in zip(document.elements, document.starts, strict=True):
         above = element.getparent()
         if element.tag != _TAG or above is None or above.tag == "gazebo":
@@ -228,7 +228,7 @@ def _starts(document: Document, names: Collection[str]) -> Iterator[int]:
 
 
 def repeated(joined: _Element, spans: Spans) -> Iterator[Edit]:
-    """Materials below the root that are there already, taken out."""
+    """Yield edits that remove materials below the root that exist already."""
     names = {it.get("name") for it in joined.iterchildren(_TAG)}
     for it in spans.document.root.iterchildren(_TAG):
         if it.get("name") in names:

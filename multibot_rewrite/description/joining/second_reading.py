@@ -136,7 +136,7 @@ def _is_at(joint: _Element, wanted: Pose) -> bool:
 
 
 def _check_tree(root: _Element) -> None:
-    """One root, and each other link below it, by one joint."""
+    """Raise an error unless there is one root, and each other link below it, by one joint."""
     links = {it.get("name", "") for it in root.iterchildren("link")}
     ends = [(end_of(it, "child"), end_of(it, "parent")) for it in root.iterchildren("joint")]
     below = lists_by_key((parent, child) for child, parent in ends)

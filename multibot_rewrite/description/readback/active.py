@@ -65,8 +65,8 @@ def _keys(plugin: _Element) -> Iterator[str]:
 
 
 def _of_release(found: Sequence[VocabularySection], plugin: _Element) -> VocabularySection:
-    """ROS 1 and ROS 2 have plugins of one name. Only ROS 2 reads <ros>; without one the release that
-    reads more of the parameters counts, ROS 2 if both do."""
+    """Return the section of the ROS that loads a plugin. Only ROS 2 reads <ros>; without one the
+    release that reads more of the parameters counts, ROS 2 if both do."""
     by_release = {section.ros: section for section in found}
     new, old = by_release.get(ROS_2, found[0]), by_release.get(ROS_1)
     if old is None or plugin.find("ros") is not None:
@@ -145,7 +145,7 @@ class ActivePart(NamedTuple):
 
 
 def active_parts(root: _Element, vocabulary: Vocabulary) -> Iterator[ActivePart]:
-    """All of a description, kind by kind."""
+    """Yield all active parts of a description, kind by kind."""
     every = lists_by_key((str(it.tag), it) for it in root.iter("plugin", "sensor", "include"))
     for plugin in every["plugin"]:
         inside = _NO_PLUGINS.intersection(it.tag for it in plugin.iterancestors())
@@ -195,8 +195,8 @@ def says_what_it_opens(section: VocabularySection) -> bool:
 
 
 def opened(host: _Element, section: VocabularySection) -> Iterator[tuple[str, str, str]]:
-    """Kind, text and parameter of the addresses and files that a part of the robot opens, and of
-    relative names that no row has."""
+    """Yield kind, text and parameter of the addresses and files that a part of the robot opens, and
+    of relative names that no row has."""
     if NAMESPACE in section.opens:
         yield RELATIVE, section.names[0], "opens"
     if TRANSFORMS in section.opens:

@@ -151,7 +151,7 @@ def node_of(
 
 
 def _manager(plugin: _Element, section: VocabularySection, name: str, namespace: str) -> str:
-    """Its node is the manager; Classic's plugin is a node of its own besides."""
+    """Return the controller manager: the plugin's node; Classic's plugin is another node."""
     site = next((it for it in section.sites if it.path == "controller_manager_name"), None)
     if site is None:
         return ""
@@ -259,8 +259,9 @@ def _endpoints(
     rules: tuple[ReadRule, ...],
     release: str,
 ) -> Iterator[RuntimeName]:
-    """Those of the node, and those of the controllers that it loads. They publish by names of their
-    own: a rule for the manager's node is none for them, and in some releases they take none at all."""
+    """Yield the ends of the node, and of the controllers that it loads. These publish by names of
+    their own: a rule for the manager's node is none for them, and in some releases they take none
+    at all."""
     wide = section.process_wide
     alone = wide and not controller_way(release).of_manager
     taken = (it.rule for it in rules if not (alone or it.rule.node))
@@ -277,7 +278,7 @@ def _endpoints(
 def _asked_for(
     plugin: _Element, section: VocabularySection, rules: tuple[ReadRule, ...]
 ) -> Iterator[tuple[str, str, str, str, str, str]]:
-    """Kind, role, name, parameter and type of what a node asks for, and what would turn it on."""
+    """Yield kind, role, name, parameter and type of what a node asks for, and what would enable it."""
     off = switched_off(plugin, section)
     wired = list(wired_of(plugin, section))
     named = {it.name for it, _ in wired}

@@ -29,7 +29,7 @@ _SLOT = lazy_compile(r"\{([^{}]+)\}")
 
 
 def values_of(host: _Element, site: SiteRow) -> list[str]:
-    """Its values, in order, or the default; none where an empty element means something else."""
+    """Return a site's values in order, or the default; none where an empty element means another."""
     if site.when not in ("", SENT) and not _applies(host, site):
         return []
     given = list(values_at(host, site.path))
@@ -49,9 +49,9 @@ def _applies(host: _Element, site: SiteRow) -> bool:
 
 
 def default_of(host: _Element, default: str) -> str:
-    """``x``; ``a=true,b=?x``: x where these siblings have these texts; ``topic/../x``: the value of
-    a sibling with its last segment replaced; ``{model}/x``: x below what the model is spawned as, with
-    ``MODEL`` for that. Empty where a name of the description is not there."""
+    """Return ``x``; ``a=true,b=?x``: x where these siblings have these texts; ``topic/../x``: the
+    value of a sibling with its last segment replaced; ``{model}/x``: x below what the model is
+    spawned as, with ``MODEL`` for that. Empty where a name of the description is missing."""
     conditions, asked, default = default.rpartition("?")
     if asked and not holds(host, conditions):
         return ""
@@ -64,7 +64,7 @@ def default_of(host: _Element, default: str) -> str:
 
 
 def holds(host: _Element, conditions: str) -> bool:
-    """``a=true,../@b=x|y``: is each of them so? A flag that is not there is off."""
+    """Return whether all of ``a=true,../@b=x|y`` hold. A missing flag is off."""
     return all(_holds(host, it) for it in conditions.split(","))
 
 
@@ -132,7 +132,7 @@ def around(host: _Element) -> _Element:
 
 
 def wired_of(plugin: _Element, section: VocabularySection) -> Iterator[tuple[WiredTopic, str]]:
-    """Each with the path of the parameter that it is below, empty without one."""
+    """Yield each wired topic with the path of the parameter that it is below, empty without one."""
     for it in section.wired:
         if it.when and not holds(plugin, it.when):
             continue
@@ -159,7 +159,7 @@ def filled(plugin: _Element, section: VocabularySection, name: str) -> Iterator[
 
 
 def _type(plugin: _Element, type_: str) -> str:
-    """``{output_type:pkg/msg/A}``: what the plugin is told, which may be without ``msg``."""
+    """Return the type of ``{output_type:pkg/msg/A}``: what the plugin gets, maybe without ``msg``."""
     if not type_.startswith("{"):
         return type_
     path, _, usual = type_[1:-1].partition(":")
