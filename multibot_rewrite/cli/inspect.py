@@ -158,7 +158,7 @@ def _row(site: SiteRow, section: VocabularySection) -> tuple[str, ...]:
 
 
 def as_json(section: VocabularySection) -> dict[str, object]:
-    """Return a section as ``--form json`` writes it; docs/stacks.md describes it."""
+    """Return a section as ``--form json`` writes it; docs/node sets.md describes it."""
     return {
         "type": section.type,
         "names": section.names,
@@ -258,7 +258,7 @@ def rule_grid(found: Iterable[Rule] | None = None) -> Grid:
 
 
 def rules_json(found: Iterable[Rule] | None = None) -> list[dict[str, object]]:
-    """Return rules (by default all) as ``--form json`` writes them; docs/stacks.md describes it."""
+    """Return rules (by default all) as ``--form json`` writes them; docs/node sets.md describes it."""
     fields = ("code", "name", "level", "what", "why", "fix")
     return [
         {**{name: getattr(it, name) for name in fields}, "examples": dict(examples(it))}
