@@ -79,11 +79,9 @@ class Outputs(NamedTuple):
 
 
 def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
-    """Every file of a fleet. ``folder`` is where they will be, if they are written at all.
-
+    """Return every file of a fleet. ``folder`` is where they will be, if they are written at all.
     Raises InputError for a companion that cannot be read or rewritten, UsageError where two files
-    would have the same path, and for parameter files in a style that does not serve the layout.
-    """
+    would have the same path, and for parameter files in a style that does not serve the layout."""
     check_style(plan.file)
     with gc_paused():
         fleet, each = with_start_pose_nodes(plan), list(split_per_robot(plan))

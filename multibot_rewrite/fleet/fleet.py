@@ -229,7 +229,7 @@ def _plugins(member: Member) -> list[Run]:
 
 
 def merge(fleets: Sequence[Fleet]) -> Fleet:
-    """Robots of different descriptions as one fleet; their names may not collide either."""
+    """Return robots of different descriptions as one fleet; checks that no names collide."""
     first, *others = fleets
     for other in others:
         first = Fleet(
@@ -302,7 +302,7 @@ def _parameters(fleet: Fleet) -> Iterator[Parameter]:
 
 
 def possible(fleet: Fleet) -> tuple[End, ...]:
-    """Every endpoint that its nodes may have, by parameter too."""
+    """Return every endpoint that the nodes may have, also by parameter."""
     return tuple(
         End(end.kind, end.role, name, end.type, node=run.full_name, code_name=end.name)
         for run, end, name in fleet.table.ends

@@ -122,14 +122,14 @@ class LoadedFleet:
         return self.files[path].data.decode()
 
     def node_text(self, path: str) -> str:
-        """As ``LoadedRobot.node_text``, by path; raises as ``text``."""
+        """Return the text as ``LoadedRobot.node_text``, by path; raises as ``text``."""
         self.text(path)
         return self._with_full_names[path].data.decode()
 
     @checked
     def parameters(self, path: str) -> YamlText:
-        """One of these files as a parameter file. Raises as ``text``, and InputError with the line of
-        the source for values that rcl rejects."""
+        """Return one of these files as a parameter file. Raises as ``text``, and InputError with
+        the line of the source for values that rcl rejects."""
         if path not in self._parameters:
             text = self.node_text(path)
             made = {it for one in self.plan.file.robots for it, _ in one.filled}

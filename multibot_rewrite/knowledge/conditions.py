@@ -53,7 +53,7 @@ def parse_condition(text: str) -> tuple[tuple[Condition, ...], ...]:
 
 
 def joined(text: str, other: str) -> str:
-    """Both conditions as one."""
+    """Return both conditions as one."""
     return OR.join(f"{it}{AND}{other}" for it in text.split(OR)) if text else other
 
 

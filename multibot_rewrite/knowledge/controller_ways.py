@@ -41,7 +41,7 @@ CONTROLLER_WAYS = (
 
 
 def controller_way(release: str) -> ControllerWay:
-    """How controllers get rules in a release."""
+    """Return how controllers get rules in a release."""
     return next(it for it in CONTROLLER_WAYS if has_release(it.releases, release))
 
 

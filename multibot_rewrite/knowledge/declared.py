@@ -55,7 +55,7 @@ class Declared(NamedTuple):
 
 
 def checks_in(bounds: str) -> tuple[tuple[str, str], ...]:
-    """Each check in a text with its arguments."""
+    """Return each check in a text with its arguments."""
     if ")" not in bounds:
         return ()
     checks = (it.partition("(") for it in _BETWEEN_CHECKS.split(bounds) if it.endswith(")"))
@@ -161,7 +161,7 @@ class Base(NamedTuple):
 
 @cache
 def plugin_bases() -> Mapping[str, Base]:
-    """Every base by its name."""
+    """Return every base by its name."""
     _, *parts = own_text(__file__, "plugin_classes.schema").split("\n[")
     return {part[: part.index("]")]: _base(part) for part in parts}
 

@@ -139,11 +139,9 @@ def _in_stack(node: NodeFacts, stack: Stack) -> NodeFacts:
 
 
 def extend(library: NodeLibrary, text: str, file: str, own: bool = False) -> NodeLibrary:
-    """``library`` with what a YAML text adds or changes.
-
-    What an entry says of a known node's endpoints replaces what was known, what it says of its
-    parameters is added. ``own`` says that the text is of this package.
-    """
+    """Return ``library`` with what a YAML text adds or changes. An entry replaces what was known of
+    a node's endpoints, and adds to its parameters. ``own`` means that the text is of this
+    package."""
     top = table(read_yaml_with_lines(text, file, own), "the file", FILE_KEYS)
     new = {key: table(top[key], key) for key in ("parts", "nodes", "stacks") if key in top}
     given_parts = {

@@ -34,7 +34,7 @@ class Package(NamedTuple):
 
 @cache
 def packages() -> Mapping[str, Package]:
-    """Every package of the table."""
+    """Return every package of the table."""
     found: dict[str, Package] = {}
     rows: dict[str, Versions] = {}
     for line in own_text(__file__, "packages.schema").splitlines():
@@ -55,8 +55,8 @@ def number(version: str) -> tuple[int, ...]:
 
 @lru_cache(maxsize=1024)  # so many facts, so few words
 def by_version(words: str) -> str:
-    """Release words in which ``PACKAGE VERSION+`` stands for the releases that have this version, on
-    condition of it where they came with an earlier one."""
+    """Return release words where ``PACKAGE VERSION+`` stands for the releases with this version,
+    with it as a condition where they came with an earlier one."""
     return ", ".join(it for term in words.split(",") for it in _terms(term.strip()))
 
 

@@ -111,7 +111,7 @@ def _param(path: str, item: YamlItem, absolute: str) -> Param:
 
 
 def read_guesses(keys: Mapping[str, YamlItem]) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """Kinds with the last words of paths that suggest them."""
+    """Yield kinds with the last words of paths that suggest them."""
     given = table_of(keys, "guesses")
     for kind, item in given.items():
         yield one_of(item, "kind", kind, KINDS), words_of(given, kind)

@@ -105,8 +105,8 @@ def _node(facts: NodeParameters, release: str) -> NodeParameters:
 
 
 def _anywhere(nodes: Iterable[NodeParameters], guessing: re.Pattern[str]) -> Iterator[Param]:
-    """Parameters that likely mean the same in an unknown node: several nodes have them with one
-    meaning, or their name suggests it."""
+    """Yield parameters that likely mean the same in an unknown node: several nodes have them with
+    one meaning, or their name suggests it."""
     every = (param for node in nodes for param in node.params.values())
     plain = (it for it in every if "*" not in it.path and "<" not in it.path.replace(_INDEX, ""))
     found = lists_by_key((it.path, it) for it in plain)

@@ -23,7 +23,7 @@ PARTS, STACKS = "parts.yaml", "stacks.yaml"
 
 
 def load_nodes(release: str) -> dict[str, NodeFacts]:
-    """Every built-in node of a release by name."""
+    """Return every built-in node of a release by name."""
     return dict(built_in(release).nodes)
 
 

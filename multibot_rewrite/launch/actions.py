@@ -130,7 +130,7 @@ def place(robot: Text = None, fleet: Text = None, **options: Any) -> Action:
 
 
 def node_class() -> Any:
-    """launch_ros's Node."""
+    """Return the class Node of launch_ros."""
     return of_launch_ros("actions").Node
 
 

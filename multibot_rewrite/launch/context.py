@@ -52,21 +52,20 @@ Here = tuple[LoadedFleet | None, str | None]
 
 
 def entered(context: Context, group: Here) -> None:
-    """From here on the fleet and the robot are these, also for what events and timers start that are
-    set up now; None for none."""
+    """Set the fleet and the robot from here on, also for events and timers set up now; None for
+    none."""
     _carry(context)
     context.extend_locals(dict(zip((FLEET, ROBOT), group, strict=True)))
 
 
 def here(context: Context) -> Here:
-    """Fleet and robot of the enclosing group."""
+    """Return fleet and robot of the enclosing group."""
     known = context.get_locals_as_dict()
     return known.get(FLEET), known.get(ROBOT)
 
 
 def _carry(context: Context) -> None:
-    """Event handlers that are registered from now on start what they start for the robot that is
-    here."""
+    """Let event handlers that are registered from now on start their actions for the current robot."""
     if _CARRIED in context.get_locals_as_dict():
         return
     context.extend_globals({_CARRIED: True})
@@ -181,8 +180,8 @@ def sim_time(context: Context, robot: LoadedRobot, told: Text) -> bool | None:
 
 
 def listed(context: Context, names: Text) -> list[str]:
-    """Names or paths separated by commas, or a list; launch joins a list with substitutions into one
-    text."""
+    """Return names or paths from a list or a text with commas; launch joins a list with
+    substitutions into one text."""
     several = not isinstance(names, str) and isinstance(names, Sequence)
     if several and all(isinstance(it, str | os.PathLike) for it in names):
         return [os.fspath(it) for it in names]

@@ -24,7 +24,7 @@ Parsed = tuple[Any, dict[str, Any]]
 
 
 def words(data: Sequence[Text]) -> Parsed:
-    """``$(multibot WORD [NAME] [robot:=ROBOT] [fleet:=FILE])``, see ``launch.value``."""
+    """Parse ``$(multibot WORD [NAME] [robot:=ROBOT] [fleet:=FILE])``, see ``launch.value``."""
     if not data:
         raise ValueError(f"$(multibot) needs one of: {', '.join((*WORDS, FILE))}")
     return substitution_class(), {"words": data, "of": HERE}
@@ -42,19 +42,19 @@ def robots(entity: Any, parser: Any) -> Parsed:
 
 
 def node(entity: Any, parser: Any) -> Parsed:
-    """``multibot_node node= [files=] [describe=] [use_sim_time=] [robot=] [fleet=]`` and what ``node``
-    takes, see ``launch.node``."""
+    """Parse ``multibot_node node= [files=] [describe=] [use_sim_time=] [robot=] [fleet=]`` and what
+    ``node`` takes, see ``launch.node``."""
     return actions.node, _node("multibot_node", actions.node_class(), entity, parser)
 
 
 def lifecycle_node(entity: Any, parser: Any) -> Parsed:
-    """``multibot_lifecycle_node``: as ``multibot_node``, see ``launch.lifecycle_node``."""
+    """Parse ``multibot_lifecycle_node``: as ``multibot_node``, see ``launch.lifecycle_node``."""
     made = _node("multibot_lifecycle_node", actions.node_class(), entity, parser)
     return actions.lifecycle_node, made
 
 
 def container(entity: Any, parser: Any) -> Parsed:
-    """``multibot_container``: as ``multibot_node``, with components in it, see ``launch.container``."""
+    """Parse ``multibot_container``: as ``multibot_node``, with components, see ``launch.container``."""
     base = of_launch_ros("actions").ComposableNodeContainer
     given = _node("multibot_container", base, entity, parser)
     inside = _nested(entity, COMPONENT)
@@ -67,19 +67,19 @@ def container(entity: Any, parser: Any) -> Parsed:
 
 
 def composable_node(entity: Any, parser: Any) -> Parsed:
-    """``multibot_composable_node node= pkg= plugin=``: loaded into its container, see
+    """Parse ``multibot_composable_node node= pkg= plugin=``: loaded into its container, see
     ``launch.node``."""
     return actions.node, {**action_options(entity, parser), **_component(entity, parser)}
 
 
 def spawn(entity: Any, parser: Any) -> Parsed:
-    """``multibot_spawn simulator= [robot=] [fleet=]``, see ``launch.spawn``."""
+    """Parse ``multibot_spawn simulator= [robot=] [fleet=]``, see ``launch.spawn``."""
     simulator = parser.parse_substitution(entity.get_attr("simulator"))
     return actions.spawn, {"simulator": simulator, **_program(entity, parser)}
 
 
 def place(entity: Any, parser: Any) -> Parsed:
-    """``multibot_place [robot=] [fleet=]``, see ``launch.place``."""
+    """Parse ``multibot_place [robot=] [fleet=]``, see ``launch.place``."""
     return actions.place, _program(entity, parser)
 
 
@@ -121,7 +121,7 @@ class _Programless:
         return getattr(self._entity, name)
 
     def get_attr(self, name: str, **options: Any) -> Any:
-        """As that of the element."""
+        """Return an attribute of the element."""
         if name != "exec":
             return self._entity.get_attr(name, **options)
         return self._entity.get_attr(name, **{**options, "optional": True}) or "later"
@@ -161,7 +161,7 @@ def _rule(entity: Any, parser: Any) -> tuple[Any, Any]:
 
 
 def _parameters(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Parameters whose value is one of ours, with its type."""
+    """Return parameters; a value of this package's substitutions with its type."""
     found = [
         {key: as_value(value) for key, value in it.items()} if isinstance(it, dict) else it
         for it in given.get("parameters", ())

@@ -137,7 +137,7 @@ def _given(context: Context, robot: LoadedRobot, it: Start) -> dict[str, Any]:
 
 
 def _activated(made: Action) -> Iterator[Action]:
-    """Configure a node, and activate it when that is done."""
+    """Yield actions that configure a node, and activate it afterwards."""
     known, events = of_launch("actions"), of_launch_ros("events.lifecycle")
     ids = of_launch("events").matches_action(made)
 

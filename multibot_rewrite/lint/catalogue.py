@@ -29,7 +29,7 @@ HOMES = {
 
 @cache
 def rules() -> Mapping[str, Rule]:
-    """All rules by code, in the order of the codes; imports every module that declares one."""
+    """Return all rules in the order of their codes; imports every module that declares one."""
     from multibot_rewrite.lint.registry import RULES
 
     # A lint has some with examples of its own.

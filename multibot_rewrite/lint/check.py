@@ -42,7 +42,7 @@ class _TooLongError(BaseException):
 
 
 def lint_file(path: str, settings: Settings) -> list[Finding]:
-    """All findings of a file, in order; a file that cannot be read is a finding."""
+    """Return all findings of a file, in order; a file that cannot be read is a finding."""
     return _linted(path, partial(read_file, path), settings)
 
 

@@ -154,7 +154,7 @@ def must_be_declared(site: SiteRow) -> bool:
 
 
 def kind_of(part: NamePart, role: str, declared: Declared, apart: bool = False) -> str:
-    """Which of its kinds a name is; empty for a use of something that is not declared."""
+    """Return which of its kinds a name is; empty for a use of something that is not declared."""
     if part.matched:
         return part.matched[0]
     return resolve(part.text, part.kinds, role, declared, part.closed, apart)
@@ -168,10 +168,9 @@ def resolve(
     closed: bool = False,
     apart: bool = False,
 ) -> str:
-    """Which of ``kinds`` a name is; empty for a use of something that must be declared and is not.
-
-    A frame that names a link is renamed like the link, one leading slash aside; not if frames are
-    ``apart`` from links, since nodes name them at run time."""
+    """Return which of ``kinds`` a name is; empty for a use of something that must be declared and
+    is not. A frame that names a link is renamed like the link, ignoring one leading slash; not if
+    frames are ``apart`` from links, because nodes name them at run time."""
     if role == "declares":
         return kinds[0]
     for kind in kinds:
@@ -210,7 +209,7 @@ def stripped_names(declared: Declared, naming: Naming, robot: str) -> Declared:
 
 
 def unspelled(naming: Naming, kind: str, name: str, robot: str) -> str:
-    """``name`` without what ``affix`` put there for ``robot``."""
+    """Return ``name`` without what ``affix`` added for ``robot``."""
     span = removal(naming, robot, kind, name)
     return name[: span[0]] + name[span[1] :] if span else name
 

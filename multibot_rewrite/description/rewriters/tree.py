@@ -192,7 +192,7 @@ class Tree:
         return node
 
     def _know(self, node: TreeNode) -> None:
-        """Its tags are known before anybody finds the node: else a thread would pass them by."""
+        """Note its tags before a thread can find the node and miss them."""
         waiting = [node]
         while waiting:
             for tag, child in waiting.pop().active.items():
@@ -274,7 +274,7 @@ def values_of_plugin(
 
 
 def library_key(library: str) -> str:
-    """``libignition-gazebo6-imu-system.so`` -> ``gz-sim-imu-system``."""
+    """Return the key of a library: ``libignition-gazebo6-imu-system.so`` -> ``gz-sim-imu-system``."""
     key = library.removesuffix(".so").removesuffix(".dylib").removeprefix("lib")
     for family in ("ignition-gazebo", _GZ_SIM):
         if key.startswith(family):
@@ -301,12 +301,10 @@ SELECTORS: dict[str, Callable[[_Element], list[str]]] = {
 
 
 def _flavour(found: Sequence[VocabularySection], element: _Element) -> VocabularySection | None:
-    """ROS 1 and ROS 2 plugins share file names; the children tell them apart, ROS 2 where none do.
-
-    A ``ros`` child is ROS 2, whatever was left from before: nothing in ROS 1 reads one. What decides
-    for the whole document is in the plugin definitions already (``sources/dialect.py``).
-    Source: gazebo_ros_pkgs branches noetic-devel (camelCase, robotNamespace), ros2 (snake_case).
-    """
+    """Return the ROS 1 or ROS 2 section of plugins with one file name: the children tell them
+    apart, ROS 2 where none do. A ``ros`` child is ROS 2, because nothing in ROS 1 reads one. What
+    decides for the whole document is in the plugin definitions already (``sources/dialect.py``).
+    Source: gazebo_ros_pkgs branches noetic-devel (camelCase, robotNamespace), ros2 (snake_case)."""
     if element.find("ros") is not None:
         found = [section for section in found if section.ros != "1"]
     if len(found) < 2:

@@ -144,7 +144,7 @@ def _format(document: Document, tree: Tree, likely: str) -> str:
 
 
 def _of_the_robot(claims: list[Claim]) -> list[Claim]:
-    """Without the topics of the world that nothing else in the document has."""
+    """Return the claims without the world's topics that nothing else in the document has."""
     if not any(it.site.when == SENT for it in claims):
         return claims
     others = (it for it in claims if it.site.when != SENT)

@@ -56,7 +56,7 @@ def _of_simulator(apart: Apart, plan: System) -> Iterator[Finding]:
 
 
 def one_launch_each(apart: Apart, starts: FleetStarts) -> Iterator[Finding]:
-    """Robots whose nodes the launch file has to reach: its own node is in one domain."""
+    """Report robots in several domains whose nodes one launch file would have to reach."""
     reached = [
         robot
         for robot in starts.robots

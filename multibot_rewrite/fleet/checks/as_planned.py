@@ -105,7 +105,7 @@ def open_names(by_plan: Index, told: Iterable[Finding]) -> frozenset[tuple[str, 
 
 
 def _level(it: Finding, planned: System, seen: System, started: Set[str]) -> str:
-    """Empty for what is no fault of the folder."""
+    """Return the level of a finding; empty for what is no fault of the folder."""
     if it.code in _OF_NODES:
         return ERROR if _is_of_launch(it, planned, seen, started) else ""
     if it.code in CLAIMS and it.level == WARNING:

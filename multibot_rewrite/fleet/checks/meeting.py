@@ -91,7 +91,7 @@ def _named(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence[Run
 
 
 def _finding(met: Meeting, member: Member | None, written: Written | None) -> Finding:
-    """At the element of the description that has the name first, else at the node."""
+    """Return a finding at the element of the description that has the name first, else at the node."""
     name, code = met.name, code_of(met.name)
     message = said(f"{met.robot} and {met.other} would both", name, met.twin)
     found = Finding(code, _level(code), message, advice(name, together=True), names=(name.name,))
@@ -108,5 +108,5 @@ def _finding(met: Meeting, member: Member | None, written: Written | None) -> Fi
 
 
 def _level(code: str) -> str:
-    """Whether one robot finds another's sensor depends on the order in which they are spawned."""
+    """Return WARNING if it depends on the order of spawning whether robots share it, else ERROR."""
     return WARNING if code in (LOOKUP, NOT_TAKEN) else ERROR

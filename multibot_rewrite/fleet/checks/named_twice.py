@@ -45,7 +45,7 @@ def declared_twice(
 
 
 def named_twice(robots: Sequence[RewrittenRobot]) -> Iterator[Finding]:
-    """Once for each description, with the first of its names."""
+    """Report for each description the first name that has the robot's name twice."""
     told = set()
     for it in robots:
         spec = it.spec

@@ -148,7 +148,7 @@ def _said(it: Finding, hint: str) -> Finding:
 def _of_hardware(
     robot: RewrittenRobot, told: Collection[str], vocabulary: Vocabulary
 ) -> Iterator[Address]:
-    """At the robot's line of the fleet file; those of simulators have no devices."""
+    """Yield the addresses of a robot's devices, at its line of the fleet file; none if simulated."""
     spec = robot.spec
     if spec.simulator != "gazebo":
         node, place = f"/{spec.namespace}/{MANAGER}", Place(spec.file, spec.line, 1)

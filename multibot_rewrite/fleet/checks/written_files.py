@@ -46,7 +46,7 @@ def wrong_in_file(
 
 
 def of_files(found: Iterable[Finding]) -> set[Finding]:
-    """Those of the rules for files that are more than a note."""
+    """Return the findings of the rules for files that are more than a note."""
     asked = codes()
     return {it for it in found if it.code in asked and it.level != NOTE}
 

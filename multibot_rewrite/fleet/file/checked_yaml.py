@@ -75,7 +75,7 @@ def _lines(node: yaml.Node, file: str, path: Path) -> Iterator[tuple[Path, int]]
 
 
 def _errors(data: Any, schema: Mapping[str, Any]) -> list[Any]:
-    """Every fault, the deepest reason of each."""
+    """Return every error, with the deepest reason of each."""
     try:
         import jsonschema
         from jsonschema.exceptions import best_match

@@ -160,14 +160,14 @@ def _release(data: Mapping[str, Any], given: str, environment: Mapping[str, str]
 
 
 def input_files(fleet: FleetFile) -> Iterator[str]:
-    """Every file that it names, itself among them."""
+    """Yield every file that the fleet file names, and itself."""
     yield from fleet.files
     for robot in fleet.robots:
         yield from robot.files
 
 
 def _check_robots_differ(robots: Sequence[RobotSpec]) -> None:
-    """No two robots may have the same name, namespace, prefix or postfix, model or pose."""
+    """Refuse two robots with the same name, namespace, prefix or postfix, model or pose."""
     for what in ("name", "namespace", "tag", "model", "pose"):
         seen: dict[object, RobotSpec] = {}
         for robot in robots:

@@ -130,7 +130,7 @@ def _chosen(text: str, rows: list[_Row], given: list[dict[str, Any]]) -> Iterato
 
 
 def parse_robots(text: str) -> Iterator[tuple[str, dict[str, float]]]:
-    """Each name with its pose, which is empty where none is given; raises UsageError."""
+    """Yield each name with its pose, which is empty if none is given; raises UsageError."""
     seen: set[str] = set()
     for part in filter(None, map(str.strip, text.split(";"))):
         name, _, pose = (it.strip() for it in part.partition("="))

@@ -52,7 +52,7 @@ class Shape(NamedTuple):
 
 @cache
 def shapes() -> Mapping[str, Shape]:
-    """All shapes by name."""
+    """Return all shapes by name."""
     rows = load_own_yaml(fleet.__file__, "shapes.yaml")
     found = {}
     for name, it in rows.items():

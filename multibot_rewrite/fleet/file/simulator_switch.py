@@ -106,8 +106,8 @@ def switch_for(
 
 
 def _switches(sources: Mapping[str, bytes], given: Mapping[str, str]) -> Iterator[tuple[str, str]]:
-    """Arguments with a value that may switch: one that is called so and is true or false, one that is
-    compared with other words (``mode == 'gazebo'``), one that is a hardware class."""
+    """Yield arguments with a value that may switch the simulator: one that is named so and is true
+    or false, one that is compared with other words (``mode == 'gazebo'``), a hardware class."""
     declared: dict[str, str] = {}
     for file, data in sources.items():
         for it in read_document(data, file).root.iter("{*}arg"):

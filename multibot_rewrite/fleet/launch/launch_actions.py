@@ -380,7 +380,7 @@ def _process(it: LaunchedNode, robot: str, space: str, naming: Naming | None) ->
 
 
 def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
-    """Its robot's parameter files, and what no file says of it."""
+    """Return the robot's parameter files for a node, and the values that no file has."""
     robot, facts = given.robot, given.facts[name]
     is_launched = name in given.plan.evidence_of(robot).handed_on
     files = [

@@ -20,7 +20,7 @@ OTHER_PREFIX = declare("MF841", "launch-file-adds-prefix", WARNING, formats=("fl
 
 
 def launched_prefixes(plan: FleetPlan) -> Iterator[Finding]:
-    """Those of the first robot of each kind."""
+    """Report prefixes that launch files give, for the first robot of each kind."""
     for key, found in plan.evidence.items():
         robot = next(it for it in plan.robots if node_sources(it.spec) == key)
         # What its own robot_state_publisher gets; there may be another one, as of a dock.

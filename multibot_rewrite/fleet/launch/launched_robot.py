@@ -56,14 +56,14 @@ def known_here(
 
 
 def launch_of(orders: Sequence[LaunchOrder], robot: str) -> LaunchGraph:
-    """All that these launch files start, with the robot in the place of ``{robot}``; of several robots
-    the first one. Raises as ``launched_robot``."""
+    """Return all that these launch files start, with the robot in the place of ``{robot}``; of
+    several robots the first one. Raises as ``launched_robot``."""
     return with_extras(of_first_robot(joined([*map(_read, _own(orders, robot))])))
 
 
 def _read(order: LaunchOrder) -> LaunchGraph:
-    """However its path is written, a launch file is read once; what is wrong is said of the path that
-    was given."""
+    """Return the graph of a launch file, which is read once, whatever the spelling of its path;
+    errors name the path that was given."""
     whole = _whole(order)
     with suppress(InputError):
         return once_kept(whole, lambda: _graph(whole, times_of(whole.file)))

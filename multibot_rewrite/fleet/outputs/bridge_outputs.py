@@ -39,10 +39,8 @@ from multibot_rewrite.spelling.bridged_topics import (
 
 
 def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
-    """Every bridge file of a fleet.
-
-    Raises InputError for a bridge file that cannot be read or rewritten.
-    """
+    """Return every bridge file of a fleet. Raises InputError for a bridge file that cannot be read
+    or rewritten."""
     fleet = plan.fleet
     topics, unbridged = bridged_topics(
         fleet.inventories, fleet.naming, fleet.models, fleet.table.runs, fleet.placed
@@ -148,11 +146,9 @@ def fill_bridge(template: FileTemplate, namespace: str, tag: str, model: str) ->
 def merge_bridges(
     texts: Iterable[tuple[str, str]], generated: Iterable[BridgedTopic]
 ) -> tuple[str, tuple[Finding, ...]]:
-    """One file from several (file, text) and the bridged topics of descriptions.
-
-    An entry of a file wins over a generated one with the same gz topic. Two gz topics that are
-    bridged to one ROS topic are an error.
-    """
+    """Return one file from several (file, text) and the bridged topics of descriptions. An entry of
+    a file wins over a generated one with the same gz topic. Two gz topics that are bridged to one
+    ROS topic are an error."""
     parts: list[str] = []
     findings: list[Finding] = []
     # By gz topic the file, by ROS topic its first gz topic.

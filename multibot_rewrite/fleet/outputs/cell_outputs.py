@@ -78,7 +78,7 @@ def cell_outputs(plan: FleetPlan, files: Iterable[OutputFile]) -> FilesAndFindin
 
 
 def parameters_path(cell: Cell) -> str:
-    """Where the parameters of a cell's move_group are."""
+    """Return the path of the parameters of a cell's move_group."""
     return f"{cell.name}/{FILE}"
 
 

@@ -53,10 +53,8 @@ _KINDS = {"params": PARAMS, "moveit": MOVEIT, "behavior_trees": TREE, "lua": LUA
 
 
 def companion_files(plan: FleetPlan) -> FilesAndFindings:
-    """Every related file that is one text with slots for the robot.
-
-    Raises InputError for a file that cannot be read or rewritten.
-    """
+    """Yield every related file that is one text with slots for the robot. Raises InputError for a
+    file that cannot be read or rewritten."""
     groups = list(group_robots(plan))
     for key in _KINDS:
         for group in groups:

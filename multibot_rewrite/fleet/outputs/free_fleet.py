@@ -27,7 +27,7 @@ _MAP = "map"
 
 
 def configurations(plan: System, setup: FreeFleet) -> Iterator[tuple[str, bytes]]:
-    """Each file by its path; raises UsageError for names that the adapter does not look for."""
+    """Yield each file by its path; raises UsageError for names that the adapter does not look for."""
     numbers, whose = domain_of(plan), whose_by_plan(plan)
     for robot in plan.robots:
         # Why the adapter would find nothing of the robot.

@@ -50,11 +50,9 @@ def described_path(robot: RewrittenRobot, node: str) -> str:
 
 
 def path_for(robot: RewrittenRobot, source: str) -> str:
-    """Where the robot's version of a source file goes: ``robot1/params.yaml``.
-
-    Files with one name are in folders called as their own, as many as it takes to tell them apart:
-    ``robot1/base/params.yaml``. A vendor's launch files may want one in a place of their own.
-    """
+    """Return where the robot's version of a source file goes: ``robot1/params.yaml``. Files of one
+    name go into folders named as theirs, as many as tell them apart: ``robot1/base/params.yaml``. A
+    vendor's launch files may want one in a place of its own."""
     kinds = robot.spec.companions
     name = name_among(source, (it for its in kinds.values() for it in its))
     kind = next((kind for kind, its in kinds.items() if source in its), "")
@@ -99,8 +97,8 @@ def expanded_name(path: str) -> str:
 
 
 def params_paths(robot: RewrittenRobot, files: Collection[str]) -> tuple[str, ...]:
-    """Where a robot's parameter files are among the ``files`` of a build, the one that it is given
-    where it has none included."""
+    """Return where a robot's parameter files are among the ``files`` of a build; the default one if
+    it has no others."""
     named = robot.spec.companions.get("params", ())
     paths = tuple(path_for(robot, it) for it in named or (DEFAULTS,))
     return tuple(it for it in paths if it in files)

@@ -58,8 +58,8 @@ class Spawn(NamedTuple):
 
 
 def spawns(plan: FleetPlan) -> tuple[tuple[Spawn, ...], tuple[Finding, ...]]:
-    """How each robot is spawned, and findings: only some of its plugins have a namespace, a plugin
-    looks for the robot by another name or is of ROS 1, it has no mass."""
+    """Return how each robot is spawned, and findings: only some of its plugins have a namespace, a
+    plugin looks for the robot by another name or is of ROS 1, it has no mass."""
     made: list[Spawn] = []
     findings: list[Finding] = []
     for robot in plan.robots:
@@ -82,8 +82,8 @@ def spawns(plan: FleetPlan) -> tuple[tuple[Spawn, ...], tuple[Finding, ...]]:
 
 
 def in_folder(plan: FleetPlan) -> tuple[Spawn, ...]:
-    """How the robots are spawned where their files are beside: from the file of a description that no
-    planned node publishes; of an SDF none does."""
+    """Return how robots are spawned from a built folder: from the file of a description that no
+    planned node publishes, as that of an SDF."""
     sent = {name for _, end, name in plan.fleet.table.ends if end.role == PUBLISHES}
     made, _ = spawns(plan)
     found = []
@@ -101,7 +101,7 @@ def simulators(plan: FleetPlan) -> list[str]:
 
 
 def spawn(robot: RewrittenRobot, topic: str = "") -> Spawn:
-    """How one robot is spawned; ``topic`` is that of its description if it is not the usual one."""
+    """Return how one robot is spawned; ``topic`` is that of its description if not the usual one."""
     spec = robot.spec
     named, bare = _namespaces(robot)
     needed = robot.topics.naming.topics == NAMESPACE and bare and not named

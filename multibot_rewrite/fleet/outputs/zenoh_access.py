@@ -163,13 +163,13 @@ def robot_rules(given: Rights, side: str = SESSION) -> list[Rule]:
 
 
 def graph_rule(name: str, domains: Iterable[int]) -> Rule:
-    """Everybody may know who is there: tokens of rmw_zenoh, and of what is latched."""
+    """Return the rule that lets everybody see which nodes run, and what is latched."""
     keys = [key for it in domains for key in (f"{SPACE}/{it}/**", f"{it}/**/@adv/**")]
     return _rule(name, _LIVELINESS, (OUT, IN), keys)
 
 
 def all_rule(name: str, domains: Iterable[int]) -> Rule:
-    """For who looks after all robots."""
+    """Return the rule for an operator of all robots."""
     keys = [key for it in domains for key in (f"{it}/**", f"{it}/**/@adv/**")] + [f"{SPACE}/**"]
     return _rule(name, list(dict.fromkeys([*_SENDS, *_ASKS, *_LIVELINESS])), (OUT, IN), keys)
 
@@ -185,7 +185,7 @@ def _rule(name: str, messages: Sequence[str], flows: Sequence[str], keys: Sequen
 
 
 def access_control(parts: Iterable[tuple[dict[str, object], Sequence[Rule]]]) -> dict[str, object]:
-    """Who may do what, and nothing else: subjects with the rules of each."""
+    """Return the access control: subjects with the rules of each, everything else denied."""
     given = list(parts)
     return {
         "enabled": True,

@@ -52,7 +52,7 @@ class Setup(NamedTuple):
 
 
 def configurations(plan: System, setup: Setup) -> Iterator[tuple[str, bytes]]:
-    """Each file by name: the router's, one for the nodes of each robot, one for each operator."""
+    """Yield each file by name: the router's, one for the nodes of each robot, one for each operator."""
     known = rights(plan, setup.domain)
     domains = sorted({*domain_of(plan).values()}) or [setup.domain]
     # On every address, at the port that the robots connect to.
@@ -136,7 +136,7 @@ def _common(enclave: str, setup: Setup) -> Config:
 
 
 def _endpoint(setup: Setup) -> str:
-    """With certificates the link is TLS."""
+    """Return the router's endpoint; with certificates it is TLS."""
     return f"tls/{setup.router.partition('/')[2]}" if setup.keystore else setup.router
 
 

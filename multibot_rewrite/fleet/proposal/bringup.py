@@ -111,8 +111,8 @@ def bringup_of(robot: Robot, launch: Sequence[str], trust: bool) -> Bringup | No
 
 
 def processes_of_robot(it: Reading) -> int:
-    """How many processes a launch file starts for a robot, those that show it as one; none where it is
-    a trial, or neither publishes a description nor simulates one. Raises nothing."""
+    """Return how many processes a launch file starts for a robot, those that only show it as one; 0
+    if it is a test, or neither publishes a description nor simulates one. Raises nothing."""
     starts = starts_simulator(it.graph) or any(map(_publishes, it.graph.nodes))
     own = {one for one in _own(it.graph) if not _shows(one)}
     own |= {one for one in it.graph.nodes if one.package in programs().simulators}
@@ -171,7 +171,7 @@ def _switched(likely: Iterable[Reading], passed: Mapping[str, set[str]]) -> Iter
 
 
 def _others(it: LaunchArgument, passed: set[str]) -> list[str]:
-    """Other values of an argument: those that launch files give it, that it may have, the opposite."""
+    """Return other values of an argument: given by launch files, among its choices, the opposite."""
     values = [*sorted(passed), *it.choices, *other_values(it.default)]
     return [value for value in dict.fromkeys(values) if value not in ("", it.default)]
 

@@ -78,8 +78,8 @@ def chosen(robots: Sequence[Looked], found: Found) -> Chosen:
 
 
 def may_be_partners(path: str, found: Found) -> Iterator[str]:
-    """Files of the other kind that may be of the same robot: an SDF of a URDF, a URDF of an SDF. They
-    are called alike, or a launch file loads both."""
+    """Yield files of the other kind that may be of the same robot: an SDF for a URDF, a URDF for an
+    SDF. They have similar names, or a launch file loads both."""
     launched = [paths for _, paths in loaded(found) if os.path.realpath(path) in paths]
     for other in found.every:
         if is_model(other) != is_model(path) and (
@@ -89,7 +89,7 @@ def may_be_partners(path: str, found: Found) -> Iterator[str]:
 
 
 def partner(it: Looked, others: Iterable[Looked]) -> Looked | None:
-    """Of these the one of another kind that has most of the same links, half of them at least."""
+    """Return that of another kind with most links in common, at least half of them."""
     own = _bare_links(it)
     shared = {id(one): len(own & _bare_links(one)) for one in others}
     fits = [one for one in others if one.tag != it.tag and 2 * shared[id(one)] >= one.links > 0]
@@ -97,7 +97,7 @@ def partner(it: Looked, others: Iterable[Looked]) -> Looked | None:
 
 
 def _bare_links(it: Looked) -> set[str]:
-    """Its links without what a xacro puts in front for a robot."""
+    """Return its links without what a xacro puts in front for a robot."""
     return {name.rpartition("/")[2] for name in _links(it)}
 
 
@@ -149,8 +149,8 @@ def names_its_package(path: str) -> bool:
 
 
 def _rank(it: Candidate) -> tuple[object, ...]:
-    """By kind, by what its launch file starts, of its package, named; then what is no copy, for a
-    simulator, has ``<ros2_control>``, a short path."""
+    """Return a sort key: by kind, by what its launch file starts, of its package, named; then no
+    copy, for a simulator, with ``<ros2_control>``, a short path."""
     robot = it.robot
     is_copy = _COPY.search(os.path.basename(robot.path).lower()) is not None
     more = is_copy, robot.simulator == NO_SIMULATOR, not robot.control, len(robot.path), robot.path
@@ -166,8 +166,8 @@ def _is_behind(it: Candidate, best: Candidate) -> bool:
 
 
 def _same_robot(it: Candidate, best: Candidate) -> bool:
-    """Two files of one robot: as URDF, xacro and SDF, or for a simulator and for real, or a copy. Other
-    files of one name in two folders are variants."""
+    """Return whether two files are of one robot: as URDF, xacro and SDF, simulated and real, or a
+    copy. Other files of one name in two folders are variants."""
     if data_of_file(it.robot.path) == data_of_file(best.robot.path):
         return True
     names = {it.robot.name, _stem(it.robot.path)} & {best.robot.name, _stem(best.robot.path)}
@@ -177,7 +177,7 @@ def _same_robot(it: Candidate, best: Candidate) -> bool:
 
 
 def processes_with(path: str, found: Found) -> int:
-    """How many processes of a robot the launch file starts that loads this description, and most."""
+    """Return how many processes the launch file with most of them starts for this description."""
     real = os.path.realpath(path)
     return max((processes_of_robot(it) for it, paths in loaded(found) if real in paths), default=0)
 

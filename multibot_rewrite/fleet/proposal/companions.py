@@ -115,8 +115,8 @@ def _controllers_of_others(robot: Looked, sections: Mapping[str, frozenset[str]]
 
 
 def moveit_beside(robot: Looked, srdf: str, found: Found, left: dict[str, str]) -> tuple[str, ...]:
-    """MoveIt's files of the folder with most names of the robot and its groups, then of others; those
-    that are ``left`` out get a reason there."""
+    """Return MoveIt's files of the folder with most names of the robot and its groups, then of
+    others; those ``left`` out get a reason there."""
     if not srdf:
         return ()
     left |= moveit_of_others(robot, srdf, found)
@@ -179,8 +179,8 @@ def _fitting(robot: Looked, found: Found, release: str, left: dict[str, str]) ->
 def _sections(
     read: Iterable[Fitting], left: dict[str, str]
 ) -> Iterator[tuple[str, frozenset[str]]]:
-    """Parameter files with the nodes that they are for; one that has a node of an earlier one is left
-    out."""
+    """Yield parameter files with the nodes that they are for; a file with a node of an earlier one
+    is left out."""
     before: dict[str, str] = {}
     for path, names, *_ in read:
         if again := sorted(names & before.keys()):
@@ -191,15 +191,15 @@ def _sections(
 
 
 def _with_others_names(robot: Looked, found: Found) -> dict[str, str]:
-    """SRDFs and RViz configs of which most names are not the robot's."""
+    """Return SRDFs and RViz configs of which most names are not the robot's."""
     known = {it: hundredths_known(robot, it) for it in (*found.srdf, *found.rviz)}
     reason = "of its links and joints {} in a hundred are the robot's"
     return {it: reason.format(share) for it, share in known.items() if share < LEAST}
 
 
 def _of_other_packages(found: Found, own: Collection[tuple[str, str] | None]) -> dict[str, str]:
-    """RViz configs of packages that neither have nor launch the robot, and that show none of its
-    links: those of a vendor's driver next to it."""
+    """Return RViz configs of packages that neither have nor launch the robot, and that show none of
+    its links: those of a vendor's driver."""
     own = {*own, None}
     apart = (it for it in found.rviz if package_of(it) not in own and it not in found.meant)
     reason = "it is of a package that does not launch the robot"
@@ -207,7 +207,7 @@ def _of_other_packages(found: Found, own: Collection[tuple[str, str] | None]) ->
 
 
 def _best_known(robot: Looked, paths: Sequence[str]) -> list[str]:
-    """Those first of whose names most are the robot's, then the nearest."""
+    """Return the paths sorted: those with most of the robot's names first, then the nearest."""
     return sorted(_nearest(robot, paths), key=lambda it: -hundredths_known(robot, it))
 
 

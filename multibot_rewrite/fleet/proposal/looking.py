@@ -87,7 +87,7 @@ class Looked(NamedTuple):
 
 
 def filled_for_any(it: Looked) -> tuple[tuple[str, str], ...]:
-    """Its arguments as they are for one robot; raises nothing."""
+    """Return its arguments as they are for one robot; raises nothing."""
     return tuple(filled(dict(it.arguments), ANY).items())
 
 
@@ -296,7 +296,7 @@ def _plugin_files(root: etree._Element) -> list[str]:
 
 
 def _simulator(root: etree._Element) -> str:
-    """By the plugins below ``<gazebo>``, or of an SDF; sensors alone are for gz-sim."""
+    """Return the simulator, by the plugins of ``<gazebo>`` or an SDF; sensors alone are for gz-sim."""
     parts, files = _parts(root), _plugin_files(root)
     if any(it.startswith(_CLASSIC) for it in files):
         return CLASSIC

@@ -81,8 +81,8 @@ def _near(folder: str, file: str) -> int:
 
 
 def _nearer_to_others(robot: str, found: Found) -> Iterator[tuple[str, str]]:
-    """Files of the description's package that are nearer to another one: a folder of examples has files
-    of several robots."""
+    """Yield files of the description's package that are nearer to another description: a folder of
+    examples has files of several robots."""
     others = {os.path.dirname(it): it for it in reversed(found.every)}
     own, base = os.path.dirname(robot), home_of(robot)
     for file in _companions(found):
@@ -126,8 +126,8 @@ LEAST = 50
 
 
 def hundredths_known(robot: Looked, path: str) -> int:
-    """How many of a hundred links and joints that an SRDF names, or an RViz config shows, are the
-    robot's; all of a file that names none."""
+    """Return how many of a hundred links and joints that an SRDF or RViz config names are the
+    robot's; 100 for a file that names none."""
     if path.endswith(".rviz"):
         named = names_shown(path)
     else:
@@ -139,7 +139,7 @@ def hundredths_known(robot: Looked, path: str) -> int:
 
 
 def own_names(robot: Looked) -> frozenset[str]:
-    """Its links and joints: as they are, without what its arguments put in front, as written."""
+    """Return its links and joints: as they are, without what its arguments put in front, as written."""
     made = frozenset(_expanded(robot))
     return made | _plain(robot, made) | _names_in(robot.path)
 
@@ -174,7 +174,7 @@ def _semantics(
 
 
 def best_folders(robot: Looked, srdf: str, paths: Iterable[str]) -> dict[str, int]:
-    """How many names of the robot and groups of its SRDF the files of each folder have."""
+    """Return how many names of the robot and groups of its SRDF the files of each folder have."""
     groups = semantic_names(robot, srdf)[1]
     own = own_names(robot) | groups
     found: dict[str, int] = {}
@@ -242,8 +242,8 @@ class Fitting(NamedTuple):
 def fitting(
     robot: Looked, path: str, nodes: Sequence[Run], known: KnownNodes, bridges: Iterable[str]
 ) -> Fitting:
-    """How a file goes with a robot: frames, links and joints are those of its description, a
-    sensor's topic of several words is in it or in a bridge."""
+    """Return how a file fits a robot: whether its frames, links and joints are those of the
+    description, and sensors' topics of several words are in it or in a bridge."""
     own = own_names(robot) | {*SENT_FRAMES}
     text = etree.tostring(robot.root).decode() if robot.root is not None else ""
     said = "\n".join((text, *map(text_of, bridges)))
@@ -257,9 +257,9 @@ def fitting(
 
 
 def not_started(path: str, nodes: Sequence[Run], known: KnownNodes) -> str:
-    """Why a file of another package than the description's is not the robot's, where no launch file
-    starts that; empty where it may be: it is an example next to the code of a node, or nobody knows
-    its nodes."""
+    """Return why a file of another package is not the robot's, if no launch file starts that
+    package; empty if it may be. It is an example next to a node's code, or its nodes are
+    unknown."""
     own = package_of(path)
     packages = {known.nodes[it.fact.known].package for it in nodes if it.fact.known in known.nodes}
     if own and own[0] in packages:

@@ -121,14 +121,14 @@ def layout_of(members: Sequence[Member]) -> Choice:
 
 
 def affix_of(layout: str) -> Choice | None:
-    """``prefix`` where frames have the robot's name, as most robots of vendors do."""
+    """Return ``prefix`` if frames have the robot's name, as with most robots of vendors."""
     if layout == PER_ROBOT:
         return None
     return Choice("prefix", "frames are called robot1/base_link, the usual form in ROS")
 
 
 def simulator_of(members: Sequence[Member]) -> Choice:
-    """Whether the robots are simulated, by their launch files, else by what their descriptions have."""
+    """Return whether robots are simulated, by their launch files, else by their descriptions."""
     launched = {it.bringup.is_simulated: it.bringup for it in members if it.bringup}
     if len(launched) == 1 and all(it.bringup for it in members):
         ((is_simulated, bringup),) = launched.items()
@@ -160,8 +160,8 @@ def two_simulators(members: Sequence[Member]) -> str:
 
 
 def worlds_of(members: Sequence[Member], is_real: bool) -> dict[str, Choice]:
-    """Where descriptions fix their robots to the world, each real robot gets a world of its own,
-    which is at its pose in the map. A simulator needs the one world."""
+    """Return a frame of its own for each real robot whose description is fixed to the world, which
+    is at its pose in the map. A simulator needs one world."""
     if not is_real or not any(holds_the_world(it.looked) for it in members):
         return {}
     why = "the description fixes the robot to a link `world`: each robot has its own, placed in map"

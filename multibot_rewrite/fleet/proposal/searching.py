@@ -152,8 +152,7 @@ class Undecided(UsageError):
     """Nothing says which of some files is meant: ``files`` have what is to be said of each."""
 
     def __init__(self, what: str, files: Mapping[str, str], found: Found, *before: str) -> None:
-        """``before`` are files that are named in addition to the one that is meant, as are those
-        that were."""
+        """``before`` are files that are named before the choice, as are those named already."""
         self.files = files
         named = [*before, *found.meant, next(iter(files))]
         home = os.path.abspath(home_of(named[0]))
@@ -252,7 +251,7 @@ def _kind(path: str, data: bytes) -> str:
 
 
 def _of_model(_: str, data: bytes) -> str:
-    """By what a file that is named is recognised by, too."""
+    """Return the kind of a file by what also recognizes a file that is named."""
     kind = recognised(data)
     if kind == SDF and (b"<model" not in data or _STATIC.search(data)):
         return ""
@@ -260,7 +259,7 @@ def _of_model(_: str, data: bytes) -> str:
 
 
 def _of_xacro(stem: str, data: bytes) -> str:
-    """One that names no robot is a part of others."""
+    """Return the kind of a xacro; one that names no robot is a part of others."""
     kind = _of_model(stem, data)
     if kind != "descriptions" or recognised(data) == SDF:
         return kind

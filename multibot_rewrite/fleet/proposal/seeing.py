@@ -172,7 +172,7 @@ def _likeliest(
 
 
 def _partners(it: Looked, found: Found) -> list[str]:
-    """Files that may be of the same robot: none of a URDF that has its simulator's part itself."""
+    """Return files that may be of the same robot; none for a URDF with its simulator's part in it."""
     if it.tag == "robot" and it.simulator != NO_SIMULATOR:
         return []
     return [*may_be_partners(it.path, found)][:MOST_PARTNERS]
@@ -198,7 +198,7 @@ def _rather(likeliest: Candidate, looked: Sequence[Looked], found: Found) -> lis
 
 
 def _by_launches(looked: Iterable[Looked], found: Found) -> list[Looked]:
-    """Those first that cannot be read, and whose launch file starts most."""
+    """Return descriptions sorted: unreadable ones first, then those whose launch file starts most."""
     return sorted(looked, key=lambda it: (not it.fault, -processes_with(it.path, found)))
 
 

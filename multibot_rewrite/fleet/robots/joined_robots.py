@@ -108,12 +108,10 @@ class Arm(NamedTuple):
 
 
 def joined_arms(cell: Cell, world: str, arms: Sequence[Arm], tree: Tree) -> Mapping[str, bytes]:
-    """One URDF and one SRDF of all arms, by their endings: each arm is fixed to the link ``world``
-    at its place, and the cell's own groups are there besides.
-
-    Raises InputError for an arm that has no place or moves, for groups that are not there, and as
-    ``join_texts`` and ``joined_srdf``.
-    """
+    """Return one URDF and one SRDF of all arms, by their endings: each arm is fixed to the link
+    ``world`` at its place, together with the cell's own groups. Raises InputError for an arm that
+    has no place or moves, for groups that do not exist, and as ``join_texts`` and
+    ``joined_srdf``."""
     root = etree.Element("robot", name=cell.name)
     etree.SubElement(root, "link", name=world)
     parts = [GivenPart(Part("", name=cell.name), etree.tostring(root), cell.name)]

@@ -51,7 +51,7 @@ def _unlisted(nodes: Sequence[NodeFacts], own: Mapping[str, Run]) -> Iterator[Fi
 
 
 def _unbonded(nodes: Sequence[NodeFacts], own: Mapping[str, Run]) -> Iterator[Finding]:
-    """Where a file has the list, and a node on it keeps no bond with its manager."""
+    """Report nodes that keep no bond with the manager that lists them, if a file has the list."""
     for manager in (it for it in nodes if it.kind == LIFECYCLE_MANAGER and it.name in own):
         given, listed = own[manager.name], _listed([manager])
         timeout = given.values.get("bond_timeout")

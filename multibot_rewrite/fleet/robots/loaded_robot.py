@@ -145,13 +145,12 @@ class LoadedRobot:
 
     @checked
     def node(self, node: str, *files: str) -> dict[str, Any]:
-        """Name, namespace, remappings and parameters of a node of its node sets, for ``Node(**...)``.
-
-        ``files`` are parameter files of the fleet; amcl gets its start pose as well, and each node
-        the clock that the fleet file says. Where other nodes run in its process, such as costmaps
-        or components, these are paths of files, which go with this process: only files reach them.
-        Raises UsageError for a node that no node set has and for a controller (``spawner``), and as
-        ``params`` for a file."""
+        """Return name, namespace, remappings and parameters of a node of its node sets, for
+        ``Node(**...)``. ``files`` are parameter files of the fleet; amcl also gets its start pose,
+        and each node the clock of the fleet file. If other nodes run in its process, such as
+        costmaps or components, these are paths of files, deleted with this process: only files
+        reach them. Raises UsageError for a node that no node set has and for a controller
+        (``spawner``), and as ``params`` for a file."""
         clock = {} if self.use_sim_time is None else {"use_sim_time": self.use_sim_time}
         given: list[Any] = [self.params(file, node) for file in files]
         if self.table.inside(node):
@@ -219,7 +218,7 @@ class LoadedRobot:
         return own if own in self._fleet.files else name
 
     def _own(self, file: str) -> str:
-        """Where its version of a file is; of two with one name the folder counts."""
+        """Return where its version of a file is; the folder decides between two with one name."""
         *_, above, name = ("", *os.path.normpath(file).split(os.sep))
         places = dict(self._robot.spec.places)
         paths = [f"{self.name}/{places.get(it, it)}" for it in (f"{above}/{name}", name)]
@@ -305,8 +304,8 @@ class LoadedRobot:
 
     @checked
     def start_parameters(self, node: str) -> dict[str, Any]:
-        """Parameters with the start pose for ``node``, empty if it does not use them; raises as
-        ``frame``."""
+        """Return parameters with the start pose for ``node``, empty if it does not use them; raises
+        as ``frame``."""
         made = self._fleet.placed.initial
         own = (it for it in made if it.robot == self._graph and it.node == node)
         return next((dict(it.values) for it in own), {})

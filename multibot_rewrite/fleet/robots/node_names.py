@@ -46,11 +46,9 @@ class NodeNames(NamedTuple):
 
     @checked
     def spawner(self, node: str) -> dict[str, Any]:
-        """Package, executable, namespace and arguments of the program that loads a controller.
-
-        ``launch_ros.actions.Node`` takes them as they are. Raises as ``for_node``, and UsageError for
-        a node that is no controller.
-        """
+        """Return package, executable, namespace and arguments of the program that loads a
+        controller. ``launch_ros.actions.Node`` takes them as they are. Raises as ``for_node``, and
+        UsageError for a node that is no controller."""
         self._found(node)
         it = self.started.get(node)
         if it is None or it.way != SPAWNER:

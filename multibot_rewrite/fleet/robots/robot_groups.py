@@ -44,7 +44,7 @@ def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
 
 
 def _key(spec: RobotSpec) -> object:
-    """Robots for which this is equal have the same files."""
+    """Return a key; robots with equal keys have the same files."""
     files = tuple(spec.companions.items())
     said = spec.use_sim_time, spec.bridge_namespace, spec.bridges_below
     return spec.sources, spec.stacks, spec.launch, spec.simulator, files, said

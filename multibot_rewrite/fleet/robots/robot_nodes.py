@@ -80,7 +80,7 @@ _HANDED_ON = ("handed_on", "environment", "placing", "idle", "qos")
 
 
 def node_sources(spec: RobotSpec) -> NodeSources:
-    """Robots for which this is equal run the same nodes."""
+    """Return a key; robots with equal keys run the same nodes."""
     files = tuple(spec.companions.get(it, ()) for it in ("params", "bridge", "rviz", "moveit"))
     return spec.stacks, files, spec.launch, spec.srdf, spec.simulator, spec.sources
 

@@ -70,7 +70,7 @@ def find_interfaces(paths: Sequence[str]) -> Interfaces:
 
 
 def shown(identity: Identity) -> str:
-    """How a user names it."""
+    """Return an identity as a user writes it."""
     return "/".join(filter(None, identity))
 
 
@@ -145,7 +145,7 @@ def file_of(interfaces: Interfaces, identity: Identity) -> str:
 
 
 def identities(interfaces: Interfaces) -> set[Identity]:
-    """All nodes that there is a document for."""
+    """Return all nodes that have a document."""
     folders = filter(os.path.isdir, interfaces.installed)
     return {*interfaces.given, *(it for folder in folders for it, _ in _indexed(folder))}
 

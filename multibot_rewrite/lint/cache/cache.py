@@ -105,7 +105,7 @@ def _tuples(value: Any) -> Any:
 
 
 def cache_folder() -> str:
-    """Where the cache is: below XDG_CACHE_HOME, else ~/.cache."""
+    """Return the folder of the cache: below XDG_CACHE_HOME, else ~/.cache."""
     told = os.environ.get("XDG_CACHE_HOME", "")
     # The specification: a relative path is not valid and is ignored.
     home = told if os.path.isabs(told) else os.path.expanduser("~/.cache")
@@ -144,7 +144,7 @@ class Cache:
         return self.answers[question]
 
     def keep(self, group: str, key: str, value: Any, asked: Asked | None) -> None:
-        """Remember a result, unless it may be another one next time (``asked`` is None)."""
+        """Remember a result, unless it may change by itself (``asked`` is None)."""
         if asked is not None:
             self.changed.setdefault(self._path(group), {})[key] = Entry(value, asked)
 

@@ -117,7 +117,7 @@ class VocabularySection(NamedTuple):
 
 
 def read_header(place: str, row: str) -> tuple[str, ...]:
-    """Type and names of a section from its first row (its ``[`` taken off)."""
+    """Return type and names of a section from its first row (without its ``[``)."""
     head, bracket, rest = row.partition("]")
     words = head.split()
     if not bracket or rest.strip() or len(words) < 2 or words[0] not in _HEADERS:
@@ -331,7 +331,7 @@ def split_path(path: str) -> tuple[tuple[str, ...], str]:
 
 @lru_cache(maxsize=PATHS)
 def split_step(step: str) -> tuple[str, str, str]:
-    """Tag, attribute and wanted value of a step: ``param[@name=mimic]``; empty where not asked."""
+    """Return tag, attribute and wanted value of ``param[@name=mimic]``; empty where not given."""
     tag, _, ask = step.partition("[@")
     attribute, _, value = ask.rstrip("]").partition("=")
     return tag, attribute, value

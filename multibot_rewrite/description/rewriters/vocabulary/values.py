@@ -160,7 +160,7 @@ def wired_topics(place: str, settings: Mapping[str, str]) -> Iterator[WiredTopic
 
 
 def role_and_type(place: str, options: Mapping[str, str]) -> tuple[str, str]:
-    """Of a row that holds a topic: ``publishes=TYPE``; raises VocabularyError."""
+    """Return role and type of a row with a topic, ``publishes=TYPE``; raises VocabularyError."""
     role = next((it for it in options if it in ROLES), "")
     type_ = options.get(role, "")
     if role and not is_type(type_):

@@ -84,7 +84,7 @@ def pieces_of(text: str) -> tuple[Piece, ...]:
 
 
 def joined(texts: Sequence[str]) -> PiecedText:
-    """One text of several."""
+    """Return several texts as one."""
     pieces = (piece for text in texts for piece in pieces_of(text))
     return PiecedText("".join(texts), _merged(pieces))
 
@@ -124,8 +124,8 @@ def _merged(pieces: Iterable[Piece]) -> Iterator[Piece]:
 def tracking(
     xacro: Any, arguments: Mapping[str, str], number: Callable[[str], int]
 ) -> dict[str, str]:
-    """From now on ``xacro`` keeps pieces; the ``arguments`` of the caller, with theirs. ``number``
-    gives one to a file that was read and is no XML."""
+    """Let ``xacro`` keep pieces from now on; return the ``arguments`` of the caller, with theirs.
+    ``number`` gives one to a file that was read and is no XML."""
     import yaml
 
     xacro.eval_text = _evaluator(xacro)
@@ -151,7 +151,7 @@ def note(document: Any, number: int) -> None:
 
 
 def _evaluator(xacro: Any) -> Callable[[str, Any], Any]:
-    """xacro's ``eval_text``, whose result knows its pieces."""
+    """Return xacro's ``eval_text``, whose result knows its pieces."""
     lexer = xacro.LEXER
 
     def expression(text: str, symbols: Any) -> Any:
@@ -211,7 +211,7 @@ def _known(value: Any, part: str) -> Any:
 
 
 def _quoted(text: str, part: str) -> Spot | None:
-    """Where a text is in quotes, if that is in one place."""
+    """Return where a text is in quotes, if that is in one place."""
     found = [
         part.find(f"{quote}{text}{quote}")
         for quote in "'\""
@@ -231,7 +231,7 @@ def _of(part: str) -> Spot | None:
 
 
 def _defaults(parse: Callable[[str], Any]) -> Callable[[str], Any]:
-    """xacro's reading of a macro's parameters, whose defaults know where they are written."""
+    """Return xacro's parser of macro parameters, with defaults that know where they are written."""
 
     def parsed(text: str) -> Any:
         param, value, rest = parse(text)
@@ -270,7 +270,7 @@ def numbers(document: Any, words: list[str]) -> array[int]:
 
 
 def _values(element: Any) -> Iterator[tuple[str, str]]:
-    """Attributes, and the text of an element that has nothing else in it."""
+    """Yield the attributes, and the text of an element that has nothing else in it."""
     yield from element.attributes.items()
     inside = element.childNodes
     if len(inside) == 1 and inside[0].nodeType == Node.TEXT_NODE:
