@@ -223,7 +223,7 @@ def remap(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
 
 
 def below(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
-    """``/robot/description``: what an absolute name is below; a relative one is below its reader's."""
+    """Return the namespace of an absolute name, ``/robot/description``; nothing for a relative one."""
     name = value.strip()
     above = name.rpartition("/")[0] if name[:1] == "/" else ""
     return (NamePart(value.index(name), above, kinds),) if above else ()

@@ -81,7 +81,7 @@ def _whole(order: LaunchOrder) -> LaunchOrder:
 
 @lru_cache
 def _graph(order: LaunchOrder, times: tuple[int, ...]) -> LaunchGraph:
-    """Robots without a word of their own ask for the same launch file; ``times`` tell its changes."""
+    """Return the graph of a launch file, kept for robots that start the same and have its ``times``."""
     return launch_graph(order)
 
 

@@ -233,5 +233,5 @@ def _tries(it: Reading, simulated: bool) -> bool:
 
 
 def _rank(it: Reading) -> tuple[object, ...]:
-    """Most processes of a robot first, then the one that can be read whole, then a short path."""
+    """Return a sort key: most processes of a robot first, then read completely, then a short path."""
     return -len(set(_own(it.graph))), not it.graph.whole, len(it.file), it.file

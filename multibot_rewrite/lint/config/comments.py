@@ -144,7 +144,7 @@ def _is_asked(code: str, file: str, settings: Settings) -> bool:
 
 
 def _removals(comment: Comment, idle: Sequence[CodeName]) -> Iterator[tuple[Edit, ...]]:
-    """For each of the codes the edit that removes it; all can be applied together."""
+    """Yield for each of the codes the edit that removes it; all can be applied together."""
     codes = comment.it.codes
     if comment.it.faults or len(idle) == len(codes):
         yield from [() if comment.it.faults else _removal(comment)] * len(idle)

@@ -209,7 +209,7 @@ def changed_environment(here: Visit) -> dict[str, str]:
 
 
 def _there(found: Mapping[str, str]) -> dict[str, str]:
-    """Variables without those of which all parts are gone when the launch is over."""
+    """Return variables without those of which all parts are gone after the launch."""
     return {name: value for name, value in found.items() if value.strip(":") or not value}
 
 
@@ -232,7 +232,7 @@ def _folders(text_: str) -> str:
 
 
 def how_it_runs(action: Any, here: Visit) -> Process:
-    """How the process of an action runs. What only a run tells is as usual."""
+    """Return how the process of an action runs. What only a run shows is assumed as usual."""
     told = getattr(action, "process_description", None) or action
 
     def own(name: str) -> Any:
@@ -420,8 +420,8 @@ def _evaluated(given: Any, here: Visit) -> Iterator[ParameterText]:
 
 
 def _of_values(found: dict[str, Any], here: Visit) -> Iterator[ParameterText]:
-    """Values as a parameter file has them, and the texts of files that the launch makes and names in
-    one, such as that of a bridge."""
+    """Yield values as a parameter file has them, and the texts of files that the launch makes and
+    names in a value, such as that of a bridge."""
     made = [path for path in found.values() if isinstance(path, str) and is_made(path)]
     for path in filter(os.path.isfile, made):
         yield from _file(path, here)

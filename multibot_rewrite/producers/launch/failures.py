@@ -144,7 +144,7 @@ def _variable(error: BaseException) -> str:
 
 
 def _is_of_thread(error: BaseException) -> bool:
-    """Did Python's own module refuse to start a thread?"""
+    """Return whether Python's own module refused to start a thread."""
     frame = _frame(error)
     of_module = frame is not None and frame.f_globals.get("__name__") == "threading"
     return of_module and isinstance(error, RuntimeError)
@@ -232,7 +232,7 @@ def is_certain(error: BaseException, launch_file: str) -> bool:
 
 
 def _frame(error: BaseException) -> FrameType | None:
-    """Where it was raised."""
+    """Return the frame where it was raised."""
     last = error.__traceback__
     while last is not None and last.tb_next is not None:
         last = last.tb_next

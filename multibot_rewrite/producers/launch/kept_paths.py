@@ -41,7 +41,7 @@ def _top() -> str:
 
 
 def lasting(words: Iterable[str]) -> list[str]:
-    """Words of a program; of a file that the launch makes the text is kept (``-string``)."""
+    """Return words of a program; a file that the launch makes becomes its text (``-string``)."""
     kept: list[str] = []
     for word in words:
         flag, _, path = word.partition("=") if word.startswith("-") else ("", "", word)
@@ -127,7 +127,7 @@ _MADE_OF = "multibot_made_of"
 
 
 def keep_sources() -> None:
-    """From now on it is known of what file a substitution or a parameter file makes another one."""
+    """Note from now on from which file a substitution or a parameter file makes another one."""
     substitution = of_launch("substitution").Substitution
     substitution.__init__ = _wrapping(substitution.__init__)
     files = of_launch_ros("parameter_descriptions").ParameterFile

@@ -97,8 +97,9 @@ def controller_files(program: str, words: Sequence[str]) -> tuple[str, ...]:
 def texts_of(
     spawned: Iterable[Spawned], given: Mapping[str, Sequence[ParameterText]]
 ) -> Iterator[tuple[str, list[ParameterText]]]:
-    """Each manager by its full name, and all parameters that decide its controllers: what it gets
-    itself (``given``, by its name), what the spawners name, and the types that they say."""
+    """Yield each manager by its full name, with all parameters that decide its controllers: what it
+    gets itself (``given``, by its name), the files of the spawners, and the types that they
+    give."""
     by_manager = lists_by_key((it.manager, it) for it in spawned)
     for manager, controllers in by_manager.items():
         named = (text for it in controllers for text in it.parameters)

@@ -123,6 +123,6 @@ class Source(NamedTuple):
 
 
 def joined(sources: list[Source]) -> Source:
-    """All of them as one."""
+    """Return several sources as one."""
     columns = zip(*sources, strict=True)
     return Source(*(tuple(item for part in column for item in part) for column in columns))

@@ -103,7 +103,7 @@ def put_up(wanted: Collection[str], seconds: float, files: Files | None = None) 
 
 
 def limit(seconds: float, memory: int, files: bool = False) -> bool:
-    """Bounds of time and memory; no new process, and without ``files`` no new file or byte in one."""
+    """Limit time and memory; no new process, and without ``files`` no file or byte is written."""
     undumpable()
     signal.setitimer(signal.ITIMER_REAL, seconds)
     whole = int(seconds) + 1

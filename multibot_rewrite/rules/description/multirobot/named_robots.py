@@ -85,7 +85,7 @@ shared_below_namespace = rule(
 
 @rule("MB424", "collision-number-unstable", ERROR, options=OF_TWO)
 def collision_number_unstable(subject: Subject) -> Iterator[Problem]:
-    """Contacts that a rewrite rejects as MB424."""
+    """Report contacts that a rewrite rejects as MB424."""
     if not subject.settings.robots or subject.document.root.find(".//contact") is None:
         return
     from multibot_rewrite.description.rewriters.contact import respell_collisions
