@@ -268,7 +268,7 @@ def _nodes(
 def _groups(
     plan: System, edges: Iterable[DrawnEdge], nodes: Mapping[str, DrawnNode], robot_of: _RobotOf
 ) -> Iterator[DrawnGroup]:
-    """One for each robot, then one for the rest; an endpoint that connects two robots is in both."""
+    """Yield a group for each robot and one for the rest; an edge between two robots is in both."""
     parts: dict[str, list[DrawnEdge]] = {robot.name: [] for robot in plan.robots}
     parts[""] = []
     for edge in edges:

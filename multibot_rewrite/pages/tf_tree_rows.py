@@ -101,8 +101,7 @@ def _trees(forest: _Forest, states: States) -> Iterator[tuple[FrameRow, ...]]:
 def _rows(
     forest: _Forest, states: States, root: str, first: Sequence[str], seen: set[str]
 ) -> Iterator[FrameRow]:
-    """Yield rows depth first from ``root`` through the children ``first``, with a stack of its own:
-    a tree may be deeper than Python's stack."""
+    """Yield rows depth first from ``root`` through the children ``first``, without recursion."""
     waiting = [(root, "", -1, 0)]
     at = 0
     while waiting:

@@ -91,7 +91,7 @@ _ORDER = (
 
 
 def folded(seen: Index, found: Sequence[Finding]) -> list[Finding]:
-    """One finding for each cause."""
+    """Return one finding for each cause."""
     by_code = lists_by_key((it.code, at) for at, it in enumerate(found))
     below: dict[int, list[int]] = defaultdict(list)
     gone: set[int] = set()

@@ -342,12 +342,12 @@ def spaces(it: Index) -> Set[str]:
 
 
 def ends_of(it: Index, name: str) -> Iterator[End]:
-    """All ends of a name, whatever their kind."""
+    """Return all ends of a name, of any kind."""
     return (end for kind in KINDS for side in it.ends_at(kind, name)[3:] for end in side)
 
 
 def _without_slash(frame: Edge) -> Edge:
-    """tf2 takes a frame with a slash in front as one without (buffer_core.cpp stripSlash)."""
+    """Return an edge without slashes in front of frames, as tf2 (buffer_core.cpp stripSlash)."""
     if not (frame.child.startswith("/") or frame.parent.startswith("/")):
         return frame
     child, parent = (it.removeprefix("/") for it in (frame.child, frame.parent))

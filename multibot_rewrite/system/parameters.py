@@ -98,10 +98,9 @@ class Question(NamedTuple):
 def questions(
     graph: System, parameters: Mapping[str, Collection[str]] = NO_MORE
 ) -> Iterator[Question]:
-    """Whom to ask for what; of two nodes with one name, one would answer for the other.
-
-    ``parameters`` are those that are wanted of a node besides ``use_sim_time``, whatever it lists.
-    """
+    """Yield whom to ask for what; of two nodes with one name, one would answer for the other.
+    ``parameters`` are those that are wanted of a node in addition to ``use_sim_time``, whatever it
+    lists."""
     times = Counter(node.name for node in graph.nodes)
     for end in graph.ends:
         known = (end.kind, end.role) == (SERVICE, SERVES) and end.type in ASKED

@@ -211,7 +211,7 @@ def transport(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, .
 
 
 def remap(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
-    """``[node:]from:=to``: ``to`` is the name in the graph; ``remap_rules`` has what ``from`` is."""
+    """Return the parts of ``[node:]from:=to``: ``to`` is in the graph; ``remap_rules`` has ``from``."""
     lead = len(value) - len(value.lstrip())
     rule = split_remap(value.strip())
     if rule is None:

@@ -210,7 +210,7 @@ def _below(root: str, above: Mapping[str, Edge]) -> Iterator[HeardFrame]:
 
 
 def moved(joints: Iterable[Joint], heard: Mapping[str, tuple[float, ...]]) -> Iterator[str]:
-    """Links on fixed joints that were heard at another place, and how far off; ``heard`` is by link."""
+    """Yield links on fixed joints that were heard elsewhere, and how far off; ``heard`` is by link."""
     for it in joints:
         if it.type == "fixed" and heard.get(it.child):
             metres, angle = apart(it, heard[it.child])

@@ -430,7 +430,7 @@ def _given(
 
 
 def _of_any_robot(given: Run, namespace: str, words: Collection[str]) -> Run:
-    """Parameters that a launch file filled for a robot, without it: ``/scan`` of ``/robot1/scan``."""
+    """Return parameters of a robot's launch without the robot: ``/scan`` for ``/robot1/scan``."""
     own = [f"/{it}/" for it in words if f"{namespace}/".startswith(f"/{it}/")]
     if not own:
         return given

@@ -168,7 +168,7 @@ def raw_message_class(type_: str) -> tuple[Any, str]:
 
 
 def _file_name(name: str) -> str:
-    """Source: convert_camel_case_to_lower_case_underscore of rosidl_pycommon."""
+    """Return a type's file name, as rosidl_pycommon (convert_camel_case_to_lower_case_underscore)."""
     parted = re.sub("(.)([A-Z][a-z]+)", r"\1_\2", name)
     return re.sub("([a-z0-9])([A-Z])", r"\1_\2", parted).lower()
 

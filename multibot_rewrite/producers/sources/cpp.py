@@ -227,7 +227,7 @@ def _made(node: Node, type_: str, given: tuple[str, ...], place: Place) -> Call:
 
 
 def _parameter(call: Call) -> Iterator[Value]:
-    """``get_parameter("p", variable)``, ``declare_parameter(node, "p", default)``."""
+    """Yield values of ``get_parameter("p", variable)``, ``declare_parameter(node, "p", default)``."""
     texts = [it for it in call.given if not is_node(it)]
     parameter = braced(texts[0]) if texts else ""
     at = (call.owner, call.function)

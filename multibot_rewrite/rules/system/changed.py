@@ -40,7 +40,7 @@ class _Change(NamedTuple):
 
 @planned_rule("MG130", "changed-since", WARNING, absence=True)
 def changed_since(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Each by itself: what another finding is about is left to that one (``untold``)."""
+    """Report each change; what another finding is about is left to that one (``untold``)."""
     before = seen.known.before
     for it in _changes(before, seen) if before else ():
         robot = seen.robot(it.node) or next(filter(None, map(seen.robot, it.names)), "")
@@ -117,7 +117,7 @@ def _said(end: End) -> str:
 
 
 def _is_obeyed(seen: Index, end: End) -> str:
-    """Who does what a new sender orders, tools as well; empty for nobody."""
+    """Return who does what a new sender orders, also a tool; empty for nobody."""
     ends, others = seen.ends_at(end.kind, end.name), list[End]()
     if end.kind == TOPIC and end.role == PUBLISHES and end.name in seen.orders:
         others = at_work(ends.subscribers)
@@ -127,7 +127,7 @@ def _is_obeyed(seen: Index, end: End) -> str:
 
 
 def _transforms(before: System, seen: Index) -> Iterator[_Change]:
-    """Where tf was read both times. What a node that is gone sent is gone with it."""
+    """Yield changed transforms, if tf was read both times; not those of a node that is gone."""
     old, new = _edges(before.edges), _edges(seen.system.edges)
     if not (old and new):
         return

@@ -88,7 +88,7 @@ def argument_not_read(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB147", "default-of-another-file", WARNING)
 def default_of_another_file(subject: Subject) -> Iterator[Problem]:
-    """Of two files of which none includes the other: a file may set what those in it have."""
+    """Report two files with different defaults; a file may set defaults for those it includes."""
     if len(subject.sources) < 3:
         return
     from multibot_rewrite.description.sources.included_by import includers

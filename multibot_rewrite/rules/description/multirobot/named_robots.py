@@ -106,7 +106,7 @@ def collision_number_unstable(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB426", "process-wide-rule", WARNING, options={"distro": "humble"})
 def process_wide_rule(subject: Subject) -> Iterator[Problem]:
-    """Rules that apply to other robots' nodes; if no robots are named, those with absolute targets."""
+    """Report rules that apply to other robots' nodes; without named robots absolute targets."""
     settings = subject.settings
     naming = settings.naming if settings.robots else AS_WRITTEN
     yield from hazards.process_wide(subject.inventory, naming)

@@ -215,7 +215,7 @@ def model_namespace_in_use(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB404", "robot-name-in-frame", WARNING)
 def robot_name_in_frame(subject: Subject) -> Iterator[Problem]:
-    """Frames that are a link with something and a slash in front."""
+    """Report frames that are a link with something and a slash in front."""
     links = subject.inventory.declared["link"]
     for claim in subject.inventory.claims if subject.inventory.hosts else ():
         if "/" not in claim.value or "frame" not in claim.site.kinds:
@@ -232,7 +232,7 @@ def robot_name_in_frame(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB406", "default-frame-shared", NOTE)
 def default_frame_shared(subject: Subject) -> Iterator[Problem]:
-    """Frames that would have to be inserted for a robot."""
+    """Report frames that would have to be inserted for a robot."""
     for element, item in inserted(subject):
         if item[0] in ("frame", "link"):
             message = f"without <{item[2]}> the plugin uses {item[1]!r}, the same for every robot"
@@ -241,7 +241,7 @@ def default_frame_shared(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB433", "default-frame-below-model", NOTE)
 def default_frame_below_model(subject: Subject) -> Iterator[Problem]:
-    """Frames that would be below the name by which the model is spawned."""
+    """Report frames that would be below the name by which the model is spawned."""
     for element, item in missing_defaults(subject):
         if item.kind in FRAME_KINDS:
             tag = item.xml[1:].partition(">")[0]
@@ -252,7 +252,7 @@ def default_frame_below_model(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB407", "fixed-odometry-frame", NOTE)
 def fixed_odometry_frame(subject: Subject) -> Iterator[Problem]:
-    """Literal odometry frames that are no links and hold no robot's name."""
+    """Report literal odometry frames that are no links and hold no robot's name."""
     if not subject.inventory.hosts:
         return
     links, shared = subject.inventory.declared["link"], subject.settings.naming.shared_frames
@@ -272,7 +272,7 @@ def fixed_odometry_frame(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB408", "tf-not-remapped", NOTE)
 def tf_not_remapped(subject: Subject) -> Iterator[Problem]:
-    """Plugins with tf switched on and no rule for it, unless the robots share one /tf."""
+    """Report plugins that send tf without a rule for it, unless the robots share one /tf."""
     if subject.settings.robots and not subject.settings.naming.layout.tf_per_robot:
         return
     for host in subject.inventory.hosts:
