@@ -96,7 +96,7 @@ class Meaning(NamedTuple):
 
 
 def same_meaning(one: _Element, other: _Element) -> bool:
-    """Do two descriptions say the same, each element in the same place?"""
+    """Return whether two descriptions mean the same, each element in the same place."""
     return _is_same(_meaning(one), _meaning(other))
 
 

@@ -284,7 +284,7 @@ def hidden_from_here(graph: System, seen: Machines) -> bool:
 
 
 def why_not_seen(graph: System, robot: str, seen: Machines) -> str:
-    """Return what is known of where ``robot`` may be, and what to do, in one sentence."""
+    """Return where ``robot`` may be, as far as known, and what to do, in one sentence."""
     around = graph.environment
     if around.rmw == ZENOH:
         router = around.discovery_server

@@ -264,17 +264,17 @@ class Index(NamedTuple):
 
     @property
     def is_live(self) -> bool:
-        """Was it seen running? Next to what launch files start there may be more."""
+        """Return whether it was seen running, and not read from launch files."""
         return not any(it.place.file for it in self.system.nodes)
 
     @property
     def in_doubt(self) -> bool:
-        """May nodes run that no source names, such as a driver?"""
+        """Return whether nodes may run that no source names, such as a driver."""
         return any(it.code == UNKNOWN_NODES for it in self.system.environment.caveats)
 
     @property
     def nobody(self) -> str:
-        """Return what is said of all nodes: where there may be more, of those that are known."""
+        """Return words for no node: if others may run, for no known node."""
         return "no known node" if incomplete(self.system) else "no node"
 
     def is_tool(self, node: str) -> bool:

@@ -54,8 +54,8 @@ class Answer(NamedTuple):
 def with_answers(
     system: System, answers: Iterable[Answer], asked: Iterable[Question] = ()
 ) -> System:
-    """Return the system with what nodes answered; of those ``asked`` for parameters, which every node
-    has that serves them, it names the ones that did not."""
+    """Return the system with the answers of nodes; nodes ``asked`` for parameters that did not
+    answer are named."""
     said = tuple(answers)
     silent = {it.node for it in asked if it.type == GET_PARAMETERS} - {it.node for it in said}
     states = {it.node: it.lifecycle for it in said if it.lifecycle}

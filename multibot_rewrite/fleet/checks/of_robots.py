@@ -100,7 +100,7 @@ def _on_another_time(plan: FleetPlan) -> Iterator[Finding]:
         bridged = is_simulated(robot) and is_bridged(robot.member.inventory)
         if timed and bridged:
             who = f"robot {robot.spec.name!r} is in a simulator and on the time of the machine"
-            message = f"{who}; what it senses has that of the simulator: {shorten(timed)}"
+            message = f"{who}; its sensors have that of the simulator: {shorten(timed)}"
             hint = "leave use_sim_time: false out, or write simulator: none for a real robot"
             yield at_robot(clocks_mixed, robot, message, hint, level=WARNING)
 

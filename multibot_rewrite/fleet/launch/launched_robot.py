@@ -71,7 +71,7 @@ def _read(order: LaunchOrder) -> LaunchGraph:
 
 
 def keep(order: LaunchOrder, graph: LaunchGraph) -> None:
-    """Take a launch file as read, where what is expanded is kept: nobody changes it meanwhile."""
+    """Keep the graph of a launch file, which is not read again in ``kept_expansions``."""
     once_kept(_whole(order), lambda: graph)
 
 
@@ -86,7 +86,7 @@ def _graph(order: LaunchOrder, times: tuple[int, ...]) -> LaunchGraph:
 
 
 def times_of(file: str) -> tuple[int, ...]:
-    """Return what differs once a file has changed, and each time for one that is not there."""
+    """Return a value that differs once a file has changed, and each time for a missing file."""
     try:
         found = os.stat(file)
     except OSError:  # it is told by who reads it

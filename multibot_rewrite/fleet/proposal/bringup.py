@@ -55,7 +55,7 @@ class Robot(NamedTuple):
 
     @property
     def is_simulated(self) -> bool:
-        """Is it wanted in a simulator?"""
+        """Return whether it is wanted in a simulator."""
         return self.simulator != REAL if self.simulator else self.has_simulator
 
 

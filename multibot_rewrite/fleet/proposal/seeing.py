@@ -188,8 +188,8 @@ def _with_partner(it: Looked, others: Sequence[Looked], wanted: Wanted) -> Looke
 
 
 def _rather(likeliest: Candidate, looked: Sequence[Looked], found: Found) -> list[Looked]:
-    """Return the descriptions that cannot be read, and are as likely to be the robot: their launch file
-    starts as much; all where the likeliest cannot move."""
+    """Return the unreadable descriptions that are as likely to be the robot: their launch file
+    starts as much. All of them if the likeliest one cannot move."""
     broken = _by_launches([it for it in looked if it.fault], found)
     if not likeliest.moving:
         return broken

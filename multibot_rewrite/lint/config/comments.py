@@ -114,7 +114,7 @@ def _selected(found: Iterable[Finding], code: str, settings: Settings) -> Iterat
 
 
 def _is_whole(comment: Comment, settings: Settings) -> bool:
-    """Do all expansions of its file have what the comment is about, and is the file expanded?"""
+    """Return whether its file was expanded, and each expansion has what the comment is about."""
     if comment.file in settings.included:
         return False
     if not comment.file.endswith(".xacro"):

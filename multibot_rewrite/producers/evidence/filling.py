@@ -144,7 +144,7 @@ def _typed(endpoint: Endpoint, value_of: Values) -> Endpoint:
 def _is_decided(
     raw: Endpoint, lists: Iterable[str], values: Mapping[str, Given], of_stack: Iterable[Endpoint]
 ) -> bool:
-    """Do the parameters say whether it exists, or how it is called?"""
+    """Return whether the parameters decide if it exists, or its name."""
     needed = list(lists)
     if needed:
         return _are_listed(needed, values)

@@ -481,7 +481,7 @@ def _file(path: str, here: Visit) -> Iterator[ParameterText]:
     with open(path, encoding="utf-8", errors="replace") as file:
         text_ = file.read()
     if STOOD_FOR in text_:
-        here.note("a parameter file is made of a package that is not here", parameters=True)
+        here.note("a parameter file comes from a package that is not installed", parameters=True)
         return
     # A file that the launch makes is gone when this is read.
     yield ParameterText("" if is_made(path) else os.path.realpath(path), text_, kept_file(source))

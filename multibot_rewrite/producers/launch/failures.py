@@ -75,7 +75,7 @@ def failure(error: BaseException) -> str:
 
 
 def _known(error: BaseException) -> str:
-    """Return what is known to be wrong and what to do; empty if only Python's words tell."""
+    """Return a known cause and what to do; empty if there are only Python's words."""
     if variable := _variable(error):
         return f"the environment variable {variable} is not set here; set it as for ros2 launch"
     if name := _no_value(error):
@@ -105,7 +105,7 @@ def _lacking(error: BaseException) -> str:
     if isinstance(error, AttributeError) and error.name == _MAKES:
         return f"it has no function {_MAKES}(): write one that returns a LaunchDescription"
     if is_no_condition(error):
-        return "what is given as its condition is none; write IfCondition(...)"
+        return "its condition is not a Condition; write IfCondition(...)"
     return ""
 
 

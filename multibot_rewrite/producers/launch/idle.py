@@ -60,7 +60,7 @@ class _Asked(dict[str, Any]):
         return value
 
     def get(self, name: str, default: Any = None) -> Any:
-        """Return the value of one, or what is taken for it."""
+        """Return the value of a variable, or its default."""
         with suppress(KeyError):
             return self[name]
         return default

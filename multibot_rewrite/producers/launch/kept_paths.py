@@ -23,7 +23,7 @@ LIMIT = 1 << 24
 FOLDER = "multibot_launch_"
 # The folder of what is gone when the launch is over.
 GONE = "/made_by_the_launch"
-NOT_KNOWN = "is made of a package that is not here, or by the launch itself; it is left out"
+NOT_KNOWN = "comes from a package that is not installed, or from the launch itself; it is left out"
 _REST = r"[^\s'\"<>:;,|)]*"
 
 

@@ -19,9 +19,8 @@ NO_MANAGER = declare("MG723", "no-controller-manager", ERROR, formats=("fleet",)
 def under_managers(
     spawned: Iterable[Spawned], started: Collection[str]
 ) -> tuple[list[Spawned], list[Finding]]:
-    """Return the controllers; those of a manager that is not among the ``started`` ones get the one
-    that is meant, if there is just one. With it findings of spawners that ask for another manager
-    than the one that runs."""
+    """Return the controllers, those of a manager that is not ``started`` with the only one that is,
+    and findings of spawners that name a manager which does not run."""
     meant = next(iter(started)) if len(started) == 1 else ""
     every = tuple(spawned)
     lost = [it for it in every if meant and it.manager not in started]

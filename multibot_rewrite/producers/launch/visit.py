@@ -100,7 +100,7 @@ def visit(entity: Any, seen: Visit) -> None:
 
 
 def _failed(entity: Any, error: BaseException, here: Visit) -> None:
-    """Keep why an entity cannot be visited, or what it starts, where that is known all the same."""
+    """Note why an entity cannot be visited; keep what it starts, if that is known all the same."""
     if _is(entity, _INCLUDE):
         try:
             known = simulator(error, entity, here)
@@ -148,7 +148,9 @@ def _include(entity: Any, seen: Visit) -> Iterable[Any] | None:
         own = "launch_arguments" in vars(entity)
         name = "launch_arguments" if own else "_IncludeLaunchDescription__launch_arguments"
         setattr(entity, name, tuple({**needed, **seen.context.launch_configurations}.items()))
-        seen.note("a package that is not here makes the arguments of the include", parameters=True)
+        seen.note(
+            "a package that is not installed sets the arguments of an include", parameters=True
+        )
     found = _execute(entity, seen)
     unread_of(path_of(entity, seen.context), dict(include.arguments), seen)
     return found

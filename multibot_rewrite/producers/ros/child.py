@@ -139,7 +139,7 @@ def watch(
 def _pass_on(
     child: RosProcess, at: int, put: Callable[[tuple[int, bytes | Unusable | None]], None]
 ) -> None:
-    """Pass on what a process sends, with its number; None at its end."""
+    """Hand on what a process sends, with its number; None at its end."""
     try:
         while (data := child.next_message()) is not None:
             put((at, data))

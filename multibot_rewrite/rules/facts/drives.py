@@ -225,7 +225,7 @@ def are_swapped(left: Wheel, right: Wheel) -> float:
 
 
 def are_opposite(left: Wheel, right: Wheel) -> bool:
-    """Do the axes of two wheels point in opposite directions?"""
+    """Return whether the axes of two wheels point in opposite directions."""
     return dot(left.axis, right.axis) < -ALONG
 
 

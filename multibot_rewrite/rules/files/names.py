@@ -227,7 +227,7 @@ def _mention(file: NamedFile, site: Site, known: Mapping[str, str], renamed: fro
 
 
 def _begins_all(file: NamedFile, text: str) -> bool:
-    """Do most links begin so? Code that puts it before names makes other ones than the description."""
+    """Return whether most links begin so. Code that adds it makes other names than the description."""
     links = [it for it in file.declared.get("link", ()) if it != WORLD]
     starts = tuple(f"{text.rstrip('_/')}{it}" for it in "_/")
     begun = [it for it in links if text and it.startswith(starts)]

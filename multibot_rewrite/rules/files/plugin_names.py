@@ -254,7 +254,7 @@ def missing_parameters(file: NamedFile) -> Iterator[Finding]:
                     it in section.whole or is_set_beside(file, section.title, it) for it in names
                 )
                 if section.given and not any(there):
-                    message = f"{section.title}: there is none of {', '.join(names)}"
+                    message = f"{section.title}: none of these is set: {', '.join(names)}"
                     hint = f"add one; see {fact.source}"
                     yield remark_at(section.given[0].key, message, hint, WARNING)
     for it in demands(file, "needs"):

@@ -205,7 +205,7 @@ def _at_an_end(token: str, words: Iterable[str]) -> str:
 
 def _tells(word: str, name: str) -> bool:
     """Return whether a robot's name as a segment of a name means the robot. One that also names a
-    part does if it is there twice: camera/image is a topic of every camera."""
+    part does if it occurs twice: camera/image is a topic of every camera."""
     return word not in PARTS or f"/{word}/{word}/" in f"/{name.strip('/')}/"
 
 

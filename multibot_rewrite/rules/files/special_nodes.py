@@ -92,7 +92,7 @@ def _of_topic(values: _Values, kind: str) -> Iterator[tuple[str, str]]:
             yield words, "add scale and offset of the axis"
         known = _FIELDS.get(kind, ())
         if known and field.strip("-").partition("-")[0] not in known:
-            yield f"sets {field} of a {kind}, which has {' and '.join(known)}", "see the message"
+            yield f"sets {field} of a {kind}, which has {' and '.join(known)}", "use one of these"
 
 
 def _text(values: _Values, name: str) -> str:

@@ -135,7 +135,7 @@ def no_description(launched: Launched) -> Iterator[Finding]:
         if topic.endswith("robot_description") and topic not in sent:
             who = node.full_name
             message = f"{who} waits for a description on {topic}, where nothing sends one"
-            other = "start a robot_state_publisher there: no parameter tells it"
+            other = "start a robot_state_publisher there; no parameter changes the topic"
             hint = other if sent else _ELSEWHERE
             yield at(no_description, node.place, message, hint, names=(topic,), **level)
 

@@ -103,8 +103,8 @@ def command_to_nobody(seen: Index) -> Iterator[Finding]:
 
 
 def _of_whom(seen: Index, ends: Ends, names: Sequence[str]) -> Sequence[str]:
-    """Return the obeyed names of robots that a sender may mean, of those that are called as its own;
-    where it is of one robot, that of this robot alone."""
+    """Return the obeyed names of robots that a sender may mean, of those with the sender's topic as
+    their own; if it is of one robot, that robot's alone."""
     mine = only(robots_of(seen, nodes_of(ends.publishers)))
     if not mine:
         return names

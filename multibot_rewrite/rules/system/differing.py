@@ -49,7 +49,7 @@ _Values = Mapping[tuple[str, ...], Mapping[str, _Told]]
 
 @system_rule("MG328", "differs-from-its-likes", WARNING)
 def differs_from_its_likes(seen: Index) -> Iterator[Finding]:
-    """Report all differences of a node, and all transforms of a robot, as one finding."""
+    """Report what one robot has otherwise than those built alike, once a node; so its transforms."""
     for likes in alike(nodes_of_each(seen)):
         for values in (_parameters(seen), _types(seen), _qualities(seen)):
             yield from _told(_odd(values, likes), len(likes) == _TWO)

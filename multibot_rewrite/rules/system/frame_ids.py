@@ -217,7 +217,7 @@ def _with_slash(seen: Index) -> Iterator[Finding]:
 
 
 def _is_read(seen: Index, topic: str) -> bool:
-    """Do nodes read it that do more than look?"""
+    """Return whether nodes read it that do more than look."""
     return bool(at_work(seen.ends_at(TOPIC, topic).subscribers))
 
 

@@ -80,8 +80,8 @@ def _orphan(seen: Index, end: End) -> Ends | None:
 
 
 def _waits_itself(seen: Index, ends: Ends, end: End) -> bool:
-    """Return whether it is made from what is missing, as slam_toolbox shows the scan that it reads,
-    or by way of others of its type, as an image is rectified from one that is debayered."""
+    """Return whether it is made from the missing topic, as slam_toolbox republishes the scan that
+    it reads, or from others of its type, as an image is rectified from a debayered one."""
     readers = _readers(seen)(end.name, end.type)
     return bool(ends.publishers) and readers.issuperset(it.node for it in ends.publishers)
 

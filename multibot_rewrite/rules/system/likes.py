@@ -335,7 +335,7 @@ def _first_to_do(seen: Index) -> Mapping[tuple[str, str, str, str], str]:
 
 
 def _missed_side(seen: Index, ends: Ends) -> str:
-    """Return the role that nobody has at a robot's name although one of its nodes waits for it: to
+    """Return the role that is missing at a robot's name although one of its nodes waits for it: to
     send sensor data, to obey velocities, to serve an action; empty for none."""
     if ends.kind == ACTION:
         return SERVES if at_work(ends.clients) and not ends.servers else ""

@@ -94,8 +94,8 @@ def _stale(seen: Index, ends: Iterable[End]) -> str:
 
 
 def to_stamp(seen: Index, ends: Iterable[End]) -> Cause:
-    """Return what makes the velocities of all of a robot's Nav2 stamped, where that is the side that is
-    not; an empty cause where no parameter is known."""
+    """Return the parameters that make all velocities of a robot's Nav2 stamped, if that side is
+    not; an empty cause if no parameter is known."""
     bare = [it.node for it in ends if it.type and not it.type.endswith(STAMPED)]
     if not bare or not all(switch(STAMP_SWITCHES, it) for it in bare):
         return Cause("")

@@ -343,9 +343,9 @@ def _unserved(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
 
 
 def _waits(seen: Index, end: End) -> bool:
-    """Return whether it is an own program that calls what nobody serves. Nav2's and MoveIt's nodes,
-    tools and what every node serves are left out, and a view in which nodes are missing.
-    ``nothing_known_sends`` reports what is known by code alone."""
+    """Return whether it is the user's own program that calls what nobody serves. Nav2's and
+    MoveIt's nodes, tools and what every node serves are left out, and a view in which nodes are
+    missing. ``nothing_known_sends`` reports what is known by code alone."""
     theirs = is_viewer(end.node) or seen.is_tool(end.node) or team(end.node) != end.node
     usual = end.type.startswith(COMMON) or is_from_outside(end.name)
     # Beside other robots it may be one that is not started yet, if it is not its own.

@@ -286,7 +286,7 @@ def open_claims(known: Sequence[Interface]) -> list[Interface]:
 
 
 def claims_any(known: Iterable[Interface]) -> bool:
-    """Do the controllers claim an interface of this hardware? Else they are for another robot."""
+    """Return whether the controllers claim any interface of this hardware, and so are for it."""
     sides: dict[str, set[tuple[str, str]]] = {EXPORTS: set(), CLAIMS: set()}
     for it in known:
         sides[it.role].add((it.kind, it.name))

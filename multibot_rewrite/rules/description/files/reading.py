@@ -44,7 +44,7 @@ package_not_found = declare("MB119", "not-expanded", NOTE)
 
 @rule("MB105", "placeholder-left", WARNING, formats=(URDF, *EVERY))
 def leftover(subject: Subject) -> Iterator[Problem]:
-    """Report the first leftover of a description."""
+    """Report the first ``${...}`` or ``$(...)`` that xacro left in a description."""
     return leftover_xacro(subject.inventory)
 
 
