@@ -27,7 +27,8 @@ def test_a_link_of_the_own_model_is_renamed_with_it(model: str, is_own: bool, la
     assert ("<child_link>w</child_link>" not in text) == is_own
 
 
-WAVES = """<gazebo><plugin filename="gz-waves1-hydrodynamics-system" name="h"><enable>{}</enable></plugin>
+WAVES = """<gazebo><plugin filename="gz-waves1-hydrodynamics-system" name="h">
+<enable>{}</enable></plugin>
 </gazebo>"""
 CONTAIN = """<gazebo><plugin name="c" filename="libContainPlugin.so"><entity>{}</entity>
 <namespace>c</namespace></plugin></gazebo>"""
