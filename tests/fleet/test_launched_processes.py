@@ -490,7 +490,7 @@ def test_what_stands_for_a_package_is_no_value(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A launch file may write down what it has of a package that is not here."""
-    setup = "import acme_params, yaml; made = yaml.dump({'a': acme_params.make('x')})"
+    setup = "import moveit_configs_utils as m, yaml; made = yaml.dump({'a': m.make('x')})"
     found = actions(tmp_path, "here('n', parameters=[{'text': made, 'b': 2}]),", setup)
     assert of(found, "n")["parameters"][0] == {"b": 2}
     assert (
@@ -516,7 +516,7 @@ def test_of_what_is_not_known_only_that_is_left_out(
     """The node is started with all else; the share folder of a package is asked for when it starts."""
     (tmp_path / "acme_here").mkdir()
     (tmp_path / "acme_here/package.xml").write_text("<package><name>acme_here</name></package>")
-    setup = """import acme_params; made = acme_params.make('x')
+    setup = """import moveit_configs_utils; made = moveit_configs_utils.make('x')
     from ament_index_python.packages import get_package_prefix, get_package_share_directory
     from launch_ros.parameter_descriptions import Parameter, ParameterValue"""
     found = actions(tmp_path, UNKNOWN, setup, more="simulator: none\nlaunch_roots: [.]")
@@ -1211,9 +1211,9 @@ def test_an_include_without_an_argument_that_is_known_is_named_and_not_started(
     given = "launch_arguments=[('config', {}), ('gui', 'false')]"
     body = ", ".join(
         include.format(name, given.format(value))
-        for name, value in (("one", "gone_too.dump()"), ("two", "'a'"))
+        for name, value in (("one", "moveit_configs_utils.dump()"), ("two", "'a'"))
     )
-    found = actions(tmp_path, f"{body}, here('first'),", setup="import gone_too")
+    found = actions(tmp_path, f"{body}, here('first'),", setup="import moveit_configs_utils")
     includes = [it for it in found if it.kind == "IncludeLaunchDescription"]
     assert [it.values["launch_arguments"] for it in includes] == [
         [["config", "a"], ["gui", "false"]]

@@ -6,7 +6,6 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from functools import lru_cache
 
 from multibot_rewrite.base.model import InputError
@@ -21,6 +20,7 @@ from multibot_rewrite.producers.launch.known_node import with_sources
 from multibot_rewrite.producers.launch.of_robot import Launched, as_launched, with_launched
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder, joined
 from multibot_rewrite.producers.launch.several_robots import of_first_robot, with_extras
+from multibot_rewrite.producers.launch.source_packages import ROOTS
 from multibot_rewrite.spelling.records import Run
 
 NOT_SPAWNED = "no spawner of the launch files loads it"
@@ -67,9 +67,21 @@ def _read(order: LaunchOrder) -> LaunchGraph:
     """However its path is written, a launch file is read once; what is wrong is said of the path that
     was given."""
     whole = _whole(order)
-    with suppress(InputError):
-        return once_kept(whole, lambda: _graph(whole, times_of(whole.file)))
-    return launch_graph(order)
+    try:
+        graph = once_kept(whole, lambda: _graph(whole, times_of(whole.file)))
+    except InputError:
+        graph = launch_graph(order)
+    if why := why_not(graph):
+        raise InputError(f"{order.file}: the launch file cannot be read: {why}")
+    return graph
+
+
+def why_not(graph: LaunchGraph) -> str:
+    """Return why a fleet is not made of a launch file that was read; empty if it is."""
+    first = graph.imports[:1]
+    return (
+        f"it imports the Python package {first[0]!r}, which is not here; {ROOTS}" if first else ""
+    )
 
 
 def keep(order: LaunchOrder, graph: LaunchGraph) -> None:

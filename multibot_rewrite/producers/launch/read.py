@@ -48,8 +48,9 @@ from multibot_rewrite.producers.launch.source_packages import (
     add_sources,
 )
 from multibot_rewrite.producers.launch.stand_in import contents, standing_in
+from multibot_rewrite.producers.launch.stand_in.names import names
 from multibot_rewrite.producers.launch.stand_in.packages import FindPackageShare
-from multibot_rewrite.producers.launch.unknown_modules import add_unknown
+from multibot_rewrite.producers.launch.unknown_modules import add_unknown, imported
 from multibot_rewrite.producers.launch.visit import ASKED, visit_all
 from multibot_rewrite.system.records import Place
 
@@ -90,7 +91,9 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
     more = (*map(not_installed, unsaid), *dict.fromkeys(unsure))
     own = (LaunchNote(place, it, parameters=it in unsure) for it in more)
     notes = (*graph.notes, *own)
-    whole = graph._replace(notes=notes, files=files, read=files_read(lines, reads))
+    imports = tuple(it for it in imported() if it not in names().parameters.split())
+    read = files_read(lines, reads)
+    whole = graph._replace(notes=notes, files=files, read=read, imports=imports)
     return with_real_paths(whole)  # type: ignore[no-any-return]
 
 

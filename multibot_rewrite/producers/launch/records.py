@@ -152,7 +152,8 @@ class LaunchGraph(NamedTuple):
     launch is not installed and its stand-in read them. ``unread`` are arguments without effect,
     ``environment`` is what they set for all processes. ``declared`` are the arguments that there are,
     ``read`` is what the launch files themselves read, ``idle`` is what conditions keep out. ``robots``
-    are the names of several that are started: the nodes are those of the first, without its name."""
+    are the names of several that are started: the nodes are those of the first, without its name.
+    ``imports`` are Python packages that the launch files import and that are not here."""
 
     nodes: tuple[LaunchedNode, ...] = ()
     notes: tuple[LaunchNote, ...] = ()
@@ -165,6 +166,7 @@ class LaunchGraph(NamedTuple):
     read: tuple[FileRead, ...] = ()
     idle: tuple[IdleAction, ...] = ()
     robots: tuple[str, ...] = ()
+    imports: tuple[str, ...] = ()
 
     @property
     def whole(self) -> bool:
