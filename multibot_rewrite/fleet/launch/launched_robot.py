@@ -5,13 +5,14 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import lru_cache
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.rosnames import RemapRule
 from multibot_rewrite.description.sources.expand import once_kept
 from multibot_rewrite.description.sources.own_names import filled
+from multibot_rewrite.fleet.launch.starts import OWN_ARGUMENTS
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.producers.evidence.nodes import RobotNodes, nodes_of, under_plugin
@@ -60,7 +61,22 @@ def known_here(
 def launch_of(orders: Sequence[LaunchOrder], robot: str) -> LaunchGraph:
     """All that these launch files start, with the robot in the place of ``{robot}``; of several robots
     the first one. Raises as ``launched_robot``."""
-    return with_extras(of_first_robot(joined([*map(_read, _own(orders, robot))])))
+    graph = with_extras(of_first_robot(joined([*map(_read, _own(orders, robot))])))
+    return _with_off(graph, {name for it in orders for name, _ in it.arguments})
+
+
+def _with_off(graph: LaunchGraph, given: Collection[str]) -> LaunchGraph:
+    """Return launch files with what an argument turns on among their nodes, if it decides nothing else,
+    and is not ``given`` or one of every fleet."""
+    fixed = {name for it in graph.nodes for name, _ in it.process.switches}
+    fixed |= {name for it in graph.idle if not it.is_off for name, _ in it.asked}
+    fixed.update(OWN_ARGUMENTS, given, (it.process.off for it in graph.off if graph.robots))
+    off = [it for it in graph.off if it.process.off not in fixed]
+    values = {name: value for it in off for name, value in it.process.switches}
+    switched = (it._replace(later=f"with {it.process.off}:={values[it.process.off]}") for it in off)
+    names = {it.process.off for it in off}
+    idle = tuple(it for it in graph.idle if not it.is_off or it.asked[0][0] not in names)
+    return graph._replace(nodes=(*graph.nodes, *switched), idle=idle)
 
 
 def _read(order: LaunchOrder) -> LaunchGraph:

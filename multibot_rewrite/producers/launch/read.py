@@ -85,7 +85,8 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
         pass
     files = (*graph.files, *descriptions_in(reads.paths))
     # What the launch files of these start is known without them.
-    said = (*_lost(graph.notes), *SIMULATORS)
+    off = {it.package for it in graph.off} - graph.packages
+    said = (*_lost(graph.notes), *SIMULATORS, *off)
     unsaid = [it for it in missing if it not in said]
     place = Place(os.path.abspath(order.file), 1)
     more = (*map(not_installed, unsaid), *dict.fromkeys(unsure))
@@ -178,7 +179,7 @@ def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:
     context.extend_locals({"current_launch_file_path": path, **folder})
     context.launch_configurations.update(order.arguments)
     before = dict(context.environment)
-    seen = Visit(context, [], [], {}, [], Place(path, 1), [], [], before, {}, [], order.every)
+    seen = Visit(context, [], [], {}, [], Place(path, 1), [], [], before, {}, [], [], order.every)
     unread_of(path, dict(order.arguments), seen)
     visit_all(description, seen)
     declared = _declared(description)
@@ -199,6 +200,7 @@ def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:
         environment=own,
         declared=declared,
         idle=tuple(dict.fromkeys(seen.idle)),
+        off=tuple(seen.off),
     )
 
 
