@@ -162,7 +162,7 @@ def unusable_numbers(subject: Subject) -> Iterator[Problem]:
 
 
 def _none_of(inner: _Element, paths: tuple[str, ...] = ()) -> Iterator[Problem]:
-    """The numbers at these paths that are not above 0, and what is below it."""
+    """Yield the numbers at these paths that are not above 0, and the path below each."""
     for path in (*paths, *_NOT_BELOW_0):
         value = number_at(inner, path)
         if value is not None and (value < 0 or (value == 0 and path in paths)):
