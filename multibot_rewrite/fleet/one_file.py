@@ -20,7 +20,7 @@ from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.companions.formats import kind_alone, read_named, rewrite_alone
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.rename_map import KINDS, NO_OWN, companion_names
-from multibot_rewrite.description.rewriters.made_topics import words_of
+from multibot_rewrite.description.rewriters.made_topics import given_topics, words_of
 from multibot_rewrite.description.sources.job import Job, read_jobs
 from multibot_rewrite.description.sources.read import Source
 from multibot_rewrite.description.sources.whole import read_whole
@@ -155,9 +155,10 @@ def _context(job: Job | None, naming: Naming, release: str) -> Context:
     if job is None:
         return make_context({kind: {} for kind in _DECLARED}, naming, (), release)
     described, own = job.inventories[0], job.own.plain or NO_OWN
-    declared, words = described.declared, words_of(described.claims)
-    names = companion_names(declared, job.naming, "", own, words, described.topics_in_full)
-    return make_context(names.declared, job.naming, (), release, names.own, words)
+    made = words_of(described.claims), given_topics(described.claims)
+    in_full = described.topics_in_full
+    names = companion_names(described.declared, job.naming, "", own, in_full=in_full)
+    return make_context(names.declared, job.naming, (), release, names.own, *made)
 
 
 def _for_robot(

@@ -35,6 +35,7 @@ from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
     PUBLISHES,
+    RUNS,
     SERVES,
     SERVICE,
     SUBSCRIBES,
@@ -93,6 +94,17 @@ def stub_nodes(table: Table, edges: Edges, left_out: Collection[str] = ()) -> It
         arguments = tuple(ros_arguments(space, other, _rules(node, own)))
         stub = node._replace(arguments=arguments, names=tuple((it, "") for it in ends))
         yield stub, edges.get((node.robot, node.node), ())
+
+
+def without_doubles(stubs: Iterable[Stub], plan: System) -> Iterator[Stub]:
+    """Yield the stubs, without nodes that may run where what surely runs sends a topic of theirs."""
+    may = {it.name for it in plan.nodes if it.sure != RUNS}
+    sure = (it for it in plan.ends if it.role == PUBLISHES and it.sure == RUNS)
+    outputs = [it for it in sure if it.type != TF and it.name not in plan.shared_topics]
+    sent = {it.name for it in outputs if it.node not in may}
+    sent |= {it.name for it in plan.topics if PUBLISHES in it.bridge}
+    doubles = {it.node for it in outputs if it.node in may and it.name in sent}
+    yield from (it for it in stubs if it[0].full_name not in doubles)
 
 
 def bridge_stub(topics: Iterable[Topic]) -> Iterator[Stub]:

@@ -22,7 +22,7 @@ class CompanionNames(NamedTuple):
     """The names that a description declares (not rewritten), the naming, and the robot.
 
     ``own`` are names (kind and text) that arguments of the xacro make another for the robot; ``words``
-    are those that its systems make topics of, ``given`` the topics of Gazebo that it gives in full.
+    are those that its systems make topics of, ``given`` the topics of Gazebo that it gives itself.
     """
 
     declared: Declared
@@ -72,6 +72,7 @@ def companion_names(
     own: Mapping[tuple[str, str], str],
     words: Stems = NO_WORDS,
     in_full: Collection[str] = (),
+    given: frozenset[str] = frozenset(),
 ) -> CompanionNames:
     """Return the names of a robot; ``own`` are declared by either of their texts. Nodes in the robot's
     namespace call the topics ``in_full``, which it does not reach, by their full names."""
@@ -89,7 +90,7 @@ def companion_names(
     for (kind, plain), text in own.items():
         if text in both.get(kind, ()):
             both[kind].setdefault(plain, both[kind][text])
-    return CompanionNames(both, naming, robot, own, words)
+    return CompanionNames(both, naming, robot, own, words, given)
 
 
 def _without_argument(

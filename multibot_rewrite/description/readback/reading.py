@@ -246,7 +246,7 @@ def _lookups(root: _Element, host: _Host, vocabulary: Vocabulary) -> Iterator[Ru
     (every,) = vocabulary.find("element", tag)
     sites = [it for it in (*every.sites, *host.section.sites) if it.role != "keep"]
     model = root if root.tag == "robot" else next(root.iter("model"), root)
-    for site in (it for it in sites if it.form == "scoped"):
+    for site in (it for it in sites if it.form in ("scoped", "suffixed")):
         for value in dict.fromkeys(parameters.values_of(host.element, site)):
             if "::" in value and value.partition("::")[0] == model.get("name", ""):
                 yield RuntimeName("model", value, tag, host.number, site.path)

@@ -37,7 +37,8 @@ def names_in_topics(claims: Iterable[Claim], declared: Declared, of_models: bool
     found: dict[int, tuple[NamePart, ...]] = {}
     for at, claim in enumerate(claims):
         # Most values have none: a look that costs less than a call.
-        if "/" in claim.value and _is_topic(claim):
+        whole = claim.value.startswith("/") or _HEAD.match(claim.value)
+        if "/" in claim.value and whole and _is_topic(claim):
             if stems is None:
                 stems = words_of(claims)
             parts = tuple(parts_of(claim.value, stems, declared))
@@ -47,17 +48,12 @@ def names_in_topics(claims: Iterable[Claim], declared: Declared, of_models: bool
 
 
 def _is_topic(claim: Claim) -> bool:
-    site, value = claim.site, claim.value
-    return (
-        site.kinds[:1] == ("topic",)
-        and site.form == "whole"
-        and not site.namespaced
-        and (value.startswith("/") or _HEAD.match(value) is not None)
-    )
+    site = claim.site
+    return site.kinds[:1] == ("topic",) and site.form == "whole" and not site.namespaced
 
 
 def given_topics(claims: Iterable[Claim]) -> frozenset[str]:
-    """Return the topics of Gazebo that a description gives in full, without the slash in front."""
+    """Return the topics of Gazebo that a description gives, without the slash in front."""
     return frozenset(it.value.strip().lstrip("/") for it in claims if _is_topic(it))
 
 

@@ -42,7 +42,6 @@ from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import NO_TREE, REFUSED, launched
 from multibot_rewrite.producers.launch.spawner_managers import NO_MANAGER
 from multibot_rewrite.rules.check import inconclusive_where_in_doubt, judge
-from multibot_rewrite.rules.declaration import OF_NO_NODE
 from multibot_rewrite.rules.launch.judge import as_sure, judge_launch, placed
 from multibot_rewrite.rules.system.unsent import nothing_known_sends
 from multibot_rewrite.system.index import index
@@ -148,8 +147,7 @@ def _of_launch(
     judged = inconclusive_where_in_doubt(judge(seen), found.system)
     between = placed((as_sure(it, found, seen) for it in judged), found)
     every = (*judge_launch(found), *bridge_findings(found), *between)
-    # Of a node that runs once for all robots each robot's file may have a section of its own.
-    asked = (it for it in every if it.code != OF_NO_NODE.code and not elsewhere & {*it.names})
+    asked = (it for it in every if not elsewhere & {*it.names})
     yield from (it for it in asked if it.level == ERROR and it.code not in told)
 
 

@@ -165,12 +165,13 @@ def _launched(it: Bringup, apart: str) -> Iterator[str]:
     ``apart`` is why each robot has its own RViz, if it has one."""
     each = {node: apart if node.executable == RVIZ else "" for node in it.graph.nodes}
     whys = {node: "" if each[node] else once_for_all(node) for node in it.graph.nodes}
+    texts = {it: said_of(it) + (f", {it.later}" if it.process.off else "") for it in whys}
     own = [
-        f"{said_of(node)}, since {each[node]}" if each[node] else said_of(node)
+        f"{texts[node]}, since {each[node]}" if each[node] else texts[node]
         for node, why in whys.items()
         if not why
     ]
-    once = [f"{said_of(node)}, since {why}" for node, why in whys.items() if why]
+    once = [f"{texts[node]}, since {why}" for node, why in whys.items() if why]
     yield f"What {it.name} starts for each robot:"
     yield from _some(own)
     if once:

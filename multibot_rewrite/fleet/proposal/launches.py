@@ -14,7 +14,7 @@ from typing import NamedTuple
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.sources.included_by import data_of_file
-from multibot_rewrite.fleet.launch.launched_robot import keep, launch_of, times_of
+from multibot_rewrite.fleet.launch.launched_robot import keep, launch_of, times_of, why_not
 from multibot_rewrite.producers.launch.child import read_launch_files
 from multibot_rewrite.producers.launch.handed_on import handed_on
 from multibot_rewrite.producers.launch.programs import programs
@@ -91,7 +91,7 @@ def read_as(orders: Iterable[LaunchOrder]) -> list[Reading]:
     read = _read(every, tuple(times_of(it.file) for it in every)) if every else []
     for it in (one for one in read if one.graph.nodes and not one.order.every):
         keep(it.order, it.graph)
-    return read
+    return [it if it.order.every else it._replace(why=it.why or why_not(it.graph)) for it in read]
 
 
 @lru_cache(maxsize=16)

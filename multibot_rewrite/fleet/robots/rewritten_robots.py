@@ -236,9 +236,9 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
             found = (*found, *model.findings)
             made = member(model, simulated, robot.tag, described=made)
         simulated_parts = (model or text).template.inventory
-        more = words_of(simulated_parts.claims), simulated_parts.topics_in_full
+        claims, in_full = simulated_parts.claims, simulated_parts.topics_in_full
+        more = words_of(claims), in_full, given_topics(claims)
         names = companion_names(declared, naming, robot.tag, own, *more)
-        names = names._replace(given=given_topics(simulated_parts.claims))
         yield RewrittenRobot(
             robot,
             data,

@@ -38,8 +38,7 @@ def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
         evidence = plan.evidence_of(robots[0])
         facts = tuple(companion_nodes(evidence.nodes, stack_nodes(spec, plan.file)))
         declared, naming, _, own, words, given = robots[0].names
-        context = make_context(declared, naming, facts, plan.file.distro, own, words)
-        context = context._replace(names=context.names._replace(given=given))
+        context = make_context(declared, naming, facts, plan.file.distro, own, words, given)
         yield RobotGroup(tuple(robots), facts, context._replace(frames=evidence.frames))
 
 

@@ -317,7 +317,7 @@ def companion_nodes(nodes: Sequence[NodeFacts], stack: Sequence[NodeFacts]) -> I
     parameters are what is rewritten."""
     bare: Mapping[str, NodeFacts] = {it.name: it for it in stack}
     # A section for a node in a namespace below the robot's is known to be right if the node runs there.
-    mine = (it for it in nodes if it.name in bare or it.host or "/" in it.name)
+    mine = (it for it in nodes if it.name in bare or it.shared or it.host or "/" in it.name)
     yield from (bare.get(it.name, it)._replace(shared=it.shared) for it in mine)
 
 

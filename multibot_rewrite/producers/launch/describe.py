@@ -66,9 +66,9 @@ class Visit(NamedTuple):
     """A visit: the context, what has been found, the files that descriptions name, what an event or a
     timer starts with its visit and the locals that it keeps, the place of what is visited, arguments
     without effect, included files, the environment before the launch, the number of each action that
-    starts a process, what conditions keep out, whether conditions count, what starts it if not the
-    launch itself, after how many events and seconds, at which event of which action, and the launch
-    arguments that turn it off."""
+    starts a process, what conditions keep out, what of it is kept, whether conditions count, what
+    starts it if not the launch itself, after how many events and seconds, at which event of which
+    action, the launch arguments that turn it off, and the one that turns it on."""
 
     context: Any
     nodes: list[LaunchedNode]
@@ -81,6 +81,7 @@ class Visit(NamedTuple):
     before: Mapping[str, str]
     numbers: dict[int, tuple[Any, int]]
     idle: list[IdleAction]
+    off: list[LaunchedNode]
     every: bool = False
     later: str = ""
     events: int = 0
@@ -88,13 +89,15 @@ class Visit(NamedTuple):
     event: str = ""
     target: Any = None
     switches: tuple[tuple[str, str], ...] = ()
+    off_by: str = ""
 
     @property
     def waits(self) -> Process:
         """What is waited for; what turns that off turns this off, too."""
         after = self.numbers.get(id(self.target), (None, -1))[1]
         switches = self.nodes[after].process.switches if after >= 0 else self.switches
-        return Process(delay=self.delay, event=self.event, after=after, switches=switches)
+        made = Process(delay=self.delay, event=self.event, after=after, switches=switches)
+        return made._replace(off=self.off_by)
 
     def start(self, action: Any, it: LaunchedNode) -> None:
         """Keep what an action starts."""

@@ -48,8 +48,9 @@ from multibot_rewrite.producers.launch.source_packages import (
     add_sources,
 )
 from multibot_rewrite.producers.launch.stand_in import contents, standing_in
+from multibot_rewrite.producers.launch.stand_in.names import names
 from multibot_rewrite.producers.launch.stand_in.packages import FindPackageShare
-from multibot_rewrite.producers.launch.unknown_modules import add_unknown
+from multibot_rewrite.producers.launch.unknown_modules import add_unknown, imported
 from multibot_rewrite.producers.launch.visit import ASKED, visit_all
 from multibot_rewrite.system.records import Place
 
@@ -84,13 +85,16 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
         pass
     files = (*graph.files, *descriptions_in(reads.paths))
     # What the launch files of these start is known without them.
-    said = (*_lost(graph.notes), *SIMULATORS)
+    off = {it.package for it in graph.off} - graph.packages
+    said = (*_lost(graph.notes), *SIMULATORS, *off)
     unsaid = [it for it in missing if it not in said]
     place = Place(os.path.abspath(order.file), 1)
     more = (*map(not_installed, unsaid), *dict.fromkeys(unsure))
     own = (LaunchNote(place, it, parameters=it in unsure) for it in more)
     notes = (*graph.notes, *own)
-    whole = graph._replace(notes=notes, files=files, read=files_read(lines, reads))
+    imports = tuple(it for it in imported() if it not in names().parameters.split())
+    read = files_read(lines, reads)
+    whole = graph._replace(notes=notes, files=files, read=read, imports=imports)
     return with_real_paths(whole)  # type: ignore[no-any-return]
 
 
@@ -175,7 +179,7 @@ def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:
     context.extend_locals({"current_launch_file_path": path, **folder})
     context.launch_configurations.update(order.arguments)
     before = dict(context.environment)
-    seen = Visit(context, [], [], {}, [], Place(path, 1), [], [], before, {}, [], order.every)
+    seen = Visit(context, [], [], {}, [], Place(path, 1), [], [], before, {}, [], [], order.every)
     unread_of(path, dict(order.arguments), seen)
     visit_all(description, seen)
     declared = _declared(description)
@@ -196,6 +200,7 @@ def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:
         environment=own,
         declared=declared,
         idle=tuple(dict.fromkeys(seen.idle)),
+        off=tuple(seen.off),
     )
 
 

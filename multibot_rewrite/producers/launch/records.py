@@ -117,11 +117,13 @@ class LaunchInclude(NamedTuple):
 
 class IdleAction(NamedTuple):
     """Something that a launch file does not start, since its condition does not hold: ``what`` it is,
-    and the launch arguments that the condition asks for, as they are."""
+    and the launch arguments that the condition asks for, as they are. ``is_off`` is true where what it
+    would start is kept."""
 
     place: Place
     what: str
     asked: tuple[tuple[str, str], ...]
+    is_off: bool = False
 
     @property
     def why(self) -> str:
@@ -151,8 +153,10 @@ class LaunchGraph(NamedTuple):
     the path that they have there, and descriptions that launch files read. ``stood_in`` is true where
     launch is not installed and its stand-in read them. ``unread`` are arguments without effect,
     ``environment`` is what they set for all processes. ``declared`` are the arguments that there are,
-    ``read`` is what the launch files themselves read, ``idle`` is what conditions keep out. ``robots``
-    are the names of several that are started: the nodes are those of the first, without its name."""
+    ``read`` is what the launch files themselves read, ``idle`` is what conditions keep out, ``off`` the
+    nodes of it that one launch argument turns on. ``robots``
+    are the names of several that are started: the nodes are those of the first, without its name.
+    ``imports`` are Python packages that the launch files import and that are not here."""
 
     nodes: tuple[LaunchedNode, ...] = ()
     notes: tuple[LaunchNote, ...] = ()
@@ -164,7 +168,9 @@ class LaunchGraph(NamedTuple):
     declared: tuple[LaunchArgument, ...] = ()
     read: tuple[FileRead, ...] = ()
     idle: tuple[IdleAction, ...] = ()
+    off: tuple[LaunchedNode, ...] = ()
     robots: tuple[str, ...] = ()
+    imports: tuple[str, ...] = ()
 
     @property
     def whole(self) -> bool:

@@ -30,6 +30,11 @@ def is_unknown(value: object) -> bool:
     return isinstance(value, Unknown | _Module)
 
 
+def imported() -> list[str]:
+    """Return those of such packages that a launch file has imported."""
+    return [it.asked for it in sys.meta_path if isinstance(it, _Finder) and it.asked]
+
+
 # How it is called in a text that is made of it.
 STOOD_FOR = __name__
 
@@ -106,7 +111,7 @@ class _Finder:
     """Finds and loads; importlib.abc, which has the classes for that, is slow to import."""
 
     def __init__(self, name: str) -> None:
-        self._name = name
+        self._name, self.asked = name, ""
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
@@ -117,6 +122,7 @@ class _Finder:
 
     def create_module(self, spec: ModuleSpec) -> ModuleType:
         """Return a module that has every name."""
+        self.asked = self._name
         return _Module(spec.name)
 
     def exec_module(self, module: ModuleType) -> None:

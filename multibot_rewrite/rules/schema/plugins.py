@@ -97,7 +97,10 @@ def _measure(child: _Element, row: Value, text: str, where: str) -> Iterator[Pro
     value = number_in(text)
     if value is None:
         return
-    if row.low is not None and (value < row.low or (row.is_open and value == row.low)):
+    if row.unit == "nonzero" and not any(map(number_in, text.split())):
+        message = f"{where} has to be other than 0{_in(row.checked)}"
+        yield fault("range", child, "", message, "", WARNING)
+    elif row.low is not None and (value < row.low or (row.is_open and value == row.low)):
         limit = f"has to be {'above' if row.is_open else 'at least'} {row.low:g}"
         yield fault("range", child, "", f"{where} {limit}{_in(row.checked)}", "", WARNING)
     elif row.high is not None and value > row.high:

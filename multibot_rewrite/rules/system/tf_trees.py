@@ -52,9 +52,9 @@ def roots_by_robot(plan: Index, seen: Index) -> Iterator[tuple[Robot, Sequence[s
             for frame in (edge.child, edge.parent):
                 robot = _robot_at_home(plan, tree, frame)
                 roots_of[robot].add(roots_above.get(edge.parent, edge.parent))
-        # What is planned to hang from a frame of all, and does not.
+        # What is planned to hang from a frame of all, and is a root.
         for it in plan.system.edges if is_one_each else ():
-            hangs = it.static and it.parent in plan.system.shared_frames and it.child not in above
+            hangs = it.static and it.parent in plan.system.shared_frames
             if hangs and it.child in roots_of[_robot_at_home(plan, tree, it.child)]:
                 roots_of[_robot_at_home(plan, tree, it.child)].add(it.parent)
         for robot, found in roots_of.items():

@@ -115,15 +115,16 @@ _ABOVE_0 = {
     "camera": ("image/width", "image/height", "clip/near", "horizontal_fov"),
     "lidar": ("scan/horizontal/samples", "range/max"),
 }
+_NOT_BELOW_0 = ("update_rate", "noise/stddev", "range/resolution")
+# What is above another parameter counts as that one (gz-sim LinearBatteryPlugin.cc:252).
+_LIMITED = {"initial_charge": "capacity"}
 
 
 def sees_nothing(subject: Subject) -> Iterator[Problem]:
     """Report pictures without a pixel, scans without a ray, negative rates, ranges in millimetres."""
     for sensor in subject.elements.every("sensor"):
         type_ = sensor.get("type", "")
-        rate = number_at(sensor, "update_rate")
-        if rate is not None and rate < 0:
-            yield _problem(sensor, "update_rate", "is below 0")
+        yield from _none_of(sensor)
         for inner in sensor.iterchildren("camera") if type_ in CAMERAS else ():
             yield from _none_of(inner, _ABOVE_0["camera"])
         for inner in sensor.iterchildren("lidar", "ray") if type_ in LIDARS else ():
@@ -150,6 +151,7 @@ def unusable_numbers(subject: Subject) -> Iterator[Problem]:
         for least in plugin.iterchildren("*"):
             tag = str(least.tag)
             most = "_".join("max" if it == "min" else it for it in tag.split("_"))
+            most = _LIMITED.get(tag, most)
             low = number(text_of(least)) if most != tag else None
             high = number_at(plugin, most) if low is not None else None
             # Of a command or an integral -1 is no limit (gz-math PID.cc).
@@ -159,11 +161,12 @@ def unusable_numbers(subject: Subject) -> Iterator[Problem]:
                 yield Problem(least, message, "", "swap the two, or correct one", level=WARNING)
 
 
-def _none_of(inner: _Element, paths: tuple[str, ...]) -> Iterator[Problem]:
-    for path in paths:
+def _none_of(inner: _Element, paths: tuple[str, ...] = ()) -> Iterator[Problem]:
+    """Yield the numbers at these paths that are not above 0, and the path below each."""
+    for path in (*paths, *_NOT_BELOW_0):
         value = number_at(inner, path)
-        if value is not None and value <= 0:
-            yield _problem(inner, path, "has to be above 0")
+        if value is not None and (value < 0 or (value == 0 and path in paths)):
+            yield _problem(inner, path, "has to be above 0" if path in paths else "is below 0")
 
 
 def _problem(above: _Element, path: str, words: str, hint: str = "") -> Problem:

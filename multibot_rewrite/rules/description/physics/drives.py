@@ -84,6 +84,9 @@ def wheels_turn_wrong(subject: Subject) -> Iterator[Problem]:
         for left, right in drive.pairs:
             if "fixed" in (left.joint.type, right.joint.type):
                 continue  # MB624
+            if left.joint.name == right.joint.name:
+                message = f"{left.joint.name!r} is the left and the right wheel"
+                yield Problem(right.named, message, "", "name the joint of the other wheel")
             for words in rolling_faults(drive.robot, left, right):
                 yield Problem(right.named, words, "", "the drive takes them for wheels that roll")
             if are_opposite(left, right):

@@ -101,7 +101,7 @@ def sensor_in_ground(subject: Subject) -> Iterator[Problem]:
 @rule("MB628", "scan-turned-around", WARNING)
 def scan_turned_around(subject: Subject) -> Iterator[Problem]:
     """Report ranges and angles; a Classic lidar that casts rays swaps inverted angles itself."""
-    for it in subject.elements.every("lidar", "ray"):
+    for it in subject.elements.every("lidar", "ray", "logical_camera"):
         sensor = it.getparent()
         casts = sensor is not None and sensor.get("type") == "ray"
         for part, low, high in _BOUNDS[:1] if casts else _BOUNDS:
@@ -117,6 +117,7 @@ _BOUNDS = (
     ("range", "min", "max"),
     ("scan/horizontal", "min_angle", "max_angle"),
     ("scan/vertical", "min_angle", "max_angle"),
+    (".", "near", "far"),
 )
 
 
