@@ -74,6 +74,7 @@ def made(folder: Path, form: str, layout: str) -> Outputs:
 
 
 @pytest.mark.slow
+@pytest.mark.sample(4)
 @pytest.mark.parametrize(
     ("form", "layout", "base", "lidar"),
     [

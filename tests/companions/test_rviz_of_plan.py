@@ -50,6 +50,7 @@ def test_every_type_has_its_display() -> None:
 
 
 @pytest.mark.more
+@pytest.mark.sample(3)
 @pytest.mark.parametrize(
     "layout", ["frames-per-robot", "tf-per-robot", "both", "postfix", "frame-prefix"]
 )

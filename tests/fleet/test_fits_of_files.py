@@ -177,7 +177,7 @@ MUX = """twist_mux:
 """
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(6)
 @pytest.mark.parametrize("stack", ["nav2", "[nav2, teleop]", "[navigation, twist_mux]"])
 @pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
 @pytest.mark.parametrize(

@@ -189,6 +189,7 @@ def made_of(plugin: ET.Element, topics: Topics, release: str) -> set[tuple[str, 
     }
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("release", RELEASES)
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_rows_are_the_topics_that_the_systems_make(
@@ -305,6 +306,7 @@ def fleets() -> list[tuple[str, str]]:
     ]
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize(("file", "layout"), [*fleets(), ("", "both"), ("", "postfix")])
 @pytest.mark.parametrize("model", ["", ", model: hull"])
 def test_plan_and_build_have_the_same_rows(
@@ -335,6 +337,7 @@ def test_plan_and_build_have_the_same_rows(
 EXAMPLES = sorted((FIXTURES.parent / "examples").rglob("fleet*.yaml"))
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("fleet", EXAMPLES, ids=lambda it: f"{it.parent.name}-{it.stem}")
 def test_plan_and_build_of_an_example_have_the_same_topics(
     fleet: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
