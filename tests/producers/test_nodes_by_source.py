@@ -14,7 +14,6 @@ from pathlib import Path
 import pytest
 from paths import FIXTURES
 
-from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.evidence.filling import filled
@@ -484,12 +483,6 @@ def without_reader(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(expressions, "find_spec", lambda name: None)
     expressions._tools.cache_clear()
     files._parsed.cache_clear()
-
-
-@pytest.mark.usefixtures("without_reader")
-def test_cpp_without_its_extra_says_what_to_install(acme: Path) -> None:
-    with pytest.raises(UsageError, match=r"multibot_rewrite\[sources\]"):
-        read("driver_node", acme)
 
 
 @pytest.mark.usefixtures("without_reader")
