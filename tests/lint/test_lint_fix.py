@@ -154,6 +154,9 @@ def test_fix_writes_and_tells_what_is_left(
     assert (file.stat().st_mode & 0o777, other.read_bytes()) == (0o640, FIXED)
     assert [line.split()[2] for line in out.splitlines() if "note:" not in line] == ["MB501"]
     assert f"fixed {file}" in err and "other.urdf" not in err
+    for words in (["--fix"], ["--fix", "--diff"]):
+        main([str(other), *words])
+        assert "urdf-lint: nothing that --fix can fix\n" in capsys.readouterr().err
 
 
 @pytest.mark.slow
