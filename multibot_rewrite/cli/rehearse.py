@@ -96,7 +96,7 @@ def _played(
 
 
 def _without_places(graph: System) -> System:
-    """Stubs send which frame hangs on which, not where, and all with one quality of service."""
+    """Return the graph without places and QoS: stubs send which frame is below which, and one QoS."""
     ends = tuple(it._replace(qos=None) for it in graph.ends)
     return graph._replace(ends=ends, edges=tuple(it._replace(transform=()) for it in graph.edges))
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A file beside a description, rewritten for robots without a fleet file: parameters, RViz, MoveIt, a
-bridge, a behavior tree, Lua."""
+"""A related file of a description, rewritten for robots without a fleet file: parameters, RViz,
+MoveIt, a bridge, a behavior tree, Lua."""
 
 from __future__ import annotations
 
@@ -69,8 +69,8 @@ def rewrite_file(
     trust: bool = False,
     distro: str = "",
 ) -> RewrittenFile:
-    """Rewrite a file beside a description for ``robot``: parameters, RViz, MoveIt, ros_gz_bridge, a
-    behavior tree of Nav2, Cartographer's Lua, told by what is in it.
+    """Rewrite a related file of a description for ``robot``: parameters, RViz, MoveIt,
+    ros_gz_bridge, a behavior tree of Nav2, Cartographer's Lua, told by what is in it.
 
     ``urdf`` is the robot's description, not rewritten; the other options are those of ``rewrite``.
     Raises InputError (cannot be read), UsageError (a wrong argument, or a description is needed).
@@ -99,15 +99,16 @@ def rewrite_files(
     trust: bool = False,
     distro: str = "",
 ) -> Iterator[RewrittenFile]:
-    """The same for several robots, in their order. What a bridge carries for all of them, such as the
-    clock, is in the file of the first. Raises as ``rewrite_file``, before the first result."""
+    """Yield the file rewritten for several robots, in their order. What a bridge carries for all,
+    such as the clock, is in the file of the first. Raises as ``rewrite_file``, before the first
+    result."""
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     given = (urdf, xacro_args, vocabulary, file, trust, release_here(distro))
     return _rewritten(source, tuple(robots), naming, *given)
 
 
 def names_in_file(data: bytes, file: str, urdf: bytes) -> NamedFile:
-    """The names in a file beside the description ``urdf``. Raises what ``rewrite_file`` does."""
+    """Return the names in a related file of the description ``urdf``; raises as ``rewrite_file``."""
     naming, release = make_naming(), release_here("")
     job = read_jobs(["r"], urdf, naming, None, None, (), "", False, release)["r"]
     return read_named(kind_alone(data, file), data, file, _context(job, naming, release))

@@ -96,8 +96,8 @@ def companion_names(
 def _without_argument(
     robot: str, own: Mapping[tuple[str, str], str]
 ) -> Iterator[tuple[str, str, str]]:
-    """Kind, name and text of those in which the robot's name stands where the argument's default was:
-    of ``lbr_A1`` a file with ``$(var robot_name)_A1`` has ``A1``."""
+    """Yield kind, name and text of names in which the robot's name is where the argument's default
+    was: of ``lbr_A1`` a file with ``$(var robot_name)_A1`` has ``A1``."""
     for (kind, plain), text in own.items():
         rest = text.removeprefix(robot)
         if robot and rest != text and rest[:1] in ("_", "/") and plain.endswith(rest):

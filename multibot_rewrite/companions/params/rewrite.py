@@ -93,10 +93,8 @@ def rewrite_params(
 
 
 def rewrite_values(job: ParamsJob) -> Companion:
-    """Parameters of one node with slots for a robot: nothing is inserted, and no other file is asked.
-
-    Raises InputError as ``rewrite_params``.
-    """
+    """Return parameters of one node with slots for a robot; no other file is read, nothing
+    inserted. Raises InputError as ``rewrite_params``."""
     with gc_paused():
         check_no_slots(job.document.text, job.document.file)
         file = read_params(job.document, job.context, job.known)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Topics of Gazebo that are made of names: ``/model/rover/joint/fin/cmd_thrust``.
 
-What one system makes of the model, a word of a parameter, a link, joint or sensor, another one may be
-told as a text. Both are one topic, so the names in the text are spelled as the system spells them.
+What one system makes of the model, a word of a parameter, a link, joint or sensor, another one may
+be told as a text. Both are one topic, so the names in the text are renamed as the system renames
+them.
 
 Sources: gazebosim/gz-sim src/Util.cc (scopedName), src/systems/thruster/Thruster.cc (a ``<namespace>``
 stands for the model), joint_controller, multicopter_motor_model (``<robotNamespace>``).
