@@ -13,7 +13,7 @@ from multibot_rewrite.base.conventions import (
     only_looks,
     team,
 )
-from multibot_rewrite.base.other_words import other_words
+from multibot_rewrite.base.nearest import other_words
 
 
 def test_topics_that_robots_share() -> None:

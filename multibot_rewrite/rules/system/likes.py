@@ -80,13 +80,13 @@ def _lost_of_likes(seen: Index) -> Iterator[Finding]:
 
 
 def _lost_descriptions(seen: Index, told: Set[str]) -> Iterator[Finding]:
-    """Robots that have all nodes of another one but robot_state_publisher, however few these are."""
+    """Find robots that have all nodes of another one but robot_state_publisher, however few."""
     made = made_of(seen)
     for robot, own in made.items():
         for other, its in made.items() if own.nodes and robot not in told else ():
             lost = [it for it in its.nodes if it not in own.nodes]
             if len(lost) == 1 and publishes_description(seen, its.nodes[lost[0]]):
-                yield _without(robot, other, lost, its)
+                yield from _lost_nodes(seen, made, robot, (other, robot), lost)
                 break
 
 
@@ -143,19 +143,15 @@ def _lost_nodes(
     like = next(it for it in likes if it != robot)
     keys = [key for key in made[like].ends if key[0] in lost]
     own = _waiting(seen, made, robot, keys)
-    if not own and len(likes) < 3:
+    theirs = sorted(made[like].nodes[it] for it in lost)
+    if not (own or len(likes) > 2 or any(publishes_description(seen, it) for it in theirs)):
         return
-    yield _without(robot, like, lost, made[like])._replace(names=own)
-
-
-def _without(robot: str, like: str, lost: Sequence[str], its: MadeOf) -> Finding:
-    theirs = sorted(its.nodes[it] for it in lost)
-    return lacks_what_its_likes_have.finding(
+    yield lacks_what_its_likes_have.finding(
         f"{robot} has no {shorten(sorted(it.strip('/') for it in lost), SEVERAL)}, as {like} has"
         f" ({shorten(theirs, SEVERAL)})",
         "start it for this robot too, if the two are to be equal",
-        robot=robot,
-    )
+        robot=robot, names=own,
+    )  # fmt: skip
 
 
 def _lost_ends(
