@@ -122,6 +122,24 @@ def test_diff_shows_and_writes_nothing(tmp_path: Path, capsysbinary: object) -> 
     assert err.endswith(b"\n") and b"mended" not in err
 
 
+def test_fix_writes_and_tells_what_is_left(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file, other = tmp_path / "r.urdf", tmp_path / "other.urdf"
+    file.write_bytes(FIXABLE.replace(b"<!-- kept -->", b"<link name='b'/>"))
+    other.write_bytes(FIXED)
+    file.chmod(0o640)
+    assert main([str(tmp_path), "--fix"]) == 1
+    out, err = capsys.readouterr()
+    assert file.read_bytes().count(b"xmlns") == 0
+    assert (file.stat().st_mode & 0o777, other.read_bytes()) == (0o640, FIXED)
+    assert [line.split()[2] for line in out.splitlines() if "note:" not in line] == ["MB501"]
+    assert f"fixed {file}" in err and "other.urdf" not in err
+    for words in (["--fix"], ["--fix", "--diff"]):
+        main([str(other), *words])
+        assert "urdf-lint: nothing that --fix can fix\n" in capsys.readouterr().err
+
+
 @pytest.mark.slow
 def test_what_is_found_through_another_file_is_not_lost(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]

@@ -104,6 +104,18 @@ def test_a_root_that_all_share_is_missed() -> None:
     assert "world -> robot1/base_link, and does not" in it.hint
 
 
+def test_transforms_that_are_gone_are_one_finding() -> None:
+    """The senders on a topic of all are known, not which of them sent a transform."""
+    sent = "earlier: transform world -> {} on /tf_static by /robot1/rsp, /robot2/rsp"
+    (it,) = held(*map(sent.format, ("dock", "gate")))
+    assert (it.code, it.node, it.robot, it.names) == ("MG130", "", "", ("dock", "gate"))
+    assert "world -> dock, world -> gate on /tf_static are gone" in it.message
+    # What a node that is gone may have sent is gone with it.
+    dead = sent.format("dock").replace("/robot1/rsp", "/robot2/mapper")
+    found = held(dead, f"earlier: /robot2/mapper subscribes /tf {TF}")
+    assert {it.code for it in found} == {"MG101"}
+
+
 def test_a_part_is_elsewhere() -> None:
     def moved(graph: System) -> System:
         turned = (0.0, 0.0, 1.2, 0.0, 0.0, 0.0, 1.0)
