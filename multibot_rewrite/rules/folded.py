@@ -5,7 +5,7 @@ below it, and what several nodes do alike, or one node does often, is one line."
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.bounded import own_rows
 from multibot_rewrite.base.findings.finding import (
@@ -18,64 +18,90 @@ from multibot_rewrite.base.findings.finding import (
 )
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import SEVERAL, shorten, unique
+from multibot_rewrite.rules.system.planned_ends import missing
 from multibot_rewrite.system.index import TF, Index, ends_of
-from multibot_rewrite.system.records import PUBLISHES, SERVES
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, End
 
 
-def _names(_: Index, cause: Finding, it: Finding) -> bool:
-    return not {*cause.names}.isdisjoint(it.names)
+def _ends(seen: Index | None, names: Iterable[str]) -> Iterator[End]:
+    """Yield the ends of these names, of whatever kind."""
+    return (end for name in names for end in ends_of(seen, name)) if seen else iter(())
 
 
-def _robot(_: Index, cause: Finding, it: Finding) -> bool:
-    return cause.robot == it.robot
+def _planned(seen: Index, it: Finding) -> Sequence[End]:
+    return seen.expected.by_node.get(it.node, ()) if seen.expected else ()
 
 
-def _served(seen: Index, cause: Finding, it: Finding) -> bool:
-    """Is what the second is about served by the node of the first?"""
-    return any(end.node == cause.node for name in it.names for end in ends_of(seen, name))
+def _lacked(seen: Index, it: Finding) -> Iterator[str]:
+    """Yield the names of a finding, and those that its node lacks by the plan."""
+    plan = seen.expected
+    lacks = (key[3] for key in missing(plan, seen) if key[0] == it.node) if plan else ()
+    return map(seen.plain, (*it.names, *lacks))
 
 
-def _same_node(seen: Index, cause: Finding, it: Finding) -> bool:
-    """Is the missing node of the first the one of the second, without its robot's name?"""
-    return seen.plain(cause.node) == it.node
+def _described(seen: Index, it: Finding) -> Iterable[str]:
+    """Return the robots of a description, by its topic and by its links."""
+    own = (one for one in seen.system.descriptions if one.topic in it.names)
+    return {it.robot, *(seen.frame_robot(link) for one in own for link in one.links)} - {""}
 
 
-def _two_robots(_: Index, cause: Finding, it: Finding) -> bool:
-    """Are the nodes of a whole robot there twice, and so what they send?"""
-    return len(cause.names) > 1 and cause.robot == it.robot
-
-
-def _sends_tf(seen: Index, cause: Finding, it: Finding) -> bool:
-    """Has the missing node to send its robot's tf, by the plan?"""
-    planned = seen.expected.by_node.get(cause.node, ()) if seen.expected else ()
-    tf = any((end.type, end.role) == (TF, PUBLISHES) for end in planned)
-    return tf and cause.robot == it.robot
-
-
-def _lacks_tf(seen: Index, cause: Finding, it: Finding) -> bool:
-    """Is it tf that the node of the first lacks, by the plan?"""
-    planned = ends_of(seen.expected, cause.names[0]) if seen.expected and cause.names else ()
-    return any(end.type == TF for end in planned) and cause.robot == it.robot
-
-
-def _described(seen: Index, cause: Finding, it: Finding) -> bool:
-    """Is it of the robot whose description it is, or of which it has the frames?"""
-    links = (
-        link for one in seen.system.descriptions if one.topic in cause.names for link in one.links
+def _givers(seen: Index, it: Finding) -> Iterator[str]:
+    """Yield the nodes that send a topic of these names in any robot, all without the robots' names."""
+    every = (
+        seen.of_robot(robot, TOPIC, plain)
+        for plain in map(seen.plain, it.names)
+        for robot in seen.robots
     )
-    return it.robot in {cause.robot, *map(seen.frame_robot, links)} - {""}
+    return (seen.plain(end.node) for ends in every if ends for end in ends.publishers)
 
 
-def _clock(seen: Index, cause: Finding, it: Finding) -> bool:
-    return is_about_a_clock(seen, cause) and cause.robot == it.robot
+def _frame_senders(seen: Index, it: Finding) -> Iterator[str]:
+    edges = (one for tree in seen.trees for one in tree.edges if one.child in it.names)
+    return (node for edge in edges for node in edge.publishers)
 
 
-# What a cause and what comes of it have in common -> does the first finding explain the second?
-_ALIKE = _names, _robot, _served, _same_node, _two_robots, _sends_tf, _lacks_tf, _described, _clock
-_IN_COMMON = {"anything": lambda *_: True, **{it.__name__[1:]: it for it in _ALIKE}}
+def _if(it: object) -> tuple[str, ...]:
+    return ("",) if it else ()
+
+
+# What a finding has in common with another one, by the words of explains.schema.
+_FACETS: Mapping[str, Callable[[Index, Finding], Iterable[str]]] = {
+    "anything": lambda seen, it: ("",),
+    "robot": lambda seen, it: (it.robot,),
+    "robot twice": lambda seen, it: (it.robot, "") if len(it.names) > 1 else (),
+    "node": lambda seen, it: filter(None, (it.node,)),
+    "plain node": lambda seen, it: (seen.plain(it.node),),
+    "names": lambda seen, it: it.names,
+    "plain names": lambda seen, it: map(seen.plain, it.names),
+    "frames": lambda seen, it: map(seen.plain_frame, it.names),
+    "users": lambda seen, it: (end.node for end in _ends(seen, it.names)),
+    "senders": lambda seen, it: (x.node for x in _ends(seen, it.names) if x.role == PUBLISHES),
+    "frame senders": _frame_senders,
+    "server": lambda seen, it: (seen.plain(name.rpartition("/")[0]) for name in it.names),
+    "givers": _givers,
+    "planned names": lambda seen, it: (seen.plain(end.name) for end in _planned(seen, it)),
+    "lacked names": _lacked,
+    "described robots": _described,
+    "a clock": lambda seen, it: _if(is_about_a_clock(seen, it)),
+    "no tf": lambda seen, it: _if(any(x.type == TF for x in _ends(seen.expected, it.names[:1]))),
+    "a sender of tf": lambda seen, it: _if(
+        any((end.type, end.role) == (TF, PUBLISHES) for end in _planned(seen, it))
+    ),
+}
+
+
+def _explains(seen: Index, cause: Finding, it: Finding, common: str) -> bool:
+    """Have both all of this in common: ``robot``, or ``server = node`` of the first and the second?"""
+    sides = ([*filter(None, one.split(" = "))] for one in common.split(" and "))
+    return all(
+        not {*_FACETS[side[0]](seen, cause)}.isdisjoint(_FACETS[side[-1]](seen, it))
+        for side in sides
+    )
+
+
 _EXPLAINS = own_rows(__file__, "explains.schema")
 # What several nodes have with one name is one of the first, what one node has so often of the second.
-_OF_NAMES = frozenset(("MG303", "MG306", "MG307"))
+_OF_NAMES = frozenset(("MG303", "MG306", "MG307", "MG501"))
 _OF_NODES = {"MG102": 2, "MG304": 3}
 _UNPLANNED = "MG108"
 # From bad to good.
@@ -101,7 +127,7 @@ def folded(seen: Index, found: Sequence[Finding]) -> list[Finding]:
             it for other in codes.split() for it in by_code.get(other, ()) if it not in gone
         ):
             # Each robot's cause has it, so that the robots' findings stay one.
-            why = [it for it in causes if _IN_COMMON[common](seen, found[it], found[at])]
+            why = [it for it in causes if _explains(seen, found[it], found[at], common)]
             for cause in why:
                 below[cause].append(at)
             gone.update([at] if why else [])
@@ -118,7 +144,8 @@ def _with_explained(it: Finding, explained: Sequence[Finding]) -> Finding:
     if not explained:
         return it
     first, *others = explained
-    more = f", and {shorten(unique(one.code for one in others))}" if others else ""
+    codes = [one.code for one in others if one.code != first.code]
+    more = f", and {shorten(codes)}" if codes else ""
     told = f"so {first.node or first.robot or 'tf'}: {first.message} ({first.code}{more})"
     level = min((it.level, *(one.level for one in explained)), key=_BAD.index)
     # Of one name each has the rules for a part of its nodes.
@@ -164,37 +191,35 @@ def _one_of(own: Sequence[Finding], code: str) -> Finding:
         remaps = first.remaps
     more = f"; the same for {shorten(same, SEVERAL)}" if same else ""
     names = unique(name for it in (first, *others) for name in it.names)
-    return first._replace(message=f"{first.message}{more}", names=names, remaps=remaps)
+    settings = tuple(dict.fromkeys(one for it in own for one in it.settings))
+    message = f"{first.message}{more}"
+    return first._replace(message=message, names=names, remaps=remaps, settings=settings)
 
 
 def _without_unplanned(seen: Index, found: Iterable[Finding]) -> list[Finding]:
-    """A node that is not planned is said with the error that it makes, if there is one."""
+    """A node that is not planned is said with the first finding about it, if there is one."""
     every = [*found]
     nodes = {it.node: at for at, it in enumerate(every) if it.code == _UNPLANNED}
-    gone = set()
+    gone: set[int] = set()
     for at, it in enumerate(every) if nodes else ():
-        if it.level == ERROR and it.code != _UNPLANNED:
-            left = [one for one in _makers(seen, it) if one in nodes and nodes[one] not in gone]
-            for node in left:
-                gone.add(nodes[node])
-                hint = f"{every[at].hint}; {node} is not in the plan"
-                every[at] = every[at]._replace(hint=hint)
+        users = _users(seen, it) if it.level in (ERROR, WARNING) and it.code != _UNPLANNED else ()
+        if left := [one for one in users if one in nodes and nodes[one] not in gone]:
+            gone.update(map(nodes.__getitem__, left))
+            verb = "is" if len(left) == 1 else "are"
+            hint = f"{it.hint}; {shorten(left, SEVERAL)} {verb} not in the plan"
+            every[at] = it._replace(hint=hint)
     return [it for at, it in enumerate(every) if at not in gone]
 
 
-def _makers(seen: Index, it: Finding) -> Sequence[str]:
-    """The nodes that send or serve what a finding is about."""
-    ends = (end for name in it.names for end in ends_of(seen, name))
-    sent = (end.node for end in ends if end.role in (PUBLISHES, SERVES))
-    edges = (one for tree in seen.trees for one in tree.edges if one.child in it.names)
-    own = (node for edge in edges for node in edge.publishers if seen.robot(node) == it.robot)
-    return unique((*sent, *own))
+def _users(seen: Index, it: Finding) -> Sequence[str]:
+    """The nodes that have the names that a finding is about, or send its frames."""
+    own = (node for node in _frame_senders(seen, it) if seen.robot(node) == it.robot)
+    return unique((*(end.node for end in _ends(seen, it.names)), *own))
 
 
 def is_about_a_clock(seen: Index, it: Finding) -> bool:
     """Is it about the time that nodes get?"""
-    ends = (end for name in it.names for end in ends_of(seen, name))
-    return any(end.type == "rosgraph_msgs/msg/Clock" for end in ends)
+    return any(end.type == "rosgraph_msgs/msg/Clock" for end in _ends(seen, it.names))
 
 
 def in_order(seen: Index, found: Iterable[Finding]) -> list[Finding]:

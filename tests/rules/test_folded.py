@@ -100,6 +100,73 @@ def test_a_relay_to_another_robot_is_why_it_has_two_senders() -> None:
     assert codes(told) == ["MG314"]
 
 
+FIX, POSE = "sensor_msgs/msg/NavSatFix", "geometry_msgs/msg/PoseWithCovarianceStamped"
+READS_FIX = [f"/robot{it}/navsat subscribes /robot{it}/fix {FIX}" for it in "12"]
+LOCALIZERS = [
+    line
+    for it in ("amcl", "slam")
+    for line in (f"{it} publishes /robot1/tf {TF}", f"{it} subscribes /robot1/scan {SCAN}")
+]
+# The first finding, what it names, and what comes of it.
+CAUSES = {
+    "a receiver sends on another robot's topic": (
+        [*READS_FIX, *(f"/robot{it}/gps publishes /robot1/fix {FIX}" for it in "12"),
+         "frame_id robot2/gps on /robot1/fix",
+         *(f"transform robot{it}/base_link -> robot{it}/gps on /tf_static" for it in "12")],
+        "MG311", "/robot1/fix:=fix to /robot2/gps", "MG320",
+    ),
+    "two robots take start poses from one topic": (
+        [*(f"/robot{it}/amcl subscribes /initialpose {POSE}" for it in "12"),
+         *(f"/robot{it}/pilot publishes /robot{it}/initialpose {POSE}" for it in "12")],
+        "MG310", "/initialpose", "(MG303)",
+    ),
+    "SLAM beside a map server and amcl": (
+        [f"/robot1/map_server publishes /robot1/map {MAP}", f"/robot1/slam publishes /robot1/map {MAP}",
+         *(f"/robot1/{it}" for it in LOCALIZERS), f"/robot1/lidar publishes /robot1/scan {SCAN}",
+         "transform map -> odom on /robot1/tf by /robot1/amcl, /robot1/slam twice",
+         "transform odom -> base_link on /robot1/tf by /robot1/driver"],
+        "MG323", "/robot1/slam", "(MG408)",
+    ),
+    "a manager waits for the map server that a robot lacks": (
+        [*(f"/robot{it}/amcl subscribes /robot{it}/map {MAP}" for it in "12"),
+         *(f"/robot{it}/lifecycle_manager calls /robot{it}/map_server/change_state {STATE}"
+           for it in "12"),
+         f"/robot1/map_server publishes /robot1/map {MAP}",
+         f"/robot1/map_server serves /robot1/map_server/change_state {STATE}"],
+        "MG322", "robot2 has no map_server", "(MG304)",
+    ),
+    "a localizer runs without its namespace": (
+        [f"/amcl subscribes /scan {SCAN}", f"/amcl serves /amcl/change_state {STATE}",
+         f"/robot1/lidar publishes /robot1/scan {SCAN}",
+         f"/robot1/lifecycle_manager calls /robot1/amcl/change_state {STATE}"],
+        "MG304", "__ns:=/robot1", "(MG303)",
+    ),
+    "the same twice": (
+        ["/move_group", "/move_group", f"/move_group subscribes /joint_states {CLOUD}",
+         *(f"/robot{it}/jsb publishes /robot{it}/joint_states {CLOUD}" for it in "12")],
+        "MG301", "/move_group", "",
+    ),
+    "a frame is its own parent": (
+        [f"/stp publishes /tf_static {TF}", "transform map -> map on /tf_static by /stp"],
+        "MG416", "its own parent", "(MG403)",
+    ),
+    "a localizer moves another frame than the base": (
+        [f"/robot1/amcl subscribes /robot1/initialpose {POSE}",
+         f"/robot1/amcl publishes /robot1/tf {TF}", "/robot2/amcl",
+         "transform map -> robot1/odom on /robot1/tf by /robot1/amcl",
+         "transform odom -> base_link on /robot1/tf by /robot1/driver"],
+        "MG415", "odom_frame_id: odom of /robot1/amcl", "",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CAUSES)
+def test_one_cause_is_one_finding(name: str) -> None:
+    lines, code, words, below = CAUSES[name]
+    (it,) = found(*lines)
+    assert it.code == code and words in str(it) and below in it.hint
+
+
 def test_another_robots_description_explains_its_frames() -> None:
     rsp = [f"/robot{it}/rsp publishes /tf_static {TF}" for it in "12"]
     both = "by /robot1/rsp, /robot2/rsp twice"

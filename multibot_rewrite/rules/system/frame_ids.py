@@ -44,7 +44,9 @@ def frame_id_of_another_robot(seen: Index) -> Iterator[Finding]:
     """By the names of frames: robots with a tf topic each may have the same ones."""
     frames = _by_topic(seen)
     for (frame, robot, senders), messages in _by_sender(seen).items():
-        if _is_of_another(seen, frame, robot, messages):
+        # A sender of the frame's robot has the wrong topic, not the wrong frame.
+        whose = {*map(seen.robot, senders)}
+        if _is_of_another(seen, frame, robot, messages) and seen.frame_robot(frame) not in whose:
             topics = [it.topic for it in messages if it.type.startswith(_MEASURED)]
             owner = seen.frame_robot(frame)
             message = f"{messages[0].field} of {shorten(topics)} is {frame}, a frame of {owner}"
