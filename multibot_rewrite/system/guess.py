@@ -112,11 +112,11 @@ def _namespaces(graph: System) -> list[str]:
 
 
 def _alike(graph: System, nodes: Iterable[str]) -> Iterator[str]:
-    """Yield namespaces beside each other with nodes of the same names, one of which has a topic of a
-    whole robot in each of them."""
+    """Yield namespaces beside each other with nodes of the same names: of one that has a topic of a
+    whole robot in each of them, or of two where the namespaces are numbered."""
     whole = {end.node for end in graph.ends if end.name.rpartition("/")[2] in _WHOLE}
     below: dict[str, dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
-    for node in (it for it in nodes if it in whole):
+    for node in nodes:
         space = node.rpartition("/")[0]
         while space:
             below[space.rpartition("/")[0]][space].add(node.removeprefix(space))
@@ -124,8 +124,9 @@ def _alike(graph: System, nodes: Iterable[str]) -> Iterator[str]:
     for spaces in below.values():
         times = Counter(name for names in spaces.values() for name in names)
         for space, names in spaces.items():
-            full = [f"{space}{it}" for it in names]
-            if any(times[name] > 1 for name in names) and _may_be_a_robot(space, full):
+            same = [f"{space}{it}" for it in names if times[it] > 1]
+            numbered = len(same) > 1 and _NUMBER.search(space.rpartition("/")[2])
+            if (numbered or not whole.isdisjoint(same)) and _may_be_a_robot(space, same):
                 yield space
 
 

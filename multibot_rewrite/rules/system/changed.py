@@ -86,8 +86,8 @@ def _changes(before: System, seen: Index) -> Iterator[_Change]:
             if (was := _said(old[key])) != (now := _said(end)) and not seen.is_tool(end.node):
                 what = f"{DOES[end.role]} {end.name} as {now}, and did as {was}"
                 yield _Change(end.node, what, (end.name,))
-        elif obeyed := _is_obeyed(seen, end):
-            what = f"{DOES[end.role]} {end.name}, and did not; {obeyed} obeys it"
+        elif heeded := _heeded(seen, end):
+            what = f"{DOES[end.role]} {end.name}, and did not; {heeded}"
             yield _Change(end.node, what, (end.name,), ERROR)
         elif end.node in nodes and not seen.is_tool(end.node):
             yield _Change(end.node, f"{DOES[end.role]} {end.name}, and did not", (end.name,))
@@ -116,14 +116,21 @@ def _said(end: End) -> str:
     return " ".join((end.type, *qos_words(end)))
 
 
-def _is_obeyed(seen: Index, end: End) -> str:
-    """Who does what a new sender orders, tools as well; empty for nobody."""
-    ends, others = seen.ends_at(end.kind, end.name), list[End]()
-    if end.kind == TOPIC and end.role == PUBLISHES and end.name in seen.orders:
-        others = at_work(ends.subscribers)
-    elif end.kind == ACTION and end.role == CALLS and not seen.is_tool(end.node):
-        others = [*ends.servers]
-    return next((it.node for it in others if it.node != end.node), "")
+def _heeded(seen: Index, end: End) -> str:
+    """Say who does what a new sender orders, or takes its data for those of another one, tools as well;
+    empty for nobody."""
+    ends = seen.ends_at(end.kind, end.name)
+    senders, readers = (
+        [it.node for it in at_work(own) if it.node != end.node]
+        for own in (ends.publishers, (*ends.subscribers, *ends.servers))
+    )
+    orders = (end.kind, end.role) == (ACTION, CALLS) or end.name in seen.orders
+    if end.role not in (PUBLISHES, CALLS) or not readers:
+        return ""
+    if orders:
+        return f"{readers[0]} obeys it"
+    data = end.kind == TOPIC and words.kind_of_data(end.name, end.type)
+    return f"{readers[0]} reads it, and {senders[0]} sends it as well" if data and senders else ""
 
 
 def _transforms(before: System, seen: Index) -> Iterator[_Change]:
@@ -172,18 +179,20 @@ def _is_moved(old: Edge, new: Edge) -> bool:
 
 
 def _frames(before: System, seen: Index) -> Iterator[_Change]:
-    """The frames that messages name, of topics from which some came both times."""
-    old, new = (
-        sets_by_key(
-            (it.topic, " -> ".join(filter(None, (it.frame, it.child))) or shorten(it.joints))
-            for it in system.heard
-        )
-        for system in (before, seen.system)
-    )
-    for topic, frames in new.items():
-        if topic in old and frames != old[topic]:
-            was, now = (shorten(sorted(it)) or "nothing" for it in (old[topic], frames))
+    """What messages name, of topics from which some came both times."""
+    old, new = (sets_by_key(_named(it)) for it in (before, seen.system))
+    for topic, names in new.items():
+        if topic in old and names != old[topic]:
+            both = (old[topic] - names, names - old[topic])
+            was, now = (shorten(sorted(it)) or "nothing else" for it in both)
             yield _Change("", f"messages on {topic} are of {now}, and were of {was}", (topic,))
+
+
+def _named(system: System) -> Iterator[tuple[str, str]]:
+    """Yield the topics with the frames and joints that their messages name, and descriptions."""
+    for it in system.heard:
+        yield it.topic, " -> ".join(filter(None, (it.frame, it.child))) or shorten(it.joints)
+    yield from ((it.topic, name) for it in system.descriptions for name in (*it.links, *it.joints))
 
 
 def _parameters(before: System, seen: Index) -> Iterator[_Change]:

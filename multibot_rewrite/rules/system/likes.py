@@ -255,9 +255,9 @@ def _slow_transforms(seen: Index) -> Iterator[Finding]:
         best = max(own.values(), key=lambda it: it.rate)
         for robot, it in own.items():
             if it.rate * RATIO <= best.rate:
-                said = f"{it.parent} -> {it.child} on {it.topic} comes at {it.rate:.1f} Hz"
+                said, other = (f"{one.parent} -> {one.child} on {one.topic}" for one in (it, best))
                 yield less_than_another_robot.finding(
-                    f"{said}, {best.parent} -> {best.child} at {best.rate:.1f} Hz",
+                    f"{said} comes at {it.rate:.1f} Hz, {other} at {best.rate:.1f} Hz",
                     "see the node that sends it, and the processor time that it has",
                     robot=robot, names=(it.child, it.topic),
                 )  # fmt: skip
