@@ -140,7 +140,7 @@ def folded(seen: Index, found: Sequence[Finding]) -> list[Finding]:
 
 
 def _with_explained(it: Finding, explained: Sequence[Finding]) -> Finding:
-    """A cause is as bad as what comes of it."""
+    """Return a cause with its consequences in the hint, at the worst of their levels."""
     if not explained:
         return it
     first, *others = explained
@@ -156,14 +156,14 @@ def _with_explained(it: Finding, explained: Sequence[Finding]) -> Finding:
 
 
 def of_one_target(rules: Iterable[Remap]) -> tuple[Remap, ...]:
-    """The rules without those that lead one name of a node to two: it serves several robots."""
+    """Return the rules, except those that lead one name of a node to two targets."""
     each = tuple(dict.fromkeys(rules))
     targets = Counter((it.node, it.old) for it in each)
     return tuple(it for it in each if targets[it.node, it.old] == 1)
 
 
 def _alike(found: Iterable[Finding]) -> Iterator[Finding]:
-    """What nodes have alike, each group at the place of its first and worst."""
+    """Yield the findings; those that several nodes share become one, at the first and worst."""
     groups: dict[tuple[object, ...], list[Finding]] = {}
     for it in found:
         key: tuple[object, ...] = (it,)
@@ -223,7 +223,7 @@ def is_about_a_clock(seen: Index, it: Finding) -> bool:
 
 
 def in_order(seen: Index, found: Iterable[Finding]) -> list[Finding]:
-    """The findings by their kind of cause, then by level: notes come last."""
+    """Return the findings by their kind of cause, then by level; notes come last."""
     return sorted(found, key=lambda it: (it.level == NOTE, *_place(seen, it), it.code))
 
 
