@@ -47,12 +47,9 @@ def _described(seen: Index, it: Finding) -> Iterable[str]:
 
 def _givers(seen: Index, it: Finding) -> Iterator[str]:
     """Yield the nodes that send a topic of these names in any robot, all without the robots' names."""
-    every = (
-        seen.of_robot(robot, TOPIC, plain)
-        for plain in map(seen.plain, it.names)
-        for robot in seen.robots
-    )
-    return (seen.plain(end.node) for ends in every if ends for end in ends.publishers)
+    for plain in map(seen.plain, it.names):
+        own = (seen.of_robot(robot, TOPIC, plain) for robot in seen.robots)
+        yield from (seen.plain(end.node) for ends in own if ends for end in ends.publishers)
 
 
 def _frame_senders(seen: Index, it: Finding) -> Iterator[str]:
@@ -91,8 +88,9 @@ _FACETS: Mapping[str, Callable[[Index, Finding], Iterable[str]]] = {
 
 
 def _explains(seen: Index, cause: Finding, it: Finding, common: str) -> bool:
-    """Have both all of this in common: ``robot``, or ``server = node`` of the first and the second?"""
-    sides = ([*filter(None, one.split(" = "))] for one in common.split(" and "))
+    """Return whether both have all of this in common: ``robot``, or ``server = node``, of the cause and
+    of what comes of it."""
+    sides = (one.split(" = ") for one in common.split(" and "))
     return all(
         not {*_FACETS[side[0]](seen, cause)}.isdisjoint(_FACETS[side[-1]](seen, it))
         for side in sides
@@ -197,7 +195,7 @@ def _one_of(own: Sequence[Finding], code: str) -> Finding:
 
 
 def _without_unplanned(seen: Index, found: Iterable[Finding]) -> list[Finding]:
-    """A node that is not planned is said with the first finding about it, if there is one."""
+    """Return the findings; an unplanned node is named in the first one about it, if there is one."""
     every = [*found]
     nodes = {it.node: at for at, it in enumerate(every) if it.code == _UNPLANNED}
     gone: set[int] = set()
@@ -212,7 +210,7 @@ def _without_unplanned(seen: Index, found: Iterable[Finding]) -> list[Finding]:
 
 
 def _users(seen: Index, it: Finding) -> Sequence[str]:
-    """The nodes that have the names that a finding is about, or send its frames."""
+    """Return the nodes that have the names that a finding is about, or send its frames."""
     own = (node for node in _frame_senders(seen, it) if seen.robot(node) == it.robot)
     return unique((*(end.node for end in _ends(seen, it.names)), *own))
 

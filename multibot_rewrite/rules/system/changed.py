@@ -117,8 +117,8 @@ def _said(end: End) -> str:
 
 
 def _heeded(seen: Index, end: End) -> str:
-    """Say who does what a new sender orders, or takes its data for those of another one, tools as well;
-    empty for nobody."""
+    """Return who does what a new sender orders, or takes its data for those of another one, tools as
+    well; empty for nobody."""
     ends = seen.ends_at(end.kind, end.name)
     senders, readers = (
         [it.node for it in at_work(own) if it.node != end.node]
@@ -179,7 +179,7 @@ def _is_moved(old: Edge, new: Edge) -> bool:
 
 
 def _frames(before: System, seen: Index) -> Iterator[_Change]:
-    """What messages name, of topics from which some came both times."""
+    """Yield changes of what messages name, for topics with messages both times."""
     old, new = (sets_by_key(_named(it)) for it in (before, seen.system))
     for topic, names in new.items():
         if topic in old and names != old[topic]:

@@ -332,8 +332,8 @@ def _without_prefix(nodes: Iterable[str]) -> Cause:
 
 
 def who_can_send(seen: Index, nodes: Sequence[str], edges: Sequence[Edge]) -> Sequence[str]:
-    """The nodes that can send one of these, below the map those that see where it is; all, where fewer
-    than two would be left."""
+    """Return the nodes that can send one of these transforms, below the map those that see where it is;
+    all if fewer than two are left."""
     found = [node for node in nodes if any(_can_send(seen, node, it) for it in edges)]
     if all(seen.plain_frame(it.parent) in WORLD_FRAMES for it in edges):
         seeing = [it for it in found if any(end.type in _SEEN for end in _read(seen, it))]
