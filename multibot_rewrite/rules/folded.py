@@ -57,10 +57,6 @@ def _frame_senders(seen: Index, it: Finding) -> Iterator[str]:
     return (node for edge in edges for node in edge.publishers)
 
 
-def _if(it: object) -> tuple[str, ...]:
-    return ("",) if it else ()
-
-
 # What a finding has in common with another one, by the words of explains.schema.
 _FACETS: Mapping[str, Callable[[Index, Finding], Iterable[str]]] = {
     "anything": lambda seen, it: ("",),
@@ -79,10 +75,10 @@ _FACETS: Mapping[str, Callable[[Index, Finding], Iterable[str]]] = {
     "planned names": lambda seen, it: (seen.plain(end.name) for end in _planned(seen, it)),
     "lacked names": _lacked,
     "described robots": _described,
-    "a clock": lambda seen, it: _if(is_about_a_clock(seen, it)),
-    "no tf": lambda seen, it: _if(any(x.type == TF for x in _ends(seen.expected, it.names[:1]))),
-    "a sender of tf": lambda seen, it: _if(
-        any((end.type, end.role) == (TF, PUBLISHES) for end in _planned(seen, it))
+    "a clock": lambda seen, it: ("",) * is_about_a_clock(seen, it),
+    "no tf": lambda seen, it: ("" for x in _ends(seen.expected, it.names[:1]) if x.type == TF),
+    "sent tf": lambda seen, it: (
+        "" for x in _planned(seen, it) if x.type == TF and x.role == PUBLISHES
     ),
 }
 
@@ -98,9 +94,11 @@ def _explains(seen: Index, cause: Finding, it: Finding, common: str) -> bool:
 
 
 _EXPLAINS = own_rows(__file__, "explains.schema")
-# What several nodes have with one name is one of the first, what one node has so often of the second.
-_OF_NAMES = frozenset(("MG303", "MG306", "MG307", "MG501"))
-_OF_NODES = {"MG102": 2, "MG304": 3}
+# What so many findings of a code have in common that are one.
+_ONE_OF = {
+    **dict.fromkeys(("MG303", "MG306", "MG307", "MG501"), ("names", 2)),
+    **{"MG102": ("node", 2), "MG304": ("node", 3), "MG101": ("robot", 3), "MG322": ("robot", 3)},
+}
 _UNPLANNED = "MG108"
 # From bad to good.
 _BAD = (ERROR, INCONCLUSIVE, WARNING, NOTE)
@@ -164,23 +162,22 @@ def _alike(found: Iterable[Finding]) -> Iterator[Finding]:
     """Yield the findings; those that several nodes share become one, at the first and worst."""
     groups: dict[tuple[object, ...], list[Finding]] = {}
     for it in found:
-        key: tuple[object, ...] = (it,)
-        if it.code in _OF_NAMES and it.node:
-            key = it.code, it.names
-        elif it.code in _OF_NODES and it.node:
-            key = it.code, it.node
-        groups.setdefault(key, []).append(it)
-    for (code, *_), own in groups.items():
-        if len(own) == 1 or len(own) < _OF_NODES.get(str(code), 0):
+        by, _ = _ONE_OF.get(it.code, ("", 0))
+        common = (it.code, getattr(it, by, ""), it.hint if by == "robot" else "")
+        one = not it.remaps and it.robot if by == "robot" else it.node
+        groups.setdefault(common if by and one else (it,), []).append(it)
+    for own in groups.values():
+        code = own[0].code
+        if len(own) == 1 or len(own) < _ONE_OF[code][1]:
             yield from own
         else:
-            yield _one_of(own, str(code))
+            yield _one_of(own, code)
 
 
 def _one_of(own: Sequence[Finding], code: str) -> Finding:
     first = min(own, key=lambda it: _BAD.index(it.level))
     others = [it for it in own if it is not first]
-    if code in _OF_NAMES:
+    if _ONE_OF[code][0] == "names" or code == "MG101":
         same = unique(it.node for it in others if it.node != first.node)
     else:
         same = unique(it.names[0] for it in others if it.names)
@@ -212,7 +209,7 @@ def _without_unplanned(seen: Index, found: Iterable[Finding]) -> list[Finding]:
 def _users(seen: Index, it: Finding) -> Sequence[str]:
     """Return the nodes that have the names that a finding is about, or send its frames."""
     own = (node for node in _frame_senders(seen, it) if seen.robot(node) == it.robot)
-    return unique((*(end.node for end in _ends(seen, it.names)), *own))
+    return unique((it.node, *(end.node for end in _ends(seen, it.names)), *own))
 
 
 def is_about_a_clock(seen: Index, it: Finding) -> bool:

@@ -18,7 +18,7 @@ from multibot_rewrite.rules.system.matching import qos_words
 from multibot_rewrite.rules.system.planned_nodes import missing_node, missing_robot, unplanned_node
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Index, at_work
-from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, TOPIC, Edge, End, System
+from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, Edge, End, System
 
 # In metres and parts of a quaternion.
 _SAME = 1e-3
@@ -63,8 +63,6 @@ def untold(found: Iterable[Finding]) -> list[Finding]:
         it._replace(level=ERROR) if it.level == WARNING and errors & {*it.names} else it
         for it in every
     ]
-    led = {it.node for it in every if it.code == changed_since.code and it.level == ERROR}
-    every = [it for it in every if it.code != unplanned_node.code or it.node not in led]
     others = [it for it in every if it.code != changed_since.code]
     names = {name for it in others for name in it.names}
     came = (missing_node.code, unplanned_node.code)
@@ -120,17 +118,16 @@ def _heeded(seen: Index, end: End) -> str:
     """Return who does what a new sender orders, or takes its data for those of another one, tools as
     well; empty for nobody."""
     ends = seen.ends_at(end.kind, end.name)
-    senders, readers = (
+    readers, others = (
         [it.node for it in at_work(own) if it.node != end.node]
-        for own in (ends.publishers, (*ends.subscribers, *ends.servers))
+        for own in ((*ends.subscribers, *ends.servers), ends.publishers)
     )
-    orders = (end.kind, end.role) == (ACTION, CALLS) or end.name in seen.orders
     if end.role not in (PUBLISHES, CALLS) or not readers:
         return ""
-    if orders:
+    if end.kind == ACTION or end.name in seen.orders:
         return f"{readers[0]} obeys it"
-    data = end.kind == TOPIC and words.kind_of_data(end.name, end.type)
-    return f"{readers[0]} reads it, and {senders[0]} sends it as well" if data and senders else ""
+    twice = others and words.kind_of_data(end.name, end.type)
+    return f"{readers[0]} reads it, and {others[0]} sends it as well" if twice else ""
 
 
 def _transforms(before: System, seen: Index) -> Iterator[_Change]:

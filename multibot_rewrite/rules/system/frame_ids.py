@@ -163,7 +163,6 @@ def _topics_of_frames(seen: Index) -> Mapping[str, Sequence[str]]:
 
 
 @once
-@once
 def _senders_of(seen: Index) -> Mapping[str, str]:
     """Return the node that sends a frame, of the first tree in which only one does."""
     edges = [it for tree in seen.trees for it in tree.edges if len(it.publishers) == 1]

@@ -207,12 +207,11 @@ def less_than_another_robot(seen: Index) -> Iterator[Finding]:
         most = seen.known.messages[best]
         for robot, name in there.items() if most >= ENOUGH else ():
             count = seen.known.messages[name]
-            if not count:
-                message = f"{name} has no message, {best} has {most}"
-                yield less_than_another_robot.finding(message, robot=robot, names=(name,))
-            elif count * RATIO <= most and seen.known.seconds:
+            message = "" if count else f"{name} has no message, {best} has {most}"
+            if count and count * RATIO <= most and seen.known.seconds:
                 slow, usual = (f"{it / seen.known.seconds:.1f} Hz" for it in (count, most))
                 message = f"{name} came at {slow}, {best} at {usual}"
+            if message:
                 yield less_than_another_robot.finding(message, robot=robot, names=(name,))
 
 
