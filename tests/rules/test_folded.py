@@ -101,6 +101,7 @@ def test_a_relay_to_another_robot_is_why_it_has_two_senders() -> None:
 
 
 FIX, POSE = "sensor_msgs/msg/NavSatFix", "geometry_msgs/msg/PoseWithCovarianceStamped"
+JOINTS, GOAL = "sensor_msgs/msg/JointState", "moveit_msgs/action/MoveGroup"
 READS_FIX = [f"/robot{it}/navsat subscribes /robot{it}/fix {FIX}" for it in "12"]
 LOCALIZERS = [
     line
@@ -149,6 +150,29 @@ CAUSES = {
     "a frame is its own parent": (
         [f"/stp publishes /tf_static {TF}", "transform map -> map on /tf_static by /stp"],
         "MG416", "its own parent", "(MG403)",
+    ),
+    "nothing of a robot's controllers runs": (
+        [*(f"/robot2/{it} publishes /robot2/{it}/joint_states {JOINTS}" for it in "abc"),
+         *(f"/robot{at}/{it} subscribes /robot{at}/{part}/joint_states {JOINTS}"
+           for at in "12" for it, part in zip(("rsp", "pilot", "eyes"), "abc", strict=True))],
+        "MG322", "robot1 has no a", "",
+    ),
+    "a root hangs on nothing": (
+        [*(f"/robot{at}/{it}" for at in "12" for it in ("rsp", "pilot", "eyes")),
+         *(f"/robot{at}/rsp publishes /tf_static {TF}" for at in "12"),
+         "transform world -> robot1/base_link on /tf_static by /robot1/rsp",
+         *(f"transform robot{at}/base_link -> robot{at}/arm on /tf_static by /robot{at}/rsp"
+           for at in "12")],
+        "MG328", "robot2 has no transform of base_link", "",
+    ),
+    "a planner outside calls below the server's node": (
+        [f"/robot1/move_group serves /robot1/move_action {GOAL}", "/robot2/move_group",
+         f"/robot2/move_group serves /robot2/move_action {GOAL}",
+         f"/planner calls /robot1/move_group/move_action {GOAL}",
+         f"/planner calls /robot2/move_action {GOAL}",
+         *(f"/robot{at}/base subscribes /robot{at}/cmd_vel {TWIST}" for at in "12"),
+         *(f"/robot{at}/pilot publishes /robot{at}/cmd_vel {TWIST}" for at in "12")],
+        "MG304", "/robot1/move_group/move_action:=/robot1/move_action", "",
     ),
     "a localizer moves another frame than the base": (
         [f"/robot1/amcl subscribes /robot1/initialpose {POSE}",
@@ -205,6 +229,19 @@ def test_a_missing_node_explains_the_tree_that_it_joins() -> None:
         "running: transform wheel -> base_link on /robot1/tf by /robot1/amcl"
     )
     assert codes(check(plan, graph))[0] == "MG101"
+
+
+def test_several_nodes_that_do_not_run_are_one_line() -> None:
+    nodes = ("controller_manager", "joint_state_broadcaster", "gripper_controller")
+    lines = [f"planned: /robot1/{it}" for it in nodes] + [
+        "as planned: /robot1/rsp",
+        "planned: /robot2/x",
+    ]
+    plan, graph = read_example("\n".join([*lines, "running: /robot2/x"]))
+    (it,) = check(plan, graph)
+    assert it.code == "MG101" and all(f"/robot1/{one}" in it.message for one in nodes)
+    plan, graph = read_example("\n".join([*lines[1:], "running: /robot2/x"]))
+    assert codes(check(plan, graph)) == ["MG101", "MG101"]
 
 
 def test_tf_that_a_node_lacks_explains_the_frames_that_are_missed() -> None:
