@@ -157,6 +157,16 @@ CAUSES = {
            for at in "12" for it, part in zip(("rsp", "pilot", "eyes"), "abc", strict=True))],
         "MG322", "robot1 has no a", "",
     ),
+    "one filter sends on a topic of its robot, all others on /tf": (
+        [*(f"/robot{at}/{it} publishes {topic} {TF}" for at, it, topic in (
+            (1, "rsp", "/tf"), (1, "amcl", "/tf"), (1, "ekf", "/robot1/tf"),
+            (2, "rsp", "/tf"), (2, "amcl", "/tf"), (2, "ekf", "/tf"))),
+         *(f"transform {parent} -> robot{at}/{child} on /tf by /robot{at}/rsp, /robot{at}/amcl"
+           for at in "12" for parent, child in (("map", "odom"), (f"robot{at}/base_link", "laser"))),
+         "transform robot1/odom -> robot1/base_link on /robot1/tf by /robot1/ekf",
+         "transform robot2/odom -> robot2/base_link on /tf by /robot2/ekf"],
+        "MG405", "/robot1/ekf sends tf on /robot1/tf, but the tf of robot1 is on /tf", "",
+    ),
     "a root hangs on nothing": (
         [*(f"/robot{at}/{it}" for at in "12" for it in ("rsp", "pilot", "eyes")),
          *(f"/robot{at}/rsp publishes /tf_static {TF}" for at in "12"),
