@@ -24,6 +24,9 @@ FIXABLE = (
     b"  <link  name='a' /><!-- kept -->\r\n"
     b"</robot>"
 )
+FIXED = (
+    b"<?xml version=\"1.0\"?>\r\n<robot name='r'>\r\n  <link  name='a' /><!-- kept -->\r\n</robot>"
+)
 
 
 def spliced(data: bytes, edits: set[Edit]) -> bytes:

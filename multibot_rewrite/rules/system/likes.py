@@ -226,12 +226,11 @@ def less_than_another_robot(seen: Index) -> Iterator[Finding]:
         most = seen.known.messages[best]
         for robot, name in there.items() if most >= ENOUGH else ():
             count = seen.known.messages[name]
-            if not count:
-                message = f"{name} has no message, {best} has {most}"
-                yield less_than_another_robot.finding(message, robot=robot, names=(name,))
-            elif count * RATIO <= most and seen.known.seconds:
+            message = "" if count else f"{name} has no message, {best} has {most}"
+            if count and count * RATIO <= most and seen.known.seconds:
                 slow, usual = (f"{it / seen.known.seconds:.1f} Hz" for it in (count, most))
                 message = f"{name} came at {slow}, {best} at {usual}"
+            if message:
                 yield less_than_another_robot.finding(message, robot=robot, names=(name,))
 
 
@@ -275,9 +274,9 @@ def _slow_transforms(seen: Index) -> Iterator[Finding]:
         best = max(own.values(), key=lambda it: it.rate)
         for robot, it in own.items():
             if it.rate * RATIO <= best.rate:
-                said = f"{it.parent} -> {it.child} on {it.topic} comes at {it.rate:.1f} Hz"
+                said, other = (f"{one.parent} -> {one.child} on {one.topic}" for one in (it, best))
                 yield less_than_another_robot.finding(
-                    f"{said}, {best.parent} -> {best.child} at {best.rate:.1f} Hz",
+                    f"{said} comes at {it.rate:.1f} Hz, {other} at {best.rate:.1f} Hz",
                     "see the node that sends it, and the processor time that it has",
                     robot=robot, names=(it.child, it.topic),
                 )  # fmt: skip
