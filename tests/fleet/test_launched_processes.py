@@ -876,6 +876,9 @@ CONDITIONS = """
         ExecuteProcess(cmd=['/usr/bin/thing'], condition=IfCondition(joy)),
         TimerAction(period=1.0, actions=[here('late')], condition=IfCondition(joy)),
         OpaqueFunction(function=lambda context: [here('made', condition=IfCondition(joy))]),
+        ComposableNodeContainer(package='rclcpp_components', executable='component_container',
+            name='box', namespace='', composable_node_descriptions=[
+                ComposableNode(package='acme', plugin='acme::P', condition=IfCondition(joy))]),
 """
 
 
@@ -886,7 +889,7 @@ def test_what_a_condition_keeps_out_is_named_with_the_arguments_that_decide(
     setup = """from launch.conditions import LaunchConfigurationEquals, UnlessCondition
     from launch.substitutions import PythonExpression
     joy, mode = LaunchConfiguration('joy'), LaunchConfiguration('mode')"""
-    assert told(actions(tmp_path, CONDITIONS, setup)) == ["yes"]
+    assert told(actions(tmp_path, CONDITIONS, setup)) == ["yes", "component_container"]
     text = (tmp_path / "out/fleet.launch.py").read_text()
     comments = " ".join(it.strip("# ") for it in text.splitlines() if it.strip()[:1] == "#")
     left = dict(it.split(" (", 1) for it in comments.split("Not started: ")[1:])
@@ -897,6 +900,7 @@ def test_what_a_condition_keeps_out_is_named_with_the_arguments_that_decide(
         "thing": "joy:=false",
         "acme late": "joy:=false",
         "acme made": "joy:=false",
+        "acme acme::P": "joy:=false",
     }, "joy decides more than what it turns on"
     capsys.readouterr()
     words = ["init", str(tmp_path), "--launch", str(tmp_path / "up.launch.py"), "-o", "-", "--yes"]
@@ -914,7 +918,7 @@ def test_what_a_condition_keeps_out_is_named_with_the_arguments_that_decide(
 SWITCHES = """
         *[DeclareLaunchArgument(it, default_value=value) for it, value in {
             'joy': 'true', 'mock': 'False', 'both': 'true', 'mode': 'a', 'sim': 'true',
-            'rviz': 'true', 'cam': 'false', 'two': 'False', 'log': 'false'}.items()],
+            'rviz': 'true', 'cam': 'false', 'two': 'False', 'log': 'false', 'part': 'true'}.items()],
         here('stick', condition=IfCondition(joy)),
         here('driver', condition=UnlessCondition(LaunchConfiguration('mock'))),
         here('fake', condition=IfCondition(PythonExpression(["'", both, "' == 'false'"]))),
@@ -926,6 +930,11 @@ SWITCHES = """
         GroupAction([first], condition=IfCondition(LaunchConfiguration('sim'))),
         here('map', condition=IfCondition(LaunchConfiguration('rviz'))),
         here('camera', condition=IfCondition(LaunchConfiguration('cam'))),
+        ComposableNodeContainer(package='rclcpp_components', executable='component_container',
+            name='box', namespace='', composable_node_descriptions=[ComposableNode(package='acme',
+                plugin='acme::P', name='p', condition=IfCondition(LaunchConfiguration('part')))]),
+        here('with_part', condition=IfCondition(LaunchConfiguration('part'))),
+        here('instead', condition=UnlessCondition(LaunchConfiguration('part'))),
         GroupAction([ExecuteProcess(cmd=['record', 'a']), IncludeLaunchDescription([
             FindPackageShare('gone'), '/launch/x.launch.py']),
             here('quiet', condition=IfCondition(LaunchConfiguration('log'))),
@@ -948,7 +957,7 @@ OFF = ["camera", "record", "IncludeLaunchDescription"]
         ({"joy": "false"}, ["stick", "inner", "TimerAction", "late", *OFF]),
         ({"mock": "true"}, ["driver", "inner", *OFF]),
         ({"sim": "0"}, ["OnProcessExit of first", "after", "first", *OFF]),
-        ({"mode": "b", "both": "false", "rviz": "false"}, OFF),
+        ({"mode": "b", "both": "false", "rviz": "false", "part": "false"}, OFF),
     ],
 )
 def test_a_launch_argument_turns_off_or_on_what_its_condition_starts(
@@ -962,14 +971,14 @@ def test_a_launch_argument_turns_off_or_on_what_its_condition_starts(
     first = here('first')"""
     found = told(actions(tmp_path, SWITCHES, setup, given={"robots": "2", **given}))
     every = ["stick", "driver", "real", "other", "inner", "TimerAction", "late", "first", "map"]
-    every += ["OnProcessExit of first", "after", *OFF]
+    every += ["OnProcessExit of first", "after", "with_part", *OFF]
     left = [it for it in every if it not in gone]
     assert {it: found.count(it) for it in every} == {it: 2 * (it in left) for it in every}
     text = (tmp_path / "out/fleet.launch.py").read_text()
     declared = text.split("def generate_launch_description")[1]
     own = {
         it: f"            '{it}',\n                default_value=" in declared
-        for it in ("joy", "mock", "sim", "both", "mode", "rviz", "cam", "two", "log")
+        for it in ("joy", "mock", "sim", "both", "mode", "rviz", "cam", "two", "log", "part")
     }
     kept = ("joy", "mock", "sim", "cam", "two")
     assert own == dict.fromkeys(own, False) | dict.fromkeys(kept, True)

@@ -103,7 +103,8 @@ def with_switches(it: FleetStarts, others: Collection[str]) -> FleetStarts:
     values = lists_by_key(
         dict.fromkeys((name, (off == name, value)) for off, (name, value) in rows)
     )
-    taken = {*OWN_ARGUMENTS, *others}
+    inside = (part.process.switches for one in it.every for part in one.components)
+    taken = {*OWN_ARGUMENTS, *others, *(name for pairs in inside for name, _ in pairs)}
     own = {name: its[0] for name, its in values.items() if len(its) == 1 and name not in taken}
     robots = [one._replace(starts=_switched(one.starts, own)) for one in it.robots]
     made = it._replace(shared=_switched(it.shared, own), robots=robots)

@@ -12,7 +12,7 @@ from contextlib import suppress
 from functools import cache
 from inspect import getsource
 from linecache import getline
-from types import FunctionType, MethodType
+from types import FunctionType, MethodType, SimpleNamespace
 from typing import Any
 
 from multibot_rewrite.producers.launch.describe import (
@@ -229,8 +229,11 @@ def _loaded(entity: Any, seen: Visit) -> Iterable[Any] | None:
 def _components(descriptions: Iterable[Any] | None, container: str, seen: Visit) -> None:
     for it in descriptions or ():
         condition = it.condition() if callable(getattr(it, "condition", None)) else None
-        if condition is None or seen.every or condition.evaluate(seen.context):
-            seen.nodes.append(component(it, container, seen))
+        names = {"node_package": it.package, "node_executable": it.node_plugin}
+        action = SimpleNamespace(condition=condition, **names)
+        if wants(action, seen):
+            here = seen._replace(switches=(*seen.switches, *switches_of(action, seen)))
+            seen.nodes.append(component(it, container, here))
 
 
 def _process(entity: Any, seen: Visit) -> Iterable[Any] | None:
