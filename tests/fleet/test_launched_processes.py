@@ -1141,19 +1141,26 @@ DOCK = (
 
 
 @pytest.mark.parametrize(
-    ("layout", "prefix"),
-    [("tf-per-robot", "dock/"), ("frames-per-robot", "robot2/dock/"), ("both", "robot2/dock/")],
+    ("layout", "prefix", "rule"),
+    [
+        ("tf-per-robot", "dock/", ""),
+        ("frames-per-robot", "robot2/dock/", ""),
+        ("both", "robot2/dock/", ""),
+        ("both", "robot2/dock/", "remappings=[('robot_description', 'dock_description')],"),
+    ],
 )
 def test_a_second_publisher_sends_what_the_launch_file_gives_it(
-    layout: str, prefix: str, tmp_path: Path
+    layout: str, prefix: str, rule: str, tmp_path: Path
 ) -> None:
     """The robot's own tree is sent once; two trees with one base_link would be one frame with two
-    parents."""
+    parents. By a rule for its topic it is the second one wherever it is."""
     (tmp_path / "dock.urdf").write_text(DOCK)
     given = f"'robot_description': open({str(tmp_path / 'dock.urdf')!r}).read()"
     rsp = "Node(package='robot_state_publisher', executable='robot_state_publisher'"
-    body = f"""{rsp}, parameters=[{{'robot_description': '<robot/>'}}]),
-        {rsp}, namespace='dock', parameters=[{{{given}, 'frame_prefix': 'dock/'}}]),"""
+    body = [
+        f"{rsp}, parameters=[{{'robot_description': '<robot/>'}}]),",
+        f"{rsp}, namespace='dock', {rule} parameters=[{{{given}, 'frame_prefix': 'dock/'}}]),",
+    ]
     own, dock = (
         {
             name: one
@@ -1161,7 +1168,9 @@ def test_a_second_publisher_sends_what_the_launch_file_gives_it(
             if isinstance(row, dict)
             for name, one in row.items()
         }
-        for it in actions(tmp_path, body, layout=layout)
+        for it in actions(tmp_path, "".join(body[:: -1 if rule else 1]), layout=layout)[
+            :: -1 if rule else 1
+        ]
         if it.values.get("package") == "robot_state_publisher"
     )
     assert own["robot_description"] == (tmp_path / "out/robot2/robot.urdf").read_text()
