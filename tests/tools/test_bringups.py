@@ -68,6 +68,8 @@ def test_a_simulator_is_there_by_its_launch_file() -> None:
     assert where(compare([server, program], classic, ROBOTS)) == ["once", "missing"]
     assert where(compare([Process("", "gazebo", words=("-r",))], classic, ROBOTS)) == ["once"]
     assert is_named(classic[0], "left: gazebo_ros gzserver (sim.launch.py:30)")
+    script, moved = (Process("", "python3", words=(f"/{it}/show.py",)) for it in ("a", "b/c"))
+    assert where(compare([script], [moved], ROBOTS)) == ["once"]
     old, new = Process("ros_ign_gazebo", "create"), Process("ros_gz_sim", "create")
     assert where(compare([old], of_each(new), ROBOTS)) == ["each"]
 

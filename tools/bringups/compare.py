@@ -189,7 +189,7 @@ def _key(process: Process, robot: str) -> tuple[str, ...]:
     if process.program in STATIC:
         return ("static", *(bare(it, robot) for it in frames(process)))
     if not process.package:
-        return (process.program, *(bare(it, robot) for it in process.words[:1]))
+        return (process.program, *(str(value(it, robot)) for it in process.words[:1]))
     package = RENAMED.get(process.package, process.package)
     return (package, os.path.basename(process.program))
 
