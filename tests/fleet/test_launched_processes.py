@@ -1003,21 +1003,25 @@ ODOMETRY = """<gazebo>
       <plugin filename="gz-sim-odometry-publisher-system" name="gz::sim::systems::OdometryPublisher">
       <odom_topic>/model/bot/odometry</odom_topic><odom_frame>odom</odom_frame>
       <robot_base_frame>base_link</robot_base_frame></plugin></gazebo></robot>"""
+TWO_OF_THEM = ODOMETRY.replace("</robot>", ODOMETRY.replace("<odom_frame>odom", "<odom_frame>map"))
 
 
-@pytest.mark.parametrize("is_bridged", [True, False])
+@pytest.mark.parametrize(
+    ("is_bridged", "systems"), [(True, ODOMETRY), (False, ODOMETRY), (False, TWO_OF_THEM)]
+)
 def test_transforms_of_a_system_are_bridged_where_no_node_sends_them(
-    is_bridged: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    is_bridged: bool, systems: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The vendor's bridge has other topics, and his filter places the robot: two would do so."""
+    """The vendor's bridge has other topics, and his filter places the robot, or another system does:
+    two would do so."""
     values = "{'world_frame': 'odom', 'base_link_frame': 'base_link', 'publish_tf': True}"
     body = """Node(package='ros_gz_bridge', executable='parameter_bridge',
             arguments=['/model/bot/odometry@nav_msgs/msg/Odometry[gz.msgs.Odometry']),"""
-    if not is_bridged:
+    if not is_bridged and systems == ODOMETRY:
         body += "Node(package='robot_localization', executable='ekf_node', name='ekf_filter_node',"
         body += f"parameters=[{values}]),"
     with pytest.MonkeyPatch.context() as patched:
-        patched.setitem(globals(), "DESCRIPTION", DESCRIPTION.replace("</robot>", ODOMETRY))
+        patched.setitem(globals(), "DESCRIPTION", DESCRIPTION.replace("</robot>", systems))
         actions(tmp_path, body, more="simulator: gazebo")
     rows = yaml.safe_load((tmp_path / "out/robot1/bridge.yaml").read_text())
     types = {it["ros_type_name"] for it in rows}
