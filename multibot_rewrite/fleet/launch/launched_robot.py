@@ -71,12 +71,10 @@ def _with_off(graph: LaunchGraph, given: Collection[str]) -> LaunchGraph:
     fixed = {name for it in graph.nodes for name, _ in it.process.switches}
     fixed |= {name for it in graph.idle if not it.is_off for name, _ in it.asked}
     fixed.update(OWN_ARGUMENTS, given, (it.process.off for it in graph.off if graph.robots))
-    off = [it for it in graph.off if it.process.off not in fixed]
-    values = {name: value for it in off for name, value in it.process.switches}
-    switched = (it._replace(later=f"with {it.process.off}:={values[it.process.off]}") for it in off)
+    off = tuple(it for it in graph.off if it.process.off not in fixed)
     names = {it.process.off for it in off}
     idle = tuple(it for it in graph.idle if not it.is_off or it.asked[0][0] not in names)
-    return graph._replace(nodes=(*graph.nodes, *switched), idle=idle)
+    return graph._replace(nodes=(*graph.nodes, *off), idle=idle)
 
 
 def _read(order: LaunchOrder) -> LaunchGraph:

@@ -107,14 +107,13 @@ def visit(entity: Any, seen: Visit) -> None:
 def _is_kept_off(entity: Any, here: Visit, on: tuple[str, str]) -> bool:
     """Keep what an action would start with the value of an argument that turns it ``on``, if that is
     known whole, and is nothing that a fleet starts by itself."""
-    name, value = on
     apart = here._replace(nodes=[], notes=[], waiting=[], unread=[], includes=[], idle=[])
-    apart = apart._replace(numbers={**here.numbers}, switches=(*here.switches, on), off_by=name)
-    context, before = here.context, here.context.launch_configurations[name]
+    apart = apart._replace(numbers={**here.numbers}, off_by=on[0], later=f"with {':='.join(on)}")
+    context, before = here.context, here.context.launch_configurations[on[0]]
     context._push_launch_configurations()
     context._push_environment()
     try:
-        context.launch_configurations[name] = value
+        context.launch_configurations.update([on])
         visit(entity, apart)
     except RecursionError:
         return False
@@ -128,8 +127,8 @@ def _is_kept_off(entity: Any, here: Visit, on: tuple[str, str]) -> bool:
         here.notes.extend(it._replace(parameters=True) for it in apart.notes if it.missing)
         return False
     here.off.extend(apart.nodes)
-    what = called(entity, context)
-    here.idle.append(IdleAction(here.place, what, ((name, before),), is_off=True))
+    asked = ((on[0], before),)
+    here.idle.append(IdleAction(here.place, called(entity, context), asked, is_off=True))
     return True
 
 
