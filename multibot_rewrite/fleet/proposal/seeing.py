@@ -41,6 +41,7 @@ from multibot_rewrite.fleet.proposal.looking import (
 )
 from multibot_rewrite.fleet.proposal.searching import Found, Undecided, search
 from multibot_rewrite.producers.launch.records import LaunchOrder
+from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 
 # Descriptions of a folder that are looked at.
 MOST = 60
@@ -129,11 +130,25 @@ def _seen(wanted: Wanted, found: Found) -> Seen:
         beside = [look_at(it) for it in _partners(named[0], found)]
         return Seen(found, [_with_partner(named[0], beside, wanted)], True, (), named)
     launched = look_at_all(launched_descriptions(found))
+    if found.named and not launched:
+        _refuse_to_guess(found)
     if not any(it.fault or _is_robot(it) for it in launched):
         return _likeliest(wanted, found, look_at_all(found.descriptions))
     # Those that no launch file loads are not looked at then.
     known = {it.path for it in launched}
     return _likeliest(wanted, found, launched, [it for it in found.every if it not in known])
+
+
+def _refuse_to_guess(found: Found) -> None:
+    """Raise UsageError where the part of a launch file is not known that publishes a description of
+    several."""
+    several, graphs = len(found.descriptions), [it.graph for it in found.read]
+    unread = [it for graph in graphs for it in graph.notes if not it.parameters and it.missing]
+    if several > 1 and unread and not any(STATE_PUBLISHER in it.packages for it in graphs):
+        where = f"{unread[0].place.file}:{unread[0].place.line}"
+        what = f"which of {several} descriptions it loads is not known: {unread[0].message}"
+        other = f"or name it: multibot init DESCRIPTION {shlex.join(found.words)}"
+        raise UsageError(f"{where}: {what}; {other}")
 
 
 def _is_robot(it: Looked) -> bool:
