@@ -1102,6 +1102,30 @@ def test_a_command_asks_for_the_manager_of_its_robot(
     assert told == [it.format(manager) for it in expected]
 
 
+def test_a_manager_of_what_runs_once_for_all_runs_once(tmp_path: Path) -> None:
+    body = """Node(package='nav2_map_server', executable='map_server',
+            parameters=[{'yaml_filename': '/maps/hall.yaml'}]),
+        Node(package='nav2_lifecycle_manager', executable='lifecycle_manager', name='manager',
+            parameters=[{'autostart': True, 'node_names': ['map_server']}]), here('first'),"""
+    found = actions(tmp_path, body)
+    managers = [it.values for it in found if it.values.get("executable") == "lifecycle_manager"]
+    assert [it["parameters"][-1]["node_names"] for it in managers] == [["map_server"]]
+    assert "Not started: manager (what it manages" in (tmp_path / "out/fleet.launch.py").read_text()
+
+
+@pytest.mark.parametrize(
+    ("layout", "windows"), [("both", ["robot1", "robot2"]), ("frames-per-robot", [""])]
+)
+def test_a_window_without_a_config_that_is_here_opens_for_each_robot_or_for_all(
+    layout: str, windows: list[str], tmp_path: Path
+) -> None:
+    body = """Node(package='rviz2', executable='rviz2', arguments=['-d', [
+        FindPackageShare('gone'), '/a.rviz']]), here('first'),"""
+    found = actions(tmp_path, body, layout=layout, given={"robots": "2"})
+    seen = [it.values for it in found if it.values.get("package") == "rviz2"]
+    assert [it.get("namespace", "").strip("/") for it in seen] == windows
+
+
 SHOWN = """Visualization Manager:
   Global Options:
     Fixed Frame: map
