@@ -1109,7 +1109,7 @@ def test_a_manager_of_what_runs_once_for_all_runs_once(tmp_path: Path) -> None:
             parameters=[{'autostart': True, 'node_names': ['map_server']}]), here('first'),"""
     found = actions(tmp_path, body)
     managers = [it.values for it in found if it.values.get("executable") == "lifecycle_manager"]
-    assert [it["parameters"][-1]["node_names"] for it in managers] == [["map_server"]]
+    assert [it["parameters"][0]["node_names"] for it in managers] == [["map_server"]]
     assert "Not started: manager (what it manages" in (tmp_path / "out/fleet.launch.py").read_text()
 
 
