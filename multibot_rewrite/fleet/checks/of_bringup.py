@@ -117,8 +117,8 @@ def _described(graph: LaunchGraph, text: str) -> LaunchGraph:
 
 
 def _is_in(errors: Iterable[_Error], it: Finding, seen: Index, robot: str) -> bool:
-    """Is a finding about a fleet one of the errors of this robot alone, which may name more? Nodes of
-    other robots have no part in it, nor nodes that its own launch files do not start."""
+    """Return whether a finding about a fleet is an error of this robot alone, which may name more.
+    Nodes of other robots have no part in it, nor nodes that its own launch files do not start."""
     own = _error(it, seen)
     alike = [one for one in errors if one.code == own.code and own.names <= one.names]
     known = {part for one in alike for part in one.parts}

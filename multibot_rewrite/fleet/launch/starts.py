@@ -82,7 +82,7 @@ class FleetStarts(NamedTuple):
 
 
 def launch_arguments(it: FleetStarts) -> Iterator[tuple[str, str | File, str]]:
-    """The launch arguments: name, default, what it is."""
+    """Yield the launch arguments: name, default, what it is."""
     yield "robots", "", "only these: robot1,robot2, or so many: 2"
     yield "use_sim_time", str(it.use_sim_time).lower(), "whether all nodes use /clock"
     if any(start.condition == RVIZ for start in it.every):

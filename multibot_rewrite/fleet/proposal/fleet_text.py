@@ -127,7 +127,7 @@ def _flow(value: Any) -> str:
 def _of_member(
     member: Member, folder: str, layout: str
 ) -> Iterator[tuple[str, tuple[Any, tuple[str, ...]]]]:
-    """The keys of a description and its files, each with the reasons."""
+    """Yield the keys of a description and its files, each with the reasons."""
 
     def here(path: str) -> str:
         return os.path.relpath(path, folder)
@@ -195,7 +195,7 @@ def _some(rows: Iterable[str]) -> Iterator[str]:
 
 
 def _needed(it: Looked) -> Iterator[str]:
-    """What nobody gave and the xacro cannot do without, and what makes it simulated or real."""
+    """Yield comments on arguments that the xacro needs, and on its simulated-or-real switch."""
     arguments = dict(it.arguments)
     if it.switch:
         yield f"{it.switch} is the switch between the simulated and the real robot"

@@ -14,7 +14,7 @@ from multibot_rewrite.producers.launch.records import IdleAction
 
 
 def wants(action: Any, seen: Visit) -> bool:
-    """Does the condition of an action hold, as far as conditions count? What it keeps out is kept."""
+    """Return whether an action's condition holds, as far as conditions count; a false one is kept."""
     if seen.every:
         return True
     watched = _Watched(seen.context)

@@ -99,7 +99,7 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
 
 
 def _tried(order: LaunchOrder, folder: str, missing: list[str]) -> LaunchGraph | None:
-    """The graph; None where something was ``missing`` that is stood in for now."""
+    """Return the graph; None if something was ``missing`` that now has a stand-in."""
     try:
         graph = _visited(_described(order), order)
     except UnreadableError:
@@ -136,13 +136,13 @@ def _stand_in_for(error: BaseException, folder: str, missing: list[str]) -> None
 
 
 def _lost(notes: Iterable[LaunchNote]) -> list[str]:
-    """The packages that are missing where something was started."""
+    """Return the packages that are missing where something was started."""
     return list(dict.fromkeys(it.missing for it in notes if it.missing))
 
 
 def read_own(file: str, folder: str) -> LaunchGraph:
-    """The same of a launch file that ``build`` wrote, read by the stand-in in this process; ``folder``
-    is for temporary files. Raises as ``read_graph``."""
+    """Return the graph of a launch file that ``build`` wrote, read by the stand-in in this process;
+    ``folder`` is for temporary files. Raises as ``read_graph``."""
     before, order = tempfile.tempdir, LaunchOrder(file)
     name = "launch_ros.substitutions"
     with standing_in(**{name: {**contents()[name], "FindPackageShare": _Share}}):
@@ -205,7 +205,7 @@ def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:
 
 
 def _lost_variables(seen: Visit, path: str) -> tuple[LaunchNote, ...]:
-    """What is said of variables with folders that are there only while launch files are read."""
+    """Return notes on variables with folders that exist only while launch files are read."""
     before, now = seen.before, seen.context.environment.items()
     new = (name for name, it in now if before.get(name) != it and GONE in real_paths(it))
     said = (f"the environment variable {it} has a folder of installed packages" for it in new)
@@ -214,8 +214,8 @@ def _lost_variables(seen: Visit, path: str) -> tuple[LaunchNote, ...]:
 
 
 def _declared(description: Any) -> tuple[LaunchArgument, ...]:
-    """The arguments of a launch file and of what it includes, each once; a default that is made of
-    others is not known."""
+    """Return the arguments of a launch file and of what it includes, each once; a default made from
+    others is unknown."""
     found: dict[str, LaunchArgument] = {}
     for it, _ in getattr(description, ASKED)():
         given = it.default_value
@@ -228,8 +228,8 @@ def _declared(description: Any) -> tuple[LaunchArgument, ...]:
 
 
 def _with_unset(notes: Iterable[LaunchNote], path: str) -> Iterator[LaunchNote]:
-    """An included file fails without a launch configuration that nothing before it sets. That of the
-    file itself may be given to it, and what is not known may set one."""
+    """Yield the notes; an included file fails without a launch configuration that nothing before it
+    sets. The file itself may be given one, and what is unknown may set one."""
     known = True
     for it in notes:
         unset = it.unset and it.place.file != path
@@ -239,7 +239,7 @@ def _with_unset(notes: Iterable[LaunchNote], path: str) -> Iterator[LaunchNote]:
 
 
 def _described(order: LaunchOrder) -> Any:
-    """The description that the file makes."""
+    """Return the launch description that the file makes."""
     sources = of_launch("launch_description_sources")
     source = sources.AnyLaunchDescriptionSource(os.path.abspath(order.file))
     made = source.get_launch_description(of_launch().LaunchContext(noninteractive=True))

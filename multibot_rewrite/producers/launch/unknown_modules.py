@@ -26,7 +26,7 @@ def add_unknown(name: str) -> None:
 
 
 def is_unknown(value: object) -> bool:
-    """Is it such a package, or something taken of it?"""
+    """Return whether it is such a package, or something taken from it."""
     return isinstance(value, Unknown | _Module)
 
 
@@ -59,7 +59,7 @@ class Unknown:
         return found
 
     def __mro_entries__(self, _: tuple[object, ...]) -> tuple[type]:
-        """A class that has it for its base: what it takes of the base is unknown."""
+        """Return a base class for one that extends this: what it takes from the base is unknown."""
         own = {"_multibot_module": self._multibot_module, "__init__": lambda *_, **__: None}
         return (type("Base", (Unknown,), own),)
 
@@ -116,7 +116,7 @@ class _Finder:
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """The module itself, and whatever is below it."""
+        """Return the module itself, and whatever is below it."""
         mine = fullname == self._name or fullname.startswith(f"{self._name}.")
         return ModuleSpec(fullname, cast(Any, self), is_package=True) if mine else None
 

@@ -244,7 +244,7 @@ def _process(entity: Any, seen: Visit) -> Iterable[Any] | None:
 
 
 def _later(entity: Any, seen: Visit) -> Iterable[Any] | None:
-    """The actions of a timer or an event handler wait for the end of the description."""
+    """Keep the actions of a timer or an event handler for the end of the description."""
     if not wants(entity, seen):
         return None
     timer = _is(entity, "TimerAction")
@@ -267,7 +267,7 @@ def _later(entity: Any, seen: Visit) -> Iterable[Any] | None:
 
 
 def _wait(actions: Iterable[Any], word: str, seen: Visit, timer: bool = False) -> None:
-    """A timer keeps the locals of the context; what is ours is kept by event handlers, too
+    """Keep actions with their context's locals: all for a timer, ours for an event handler, too
     (launch/context.py)."""
     actions, known = [*actions], seen.context.get_locals_as_dict()
     kept = {key: it for key, it in known.items() if timer or key.startswith(_OURS)}
@@ -279,7 +279,7 @@ def _wait(actions: Iterable[Any], word: str, seen: Visit, timer: bool = False) -
 
 
 def _ended(entity: Any, seen: Visit) -> None:
-    """What ``on_exit`` of a program starts."""
+    """Keep what ``on_exit`` of a program starts."""
     actions = getattr(entity, "_ExecuteLocal__on_exit", None)
     if not callable(actions):
         seen = seen._replace(delay=0.0, event="OnProcessExit", target=entity)
