@@ -1114,7 +1114,7 @@ def test_a_manager_of_what_runs_once_for_all_runs_once(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("layout", "windows"), [("both", ["robot1", "robot2"]), ("frames-per-robot", [""])]
+    ("layout", "windows"), [("both", ["robot1", "robot2"]), ("frames-per-robot", ["out"])]
 )
 def test_a_window_without_a_config_that_is_here_opens_for_each_robot_or_for_all(
     layout: str, windows: list[str], tmp_path: Path
@@ -1123,7 +1123,7 @@ def test_a_window_without_a_config_that_is_here_opens_for_each_robot_or_for_all(
         FindPackageShare('gone'), '/a.rviz']]), here('first'),"""
     found = actions(tmp_path, body, layout=layout, given={"robots": "2"})
     seen = [it.values for it in found if it.values.get("package") == "rviz2"]
-    assert [it.get("namespace", "").strip("/") for it in seen] == windows
+    assert [Path(it["arguments"][1]).parent.name for it in seen] == windows
 
 
 SHOWN = """Visualization Manager:

@@ -146,7 +146,7 @@ def link_share(name: str, folder: str, share: str) -> None:
 
 
 def _by_cmake(name: str, folder: str) -> Iterator[tuple[str, str]]:
-    """What is installed under another path than it has: that path, and the source."""
+    """Yield what is installed under another path than it has: that path, and the source."""
     text = ""
     with suppress(OSError, UnicodeDecodeError):
         text = Path(folder, "CMakeLists.txt").read_text("utf-8")
@@ -174,7 +174,7 @@ def _by_module(name: str, folder: str) -> Iterator[tuple[str, str]]:
 
 
 def _link(folder: str, path: list[str], source: str) -> None:
-    """A link below a folder that may be one itself: then it becomes a folder of links."""
+    """Make a link below a folder that may be one itself: then it becomes a folder of links."""
     if os.path.islink(folder):
         real = os.path.realpath(folder)
         os.unlink(folder)

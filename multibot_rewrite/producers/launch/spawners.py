@@ -170,9 +170,9 @@ def _parser(names: str) -> _Parser:
 def under_managers(
     spawned: Iterable[Spawned], started: Collection[str]
 ) -> tuple[list[Spawned], list[Finding]]:
-    """The controllers, those of a manager that is not among the ``started`` ones under the one that
-    is meant; as they are where there is none, or more than one. With it findings of spawners that ask
-    for another manager than the one that runs."""
+    """Return the controllers, those of a manager that is not among the ``started`` ones under the one
+    that is meant; as they are where there is none, or more than one. With them findings of spawners
+    that ask for another manager than the one that runs."""
     meant = next(iter(started)) if len(started) == 1 else ""
     every = tuple(spawned)
     lost = [it for it in every if meant and it.manager not in started]
