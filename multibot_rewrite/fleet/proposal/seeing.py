@@ -41,6 +41,7 @@ from multibot_rewrite.fleet.proposal.looking import (
 )
 from multibot_rewrite.fleet.proposal.searching import Found, Undecided, search
 from multibot_rewrite.producers.launch.records import LaunchOrder
+from multibot_rewrite.producers.launch.source_packages import ROOTS
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 
 # Descriptions of a folder that are looked at.
@@ -100,12 +101,12 @@ def see(wanted: Wanted) -> Seen:
             raise
         # Nothing of the launch file is dropped in silence.
         graphs = [it.graph for it in found.read]
-        rows = [(said_of(it), it.place) for graph in graphs for it in graph.nodes]
+        rows = [(said_of(it).partition(": ")[0], it.place) for one in graphs for it in one.nodes]
         unread = (it for graph in graphs for it in graph.notes if not it.parameters)
-        rows += [(it.message, it.place) for it in unread]
+        rows += [(it.message.replace(f"; {ROOTS}", ""), it.place) for it in unread]
         texts = (f"{text} ({os.path.basename(at.file)}:{at.line})" for text, at in rows)
         listed = "; ".join(dict.fromkeys(texts))
-        file = os.path.relpath(found.named[0].file)
+        file = os.path.basename(found.named[0].file)
         raise UsageError(f"{error}; so nothing of {file} is in a fleet: {listed}") from None
 
 
