@@ -138,7 +138,7 @@ def sees_nothing(subject: Subject) -> Iterator[Problem]:
 
 
 def unusable_numbers(subject: Subject) -> Iterator[Problem]:
-    """Steps of no time, reductions of 0, minima of a plugin above their maxima."""
+    """Yield steps of no time, reductions of 0, and minima of a plugin above their maxima."""
     every = subject.elements.every
     for physics in every("physics"):
         above = physics.getparent()
@@ -162,7 +162,7 @@ def unusable_numbers(subject: Subject) -> Iterator[Problem]:
 
 
 def _none_of(inner: _Element, paths: tuple[str, ...] = ()) -> Iterator[Problem]:
-    """The numbers at these paths that are not above 0, and what is below it."""
+    """Yield the numbers at these paths that are not above 0, and the path below each."""
     for path in (*paths, *_NOT_BELOW_0):
         value = number_at(inner, path)
         if value is not None and (value < 0 or (value == 0 and path in paths)):
@@ -222,7 +222,7 @@ def _misspelt_library(
 
 
 def misspelt_libraries(subject: Subject) -> Iterator[Problem]:
-    """Libraries in no vocabulary."""
+    """Yield the libraries without a plugin definition."""
     for host in subject.inventory.hosts:
         section, name = host.node.section, host.element.get("filename", "").strip()
         if host.element.tag != "plugin" or not section or not is_unknown(section) or not name:
@@ -235,8 +235,8 @@ def misspelt_libraries(subject: Subject) -> Iterator[Problem]:
 
 
 def misspelt_hardware(subject: Subject) -> Iterator[Problem]:
-    """Yield the classes that are in no vocabulary and in none of the sources; another package may have
-    what the known ones do not."""
+    """Yield the classes without a plugin definition that are in none of the sources; another
+    package may have what the known ones do not."""
     for system in subject.elements.tops("ros2_control"):
         for it in system.iterfind("hardware/plugin"):
             name = text_of(it)
@@ -272,7 +272,7 @@ def library_of_ignition(subject: Subject) -> Iterator[Problem]:
 
 
 def _slip_of_library(name: str, known: Iterable[str]) -> str:
-    """The same for a library: what all of a family have in common does not make two alike."""
+    """Return the known library that was meant; what all of a family share does not make two alike."""
     start, end = next((it for it in FAMILIES if name.startswith(it[0])), ("", ""))
     stems = {
         it.removeprefix(start).removesuffix(end): it
@@ -283,7 +283,7 @@ def _slip_of_library(name: str, known: Iterable[str]) -> str:
 
 
 def _slip(name: str, known: Iterable[str]) -> str:
-    """The known name that was meant; one that is a part of the other is a name of its own."""
+    """Return the known name that was meant; empty if one is part of the other, or another word."""
     near = slip_of(name, known)
     part = near in name or name in near
     # Is a word in place of another one without a letter of it, as ``my`` of ``uuv``?
