@@ -161,7 +161,7 @@ def test_a_section_of_the_vocabulary_as_docs_stacks_md_has_it(tmp_path: Path) ->
         row = ("plugin", "mine", "2", "acme::Mine", "2", "acme/camera 1.0")
         assert [*inspect._list([section])] == [Grid(columns, [row])]
     assert "" in [*inspect.details([section, section])], "an empty line is between two"
-    said = "no plugin, class, element, sensor type, rule or file has this name"
+    said = "no plugin, node, class, element, sensor type, rule or file has this name"
     for name, hint in (
         ("qqqqqq", "multibot inspect lists all"), ("mines", "the nearest known: mine"),
         ("undeclared-lnk", "the nearest known: undeclared-link"),
@@ -358,9 +358,10 @@ def test_what_a_rename_changes_and_leaves(capsys: pytest.CaptureFixture[str]) ->
     assert capsys.readouterr().err.splitlines() == [
         "multibot: link a -> b: 3 places in 2 files; verified, 2 descriptions not read",
         "multibot: not checked: p: odd", "multibot: not checked: q",
-        f"multibot: left as they are: {len(left)} lines with 'a'",
-        *(f"multibot:   {it}" for it in left[:-1]),
+        f"multibot: left as they are: {len(left)} lines with 'a': {', '.join(left[:-1])} and 1 more",
     ]  # fmt: skip
+    rename._tell(options(**{**vars(given), "verbose": False}), options(**more))  # type: ignore[arg-type]
+    assert capsys.readouterr().err.endswith(f": {', '.join(left[:5])} and {len(left) - 5} more\n")
 
 
 def test_what_a_package_takes_from_now_on(capsys: pytest.CaptureFixture[str]) -> None:
@@ -439,6 +440,7 @@ def test_headings_and_names_are_painted() -> None:
          "unknown option --dry-run; --diff does that,"
          " which urdf-postfix, urdf-lint, multibot rename take"),
         (["--xyzabc"], "unknown option --xyzabc"),
+        (["--github"], "unknown option --github; use --format github"),
         # Dashes are not counted.
         (["--fxxrm"], "unknown option --fxxrm; did you mean '--form'?"),
         (["a", "b"], "unexpected b"),

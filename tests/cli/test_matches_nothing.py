@@ -64,7 +64,10 @@ BESIDE = "urdf-postfix params.yaml robot1 --urdf rover.urdf -o out/p.yaml"
             f"{REWRITE} --shared scan",
             "no frame 'scan'; topics are written with a slash: --shared /sc",
         ),
-        (f"{REWRITE} --shared /nosuch", "--shared /nosuch: the input has no topic '/nosuch'\n"),
+        (
+            f"{REWRITE} --shared /nosuch",
+            "has no topic '/nosuch'; its topics are ",
+        ),
         (f"{REWRITE} --shared map,/scann", "no topic '/scann'; did you mean '/scan'?"),
         (f"{REWRITE} --shared base_lnk", "no frame 'base_lnk'; did you mean 'base_link'?"),
         (f"{REWRITE} --shared /base_link", "frames have no slash: --shared base_link"),

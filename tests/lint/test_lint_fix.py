@@ -24,6 +24,9 @@ FIXABLE = (
     b"  <link  name='a' /><!-- kept -->\r\n"
     b"</robot>"
 )
+FIXED = (
+    b"<?xml version=\"1.0\"?>\r\n<robot name='r'>\r\n  <link  name='a' /><!-- kept -->\r\n</robot>"
+)
 
 
 def spliced(data: bytes, edits: set[Edit]) -> bytes:
@@ -120,6 +123,24 @@ def test_diff_shows_and_writes_nothing(tmp_path: Path, capsysbinary: object) -> 
     assert b"-<robot name='r' xmlns:x" in out
     assert b"+<robot name='r'>\r\n" in out
     assert err.endswith(b"\n") and b"mended" not in err
+
+
+def test_fix_writes_and_tells_what_is_left(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file, other = tmp_path / "r.urdf", tmp_path / "other.urdf"
+    file.write_bytes(FIXABLE.replace(b"<!-- kept -->", b"<link name='b'/>"))
+    other.write_bytes(FIXED)
+    file.chmod(0o640)
+    assert main([str(tmp_path), "--fix"]) == 1
+    out, err = capsys.readouterr()
+    assert file.read_bytes().count(b"xmlns") == 0
+    assert (file.stat().st_mode & 0o777, other.read_bytes()) == (0o640, FIXED)
+    assert [line.split()[2] for line in out.splitlines() if "note:" not in line] == ["MB501"]
+    assert f"fixed {file}" in err and "other.urdf" not in err
+    for words in (["--fix"], ["--fix", "--diff"]):
+        main([str(other), *words])
+        assert "urdf-lint: nothing that --fix can fix\n" in capsys.readouterr().err
 
 
 @pytest.mark.slow

@@ -9,7 +9,7 @@ from collections.abc import Callable
 import pytest
 from graph_examples import read_system
 
-from multibot_rewrite.producers.ros.described import DescriptionSamples, described
+from multibot_rewrite.producers.ros.headers import DescriptionSamples, described
 from multibot_rewrite.rules.check import judge
 from multibot_rewrite.system.domains import named, side_by_side, space_of
 from multibot_rewrite.system.json import from_json, to_json

@@ -19,6 +19,7 @@ from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.evidence.filling import filled
 from multibot_rewrite.producers.sources import expressions, files
 from multibot_rewrite.producers.sources.facts import NodeSource, node_of_program
+from multibot_rewrite.producers.sources.records import parameter_in
 from multibot_rewrite.spelling.of_runs import ends_of, with_names
 from multibot_rewrite.spelling.records import Given, Run
 from multibot_rewrite.system.records import NOWHERE, RUNS, End
@@ -382,6 +383,12 @@ def test_a_transform_is_sent_where_its_parameter_says_so(
     unit, call = acme / "src/driver.cpp", "broadcaster_->sendTransform"
     unit.write_text(unit.read_text().replace(call, f"{guard}{call}"))
     assert [it.condition for it in read("driver_node", acme).facts.sends] == [condition]
+
+
+def test_a_frame_with_a_parameter_in_it_is_not_that_parameter() -> None:
+    """``self.space + "/base_link"``: no node has a parameter of that name."""
+    texts = ("<@space>", "<@space>/base_link", "x/<@space>", "<@a><@b>")
+    assert [*map(parameter_in, texts)] == ["space", "", "", ""]
 
 
 def test_a_program_of_an_install_rule(acme: Path) -> None:

@@ -74,6 +74,11 @@ def graph(nodes: str, topics: str, frames: str = "") -> System:
         ("/a/x /ab/x", "/a/tf /ab/tf", ["a", "ab"]),
         # Whole where the last words are alike.
         ("/x/a/n /y/a/n /b/n", "/x/a/tf /y/a/tf /b/tf", ["b", "x/a", "y/a"]),
+        # Numbered, with two nodes of the same names, whatever they have.
+        ("/robot1/x /robot1/y /robot2/x /robot2/y", "/chatter", ["robot1", "robot2"]),
+        ("/robot1/x /robot1/y /robot2/x", "/chatter", []),
+        ("/robot1/x /robot2/x /front/a /front/b /rear/a /rear/b", "/chatter", []),
+        ("/camera1/x /camera1/y /camera2/x /camera2/y", "/chatter", []),
         # Another number: it has just started.
         ("/a1/x /a2/x /b3/x", "/a1/tf", ["a1", "a2"]),
         ("/a1/x /f/a2/x /a2/arm/x", "/a1/tf", ["a1", "a2"]),

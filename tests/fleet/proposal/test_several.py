@@ -52,7 +52,9 @@ def test_what_is_tried_is_what_is_written(options: list[str], tmp_path: Path, ca
     assert {it["description"] for it in made["robots"]} == {
         f"../{it}/robot.urdf" for it in ("a", "b", "c")
     }
-    assert "does not build" not in capsys.readouterr().err
+    told = capsys.readouterr().err
+    assert "does not build" not in told
+    assert ("9 robots, 3 of each, of robot.urdf" in told) is ("3" in options)
 
 
 def test_values_that_robots_share_may_be_one_object(tmp_path: Path) -> None:
