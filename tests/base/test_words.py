@@ -115,6 +115,3 @@ def test_the_releases_of_a_fact(words: str, holds: str) -> None:
 )  # fmt: skip
 def test_what_tells_of_gazebo_classic(text: bytes, found: str) -> None:
     assert releases.evidence(text) == found
-
-
-# ---------------------------------------------------------------- findings

@@ -61,6 +61,7 @@ def built(package: Path, path: str, *options: str, fleet: str = FLEET) -> Sequen
 
 # As xacro leaves them, as an installed file, and what the build of a package finds.
 @pytest.mark.slow
+@pytest.mark.sample(3)
 @pytest.mark.parametrize(
     "path",
     [

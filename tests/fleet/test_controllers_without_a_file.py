@@ -45,6 +45,7 @@ def _built(folder: Path, layout: str, distro: str, ip: str = "10.0.0.2", params:
 
 
 @pytest.mark.more
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("distro", ["humble", "jazzy", "lyrical"])
 @pytest.mark.parametrize(
     ("layout", "name"),

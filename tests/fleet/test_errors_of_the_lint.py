@@ -143,7 +143,7 @@ PARAMS = {
 }  # fmt: skip
 
 
-@pytest.mark.sample(8)
+@pytest.mark.sample(24)
 @pytest.mark.slow
 @pytest.mark.parametrize("layout", ["tf-per-robot", "postfix"])
 @pytest.mark.parametrize("code", PARAMS)

@@ -124,6 +124,7 @@ def test_a_prefix_is_left_where_links_get_none(keys: dict[str, Any], tmp_path: P
 
 
 @pytest.mark.slow
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("layout", ["tf-per-robot", "frames-per-robot", "both", "frame-prefix"])
 @pytest.mark.parametrize("default", ["", "None"])
 def test_a_namespace_is_filled_in_layouts_with_namespaces(

@@ -449,6 +449,7 @@ EXAMPLES = re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)
 
 
 @pytest.mark.slow
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("at", range(len(EXAMPLES)))
 def test_every_example_of_the_page_builds(
     at: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]

@@ -181,7 +181,7 @@ def test_what_check_launch_finds_in_the_folder_is_an_error(name: str) -> None:
 
 
 @pytest.mark.more
-@pytest.mark.sample(1)
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("name", ["a rule is lost", "a node is lost", "a node has no description"])
 def test_the_command_ends_with_an_error_and_writes_nothing(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

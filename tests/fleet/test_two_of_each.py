@@ -117,7 +117,7 @@ def test_a_file_of_all_robots_may_name_one_that_is_left_out() -> None:
     assert "/robot5/scan" in {name for it in read_back(plan, spoiled, OUT) for name in it.names}
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(12)
 @pytest.mark.parametrize("name", BUILT)
 def test_a_fault_of_a_robot_that_would_be_left_out_is_found(name: str) -> None:
     def codes(plan: FleetPlan, made: Outputs) -> set[str]:

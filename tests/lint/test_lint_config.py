@@ -49,9 +49,6 @@ def codes(path: Path, it: Configured) -> list[str]:
     return [finding.code for finding in lint_file(str(path), it.settings)]
 
 
-# Where it is found.
-
-
 # What its keys say.
 
 

@@ -203,9 +203,6 @@ def test_many_publishers_are_one_finding_for_a_listener() -> None:
     assert "_more0, /robot1/_more1, /robot1/_more2 and 3 more offers VOLATILE" in found.message
 
 
-# ---------------------------------------------------------------- nobody on the other side
-
-
 # ---------------------------------------------------------------- below its own namespace
 
 SCAN = "sensor_msgs/msg/LaserScan"
@@ -276,9 +273,6 @@ def test_a_tf_listener_that_no_rule_reached() -> None:
     assert (found.code, found.node) == ("MG405", node)
     assert "whole process" in found.hint
     assert check(plan(), with_node(healthy(), node, heard)) == []
-
-
-# ---------------------------------------------------------------- odd robots
 
 
 # ---------------------------------------------------------------- size

@@ -291,9 +291,6 @@ def test_the_file_does_not_depend_on_the_order_of_the_snapshot(
     assert len(texts) == 1
 
 
-# ---------------------------------------------------------------- what cannot be told apart
-
-
 # ---------------------------------------------------------------- spelling
 
 

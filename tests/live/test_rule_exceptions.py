@@ -85,12 +85,6 @@ def test_the_longer_robot_name_owns_a_name(name: str, owner: str) -> None:
         assert ("MG311" in codes) == (robot != owner)
 
 
-# A dot between a frame and its robot.
-
-
-# A copy of tf for those who look on.
-
-
 # A robot whose name is an ordinary word of its frames.
 
 

@@ -432,6 +432,7 @@ def test_files_that_name_joints_of_another_robot_are_its_own(yard: Path) -> None
 
 
 @pytest.mark.slow
+@pytest.mark.sample(3)
 @pytest.mark.parametrize(
     "named",
     [

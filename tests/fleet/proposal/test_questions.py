@@ -126,6 +126,7 @@ def generate_launch_description():
 """
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize(
     ("answer", "taken"), [("", "two.launch.py"), ("2", "one.launch.py"), ("none", None)]
 )
