@@ -167,7 +167,7 @@ def with_launched(
 
 
 def _publishes_another(it: LaunchedNode) -> bool:
-    """Return whether a rule for its topic says that it publishes another description than the robot's."""
+    """Return whether a rule for its topic says that it publishes no description of the robot."""
     old = (old.lstrip("/") for old, _ in it.remappings)
     return it.package == STATE_PUBLISHER and _DESCRIPTION in old
 
