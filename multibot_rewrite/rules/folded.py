@@ -113,7 +113,7 @@ _ORDER = (
 
 
 def folded(seen: Index, found: Sequence[Finding]) -> list[Finding]:
-    """One finding for each cause."""
+    """Return one finding for each cause."""
     by_code = lists_by_key((it.code, at) for at, it in enumerate(found))
     below: dict[int, list[int]] = defaultdict(list)
     gone: set[int] = set()
@@ -139,9 +139,9 @@ def _with_explained(it: Finding, explained: Sequence[Finding]) -> Finding:
     """Return a cause with its consequences in the hint, at the worst of their levels."""
     if not explained:
         return it
-    first, *others = explained
-    codes = [one.code for one in others if one.code != first.code]
-    more = f", and {shorten(codes)}" if codes else ""
+    first = explained[0]
+    others = unique(one.code for one in explained if one.code != first.code)
+    more = f", and {shorten(others)}" if others else ""
     told = f"so {first.node or first.robot or 'tf'}: {first.message} ({first.code}{more})"
     level = min((it.level, *(one.level for one in explained)), key=_BAD.index)
     # Of one name each has the rules for a part of its nodes.

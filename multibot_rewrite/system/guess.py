@@ -84,7 +84,7 @@ def _is_a_part(namespace: str, parts: Collection[str]) -> bool:
 
 
 def _name(namespace: str, all_of_them: Iterable[str]) -> str:
-    """Its last word, or the whole namespace where two end alike."""
+    """Return its last word, or the whole namespace if two end alike."""
     last = namespace.rpartition("/")[2]
     alike = [it for it in all_of_them if it.rpartition("/")[2] == last]
     return last if len(alike) == 1 else namespace.strip("/")
@@ -139,7 +139,7 @@ def _may_be_a_robot(space: str, nodes: Collection[str]) -> bool:
 
 
 def _numbered_alike(spaces: Collection[str], nodes: Iterable[str]) -> Iterator[str]:
-    """Namespaces of nodes that differ from a robot's by the number alone: it has just started."""
+    """Yield namespaces of nodes that differ from a robot's only in the number: it has just started."""
     patterns = {_NUMBER.sub("#", space) for space in spaces if _NUMBER.search(space)}
     for node in nodes:
         space = node.rpartition("/")[0]
@@ -150,7 +150,7 @@ def _numbered_alike(spaces: Collection[str], nodes: Iterable[str]) -> Iterator[s
 
 
 def _last_words(graph: System) -> list[str]:
-    """Words behind topics of a body: ``robot1`` of ``/cmd_vel/robot1`` and ``/odom/robot1``."""
+    """Return words behind topics of a body: ``robot1`` of ``/cmd_vel/robot1`` and ``/odom/robot1``."""
     found: dict[str, set[str]] = defaultdict(set)
     for end in graph.ends:
         *_, before, last = ("", *end.name.split("/"))
@@ -205,7 +205,7 @@ def _not_parts(words: Mapping[str, Collection[str]], parents: Mapping[str, Set[s
 
 
 def with_frames(robots: Iterable[GuessedRobot], frames: Iterable[str]) -> Iterator[GuessedRobot]:
-    """Each with the way in which most frames have its name."""
+    """Yield each with the way in which most frames have its name."""
     times = Counter(way for frame in frames for way in _affixes(frame))
     for robot in robots:
         word = robot.namespace.rpartition("/")[2] or robot.name
@@ -224,7 +224,7 @@ def _affixes(frame: str) -> Iterator[tuple[str, str]]:
 
 
 def whose_by_guess(robots: Iterable[GuessedRobot]) -> Whose:
-    """Whose each name is, by how the robots show."""
+    """Return whose each name is, by how the robots show."""
     known = tuple(robots)
     there = [it for it in known if not it.only_frames]
     by_word = {it.namespace or it.name: it for it in there}
@@ -257,10 +257,8 @@ def whose_by_guess(robots: Iterable[GuessedRobot]) -> Whose:
 
 
 def _whose(name: str, robots: Mapping[str, GuessedRobot]) -> GuessedRobot | None:
-    """By namespace, by the last word, or by a word of a node's or topic's name in the root.
-
-    ``robots`` are by namespace and by name.
-    """
+    """Return a name's robot by namespace, by the last word, or by a word of a node's or topic's
+    name in the root. ``robots`` are by namespace and by name."""
     above = name
     while above:
         if above in robots:

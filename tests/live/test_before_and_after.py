@@ -55,10 +55,6 @@ def codes(found: list[Finding]) -> list[tuple[str, str, str]]:
     return [(it.code, it.level, it.node) for it in found]
 
 
-def test_nothing_is_said_where_nothing_changed() -> None:
-    assert held() == []
-
-
 @pytest.mark.parametrize(
     ("line", "node"),
     [
@@ -111,6 +107,18 @@ def test_a_root_that_all_share_is_missed() -> None:
     # The plan that is made of the earlier look has it, so it is told as with any plan.
     assert (it.code, it.level, it.robot) == ("MG406", ERROR, "robot1")
     assert "world -> robot1/base_link, and does not" in it.hint
+
+
+def test_transforms_that_are_gone_are_one_finding() -> None:
+    """The senders on a topic of all are known, not which of them sent a transform."""
+    sent = "earlier: transform world -> {} on /tf_static by /robot1/rsp, /robot2/rsp"
+    (it,) = held(*map(sent.format, ("dock", "gate")))
+    assert (it.code, it.node, it.robot, it.names) == ("MG130", "", "", ("dock", "gate"))
+    assert "world -> dock, world -> gate on /tf_static are gone" in it.message
+    # What a node that is gone may have sent is gone with it.
+    dead = sent.format("dock").replace("/robot1/rsp", "/robot2/mapper")
+    found = held(dead, f"earlier: /robot2/mapper subscribes /tf {TF}")
+    assert {it.code for it in found} == {"MG101"}
 
 
 def test_a_part_is_elsewhere() -> None:

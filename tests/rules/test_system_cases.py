@@ -954,6 +954,12 @@ def has_no(robot: int, node: str) -> list[str]:
             (*made_of(1), *made_of(2, "lidar"), f"/robot2/lidar publishes /robot2/x {TEXT}"),
             [LACKS_SCAN],
         ),
+        # What sends the fixed frames, however few nodes; not of a robot made for other things.
+        (
+            ("/robot1/driver", "/robot1/robot_state_publisher", "/robot2/driver"),
+            has_no(2, "robot_state_publisher"),
+        ),
+        (("/robot1/robot_state_publisher", "/robot1/driver", "/robot1/arm", "/robot2/driver"), []),
         # A tool, and what is called after its process.
         ((*made_of(1), "/robot1/rviz2", *made_of(2)), []),
         ((*made_of(1), "/robot1/x_12345", *made_of(2), *made_of(3)), []),

@@ -102,7 +102,7 @@ class _Span(NamedTuple):
     messages: int
 
     def rate(self) -> float:
-        """Messages a second by their numbers, so that one that was missed counts; 0 if not known."""
+        """Return messages a second by their numbers, so that a missed one counts; 0 if unknown."""
         seconds = self.ended - self.began
         known = seconds >= RATE_SECONDS and self.last > self.first
         return round((self.last - self.first) / seconds, 1) if known else 0.0
@@ -198,8 +198,8 @@ class HeaderSamples:
         return not span.rate() and span.messages < MOST_MESSAGES
 
     def keep_waiting(self, seconds: float) -> bool:
-        """Whether to wait for silent topics, until ``seconds`` after the last subscription, or for a
-        second message."""
+        """Return whether to wait for silent topics, until ``seconds`` after the last subscription,
+        or for a second message."""
         now, silent = time.monotonic(), self.silent()
         longer = seconds * (BODY_FACTOR if silent & self._bodies else 1)
         if silent and now - self._began < longer:
@@ -225,13 +225,13 @@ class HeaderSamples:
         return tuple(sorted(told))
 
     def _at_most(self, topic: str, now: float) -> float:
-        """How often messages come at most, of which one came in some seconds; 0 if not known."""
+        """Return the highest possible rate after one message in some seconds; 0 if unknown."""
         waited = now - self._since.get(topic, now)
         once = self._spans[topic].messages == 1
         return round(1 / waited, 1) if once and waited >= ONE_SECONDS else 0.0
 
     def caveats(self) -> Iterator[Caveat]:
-        """Where there were more topics than are listened to."""
+        """Yield a limitation if there were more topics than are listened to."""
         if self._left_out:
             text = f"frame_id was read of {MOST_TOPICS} topics, and not of {self._left_out} more"
             yield Caveat("headers-not-read", False, text)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from multibot_rewrite.base.conventions import OF_EVERY_NODE
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
-from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.base.wording import only, shorten
 from multibot_rewrite.rules.declaration import planned_rule
 from multibot_rewrite.rules.system.causes import DOES
 from multibot_rewrite.rules.system.matching import qos_words
@@ -40,7 +40,7 @@ class _Change(NamedTuple):
 
 @planned_rule("MG130", "changed-since", WARNING, absence=True)
 def changed_since(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Each by itself: what another finding is about is left to that one (``untold``)."""
+    """Report each change; what another finding is about is left to that one (``untold``)."""
     before = seen.known.before
     for it in _changes(before, seen) if before else ():
         robot = seen.robot(it.node) or next(filter(None, map(seen.robot, it.names)), "")
@@ -130,25 +130,37 @@ def _heeded(seen: Index, end: End) -> str:
     return f"{readers[0]} reads it, and {others[0]} sends it as well" if twice else ""
 
 
+def _sender(seen: Index, edge: Edge) -> str:
+    """Return the node of the robot of a transform among those that send on its topic, or the only one;
+    else an empty string."""
+    robot = seen.frame_robot(edge.child) or seen.robot(edge.topic)
+    own = [it for it in edge.publishers if seen.robot(it) == robot]
+    return only(own) or only(edge.publishers)
+
+
 def _transforms(before: System, seen: Index) -> Iterator[_Change]:
-    """Where tf was read both times. What a node that is gone sent is gone with it."""
+    """Yield changed transforms, if tf was read both times; not those of a node that is gone."""
     old, new = _edges(before.edges), _edges(seen.system.edges)
     if not (old and new):
         return
     above = {(child, topic): parent for parent, child, topic in new}
+    gone: dict[tuple[str, str, str], list[_Place]] = defaultdict(list)
     for place, edge in old.items():
         parent, child, topic = place
-        sent = f"the transform {parent} -> {child} on {topic}"
-        senders = [it for it in edge.publishers if it in seen.nodes]
-        names = (child, topic) if (child, topic) in above else (child, parent, topic)
-        if place not in new and (senders or not edge.publishers):
-            other = above.get((child, topic))
-            what = f"{sent} is gone" + (f": {child} is below {other}" if other else "")
-            yield _Change(
-                next(iter(senders), ""), what, names[:1], ERROR if edge.static else WARNING
-            )
+        if place not in new and {*edge.publishers} <= {*seen.nodes}:
+            level = ERROR if edge.static else WARNING
+            gone[_sender(seen, edge), topic, level].append(place)
         elif place in new and _is_moved(edge, new[place]):
+            sent = f"the transform {parent} -> {child} on {topic}"
             yield _Change("", f"{sent} is elsewhere than it was", (child,))
+    for (node, topic, level), places in gone.items():
+        pairs = shorten([f"{parent} -> {child}" for parent, child, _ in places])
+        moved = [f"{it[1]} is below {above[it[1:]]}" for it in places if it[1:] in above]
+        what = f"the transform {pairs} on {topic} is gone"
+        if len(places) > 1:
+            what = f"the transforms {pairs} on {topic} are gone"
+        what += f": {shorten(moved)}" if moved else ""
+        yield _Change(node, what, tuple(child for _, child, _ in places), level)
     known = {(child, topic) for _, child, topic in old}
     fresh = (it for it in new if it not in old and it[1:] not in known)
     for topic, places in lists_by_key((it[2], it) for it in fresh).items():

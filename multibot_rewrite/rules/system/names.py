@@ -213,7 +213,7 @@ def _hiding(seen: Index, meant: str) -> Iterator[str]:
 
 @once
 def _below_senders(seen: Index) -> Mapping[tuple[str, str], Sequence[str]]:
-    """Topics that have their publisher's own name before the last word, by what is around it."""
+    """Return topics with their publisher's own name before the last word, by the rest."""
     found: dict[tuple[str, str], list[str]] = defaultdict(list)
     for it in (one for own in _published(seen).values() for one in own):
         above, _, last = it.name.rpartition("/")
@@ -346,9 +346,9 @@ def _unserved(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
 
 
 def _waits(seen: Index, end: End) -> bool:
-    """Return whether it is an own program that calls what nobody serves. Nav2's and MoveIt's nodes,
-    tools and what every node serves are left out, and a view in which nodes are missing.
-    ``nothing_known_sends`` reports what is known by code alone."""
+    """Return whether it is the user's own program that calls what nobody serves. Nav2's and
+    MoveIt's nodes, tools and what every node serves are left out, and a view in which nodes are
+    missing. ``nothing_known_sends`` reports what is known by code alone."""
     theirs = is_viewer(end.node) or seen.is_tool(end.node) or team(end.node) != end.node
     usual = end.type.startswith(COMMON) or is_from_outside(end.name)
     # Beside other robots it may be one that is not started yet, if it is not its own.
@@ -364,8 +364,8 @@ def _waits(seen: Index, end: End) -> bool:
 
 @once
 def _called_by_robots(seen: Index) -> Mapping[tuple[str, str], tuple[list[str], list[str]]]:
-    """By kind and name without the robot's: the robots whose service or action is called in vain, and
-    those whose one is served."""
+    """Return by kind and name without the robot's: the robots whose service or action is called in
+    vain, and those whose one is served."""
     found: dict[tuple[str, str], tuple[list[str], list[str]]] = defaultdict(lambda: ([], []))
     for ends in seen.by_name.values():
         robot = seen.robot(ends.name) if ends.clients or ends.servers else ""
@@ -410,7 +410,7 @@ def _served_instead(seen: Index, end: End, served: _Served) -> str:
 
 
 def nobody_in(seen: Index, name: str, known: Collection[str]) -> str:
-    """Words for a name in a namespace without any node, where robots have it in theirs; else ""."""
+    """Return words for a name in a namespace without nodes, if robots have it in theirs; else ""."""
     if seen.robot(name):
         return ""
     for at in (at for at in range(2, len(name)) if name[at] == "/"):
@@ -429,8 +429,8 @@ def _named_by_robots(seen: Index) -> Mapping[str, Sequence[str]]:
 
 @system_rule("MG305", "service-of-two-nodes", ERROR, meant=(SERVES,))
 def service_of_two_nodes(seen: Index) -> Iterator[Finding]:
-    """Of two nodes with one name the nodes are the finding; two filters of robot_localization in one
-    robot both serve `set_pose`, which is how they are made."""
+    """Report services of two nodes; two nodes of one name are another finding, and two filters of
+    robot_localization in one robot serve `set_pose` by design."""
     for (kind, name), ends in seen.by_name.items():
         nodes = nodes_of(ends.servers) if ends.servers else ()
         if len(nodes) > 1 and (kind == ACTION or len(robots_of(seen, nodes)) > 1):

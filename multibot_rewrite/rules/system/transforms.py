@@ -66,7 +66,7 @@ def _senders(tree: Tree, edges: Iterable[Edge]) -> Sequence[str]:
 def _who_sends(
     seen: Index, tree: Tree, edges: Sequence[tuple[str, str]], senders: Sequence[str]
 ) -> str:
-    """Which of the senders may have sent these: who is known to first, then those of the frame's
+    """Return which of the senders may have sent these: known ones first, then those of the frame's
     robot."""
     frame = edges[0][1]
     robots = robots_of(seen, senders)
@@ -89,7 +89,7 @@ def _who_sends(
 
 @system_rule("MG402", "robots-frames-collide", ERROR)
 def robots_frames_collide(seen: Index) -> Iterator[Finding]:
-    """One robot may have no name in its frames, if all others have."""
+    """Report it also if one robot has no name in its frames and all others have."""
     for tree in seen.trees:
         who = collide(seen, tree)
         if who:
@@ -102,7 +102,7 @@ def robots_frames_collide(seen: Index) -> Iterator[Finding]:
 
 
 def collide(seen: Index, tree: Tree) -> str:
-    """Who sends frames that do not say whose they are; empty where nothing collides."""
+    """Return who sends frames that do not show their robot; empty if nothing collides."""
     senders = [it for it in tree.senders if it not in seen.relays]
     robots, bare = robots_of(seen, senders), set(_bare_frames(seen, tree))
     # Who sends on another robot's topic is a finding of its own.
@@ -144,7 +144,7 @@ def _bare_frames(seen: Index, tree: Tree) -> list[str]:
 
 
 def _is_of_several(seen: Index, edge: Edge) -> bool:
-    """Do nodes of several robots send it below frames of their own, perhaps with other values?"""
+    """Return whether nodes of several robots send it below frames of their own."""
     own = edge.parent not in WORLD_FRAMES and not edge.transform
     return own and edge.several and len(robots_of(seen, edge.publishers)) > 1
 
@@ -185,7 +185,7 @@ def tf_remaps(nodes: Iterable[str], topic: str, home: str) -> tuple[Remap, ...]:
 
 @system_rule("MG403", "tf-cycle", ERROR)
 def tf_cycle(seen: Index) -> Iterator[Finding]:
-    """Each circle once."""
+    """Report each circle once."""
     for tree in seen.trees:
         edges = lists_by_key((edge.child, edge) for edge in tree.edges)
         for circle in _circles(_parents(tree)):
@@ -203,7 +203,7 @@ def tf_cycle(seen: Index) -> Iterator[Finding]:
 
 
 def _circles(parents: Mapping[str, Iterable[str]]) -> Iterator[tuple[str, ...]]:
-    """Circles that have no frame in common, each from the parent to the child."""
+    """Yield circles that have no frame in common, each from the parent to the child."""
     left = {child: set(above) & parents.keys() for child, above in parents.items()}
     below = lists_by_key((parent, child) for child, above in left.items() for parent in above)
     _take_away(left, below, [child for child, above in left.items() if not above])
@@ -255,7 +255,7 @@ def static_and_moving(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG408", "transform-of-two-senders", ERROR)
 def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
-    """Where robots' frames collide, that is the finding; all transforms of a tree are one."""
+    """Report all such transforms of a tree as one, unless robots' frames collide."""
     for tree in seen.trees:
         if collide(seen, tree):
             continue
@@ -292,7 +292,7 @@ def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG407", "robots-name-twice", ERROR)
 def robots_name_twice(seen: Index) -> Iterator[Finding]:
-    """All frames of a robot and topic are one finding. What a plan shows of a robot is all of it."""
+    """Report all frames of a robot and topic as one. A robot with a plan is checked by it alone."""
     told = set()
     for message, cause, it, names in with_more_names(seen.expected, seen) if seen.expected else ():
         told.add(it.name)
