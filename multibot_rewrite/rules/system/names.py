@@ -312,7 +312,6 @@ def _unserved(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
     near = "" if outside else _served_instead(seen, end, served) or in_other_namespace(seen, end)
     asks = "sends goals to" if end.kind == ACTION else "calls"
     lost = f"{asks} {end.name}, which {seen.nobody} serves"
-    listed = "" if near else listed
     by_type = None if near or listed else sent_instead(seen, end)
     if other := near or (by_type.name if by_type else ""):
         sure = near or end.kind == ACTION
