@@ -52,8 +52,13 @@ from multibot_rewrite.producers.launch.records import (
     LaunchNote,
     ParameterText,
 )
-from multibot_rewrite.producers.launch.spawner_managers import under_managers
-from multibot_rewrite.producers.launch.spawners import Spawned, is_spawner, spawned_in, texts_of
+from multibot_rewrite.producers.launch.spawners import (
+    Spawned,
+    is_spawner,
+    spawned_in,
+    texts_of,
+    under_managers,
+)
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, state_publisher_of
 from multibot_rewrite.system.records import NO_ORIGIN, TOPIC, Origin, Place
