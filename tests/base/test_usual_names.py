@@ -6,6 +6,7 @@ from __future__ import annotations
 import pytest
 
 from multibot_rewrite.base import conventions
+from multibot_rewrite.base.bounded import other_words
 from multibot_rewrite.base.conventions import (
     chooses,
     is_from_outside,
@@ -13,7 +14,6 @@ from multibot_rewrite.base.conventions import (
     only_looks,
     team,
 )
-from multibot_rewrite.base.other_words import other_words
 
 
 def test_topics_that_robots_share() -> None:
