@@ -40,8 +40,8 @@ from multibot_rewrite.description.sources.read import (
     SourceText,
     args_for,
     read_file,
-    read_whole,
 )
+from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.description.steps.collect import NOTHING, Inventory, collect
 from multibot_rewrite.description.steps.document import read_document
 
