@@ -149,13 +149,6 @@ def load_own_yaml(module: str, name: str) -> Any:
     return yaml.load(own_text(module, name), _loader())
 
 
-@cache
-def other_words(what: str) -> Mapping[str, str]:
-    """Return what people write for ``commands``, ``options`` or ``keys``, and what does it here."""
-    words: Mapping[str, str] = load_own_yaml(__file__, "other_words.yaml")[what]
-    return words
-
-
 def _within_bounds(parse: Callable[[str], Any], text: str, file: str, remedy: str) -> Any:
     import yaml
 

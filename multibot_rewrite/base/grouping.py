@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values gathered by a key, and where chains of names end."""
+"""Values gathered by a key, or by chains of keys."""
 
 from __future__ import annotations
 

@@ -139,7 +139,7 @@ def check_link(target: str) -> None:
 
 
 def is_same_file(path: str, other: str) -> bool:
-    """Do two paths lead to one file, by links of either kind or not?"""
+    """Return whether two paths lead to one file, by links of either kind or not."""
     if os.path.realpath(path) == os.path.realpath(other):
         return True
     return os.path.isfile(path) and os.path.isfile(other) and os.path.samefile(path, other)

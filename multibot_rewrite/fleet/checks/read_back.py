@@ -61,7 +61,7 @@ def read_back(plan: FleetPlan, made: Outputs, folder: str) -> list[Finding]:
 
     Raises MultibotError where no temporary file can be written.
     """
-    if any(it.code == LACKING.code for it in made.findings):
+    if any((it.code, it.level) == (LACKING.code, ERROR) for it in made.findings):
         return []
     with _temporary_folder() as home, gc_paused():
         launch = next(it.data for it in made.files if it.path == LAUNCH)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The arguments of ``controller_manager spawner`` -> the controllers that it loads, and the manager.
+"""The arguments of ``controller_manager spawner`` -> the controllers that it loads, and their managers.
 
 Source: ros2_control jazzy and humble, controller_manager/spawner.py (``--controller NAME ...`` has
-options of its own; the name of a manager is relative to the spawner's namespace).
+options of its own; the name of a manager is relative to the spawner's namespace, which it gets by
+``--namespace`` or as a node).
 """
 
 from __future__ import annotations
@@ -99,8 +100,9 @@ def controller_files(program: str, words: Sequence[str]) -> tuple[str, ...]:
 def texts_of(
     spawned: Iterable[Spawned], given: Mapping[str, Sequence[ParameterText]]
 ) -> Iterator[tuple[str, list[ParameterText]]]:
-    """Each manager by its full name, and all parameters that decide its controllers: what it gets
-    itself (``given``, by its name), what the spawners name, and the types that they say."""
+    """Yield each manager by its full name, with all parameters that decide its controllers: what it
+    gets itself (``given``, by its name), the files of the spawners, and the types that they
+    give."""
     by_manager = lists_by_key((it.manager, it) for it in spawned)
     for manager, controllers in by_manager.items():
         named = (text for it in controllers for text in it.parameters)
@@ -169,9 +171,9 @@ def _parser(names: str) -> _Parser:
 def under_managers(
     spawned: Iterable[Spawned], started: Collection[str]
 ) -> tuple[list[Spawned], list[Finding]]:
-    """Return the controllers; those of a manager that is not among the ``started`` ones get the one
-    that is meant, if there is just one. With it findings of spawners that ask for another manager
-    than the one that runs."""
+    """Return the controllers, those of a manager that is not among the ``started`` ones under the one
+    that is meant; as they are where there is none, or more than one. With them findings of spawners
+    that ask for another manager than the one that runs."""
     meant = next(iter(started)) if len(started) == 1 else ""
     every = tuple(spawned)
     lost = [it for it in every if meant and it.manager not in started]
