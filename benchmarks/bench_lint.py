@@ -32,7 +32,7 @@ from pairs import HOW, MACHINE, Job, Row, as_installed, child, least_seconds, pa
 from public_files import PublicFiles, public_files
 from robots import robot
 
-from multibot_rewrite.base.gc_pause import gc_paused
+from multibot_rewrite.base.lazy import gc_paused
 from multibot_rewrite.lint.check import lint_data
 from multibot_rewrite.rules.settings import Settings
 

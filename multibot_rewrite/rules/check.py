@@ -13,9 +13,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding, Rule
-from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.grouping import lists_by_key
-from multibot_rewrite.base.lazy import with_gaps
+from multibot_rewrite.base.lazy import gc_paused, with_gaps
 from multibot_rewrite.producers.bags.recording import is_recorded
 from multibot_rewrite.rules.declaration import rules_in
 from multibot_rewrite.rules.folded import folded, in_order
