@@ -168,7 +168,8 @@ def _deliver(options: argparse.Namespace, made: Proposal, file: str) -> int:
         detail(options, f"{path}:{at}: {why}")
     robots = sum(len(it.names) for it in made.members)
     files = {os.path.basename(it.looked.path) for it in made.members}
-    what = f"{plural(robots, 'robot')} of {', '.join(sorted(files))}, {made.keys['layout'].value}"
+    each = f", {options.count} of each," if options.count and len(made.members) > 1 else ""
+    what = f"{plural(robots, 'robot')}{each} of {', '.join(sorted(files))}, {made.keys['layout'].value}"
     if goes_to_file(options):
         note(
             options,

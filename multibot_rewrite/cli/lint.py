@@ -174,13 +174,12 @@ def _fixed(options: argparse.Namespace, settings: Settings, findings: list[Findi
     files = sorted({it.file for it in findings if it.edits})
     old = {file: read_file(file) for file in files}
     new = {file: fix(file, old[file], settings) for file in files}
-    if options.diff:
+    if options.diff and files:
         for file, (data, _) in new.items():
             print_bytes(diff(old[file], data, file, f"{file} fixed", prints_colour(options)))
         return []
     write_files(options, ((file, data) for file, (data, _) in new.items()))
-    if files:
-        note(options, f"fixed {', '.join(files)}")
+    note(options, f"fixed {', '.join(files)}" if files else "nothing that --fix can fix")
     return files
 
 

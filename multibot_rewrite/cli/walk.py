@@ -130,13 +130,11 @@ def check_target(target: str, inputs: Iterable[str], option: str = "--output") -
 
 
 def check_link(target: str) -> None:
-    """Raise UsageError where ``target`` is a link out of its folder: a result would
-    replace what nobody named. The links of the system, as /dev/stdout is, are what they lead to."""
+    """Raise UsageError where ``target`` is a link: a result would replace what nobody named. The links
+    of the system, as /dev/stdout is, are what they lead to."""
     folder = os.path.realpath(os.path.dirname(target) or ".")
-    if not os.path.islink(target) or folder.startswith(("/dev", "/proc")):
-        return
-    real = os.path.realpath(target)
-    if os.path.commonpath((real, folder)) != folder:
+    if os.path.islink(target) and not folder.startswith(("/dev", "/proc")):
+        real = os.path.realpath(target)
         raise UsageError(f"{target} is a link to {real}; name that, if it is meant")
 
 

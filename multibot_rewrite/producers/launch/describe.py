@@ -294,6 +294,7 @@ def component(it: Any, container: str, here: Visit) -> LaunchedNode:
         (),
         here.later,
         place_of(it, here.place.file, (package, plugin)),
+        process=Process(switches=here.switches),
     )
 
 

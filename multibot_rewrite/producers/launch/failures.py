@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED, ROOTS
 from multibot_rewrite.producers.launch.unknown_modules import is_unknown
 
@@ -37,6 +38,7 @@ _MODULE = "launch_file"
 _MAKES = "generate_launch_description"
 _ASKED = lazy_compile(r"(?:getenv|environ\.get)\(\s*[\"'](\w+)[\"']\s*\)")
 _STARTED = lazy_compile(r"""\bexecutable\s*=\s*["']([\w./-]+)["']""")
+_SHOWN = 8
 _NEXT_TRIED = lazy_compile(r" - \w+Error: ")
 _OF_ROS_1 = re.compile(
     r"Unknown substitution: (?:arg|find|optenv)\b"
@@ -47,8 +49,8 @@ _ROS_1 = "it is a launch file of ROS 1; in ROS 2 it is $(find-pkg-share NAME), $
 
 def started_by(text: str) -> str:
     """Return, for people, the programs that the text of a launch file names; empty for none."""
-    programs = dict.fromkeys(_STARTED.findall(text))
-    return f"; by its text it starts {', '.join(programs)}" if programs else ""
+    programs = shorten(_STARTED.findall(text), _SHOWN)
+    return f"; by its text it starts {programs}" if programs else ""
 
 
 def failure(error: BaseException) -> str:

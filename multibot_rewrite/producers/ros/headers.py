@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A few messages a sensor topic, for the frame that their header names and for their rate; the function
-that subscribes is passed in.
+"""A few messages a sensor topic, for the frame that their header names and for their rate, and the
+latched descriptions; the function that subscribes is passed in.
 
 Images are large: of a message only the frame is kept, and their topic is left at once.
 """
@@ -24,9 +24,10 @@ from multibot_rewrite.producers.zenoh.cdr import (
     read_joint_names,
     read_pose,
     read_stamp,
+    read_text,
 )
-from multibot_rewrite.system.records import PUBLISHES, TOPIC, Caveat, End, Heard
-from multibot_rewrite.system.words import is_of_a_body
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, Caveat, Description, End, Heard
+from multibot_rewrite.system.words import is_description, is_of_a_body
 
 # Their headers name frames of tf; where there are too many topics the first ones matter most.
 PACKAGES = (
@@ -234,3 +235,49 @@ class HeaderSamples:
         if self._left_out:
             text = f"frame_id was read of {MOST_TOPICS} topics, and not of {self._left_out} more"
             yield Caveat("headers-not-read", False, text)
+
+
+class DescriptionSamples:
+    """Subscriptions to the topics of descriptions, each until one has come."""
+
+    def __init__(self, subscribe: Subscribe) -> None:
+        self._subscribe = subscribe
+        self._open: dict[str, Callable[[], None]] = {}
+        self._asked: set[str] = set()
+        self._found: dict[str, Description] = {}
+
+    def update(self, endpoints: Iterable[End]) -> None:
+        """Subscribe to every such topic that was not there before, as its publisher offers it."""
+        for it in endpoints:
+            sent = (it.kind, it.role) == (TOPIC, PUBLISHES) and is_description(it.name, it.type)
+            if sent and it.name not in self._asked and len(self._asked) < MOST_TOPICS:
+                self._asked.add(it.name)
+                # What nobody reads was not asked for its QoS: nearly all are latched.
+                latched = not (it.qos and it.qos.durability == "VOLATILE")
+                end = self._subscribe(it.name, it.type, latched, partial(self._receive, it.name))
+                if end:
+                    self._open[it.name] = end
+
+    def _receive(self, topic: str, data: bytes, _: Mark = None) -> None:
+        text = read_text(data)
+        if text is not None:
+            self._found[topic] = described(topic, text)
+            self._open.pop(topic)()
+
+    def found(self) -> tuple[Description, ...]:
+        """Return what has come, by topic."""
+        return tuple(self._found[it] for it in sorted(self._found))
+
+
+def described(topic: str, text: str) -> Description:
+    """Return what a URDF names; an empty description for no URDF."""
+    from lxml import etree  # takes longer than the rest of a look's start
+
+    parser = etree.XMLParser(resolve_entities=False, no_network=True)
+    try:
+        root = etree.fromstring(text.encode(), parser)
+    except (etree.XMLSyntaxError, ValueError):
+        return Description(topic)
+    links = tuple(it.get("name", "") for it in root.iterfind("link"))
+    moving = (it for it in root.iterfind("joint") if it.get("type") != "fixed")
+    return Description(topic, links, tuple(it.get("name", "") for it in moving))

@@ -12,8 +12,12 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from multibot_rewrite.producers.ros import assemble, queries, ros
-from multibot_rewrite.producers.ros.described import DescriptionSamples
-from multibot_rewrite.producers.ros.headers import CLOCK_TYPE, HeaderSamples, Receive
+from multibot_rewrite.producers.ros.headers import (
+    CLOCK_TYPE,
+    DescriptionSamples,
+    HeaderSamples,
+    Receive,
+)
 from multibot_rewrite.producers.ros.participants import make_room
 from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.producers.ros.tf_subscriptions import Callback, Mark, TfSubscriptions

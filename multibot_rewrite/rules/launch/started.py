@@ -27,7 +27,7 @@ from multibot_rewrite.knowledge.controller_ways import names_its_process
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, NAV2
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.producers.evidence.hardware import COMMAND, claims_of
-from multibot_rewrite.producers.launch import spawner_managers
+from multibot_rewrite.producers.launch import spawners
 from multibot_rewrite.producers.launch.bridges import refused_rows
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.programs import programs
@@ -87,7 +87,7 @@ def _no_manager(launched: Launched) -> Iterator[Finding]:
             yield at(no_manager, mine[0].place, message, hint, level=INCONCLUSIVE)
 
 
-no_manager = spawner_managers.NO_MANAGER._replace(
+no_manager = spawners.NO_MANAGER._replace(
     check=_no_manager, formats=(LAUNCH,), examples="MG723-launch"
 )
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
@@ -191,16 +191,24 @@ def _lost_parts(seen: Index, likes: Sequence[str]) -> Iterator[Finding]:
     for robot in likes if len(frames) == len(likes) else ():
         lost = sorted(it for it, number in counts.items() if number == len(likes) - 1)
         lost = [it for it in lost if it not in frames[robot]]
-        # Under other names all are lost, which is another finding.
-        few = len(lost) < len(frames[robot])
-        # Of two robots one may have a part more.
-        if lost and few and len(likes) > _TWO:
+        # Under other names all are lost, which is another finding; of two robots one may have a part
+        # more. What is there is to hang on the same frame.
+        if len(likes) == _TWO or len(lost) >= len(frames[robot]):
+            lost = [it for it in lost if (robot, it) in _parents(seen)]
+        if lost:
             like = next(it for it in likes if it != robot)
             yield differs_from_its_likes.finding(
                 f"{robot} has no transform of {shorten(lost, SEVERAL)}, as {like} has",
                 "has it another description, or an older one?",
                 robot=robot, names=tuple(frames[like][it] for it in lost if it in frames[like]),
             )  # fmt: skip
+
+
+@once
+def _parents(seen: Index) -> Set[tuple[str, str]]:
+    """Return the frames that have something below them, by robot and without its name."""
+    every = ((it.parent, it.topic) for tree in seen.trees for it in tree.edges)
+    return {(seen.frame_robot(it) or seen.robot(on), seen.plain_frame(it)) for it, on in every}
 
 
 @once

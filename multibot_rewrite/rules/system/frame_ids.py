@@ -44,7 +44,9 @@ def frame_id_of_another_robot(seen: Index) -> Iterator[Finding]:
     """Report it by the names of frames: robots with a tf topic each may have the same ones."""
     frames = _by_topic(seen)
     for (frame, robot, senders), messages in _by_sender(seen).items():
-        if _is_of_another(seen, frame, robot, messages):
+        # A sender of the frame's robot has the wrong topic, not the wrong frame.
+        whose = {*map(seen.robot, senders)}
+        if _is_of_another(seen, frame, robot, messages) and seen.frame_robot(frame) not in whose:
             topics = [it.topic for it in messages if it.type.startswith(_MEASURED)]
             owner = seen.frame_robot(frame)
             message = f"{messages[0].field} of {shorten(topics)} is {frame}, a frame of {owner}"
@@ -160,7 +162,6 @@ def _topics_of_frames(seen: Index) -> Mapping[str, Sequence[str]]:
     return lists_by_key((it, tree.topic) for tree in seen.trees for it in frames_in(tree.edges))
 
 
-@once
 @once
 def _senders_of(seen: Index) -> Mapping[str, str]:
     """Return the node that sends a frame, of the first tree in which only one does."""

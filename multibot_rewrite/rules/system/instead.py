@@ -207,7 +207,7 @@ def _sent(seen: Index) -> Mapping[tuple[str, str], Sequence[Ends]]:
 def _served(seen: Index, end: End) -> Iterator[Ends]:
     """Yield services and actions of its type in its robot that nobody calls; if many have the type,
     those with its last word."""
-    robot, last = seen.robot(end.node), last_word(end.name)
+    robot, last = seen.robot(end.node) or seen.robot(end.name), last_word(end.name)
     for it in _servers(seen).get((end.kind, end.type, robot), ()):
         own = any(one.node != end.node and seen.robot(one.node) == robot for one in it.servers)
         common = end.type.startswith(COMMON)

@@ -15,6 +15,7 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.grouping import dicts_by_key, lists_by_key
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import system_rule
+from multibot_rewrite.rules.system.tf_pieces import publishes_description
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Ends, Index, at_work, ends_of, nodes_of, once
 from multibot_rewrite.system.records import (
@@ -51,6 +52,13 @@ class MadeOf(NamedTuple):
 @system_rule("MG327", "lacks-what-its-likes-have", WARNING, absence=True)
 def lacks_what_its_likes_have(seen: Index) -> Iterator[Finding]:
     """Yield what one robot lacks and equal ones have; another finding about it replaces this one."""
+    told = [*_lost_of_likes(seen)]
+    yield from told
+    if not seen.expected:
+        yield from _lost_descriptions(seen, {it.robot for it in told})
+
+
+def _lost_of_likes(seen: Index) -> Iterator[Finding]:
     made = made_of(seen)
     for likes in alike(nodes_of_each(seen)):
         others = len(likes) - 1
@@ -69,6 +77,17 @@ def lacks_what_its_likes_have(seen: Index) -> Iterator[Finding]:
             yield from _lost_ends(
                 seen, made, robot, likes, [k for k in gone if k[0] in made[robot].nodes]
             )
+
+
+def _lost_descriptions(seen: Index, told: Set[str]) -> Iterator[Finding]:
+    """Find robots that have all nodes of another one but robot_state_publisher, however few."""
+    made = made_of(seen)
+    for robot, own in made.items():
+        for other, its in made.items() if own.nodes and robot not in told else ():
+            lost = [it for it in its.nodes if it not in own.nodes]
+            if len(lost) == 1 and publishes_description(seen, its.nodes[lost[0]]):
+                yield from _lost_nodes(seen, made, robot, (other, robot), lost)
+                break
 
 
 @once
@@ -124,9 +143,9 @@ def _lost_nodes(
     like = next(it for it in likes if it != robot)
     keys = [key for key in made[like].ends if key[0] in lost]
     own = _waiting(seen, made, robot, keys)
-    if not own and len(likes) < 3:
-        return
     theirs = sorted(made[like].nodes[it] for it in lost)
+    if not (own or len(likes) > 2 or any(publishes_description(seen, it) for it in theirs)):
+        return
     yield lacks_what_its_likes_have.finding(
         f"{robot} has no {shorten(sorted(it.strip('/') for it in lost), SEVERAL)}, as {like} has"
         f" ({shorten(theirs, SEVERAL)})",
@@ -207,12 +226,11 @@ def less_than_another_robot(seen: Index) -> Iterator[Finding]:
         most = seen.known.messages[best]
         for robot, name in there.items() if most >= ENOUGH else ():
             count = seen.known.messages[name]
-            if not count:
-                message = f"{name} has no message, {best} has {most}"
-                yield less_than_another_robot.finding(message, robot=robot, names=(name,))
-            elif count * RATIO <= most and seen.known.seconds:
+            message = "" if count else f"{name} has no message, {best} has {most}"
+            if count and count * RATIO <= most and seen.known.seconds:
                 slow, usual = (f"{it / seen.known.seconds:.1f} Hz" for it in (count, most))
                 message = f"{name} came at {slow}, {best} at {usual}"
+            if message:
                 yield less_than_another_robot.finding(message, robot=robot, names=(name,))
 
 
@@ -256,9 +274,9 @@ def _slow_transforms(seen: Index) -> Iterator[Finding]:
         best = max(own.values(), key=lambda it: it.rate)
         for robot, it in own.items():
             if it.rate * RATIO <= best.rate:
-                said = f"{it.parent} -> {it.child} on {it.topic} comes at {it.rate:.1f} Hz"
+                said, other = (f"{one.parent} -> {one.child} on {one.topic}" for one in (it, best))
                 yield less_than_another_robot.finding(
-                    f"{said}, {best.parent} -> {best.child} at {best.rate:.1f} Hz",
+                    f"{said} comes at {it.rate:.1f} Hz, {other} at {best.rate:.1f} Hz",
                     "see the node that sends it, and the processor time that it has",
                     robot=robot, names=(it.child, it.topic),
                 )  # fmt: skip

@@ -65,15 +65,14 @@ def _body(seen: Index, tree: Tree, robot: str) -> _Body | None:
     if len({(it.child, it.parent) for it in tree.edges}) > len(above):
         return None
     frames = [it for it in {**above, **dict.fromkeys(above.values())} if _is_of(seen, it, robot)]
-    roots = {
-        root_of(it, above) for it in frames if seen.plain_frame(it) in (*BODY_FRAMES, _ODOM)
-    } - {*above}
-    if len(roots) != 1 or roots & {*WORLD_FRAMES}:
-        return None
     # What hangs on the map and has nothing below it.
     ends = above.keys() - {*above.values()}
-    loose = (it for it in above if it in ends and above[it] in WORLD_FRAMES)
-    return _Body(next(iter(roots)), tuple(it for it in loose if _is_of(seen, it, robot)))
+    loose = [it for it in frames if it in ends and above[it] in WORLD_FRAMES]
+    body = (it for it in frames if seen.plain_frame(it) in (*BODY_FRAMES, _ODOM))
+    roots = {root_of(it, above) for it in body if it not in loose} - {*above}
+    if len(roots) != 1 or roots & {*WORLD_FRAMES}:
+        return None
+    return _Body(next(iter(roots)), tuple(loose))
 
 
 def _is_of(seen: Index, frame: str, robot: str) -> bool:

@@ -245,7 +245,7 @@ def _missed_topic(
     if front != other.name and end.name.startswith(f"{front}/"):
         cause = f"its namespace is there twice: name it {last_word(other.name)} in {sender}"
         remaps = (Remap(sender, other.name, end.name),)
-    elif seen.robot(end.name) and not seen.robot(other.name) and other.name not in EVERYBODYS:
+    elif seen.robot(end.name) not in ("", seen.robot(other.name)) and other.name not in EVERYBODYS:
         cause = f"pass the rule {other.name}:={end.name} to {sender}, or start it in the namespace"
         remaps = tuple(Remap(it, other.name, end.name) for it in nodes_of(other.publishers))
     elif other.type != end.type:
@@ -307,26 +307,30 @@ def _served(seen: Index) -> Mapping[tuple[str, str], _Served]:
 
 
 def _unserved(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
-    near = _served_instead(seen, end, served) or in_other_namespace(seen, end)
+    listed = listed_in_vain(seen, end)
+    outside = f"/{last_word(listed)}" if listed and f"/{last_word(listed)}" in seen.nodes else ""
+    near = "" if outside else _served_instead(seen, end, served) or in_other_namespace(seen, end)
     asks = "sends goals to" if end.kind == ACTION else "calls"
     lost = f"{asks} {end.name}, which {seen.nobody} serves"
-    listed = "" if near else listed_in_vain(seen, end)
+    listed = "" if near else listed
     by_type = None if near or listed else sent_instead(seen, end)
     if other := near or (by_type.name if by_type else ""):
         sure = near or end.kind == ACTION
         yield _missed_server(seen, end, lost, other, ERROR if sure else WARNING)
     elif listed and end.name.endswith(words.CHANGE_STATE):
         # A node that runs and is called nearly so: a letter wrong, or without the namespace.
-        same = (it for it in seen.nodes if it == f"/{last_word(listed)}")
-        space = listed.rpartition("/")[0]
-        others = [it for it in seen.nodes if it.rpartition("/")[0] == space]
-        meant = next(same, "") or nearest(listed, others, MISTYPED)
+        space, _, last = listed.rpartition("/")
+        others = {last_word(it): it for it in seen.nodes if it.rpartition("/")[0] == space}
+        meant = outside or others.get(nearest(last, others, MISTYPED), "")
         instead = f"; {meant} runs" if meant else ""
-        wait = f"it waits for {listed} and activates nothing after it: start it, or "
-        cause = not_managed(seen, end.node, [listed], wait)
+        wait = f"it waits for {listed} and activates nothing after it: start it"
+        cause = not_managed(seen, end.node, [listed], f"{wait}, or ")
+        if outside:
+            moved = Remap(outside, "__ns", space)
+            cause = Cause(f"{wait} in the namespace, with -r __ns:={space}", remaps=(moved,))
         yield server_names_miss.finding(
             f"{lost}: {listed} is in its list, and does not run{instead}",
-            cause.hint, settings=cause.settings,
+            cause.hint, settings=cause.settings, remaps=cause.remaps,
             robot=seen.robot(end.node), node=end.node, names=(end.name,), **where([end]),
         )  # fmt: skip
     elif not (listed or is_viewer(end.node)) and (

@@ -9,7 +9,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence, S
 from multibot_rewrite.base.conventions import EVERYBODYS
 from multibot_rewrite.base.findings.finding import ERROR, Finding, Remap, Rule
 from multibot_rewrite.base.nearest import MISTYPED, nearest
-from multibot_rewrite.base.wording import SEVERAL, shorten, unique
+from multibot_rewrite.base.wording import SEVERAL, only, shorten, unique
 from multibot_rewrite.rules.declaration import planned_rule
 from multibot_rewrite.rules.system.causes import (
     DOES,
@@ -147,14 +147,15 @@ def missing_endpoint(plan: Index, seen: Index) -> Iterator[Finding]:
         used = _used_instead(plan, seen, planned)
         # Without one that is called so, the only one of its type is what the hint names.
         alike = [] if used else _of_its_type(plan, seen, planned)
-        taken.add((planned.node, used or next(iter(alike if len(alike) == 1 else ()), "")))
+        instead = used or only(alike)
+        taken.add((planned.node, instead))
         end = next((it for it in ends_of(seen, used) if it.node == planned.node), planned)
         robot = plan.robot_of.get(planned.node, "")
         rule = _of_wrong_robot(plan, end, robot) or missing_endpoint
         yield rule.finding(
             f"should {TO_DO[planned.role]} {planned.kind} {planned.name}, but does not",
             **_why_missing(plan, seen, planned, used)._asdict(),
-            robot=robot, node=planned.node, names=(planned.name, *[used] * bool(used)),
+            robot=robot, node=planned.node, names=(planned.name, *[instead] * bool(instead)),
         )  # fmt: skip
     for node, robot in plan.robot_of.items():
         for end in {it.name: it for it in unplanned_ends(plan, seen).get(node, ())}.values():

@@ -224,11 +224,17 @@ def _is_meant(seen: Index, node: str, role: str, topic: str) -> bool:
 
 
 def _home(seen: Index, robot: str, topics: Mapping[str, Sequence[str]]) -> str:
-    """Return a robot's tf topic: the known one, its own, or the one where most of its nodes send."""
+    """Return a robot's tf topic: the known one, its own, or the one where most of its nodes send, which
+    counts before its own where those of other robots send, too, and its frames have its name."""
     if robot in seen.home:
         return seen.home[robot]
+    most = max(topics, key=lambda it: len(topics[it]))
+    tree = next(it for it in seen.trees if it.topic == most)
+    named = any(seen.frame_robot(it.child) == robot for it in tree.edges)
+    if named and not {*map(seen.robot, tree.senders)} <= {"", robot}:
+        return most
     own = [it for it in topics if seen.robot(it) == robot and seen.plain(it).strip("/") == TF]
-    return next(iter(own), "") or max(topics, key=lambda it: len(topics[it]))
+    return next(iter(own), most)
 
 
 def _elsewhere(

@@ -6,8 +6,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence, Set
 
-from multibot_rewrite.base.chains import chain_ends
-from multibot_rewrite.base.grouping import lists_by_key
+from multibot_rewrite.base.grouping import chain_ends, lists_by_key
 from multibot_rewrite.base.wording import unique
 from multibot_rewrite.system.index import Index, Tree, once
 from multibot_rewrite.system.records import OFF, PUBLISHES, Edge, Robot

@@ -23,13 +23,15 @@ from multibot_rewrite.rules.system.planned_frames import with_more_names
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Index, Tree, robots_of
 from multibot_rewrite.system.parameters import parameter_text
-from multibot_rewrite.system.records import SUBSCRIBES, Edge
+from multibot_rewrite.system.records import SUBSCRIBES, Edge, End
 from multibot_rewrite.system.tf_copies import static_topic
 from multibot_rewrite.system.tool_nodes import last_word
 
 _STATE_PUBLISHER, _STATIC = "robot_state_publisher", "static_transform_publisher"
 # These have a prefix for frames as well, on by default.
 _OF_CONTROLLERS = "enable_odom_tf"
+# What a node looks at to find the robot in the map.
+_SEEN = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2"
 
 
 @system_rule("MG401", "two-parents", ERROR)
@@ -330,9 +332,17 @@ def _without_prefix(nodes: Iterable[str]) -> Cause:
 
 
 def who_can_send(seen: Index, nodes: Sequence[str], edges: Sequence[Edge]) -> Sequence[str]:
-    """Return the nodes that can send one of these transforms; all if fewer than two are left."""
+    """Return the nodes that can send one of these transforms, below the map those that see where it is;
+    all if fewer than two are left."""
     found = [node for node in nodes if any(_can_send(seen, node, it) for it in edges)]
+    if all(seen.plain_frame(it.parent) in WORLD_FRAMES for it in edges):
+        seeing = [it for it in found if any(end.type in _SEEN for end in _read(seen, it))]
+        found = seeing if len(seeing) > 1 else found
     return found if len(found) > 1 else nodes
+
+
+def _read(seen: Index, node: str) -> Sequence[End]:
+    return [it for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES]
 
 
 def _can_send(seen: Index, node: str, edge: Edge) -> bool:
@@ -343,7 +353,7 @@ def _can_send(seen: Index, node: str, edge: Edge) -> bool:
         return above not in SENT_FRAMES
     if word.startswith(_STATIC):
         return edge.static
-    read = [it for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES]
+    read = _read(seen, node)
     if any(words.is_start_pose(seen.plain(it.name), it.type) for it in read):
         return above in WORLD_FRAMES
     drives = any(words.moves(it.name, it.type) for it in read)
