@@ -383,7 +383,7 @@ def _missed_server(seen: Index, end: End, lost: str, other: str, level: str) -> 
     remaps: tuple[Remap, ...] = (Remap(end.node, end.name, other),)
     managed = [it.node for it in seen.by_name[end.kind, other].clients if _manages(it.node)]
     if _manages(end.node) and managed:
-        cause, remaps = f"{managed[0]} calls that: leave {end.node} out", ()
+        cause, remaps = f"{managed[0]} manages that node already: do not start {end.node}", ()
     clicked = is_viewer(end.node) and not is_spawner(end.node)
     return server_names_miss.finding(
         f"{lost}; {nodes_of(servers)[0]} serves {other}", cause + see((servers[0], end)),
