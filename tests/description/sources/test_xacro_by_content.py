@@ -9,7 +9,8 @@ import pytest
 
 from multibot_rewrite import UsageError, rewrite
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.description.sources.read import has_xacro, is_xacro, read_whole
+from multibot_rewrite.description.sources.read import has_xacro, is_xacro
+from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.lint.check import lint_file
