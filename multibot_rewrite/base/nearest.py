@@ -130,7 +130,7 @@ def _words(name: str) -> tuple[str, ...]:
 
 
 def _one_typo(words: Sequence[str], others: Sequence[str]) -> bool:
-    """Do they differ in one long word without digits, by a letter or two letters swapped?"""
+    """Return whether they differ in one long word without digits, by one letter or two swapped."""
     pairs = [pair for pair in zip(words, others, strict=True) if pair[0] != pair[1]]
     if len(pairs) != 1:
         return False

@@ -309,7 +309,7 @@ def _left_out(made: Proposal) -> list[str]:
 
 
 def _apart(made: Proposal) -> float:
-    """Return metres from robot to robot; 0 where they differ already, or there is one robot."""
+    """Return metres from robot to robot; 0 if their poses differ already, or there is one robot."""
     places = [it["y"] for it in made.poses.values()]
     steps = {round(after - before, 3) for before, after in pairwise(places)}
     if len(steps) != 1:

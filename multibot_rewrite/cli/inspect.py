@@ -319,7 +319,7 @@ def _only_xacro(options: argparse.Namespace, words: Sequence[str]) -> str:
     other = next((it for it in words if not is_xacro(it)), None)
     if other is not None:
         linted = shlex.join(["urdf-lint", other])
-        raise UsageError(f"{other} is no xacro; {linted} tells what is not known in it")
+        raise UsageError(f"{other} is no xacro; {linted} shows what is unknown in it")
     if len(words) > 1:
         raise UsageError(f"{words[1]}: the arguments of one xacro file are shown; leave it out")
     return words[0]

@@ -229,7 +229,7 @@ def _count(findings: Sequence[Finding]) -> str:
 
 
 def check_use(options: argparse.Namespace) -> None:
-    """Raise UsageError for what cannot be meant."""
+    """Raise UsageError for missing paths and for options that exclude each other."""
     paths = plain_words(options)
     if not paths:
         raise UsageError("no PATH given; for example: urdf-lint urdf/")

@@ -35,7 +35,7 @@ CHANGES = "changes"
 
 
 def check_use(options: argparse.Namespace, names: list[str]) -> None:
-    """Raise UsageError for what cannot be meant."""
+    """Raise UsageError for missing words and for options that exclude each other."""
     if options.input == "":
         raise UsageError("the name of the input is empty")
     if options.input is None:
@@ -134,7 +134,7 @@ def input_name(options: argparse.Namespace) -> str:
 def is_stopped(
     options: argparse.Namespace, found: Iterable[Finding], robots: Sequence[str], release: str
 ) -> bool:
-    """Report what was found, to a program only what stops the rewrite; does it stop it?"""
+    """Report what was found, to a program only errors; return whether they stop the rewrite."""
     findings: Sequence[Finding] = chosen(options, dict.fromkeys(found))
     if options.silent and not fails(findings, options.fail_on):
         findings = ()

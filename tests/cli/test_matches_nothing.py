@@ -188,17 +188,6 @@ def test_a_name_of_a_fleet_file_that_nothing_has(
     assert all(it.startswith(f"fleet.yaml:{begin}") and end in it for it in lines)
 
 
-def test_a_name_that_a_parameter_file_of_the_fleet_has_is_known(
-    here: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    # A node that is not known, so that its parameter is a text and no frame.
-    (here / "params.yaml").write_text("tracker:\n  ros__parameters: {anchor: hall}\n")
-    text = FLEET % ("/clock", "hall")
-    (here / "fleet.yaml").write_text(f"{text}companions: {{params: params.yaml}}\n")
-    run("multibot build -o out")
-    assert "MF838" not in capsys.readouterr().err
-
-
 def test_the_names_of_a_call_without_a_fleet_file(
     here: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -153,7 +153,7 @@ def test_what_is_said_of_the_whole_robot_is_said_once_and_other_settings_are_tol
     assert len(tree_of(data).findall("gazebo")) == 1
     static = robot(link("a") + "\n<gazebo><static>true</static></gazebo>")
     made = join([Part(robot(link("base"))), Part(static, "base", prefix="p_")])
-    assert made.notes == ("<text>:2: <static> is now said of the whole robot",)
+    assert made.notes == ("<text>:2: <static> now applies to the whole robot",)
 
 
 def test_names_of_ros2_control_meet_and_take_the_prefix() -> None:

@@ -83,8 +83,8 @@ def lacking(plan: FleetPlan) -> Iterator[Finding]:
 
 
 def without_camera(plan: FleetPlan) -> Iterator[Finding]:
-    """Find the nodes of a node set that hear a camera which a simulated robot has not, or of which
-    it has several: nothing says which one is meant."""
+    """Yield nodes of a node set that read a camera which a simulated robot lacks, or of which it
+    has several: it is unknown which one they need."""
     for robot in (it for it in plan.robots if it.spec.simulator != REAL and not it.spec.launch):
         nodes = plan.evidence_of(robot).nodes
         waiting = [it for it in nodes if it.origin.stack and not (it.when or it.shared)]
@@ -119,8 +119,8 @@ _HINT = "start what does in its launch file, or write which name is meant as a r
 
 
 def unmoved(robot: RewrittenRobot, facts: Sequence[NodeFacts], system: System) -> Iterator[Finding]:
-    """Yield what is open in a robot of which all is known, by its own ``system``. Of another robot a
-    driver may be missing that nobody has named."""
+    """Yield what is open in a robot that is completely known, by its own ``system``. Another robot
+    may have a driver that no file names."""
     # Is all known that it runs, some of it by its source?
     known = all(it.is_known and not it.untold for it in facts)
     by_source = any(" " in it.kind for it in facts)

@@ -45,6 +45,7 @@ from multibot_rewrite.system.index import index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import DEVICE, SERVES, Address, Place, Robot, System
 
+OTHER_PREFIX = declare("MF841", "launch-file-adds-prefix", WARNING, formats=("fleet",))
 # Robots of which each pair is looked at; of more the nearest neighbours in a list are.
 MOST = 400
 
@@ -100,7 +101,7 @@ def _on_another_time(plan: FleetPlan) -> Iterator[Finding]:
         bridged = is_simulated(robot) and is_bridged(robot.member.inventory)
         if timed and bridged:
             who = f"robot {robot.spec.name!r} is in a simulator and on the time of the machine"
-            message = f"{who}; what it senses has that of the simulator: {shorten(timed)}"
+            message = f"{who}; its sensors have that of the simulator: {shorten(timed)}"
             hint = "leave use_sim_time: false out, or write simulator: none for a real robot"
             yield at_robot(clocks_mixed, robot, message, hint, level=WARNING)
 
@@ -294,13 +295,10 @@ def _of_frames(robot: RewrittenRobot) -> Iterator[Finding]:
         yield at_robot(DIFFERENT, robot, message, hint)
 
 
-OTHER_PREFIX = declare("MF841", "launch-file-adds-prefix", WARNING, formats=("fleet",))
-
-
 def _launched_prefixes(plan: FleetPlan) -> Iterator[Finding]:
-    """Report prefixes that launch files give robot_state_publisher in addition to the built
-    description, for the first robot of each kind. It puts one before each frame, and tf2 takes a
-    leading slash away."""
+    """Yield wrong prefixes of frames that a launch file gives the robot_state_publisher, of the first
+    robot of each kind (robot_state_publisher src/robot_state_publisher.cpp: it is put before each
+    frame; tf2 takes a leading slash away)."""
     for key, found in plan.evidence.items():
         robot = next(it for it in plan.robots if node_sources(it.spec) == key)
         # What its own robot_state_publisher gets; there may be another one, as of a dock.

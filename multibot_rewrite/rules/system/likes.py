@@ -134,7 +134,7 @@ def _are_alike(one: Set[str], other: Set[str]) -> bool:
 def _lost_nodes(
     seen: Index, made: Mapping[str, MadeOf], robot: str, likes: Sequence[str], lost: Sequence[str]
 ) -> Iterator[Finding]:
-    """All of one robot in one finding."""
+    """Report all nodes of one robot in one finding."""
     like = next(it for it in likes if it != robot)
     keys = [key for key in made[like].ends if key[0] in lost]
     own = _waiting(seen, made, robot, keys)
@@ -152,7 +152,7 @@ def _lost_nodes(
 def _lost_ends(
     seen: Index, made: Mapping[str, MadeOf], robot: str, likes: Sequence[str], gone: Iterable[_Key]
 ) -> Iterator[Finding]:
-    """Those of a node in one finding."""
+    """Report all ends of a node in one finding."""
     like = next(it for it in likes if it != robot)
     by_node = lists_by_key((key[0], key) for key in gone)
     for plain, keys in by_node.items():
@@ -206,7 +206,7 @@ ENOUGH = 10
 
 @system_rule("MG326", "less-than-another-robot", WARNING)
 def less_than_another_robot(seen: Index) -> Iterator[Finding]:
-    """Of the robots that have the topic, the one with the most messages is the measure."""
+    """Report it compared with the robot that has the most messages on the topic."""
     yield from _silent(seen)
     yield from _slow(seen)
     yield from _slow_transforms(seen)
@@ -221,17 +221,16 @@ def less_than_another_robot(seen: Index) -> Iterator[Finding]:
         most = seen.known.messages[best]
         for robot, name in there.items() if most >= ENOUGH else ():
             count = seen.known.messages[name]
-            if not count:
-                message = f"{name} has no message, {best} has {most}"
-                yield less_than_another_robot.finding(message, robot=robot, names=(name,))
-            elif count * RATIO <= most and seen.known.seconds:
+            message = "" if count else f"{name} has no message, {best} has {most}"
+            if count and count * RATIO <= most and seen.known.seconds:
                 slow, usual = (f"{it / seen.known.seconds:.1f} Hz" for it in (count, most))
                 message = f"{name} came at {slow}, {best} at {usual}"
+            if message:
                 yield less_than_another_robot.finding(message, robot=robot, names=(name,))
 
 
 def _slow(seen: Index) -> Iterator[Finding]:
-    """Of a running system the rate of a sensor is known, from a second of it."""
+    """Report slow sensors of a running system, whose rates are known after a second."""
     rates = {it.topic: it.rate for it in seen.system.heard if it.rate}
     there: dict[tuple[str, str], dict[str, str]] = defaultdict(dict)
     for it in seen.topics if rates else ():
@@ -257,7 +256,7 @@ def _slow(seen: Index) -> Iterator[Finding]:
 
 
 def _slow_transforms(seen: Index) -> Iterator[Finding]:
-    """Odometry and localization, which go on without a pause: joints and what is seen need not."""
+    """Report slow odometry and localization, which never pause: joints and sensors may."""
     there: dict[tuple[str, str], dict[str, Edge]] = defaultdict(dict)
     for it in (edge for tree in seen.trees for edge in tree.edges if edge.rate):
         robot, parent = (
@@ -270,17 +269,17 @@ def _slow_transforms(seen: Index) -> Iterator[Finding]:
         best = max(own.values(), key=lambda it: it.rate)
         for robot, it in own.items():
             if it.rate * RATIO <= best.rate:
-                said = f"{it.parent} -> {it.child} on {it.topic} comes at {it.rate:.1f} Hz"
+                said, other = (f"{one.parent} -> {one.child} on {one.topic}" for one in (it, best))
                 yield less_than_another_robot.finding(
-                    f"{said}, {best.parent} -> {best.child} at {best.rate:.1f} Hz",
+                    f"{said} comes at {it.rate:.1f} Hz, {other} at {best.rate:.1f} Hz",
                     "see the node that sends it, and the processor time that it has",
                     robot=robot, names=(it.child, it.topic),
                 )  # fmt: skip
 
 
 def _silent(seen: Index) -> Iterator[Finding]:
-    """Of a running system one message a topic is known: of one robot it came, of the other not, which
-    has sent others."""
+    """Report a running system's topic of which one robot sent a message, and another robot none
+    although it has sent others."""
     heard = {it.topic for it in seen.system.heard}
     if any(it.code == _NOT_ALL for it in seen.system.environment.caveats):
         return
@@ -305,8 +304,8 @@ def _silent(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG322", "driver-missing", ERROR, absence=True, drawn="leak")
 def driver_missing(seen: Index) -> Iterator[Finding]:
-    """By its readers, and by another robot that has it, however much the two differ: all that one node
-    of the other robot does is one finding."""
+    """Report a missing driver by its readers, and another robot that has it: all that one node of
+    the other robot does is one finding."""
     lost: dict[tuple[str, str], list[Ends]] = defaultdict(list)
     actions = [it for it in seen.by_name.values() if it.kind == ACTION]
     for ends in (*seen.topics, *actions) if len(seen.robots) > 1 else ():
@@ -349,7 +348,7 @@ def _first_to_do(seen: Index) -> Mapping[tuple[str, str, str, str], str]:
 
 
 def _missed_side(seen: Index, ends: Ends) -> str:
-    """Return the role that nobody has at a robot's name although one of its nodes waits for it: to
+    """Return the role that is missing at a robot's name although one of its nodes waits for it: to
     send sensor data, to obey velocities, to serve an action; empty for none."""
     if ends.kind == ACTION:
         return SERVES if at_work(ends.clients) and not ends.servers else ""
