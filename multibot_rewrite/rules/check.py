@@ -37,8 +37,8 @@ from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import End, System, clocks as time_by_node, unseen
 from multibot_rewrite.system.tf_copies import without_bridged
 
-# In names of a plan that are made at run time.
-_ANY = "*"
+# What is made at run time, in names of a plan.
+ANY = "*"
 RULES = {it.code: it for it in sorted(rules_in("system"), key=lambda it: it.code)}
 _LACKS = likes.lacks_what_its_likes_have
 # Findings about something missing: an incomplete view cannot prove them.
@@ -147,7 +147,7 @@ def side_by_side(
 def _with_patterns(plan: System, graph: System) -> System:
     """Return the graph, with a pattern of the plan in place of each node name that fits it. Two
     nodes of one process that a pattern fits are one node of the plan."""
-    patterns = {it.name: _compiled(it.name) for it in plan.nodes if _ANY in it.name}
+    patterns = {it.name: _compiled(it.name) for it in plan.nodes if ANY in it.name}
     if not patterns:
         return graph
     names = {
@@ -167,7 +167,7 @@ def _with_patterns(plan: System, graph: System) -> System:
 def _with_names(plan: System, graph: System) -> System:
     """Return the plan, with what runs in place of each pattern of an end's name; a pattern that
     nothing fits stays, and is missing. ``graph`` has its nodes as the plan calls them."""
-    if not any(_ANY in it.name for it in plan.ends):
+    if not any(ANY in it.name for it in plan.ends):
         return plan
     by_node = lists_by_key((end.node, end) for end in graph.ends)
     found = (end for it in plan.ends for end in _matching_ends(it, by_node))
@@ -175,7 +175,7 @@ def _with_names(plan: System, graph: System) -> System:
 
 
 def _matching_ends(planned: End, by_node: Mapping[str, Sequence[End]]) -> Iterator[End]:
-    if _ANY not in planned.name:
+    if ANY not in planned.name:
         yield planned
         return
     pattern, kind = _compiled(planned.name), (planned.kind, planned.role)
@@ -185,7 +185,7 @@ def _matching_ends(planned: End, by_node: Mapping[str, Sequence[End]]) -> Iterat
 
 
 def _compiled(pattern: str) -> re.Pattern[str]:
-    return re.compile(with_gaps(pattern.split(_ANY), "[^/]"))
+    return re.compile(with_gaps(pattern.split(ANY), "[^/]"))
 
 
 def inconclusive_where_in_doubt(found: list[Finding], graph: System) -> list[Finding]:
@@ -277,3 +277,53 @@ def _of_bridge(it: Finding, plan: System) -> Finding:
     level = ERROR if it.level == WARNING else it.level
     hint = f"nothing crosses: does {DOMAIN_BRIDGE} run for the robot, with the file that was built?"
     return it._replace(level=level, hint=hint)
+
+
+def fitted(plan: System, graph: System) -> tuple[System, System]:
+    """Return plan and graph with the same words for what is made at run time."""
+    known = with_patterns(plan, graph)
+    return with_names(plan, known), known
+
+
+def with_patterns(plan: System, graph: System) -> System:
+    """Return the graph, with a pattern of the plan in place of each node name that fits it. Two
+    nodes of one process that a pattern fits are one node of the plan."""
+    patterns = {it.name: _compiled(it.name) for it in plan.nodes if ANY in it.name}
+    if not patterns:
+        return graph
+    names = {
+        node.name: pattern
+        for node in graph.nodes
+        for pattern, found in patterns.items()
+        if found.fullmatch(node.name)
+    }
+    nodes = (it._replace(name=names[it.name]) for it in graph.nodes if it.name in names)
+    others = (it for it in graph.nodes if it.name not in names)
+    endpoints = (it._replace(node=names.get(it.node, it.node)) for it in graph.ends)
+    return graph._replace(
+        nodes=(*others, *dict.fromkeys(nodes)), ends=tuple(dict.fromkeys(endpoints))
+    )
+
+
+def with_names(plan: System, graph: System) -> System:
+    """Return the plan, with what runs in place of each pattern of an end's name; a pattern that
+    nothing fits stays, and is missing. ``graph`` has its nodes as the plan calls them."""
+    if not any(ANY in it.name for it in plan.ends):
+        return plan
+    by_node = lists_by_key((end.node, end) for end in graph.ends)
+    found = (end for it in plan.ends for end in _matching_ends(it, by_node))
+    return plan._replace(ends=tuple(dict.fromkeys(found)))
+
+
+def _matching_ends(planned: End, by_node: Mapping[str, Sequence[End]]) -> Iterator[End]:
+    if ANY not in planned.name:
+        yield planned
+        return
+    pattern, kind = _compiled(planned.name), (planned.kind, planned.role)
+    own = [it.name for it in by_node.get(planned.node, ()) if (it.kind, it.role) == kind]
+    fitting = [name for name in own if pattern.fullmatch(name)]
+    yield from (planned._replace(name=name) for name in fitting or [planned.name])
+
+
+def _compiled(pattern: str) -> re.Pattern[str]:
+    return re.compile(with_gaps(pattern.split(ANY), "[^/]"))
