@@ -293,7 +293,7 @@ def companions_launched(
 
 
 def _of_stacks(guessed: Companions, stacks: Mapping[str, str], release: str) -> list[str]:
-    """Return the parameter files that have a section of a node of these sets."""
+    """Return the parameter files that have a node of the node sets."""
     nodes = {os.path.basename(it.name) for one in stacks for it in load_stack(one, release)}
     every = guessed.files.get("params", ())
     return [it for it in every if any(f"{name}:" in text_of(it) for name in nodes)]
