@@ -494,7 +494,7 @@ def test_what_stands_for_a_package_is_no_value(
     found = actions(tmp_path, "here('n', parameters=[{'text': made, 'b': 2}]),", setup)
     assert of(found, "n")["parameters"][0] == {"b": 2}
     assert (
-        "the parameter text of n is made of a package that is not here" in capsys.readouterr().err
+        "the parameter text of n comes from a package that is not installed" in capsys.readouterr().err
     )
 
 
@@ -1279,5 +1279,5 @@ def test_an_include_without_an_argument_that_is_known_is_named_and_not_started(
         [["config", "a"], ["gui", "false"]]
     ]
     (line,) = (it for it in capsys.readouterr().err.splitlines() if "is not started" in it)
-    assert "launch/one.launch.py of gone is not started: its argument config is made of" in line
+    assert "launch/one.launch.py of gone is not started: its argument config comes from" in line
     assert "up.launch.py:" in line
