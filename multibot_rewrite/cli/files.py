@@ -11,10 +11,14 @@ from __future__ import annotations
 import os
 import signal
 import stat
+import threading
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 
 from multibot_rewrite.base.model import UsageError
+
+# Windows has no SIGHUP.
+_ENDS = [getattr(signal, it) for it in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, it)]
 
 
 def write_all(items: Iterable[tuple[str, bytes]]) -> None:
@@ -64,13 +68,19 @@ def make_folders(folder: str, made: list[str]) -> None:
 
 @contextmanager
 def _signals_held() -> Iterator[None]:
-    """Let Ctrl-C and the like wait: an interrupt between two of its lines would leave copies."""
-    ends = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, ends)
+    """Let Ctrl-C and the like wait: an interrupt between two of its lines would leave copies. Python
+    handles signals in its main thread, whichever thread gets them."""
+    came: list[int] = []
+    is_main = threading.current_thread() is threading.main_thread()
+    ends = [it for it in _ENDS if is_main and signal.getsignal(it) is not signal.SIG_IGN]
+    before = {it: signal.signal(it, lambda number, _: came.append(number)) for it in ends}
     try:
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        for it, handler in before.items():
+            signal.signal(it, handler or signal.SIG_DFL)
+        for it in came:
+            signal.raise_signal(it)
 
 
 def _commit(staged: dict[str, str]) -> None:

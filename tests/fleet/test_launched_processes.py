@@ -494,7 +494,8 @@ def test_what_stands_for_a_package_is_no_value(
     found = actions(tmp_path, "here('n', parameters=[{'text': made, 'b': 2}]),", setup)
     assert of(found, "n")["parameters"][0] == {"b": 2}
     assert (
-        "the parameter text of n comes from a package that is not installed" in capsys.readouterr().err
+        "the parameter text of n comes from a package that is not installed"
+        in capsys.readouterr().err
     )
 
 
