@@ -23,7 +23,7 @@ from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.description.readback.xml import plain
 from multibot_rewrite.description.reports.xacro_arguments import find_arguments, names_robots
 from multibot_rewrite.description.rewriters.tree import builtin_tree
-from multibot_rewrite.description.sources.read import read_whole
+from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.fleet.proposal.searching import search
 
 # The repository, the commit that gave it a prefix, its packages if not all, and arguments.
@@ -51,13 +51,13 @@ _PARTS = ("link", "joint", "ros2_control")
 
 
 def git(repo: Path, *words: str, given: bytes = b"") -> bytes:
-    """What git prints; nothing is fetched."""
+    """Return what git prints; nothing is fetched."""
     words = ("git", "-c", "remote.origin.promisor=false", f"--git-dir={repo}", *words)
     return subprocess.run(words, input=given, capture_output=True, check=True).stdout
 
 
 def checkout(repo: Path, commit: str, folder: Path) -> Path:
-    """The text files of a commit; a mirror lacks the largest."""
+    """Return the text files of a commit; a mirror lacks the largest."""
     names = git(repo, "ls-tree", "-r", "-z", "--name-only", commit).decode().split("\0")
     texts = [it for it in names if it.rpartition(".")[2] in (*_DATA, *_CODE)]
     asked = "".join(f"{commit}:{it}\n" for it in texts).encode()
@@ -75,7 +75,7 @@ def checkout(repo: Path, commit: str, folder: Path) -> Path:
 
 
 def packages(repo: Path, commit: str, before: Path, only: str) -> Iterator[Path]:
-    """The packages whose xacros the commit changes."""
+    """Yield the packages whose xacros the commit changes."""
     names = git(repo, "diff", "--name-only", f"{commit}^", commit, "--", "*.xacro").decode().split()
     found: dict[Path, None] = {}
     for name in names:
@@ -87,13 +87,13 @@ def packages(repo: Path, commit: str, before: Path, only: str) -> Iterator[Path]
 
 
 def elements(path: Path, arguments: dict[str, str]) -> list[object]:
-    """A description as its readers see it."""
+    """Return a description as its readers see it."""
     root = etree.fromstring(read_whole(str(path), arguments).data)
     return [dict(root.attrib), *map(plain, root.iterchildren("*"))]
 
 
 def theirs(before: Path, after: Path, given: dict[str, str]) -> str:
-    """What the maintainer's commit made of a description."""
+    """Return what the maintainer's commit made of a description."""
     if not after.exists():
         return "moved"
     try:
@@ -118,7 +118,7 @@ def theirs(before: Path, after: Path, given: dict[str, str]) -> str:
 
 
 def ours(folder: Path, given: dict[str, str]) -> str:
-    """What adopt makes of a package."""
+    """Return what adopt makes of a package."""
     try:
         made = adopt(str(folder), xacro_args=given)
     except MultibotError as error:
@@ -134,7 +134,7 @@ def ours(folder: Path, given: dict[str, str]) -> str:
 
 
 def every(mirrors: Path) -> Iterator[tuple[str, ...]]:
-    """A row a package: repository, commit, package, ours, theirs of its first descriptions."""
+    """Yield a row a package: repository, commit, package, ours, theirs of its first descriptions."""
     for name, commit, only, given in COMMITS:
         repo = mirrors / name / "repo"
         with TemporaryDirectory() as one, TemporaryDirectory() as other:

@@ -68,7 +68,7 @@ def rows() -> list[dict[str, str]]:
 
 
 def renamed(text: bytes, naming: Naming, word: str) -> list[object]:
-    """The elements of a description with a prefix or below a namespace, as a rewrite makes them."""
+    """Return the elements of a description with a prefix or namespace, as a rewrite makes them."""
     prepared = pipeline.prepare(text, "robot.urdf", naming, builtin_tree((), "jazzy"))
     return elements(next(pipeline.render(prepared, [word], again=True)))
 
@@ -79,7 +79,7 @@ def elements(text: bytes) -> list[object]:
 
 
 def expanded(path: str, arguments: Mapping[str, str]) -> bytes:
-    """What xacro makes of a file."""
+    """Return what xacro makes of a file."""
     with redirect_stderr(StringIO()):
         made = xacro.process_file(path, mappings=dict(arguments))
     return bytes(made.toprettyxml(indent="  ", encoding="utf-8"))
@@ -113,12 +113,12 @@ def judged(made: Adopted) -> Judged:
 
 
 def _text(path: str, arguments: dict[str, str]) -> bytes:
-    """A description before; a plain one becomes a xacro, and some have expressions already."""
+    """Return a description before; a plain one becomes a xacro, and some have expressions already."""
     return expanded(path if os.path.exists(path) else path.removesuffix(".xacro"), arguments)
 
 
 def one(row: Mapping[str, str], mirrors: Path) -> tuple[str, ...]:
-    """What adopt makes of a package, and what xacro makes of that."""
+    """Return what adopt makes of a package, and what xacro makes of that."""
     repo = mirrors / row["repository"].replace("/", "+") / "repo"
     with TemporaryDirectory() as at, TemporaryDirectory() as prefix:
         home = checkout(repo, row["commit"], Path(at))

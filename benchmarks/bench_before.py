@@ -66,7 +66,7 @@ class Row(NamedTuple):
 
 
 def unpacked(commit: str, folder: Path) -> Path:
-    """The files of a commit, which end where a repository does."""
+    """Return the files of a commit, which end where a repository does."""
     data = subprocess.run(["git", "archive", commit], cwd=HERE, check=True, capture_output=True)
     with tarfile.open(fileobj=io.BytesIO(data.stdout)) as archive:
         archive.extractall(folder, filter="data")
@@ -75,13 +75,13 @@ def unpacked(commit: str, folder: Path) -> Path:
 
 
 def run(program: str, *words: object, tree: Path) -> None:
-    """A command of a checkout, found in the folder that it runs in."""
+    """Run a command of a checkout, found in the folder that it runs in."""
     command = [sys.executable, "-m", f"multibot_rewrite.cli.{program}", *map(str, words)]
     child(command, 1, folder=str(tree))
 
 
 def compared(command: str, about: str, job: Callable[[Path], object], before: Path) -> Row:
-    """The job of both checkouts, in turns; each has run once before."""
+    """Return the times of a job in both checkouts, in turns; each has run once before."""
     sides = [partial(job, before), partial(job, HERE)]
     for side in sides:
         side()
@@ -91,7 +91,7 @@ def compared(command: str, about: str, job: Callable[[Path], object], before: Pa
 
 
 def rows(before: Path, folder: Path) -> Iterator[Row]:
-    """The commands of a day: a rewrite, a lint, builds, checks."""
+    """Yield the commands of a day: a rewrite, a lint, builds, checks."""
     for links in (60, 700):
         file = folder / f"robot{links}.urdf"
         file.write_bytes(robot(links))
@@ -116,7 +116,7 @@ def _row(command: str, about: str, before: Path, program: str, *words: object) -
 
 
 def _checked(folder: Path, size: tuple[int, ...], tree: Path) -> None:
-    """A snapshot held against its plan; both are made when they are first asked for."""
+    """Compare a snapshot with its plan; both are made when they are first asked for."""
     is_now = tree == HERE
     stem = folder / f"{'now' if is_now else 'before'}{size[0]}"
     plan, graph = Path(f"{stem}-plan.json"), Path(f"{stem}-graph.json")

@@ -116,7 +116,7 @@ DISPLAY = """\
 
 
 def nav2_params() -> str:
-    """A parameter file in the shape of Nav2's, made here."""
+    """Return a parameter file in the shape of Nav2's, made here."""
     parts = [COSTMAP.format(name=f"{it}_costmap", frame=frame) for it, frame in
              (("local", "odom"), ("global", "map"))]  # fmt: skip
     filler = (LINES - "".join(parts).count("\n")) // len(NODES) - 6
@@ -128,7 +128,7 @@ def nav2_params() -> str:
 
 
 def rviz_config() -> str:
-    """An RViz config of the length of Nav2's."""
+    """Return an RViz config of the length of Nav2's."""
     topics = [
         "/scan",
         "/map",
@@ -146,7 +146,7 @@ def rviz_config() -> str:
 
 
 def write_fleets(folder: Path) -> tuple[str, str]:
-    """The files, a fleet of one robot and one of many; gives the paths of the fleet files."""
+    """Write the files, a fleet of one robot and one of many; return the paths of the fleet files."""
     (folder / "rover.urdf").write_bytes(robot(LINKS))
     (folder / "params.yaml").write_text(nav2_params())
     (folder / "nav2.rviz").write_text(rviz_config())
@@ -163,13 +163,13 @@ def made(fleet: str) -> Outputs:
 
 
 def read_again(fleet: str) -> Callable[[], object]:
-    """What reads the files of a fleet back before they are written."""
+    """Return what reads the files of a fleet back before they are written."""
     plan = plan_fleet(read_fleet(fleet, "", {}))
     return partial(read_back, plan, make_outputs(plan, "/out"), "/out")
 
 
 def write_raw(files: Outputs, folder: str) -> None:
-    """The same bytes into a fresh folder, and nothing else."""
+    """Write the same bytes into a fresh folder, and nothing else."""
     shutil.rmtree(folder, ignore_errors=True)
     for path, data, _ in files.files:
         full = os.path.join(folder, path)
@@ -179,7 +179,7 @@ def write_raw(files: Outputs, folder: str) -> None:
 
 
 def usual_way(folder: Path, robots: int) -> None:
-    """What launch files do for every robot: PyYAML loads and dumps the parameters and the RViz
+    """Do what launch files do for every robot: PyYAML loads and dumps the parameters and the RViz
     config with the names replaced in each text, ElementTree renames links and joints."""
     for at in range(1, robots + 1):
         name = f"robot{at}"
@@ -201,13 +201,13 @@ def command(fleet: str, out: str, *more: str) -> None:
 
 
 def fresh(fleet: str, out: str) -> None:
-    """A build into a folder that is not there."""
+    """Build into a folder that does not exist."""
     shutil.rmtree(out, ignore_errors=True)
     command(fleet, out)
 
 
 def each_further(one: Callable[[], object], many: Callable[[], object], runs: int = 7) -> float:
-    """What each robot behind the first costs, as a part of what the first costs."""
+    """Return what each robot behind the first costs, as a part of what the first costs."""
     first, all_ = least_seconds(one, many, runs=runs)
     return (all_ - first) / (ROBOTS - 1) / first
 
@@ -261,7 +261,7 @@ def least(folder: Path, runs: int = 100) -> float:
 
 
 def page() -> str:
-    """The page as Markdown."""
+    """Return the page as Markdown."""
     with as_installed(), tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         measured = table(rows(folder))

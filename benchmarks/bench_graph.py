@@ -130,7 +130,7 @@ def plan_of(size: Size) -> System:
 
 
 def graph_of(plan: System) -> System:
-    """The graph exactly as planned."""
+    """Return the graph exactly as planned."""
     around = Environment(0, "LOCALHOST", (), "rmw_fastrtps_cpp", "", False, 5, "quiet", 3.5, ())
     nodes = tuple(Node(it.name, "") for it in plan.nodes)
     found = (End(w.kind, w.role, w.name, w.type, "", w.node, None, "") for w in plan.ends)
@@ -138,7 +138,7 @@ def graph_of(plan: System) -> System:
 
 
 def specs(size: Size) -> list[list[dict[str, Any]]]:
-    """The fleet for ``live_fleet``, dealt to its processes."""
+    """Return the fleet for ``live_fleet``, dealt to its processes."""
     hands: list[list[dict[str, Any]]] = [[] for _ in range(size.processes)]
     for robot in range(size.robots):
         for node in range(size.nodes):
@@ -175,7 +175,7 @@ def ended(process: subprocess.Popen[str], began: float) -> Ended:
 
 
 def fresh(size: Size, domain: int, *plan: str) -> list[Ended]:
-    """Checks that are started when the fleet is up and known to all."""
+    """Time checks that are started when the fleet is up and known to all."""
     with live_fleet.running(domain, *specs(size)):
         time.sleep(DISCOVERED_SECONDS)
         results = []
@@ -253,7 +253,7 @@ def live() -> Iterator[Row]:
 
 
 def through_router() -> Iterator[Row]:
-    """A check that asks a Zenoh router, with a session in place of the robots."""
+    """Yield a check that asks a Zenoh router, with a session in place of the robots."""
     domain = 42
     with (
         plan_file(LARGE) as plan,
@@ -269,7 +269,7 @@ def through_router() -> Iterator[Row]:
 
 
 def hold(there: zenoh_robots.Robot) -> None:
-    """The tokens of the large fleet."""
+    """Announce the nodes and topics of the large fleet by tokens."""
     types = [f"std_msgs::msg::dds_::{it}_" for it in TYPES]
     for at in range(LARGE.robots):
         space = f"/robot{at}"
@@ -315,7 +315,7 @@ def pure() -> Iterator[Row]:
 
 
 def by_command() -> Iterator[Row]:
-    """Checks of saved snapshots, both files from the disk."""
+    """Time checks of saved snapshots, both files from the disk."""
     least = {}
     for robots, nodes, topics in ((5_000, 1, 20), (10_000, 1, 20), (10_000, 20, 1)):
         size = Size(robots, nodes, topics, 1)
@@ -342,7 +342,7 @@ def saved(size: Size) -> list[Ended]:
 
 
 def _as_planned(command: Sequence[str]) -> Ended:
-    """What a command takes that ends with "as planned"."""
+    """Return what a command takes that ends with "as planned"."""
     began = time.monotonic()
     process = subprocess.Popen(
         command, stderr=subprocess.PIPE, text=True, env=as_installed(os.environ)
@@ -381,7 +381,7 @@ def table(rows: Sequence[Row]) -> str:
 
 
 def busy(load: float) -> str:
-    """What to know of a run beside the work of others."""
+    """Return a note on a run next to the work of others."""
     if load < (os.cpu_count() or 1):
         return ""
     return (

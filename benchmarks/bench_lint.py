@@ -32,7 +32,7 @@ from pairs import HOW, MACHINE, Job, Row, as_installed, child, least_seconds, pa
 from public_files import PublicFiles, public_files
 from robots import robot
 
-from multibot_rewrite.base.gc_pause import gc_paused
+from multibot_rewrite.base.lazy import gc_paused
 from multibot_rewrite.lint.check import lint_data
 from multibot_rewrite.rules.settings import Settings
 
@@ -80,7 +80,7 @@ class Peer(NamedTuple):
 
 
 def one_by_one(path: str, files: list[str]) -> list[list[str]]:
-    """A process a file: it takes no more."""
+    """Return a process a file: it takes no more."""
     return [[path, file] for file in files]
 
 
@@ -115,7 +115,7 @@ def debian(path: str) -> list[str]:
 
 
 def sdformat(path: str) -> list[str]:
-    """The library behind ``ign sdf``."""
+    """Return the library behind ``ign sdf``."""
     return ["dpkg-query", "-W", "-f", "${Version}", "libsdformat12-12"]
 
 

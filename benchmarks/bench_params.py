@@ -43,18 +43,18 @@ def context(layout: str, affix: str) -> Context:
 
 
 def first(data: bytes, setting: Context) -> str:
-    """A file for its first robot."""
+    """Return a file for its first robot."""
     companion = rewrite_params(read_yaml(data, "nav2_params.yaml"), setting)
     return fill_template(companion.template, "robot1", "robot1")
 
 
 def load_and_dump(data: bytes) -> str:
-    """What nav2_common's RewrittenYaml does: load, put a key on top, dump; both in Python."""
+    """Return what nav2_common's RewrittenYaml does: load, put a key on top, dump; both in Python."""
     return yaml.dump({"robot1": yaml.safe_load(data)})
 
 
 def raw_write(data: bytes, path: str) -> None:
-    """The file as it is, on the disk."""
+    """Write the file unchanged to the disk."""
     with open(path, "wb") as file:
         file.write(data)
 
@@ -91,7 +91,7 @@ def least(data: bytes, runs: int = 200) -> float:
 
 
 def page(data: bytes) -> str:
-    """The page as Markdown."""
+    """Return the page as Markdown."""
     lines = data.count(b"\n")
     return f"""# Benchmark of parameter files
 

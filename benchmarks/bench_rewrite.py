@@ -80,7 +80,7 @@ def proved(source: bytes) -> bytes:
 
 
 def element_tree(source: bytes) -> bytes:
-    """The loop people write by hand; it renames less and loses comments."""
+    """Return the loop people write by hand; it renames less and loses comments."""
     root = ET.fromstring(source)
     for element in root.iter():
         for key in ATTRIBUTES & element.attrib.keys():
@@ -89,12 +89,12 @@ def element_tree(source: bytes) -> bytes:
 
 
 def floor(source: bytes) -> bytes:
-    """What any program that reads and writes XML does."""
+    """Return what any program that reads and writes XML does."""
     return etree.tostring(etree.fromstring(source))
 
 
 def expanded(source: bytes) -> str:
-    """What xacro makes of it: it has nothing to expand."""
+    """Return what xacro makes of it: it has nothing to expand."""
     import xacro
 
     with tempfile.NamedTemporaryFile(suffix=".xacro") as file:
@@ -126,7 +126,7 @@ def in_process(source: bytes) -> list[Row]:
 
 
 def further(source: bytes, runs: int) -> float:
-    """What each further robot of a call costs, against the floor."""
+    """Return what each further robot of a call costs, against the floor."""
     (least,) = least_seconds(partial(floor, source), runs=runs)
     return min(_behind_the_first(source) for _ in range(runs)) / MORE / least
 
@@ -165,7 +165,7 @@ def in_public(public: PublicFiles) -> list[Row]:
 
 
 def in_memory(source: bytes) -> Row:
-    """A thousand robots in memory against as many copies."""
+    """Return a thousand robots in memory against as many copies."""
     robots = [f"robot{number}" for number in range(FLEET)]
     pieces = pipeline.prepare(source, "robot", make_naming(), builtin_tree((), NEWEST_LTS)).pieces
     place, output = bytearray(source), fill(pieces, robots[0])
@@ -184,7 +184,7 @@ def in_memory(source: bytes) -> Row:
 
 @contextmanager
 def fresh_folders(where: str) -> Iterator[Callable[[], str]]:
-    """Makes an empty folder for each call; those before it are gone, and their bytes off the way."""
+    """Make an empty folder for each call, after removing those before it and their bytes."""
     with tempfile.TemporaryDirectory(dir=where) as home:
         last = [tempfile.mkdtemp(dir=home)]
 
@@ -198,7 +198,7 @@ def fresh_folders(where: str) -> Iterator[Callable[[], str]]:
 
 
 def to_files(source: bytes, where: str, what: str) -> list[Row]:
-    """A thousand robots to files, against writes of the same bytes and one fsync at the end."""
+    """Return a thousand robots to files, against writes of the same bytes and one fsync at the end."""
     robots = [f"robot{number}" for number in range(FLEET)]
     output = next(rewrite_all(source, robots)).data
 
@@ -231,7 +231,7 @@ def _cost(job: Callable[[str], None], folder: str) -> tuple[float, float]:
 
 
 def _turned(rounds: list[list[tuple[float, float]]]) -> Iterator[list[list[float]]]:
-    """The same by kind of cost, then by round."""
+    """Yield the same by kind of cost, then by round."""
     for kind in (0, 1):
         yield [[cost[kind] for cost in row] for row in rounds]
 
@@ -244,7 +244,7 @@ def growth() -> Row:
 
 
 def command(source: bytes) -> list[Row]:
-    """The whole command and its peak memory, against importing lxml."""
+    """Return the whole command and its peak memory, against importing lxml."""
     with tempfile.TemporaryDirectory() as folder:
         path = f"{folder}/robot.urdf"
         Path(path).write_bytes(source)

@@ -61,7 +61,7 @@ def bugs_in(home: Path, file: str) -> list[Bug]:
 
 
 def planted(source: bytes, bug: Bug) -> bytes:
-    """The text with the bug in it."""
+    """Return the text with the bug in it."""
     return source[: bug.start] + bug.new.encode() + source[bug.end :]
 
 
@@ -80,7 +80,7 @@ def _changes(node: ast.AST, function: int) -> Iterator[tuple[ast.expr | ast.stmt
 
 
 def _inner(node: ast.AST) -> Iterator[ast.AST]:
-    """The parts of a node that run: no annotation, docstring, message or example."""
+    """Yield the parts of a node that run: no annotation, docstring, message or example."""
     if isinstance(node, (ast.JoinedStr, ast.Raise, ast.Assert, ast.Import, ast.ImportFrom)):
         return
     if isinstance(node, ast.Call) and _name(node.func) in _WORDS:
@@ -101,7 +101,7 @@ def _inner(node: ast.AST) -> Iterator[ast.AST]:
 
 
 def _is_text(node: ast.AST) -> bool:
-    """A docstring."""
+    """Return a docstring."""
     return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
 
 
@@ -163,7 +163,7 @@ def _changes_its_owner(node: ast.expr) -> bool:
 
 
 def _with(node: ast.expr, **fields: object) -> str:
-    """The node with other fields, as text that fits in its place."""
+    """Return the node with other fields, as text that fits in its place."""
     return f"({ast.unparse(type(node)(**{**dict(ast.iter_fields(node)), **fields}))})"
 
 

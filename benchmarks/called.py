@@ -35,7 +35,7 @@ def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
 
 @contextmanager
 def _noted() -> Iterator[set[CodeType]]:
-    """What is called within the block. From Python 3.12 on each is noted once, which is quick."""
+    """Yield what is called within the block. From Python 3.12 on each is noted once, which is quick."""
     seen: set[CodeType] = set()
     if sys.version_info < (3, 12):
         sys.setprofile(lambda frame, event, _: event == "call" and seen.add(frame.f_code))

@@ -108,7 +108,7 @@ def _plain_kind(line: str) -> str:
 
 
 def _marked(node: ast.AST) -> Iterator[tuple[str, int, int]]:
-    """The lines of an import, a docstring, or the declaration of a rule."""
+    """Yield the lines of an import, a docstring, or the declaration of a rule."""
     if isinstance(node, ast.Import | ast.ImportFrom):
         yield "imports", node.lineno, node.end_lineno or node.lineno
     elif isinstance(node, ast.Call) and _name(node.func) in DECLARING:
@@ -123,7 +123,7 @@ def _name(node: ast.AST) -> str:
 
 
 def _is_data(value: ast.AST | None) -> bool:
-    """A table or text: nothing in it is computed."""
+    """Return a table or text: nothing in it is computed."""
     computed = (ast.Call, ast.Lambda, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
     return value is not None and not any(isinstance(it, computed) for it in ast.walk(value))
 
@@ -136,7 +136,7 @@ def arrows(every: list[Module]) -> Counter[tuple[str, str]]:
 
 
 def imported(tree: ast.Module, files: Iterable[str]) -> set[str]:
-    """The modules of the package that one of them imports."""
+    """Return the modules of the package that one of them imports."""
     found: set[str] = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom) and (node.module or "").startswith(PACKAGE):
@@ -196,7 +196,7 @@ def referred_once(every: list[Module], functions: Iterable[ast.FunctionDef]) -> 
 
 
 def shapes(every: list[Module]) -> dict[str, list[str]]:
-    """The records of a thing that has several, each with its module."""
+    """Return the records of a thing that has several, each with its module."""
     places = [
         (node.name, it.file)
         for it in every
@@ -210,7 +210,7 @@ def shapes(every: list[Module]) -> dict[str, list[str]]:
 
 
 def serialisers(every: list[Module]) -> list[str]:
-    """The modules that make a System of bytes."""
+    """Return the modules that make a System of bytes."""
     return [it.file for it in every if any(map(_reads_system, ast.walk(it.tree)))]
 
 

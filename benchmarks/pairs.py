@@ -84,6 +84,6 @@ def as_installed() -> Iterator[None]:
 
 
 def table(rows: Iterable[Row]) -> str:
-    """The rows as Markdown."""
+    """Return the rows as Markdown."""
     head = "| what | against | ratio | goal |\n|---|---|--:|--:|\n"
     return head + "".join(f"| {r.what} | {r.against} | {r.ratio:.3g} | {r.goal} |\n" for r in rows)

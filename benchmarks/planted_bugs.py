@@ -115,7 +115,7 @@ def _copy(target: Path) -> Path:
 def _called(
     copy: Path, notes: Path | None, tests: Sequence[str]
 ) -> tuple[dict[str, list[str]], list[str]]:
-    """The tests by the functions that they call, and those that fail without a bug: left out."""
+    """Return the tests by the functions that they call, and those that fail without a bug: left out."""
     notes = (notes or copy / "called.json").resolve()
     if not notes.exists():
         _note_calls(copy, notes, tests)
@@ -164,9 +164,9 @@ def _outcomes(room: str, bench: Bench, options: argparse.Namespace) -> Iterator[
 
 
 def _tests_of(bug: Bug, bench: Bench, chance: random.Random) -> list[str]:
-    """Tests that call the function with the bug, and of the module where few do: what is made once is
-    made in one test. A module of data is asked by those of its folder. Those named after a rule of the
-    module come first, then those of files that name the module and its rules most often."""
+    """Return tests that call the function with the bug, and of the module where few do: what is made
+    once is made in one test. A module of data has those of its folder. Tests named after a rule of
+    the module come first, then those of files that name the module and its rules most often."""
     found = set(bench.called.get(f"{bug.file}:{bug.function}", ()))
     if len(found) < FEW_TESTS:
         found |= _tests_in(f"{bug.file}:", bench)
@@ -218,7 +218,7 @@ def _is_noticed(bug: Bug, tests: list[str], bench: Bench, fine: Sequence[int] = 
 
 
 def _run(tests: list[str], bench: Bench, *words: str) -> int:
-    """What pytest ends with, or that it did not end in time."""
+    """Return what pytest ends with, or that it did not end in time."""
     run = subprocess.Popen(
         [*_pytest(), *FAST, *words, *tests], cwd=bench.copy, env=_environment(bench.copy),
         start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,

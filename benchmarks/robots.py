@@ -57,8 +57,8 @@ PLUGIN = """  <gazebo reference="link_{n}">
 
 
 def robot(links: int) -> bytes:
-    """A URDF with that many links, about 2 kB each; as many names per kB (4.5) as the median of a
-    thousand public files."""
+    """Return a URDF with that many links, about 2 kB each; as many names per kB (4.5) as the median
+    of a thousand public files."""
     parts = ['<?xml version="1.0"?>\n<!-- made for measuring -->\n<robot name="rover">']
     parts.append('\n  <material name="grey"><color rgba="0.5 0.5 0.5 1"/></material>')
     for n in range(links):

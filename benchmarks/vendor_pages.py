@@ -77,12 +77,12 @@ def section(found: Outcome, revisions: Mapping[str, str], uses: list[str], whole
 
 
 def plain_paths(text: str) -> str:
-    """A fleet file with paths as a user has them."""
+    """Return a fleet file with paths as a user has them."""
     return text.replace("{sources}/", "src/").replace("{work}/", "")
 
 
 def verdict(found: Outcome) -> str:
-    """The figures of a comparison in a line."""
+    """Return the figures of a comparison in a line."""
     better = [it for it in found.compared.differences if it.reason]
     wrong = [it for it in found.compared.differences if not it.reason]
     counts = f"{found.compared.equal} values are equal, {len(better)} better, {len(wrong)} wrong"
@@ -118,7 +118,7 @@ def _findings(found: Outcome) -> Iterator[str]:
 
 
 def tables(found: Mapping[str, Outcome], arms: Mapping[str, Sequence[Told]]) -> str:
-    """The head of the page: the tables of all robots."""
+    """Return the head of the page: the tables of all robots."""
     rows = [HEAD, *(_row(it) for it in found.values()), SAID]
     rows += [line for it in found.values() for line in said_rows(it.recipe.title, told_of(it))]
     rows += [line for name, it in arms.items() for line in said_rows(ARMS[name], it)]
@@ -126,7 +126,7 @@ def tables(found: Mapping[str, Outcome], arms: Mapping[str, Sequence[Told]]) -> 
 
 
 def told_of(found: Outcome) -> list[Told]:
-    """What is said of each build of a recipe."""
+    """Return what is said of each build of a recipe."""
     true = partial(is_true, found.recipe)
     return [
         told(built.layout, said(built.findings, built.robots), looked, true)

@@ -63,7 +63,7 @@ def fish(program: str) -> str:
 
 
 def fish_option(option: Option) -> str:
-    """What fish is told of an option: its names, whether a value follows and which there are."""
+    """Return what fish is told of an option: its names, whether a value follows and which there are."""
     kinds = ((it.lstrip("-"), "l" if it.startswith("--") else "s") for it in option.names)
     names = "".join(f" -{kind} {it}" for it, kind in kinds)
     known = STACKS if STACK in option.names and "action" in option.keywords else ()
@@ -74,12 +74,12 @@ def fish_option(option: Option) -> str:
 
 
 def quoted(text: str) -> str:
-    """A word for fish."""
+    """Return a word for fish."""
     return "'" + " ".join(text.split()).replace("\\", "\\\\").replace("'", "\\'") + "'"
 
 
 def multibot() -> argparse.ArgumentParser:
-    """The command with all its commands, as nothing but this module needs it."""
+    """Return the command with all its commands, as nothing but this module needs it."""
     result = Parser(prog="multibot", description=ABOUT)
     result.add_argument("--version", action="version", version=__version__, help="show the version")
     below = result.add_subparsers(metavar="COMMAND", dest="command")
@@ -89,7 +89,7 @@ def multibot() -> argparse.ArgumentParser:
 
 
 def completed(parser: argparse.ArgumentParser) -> argparse.ArgumentParser:
-    """The same, with names of files or stacks where one is asked for; a new stack is named freely."""
+    """Return the same, with names of files or stacks where needed; a new stack is named freely."""
     for action in parser._actions:
         if STACK in action.option_strings and isinstance(action.default, list):
             action.choices = STACKS
@@ -102,7 +102,7 @@ def completed(parser: argparse.ArgumentParser) -> argparse.ArgumentParser:
 
 
 def pages() -> Iterator[argparse.ArgumentParser]:
-    """What has a manual page of its own: each program, and each command as ``multibot-NAME``."""
+    """Yield what has a manual page of its own: each program, and each command as ``multibot-NAME``."""
     yield Parser(prog="multibot", usage="multibot COMMAND [options]", description=_overview())
     yield from map(make_parser, PROGRAMS.values())
     for command in COMMANDS.values():
@@ -117,7 +117,7 @@ def _overview() -> str:
 
 
 def manual(parser: argparse.ArgumentParser) -> str:
-    """A page in the language of man; without a date, which would be that of the day it was made."""
+    """Return a page in the language of man; without a date, which would change every day."""
     about = str(parser.description).partition("\n")[0]
     known = {"project_name": "multibot_rewrite", "version": __version__, "date": " "}
     page = Manpage(parser, {**known, "description": about, "manual_title": "multibot_rewrite"})

@@ -60,14 +60,14 @@ class Verdict(NamedTuple):
 
 
 def descriptions(folders: Iterable[Path]) -> Iterator[Path]:
-    """The files below the folders that may be robots; macros of xacro are told when they are read."""
+    """Yield the files below the folders that may be robots; reading shows which are macros."""
     for folder in folders:
         found = (it for it in sorted(folder.rglob("*")) if it.is_file())
         yield from (it for it in found if re.search(r"\.(urdf|sdf|xacro)$", it.name))
 
 
 def kind_of(text: bytes) -> str:
-    """The kind of robot, by what its text loads."""
+    """Return the kind of robot, by what its text loads."""
     said = re.sub(r"<!--.*?-->", "", text.decode("utf-8", "replace"), flags=re.DOTALL)
     return next(kind for kind, words in KINDS.items() if re.search(words, said))
 
@@ -75,7 +75,7 @@ def kind_of(text: bytes) -> str:
 def judged(
     path: Path, layouts: Sequence[str], releases: Sequence[str], systems: str | None = None
 ) -> list[Verdict]:
-    """The verdicts of one file; none for what is no robot: a macro, a world, a file that is broken."""
+    """Return the verdicts of one file; none for a macro, a world or a broken file."""
     found = [_verdict(path, layout, it, systems) for layout in layouts for it in releases]
     return [it for it in found if it is not None]
 

@@ -71,7 +71,7 @@ class Row(NamedTuple):
 
 
 def strangers(path: Path = LIST) -> list[Stranger]:
-    """The repositories of the list."""
+    """Return the repositories of the list."""
     lines = [it for it in path.read_text().splitlines() if not it.startswith("#")]
     return [Stranger(*it.split("\t")) for it in lines[1:]]
 
@@ -139,14 +139,14 @@ def _word(it: Ran, command: str) -> str:
 
 
 def _first(it: Ran) -> str:
-    """The first line that says an error, else the last one that was said."""
+    """Return the first line that says an error, else the last one that was said."""
     lines = [line for line in (it.err + it.out).splitlines() if line.strip()]
     errors = (line for line in lines if " error" in line or "does not build" in line)
     return next(errors, lines[-1] if lines else "")
 
 
 def _driven(it: Ran, told: str) -> tuple[str, str]:
-    """The word and why: what is wrong was told by the build (``told``), or it is silent."""
+    """Return the word and why: what is wrong was told by the build (``told``), or it is silent."""
     try:
         found = json.loads(it.out)
     except json.JSONDecodeError:
@@ -163,21 +163,21 @@ def _driven(it: Ran, told: str) -> tuple[str, str]:
 
 
 def _unread(unknown: str, told: str) -> tuple[str, str]:
-    """What nobody has read: the build says each by its name, or not."""
+    """Return what nobody has read: the build says each by its name, or not."""
     names = unknown.removeprefix("unknown: ").split(", ")
     silent = [it for it in names if it.rpartition(" ")[2] not in told]
     return ("drive: unknown" if silent else "drive: the build says what is not known"), unknown
 
 
 def _with_owners(why: str, checkout: Path) -> str:
-    """What nobody has read, each with the package of the checkout that has its sources."""
+    """Return what nobody has read, each with the package of the checkout that has its sources."""
     if not why.startswith("unknown: "):
         return why
     return ", ".join(f"{it} ({_owner(it, checkout)})" for it in why[len("unknown: ") :].split(", "))
 
 
 def _owner(name: str, checkout: Path) -> str:
-    """The package whose CMakeLists.txt builds a library, or whose XML exports a class."""
+    """Return the package whose CMakeLists.txt builds a library, or whose XML exports a class."""
     words = name.removeprefix("lib").removesuffix(".so")
     for pattern in ("CMakeLists.txt", "*.xml", "setup.py"):
         for file in sorted(checkout.rglob(pattern)):
@@ -193,8 +193,8 @@ def _package(folder: Path, checkout: Path) -> str:
 
 
 def _is_told(why: str, told: str) -> bool:
-    """Does the build name the topic, controller or frame that this is about, as a whole word? That the
-    node is named that reads or sends it says nothing of it."""
+    """Return whether the build names the topic, controller or frame that this is about, as a
+    whole word. The name of the node that reads or sends it does not count."""
     if " has no type for " in why and "it makes no controller_manager" in told:
         return True
     if re.search(" moves |two nodes are called", why) and "has parameters of ROS 1" in told:
@@ -212,7 +212,7 @@ def _is_told(why: str, told: str) -> bool:
 
 
 def short(why: str, it: Stranger) -> str:
-    """A reason without the place of the checkout, and no longer than a table takes."""
+    """Return a reason without the place of the checkout, and no longer than a table takes."""
     place = re.sub(rf"\S*/{re.escape(it.name.replace('/', '+'))}(/|: )", "", why)
     plain = place.removeprefix("multibot: ")
     return plain if len(plain) <= LONGEST else f"{plain[: LONGEST - 3]}..."

@@ -24,7 +24,7 @@ from multibot_rewrite.description.reports.explain import tag_path
 from multibot_rewrite.description.reports.suggest import Loaded, loaded_by
 from multibot_rewrite.description.rewriters.spelling import ResolvedName
 from multibot_rewrite.description.rewriters.tree import Tree, builtin_tree
-from multibot_rewrite.description.sources.read import read_whole
+from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.description.steps.collect import Inventory, collect
 from multibot_rewrite.description.steps.document import Document, read_document, slot_values
 
@@ -67,14 +67,14 @@ class Survey(NamedTuple):
 
 
 def survey(inventory: Inventory, tree: Tree) -> Survey:
-    """What is known of one file."""
+    """Return what is known of one file."""
     named = zip(inventory.claims, inventory.names, strict=True)
     claims = Counter(_kind(claim, names) for claim, names in named)
     return Survey(1, _loaded(inventory), claims, _mentions(inventory, tree))
 
 
 def add(surveys: Iterable[Survey]) -> Survey:
-    """The sum of surveys; the first place of each thing is the one that is kept."""
+    """Return the sum of surveys; the first place of each thing is the one that is kept."""
     files = 0
     loaded: dict[Loaded, Tally] = {}
     claims: Counter[str] = Counter()
@@ -96,12 +96,12 @@ def _sum(first: Tally | None, second: Tally) -> Tally:
 
 
 def _kind(claim: Claim, names: Sequence[ResolvedName]) -> str:
-    """The kind of a claimed value, which is that of the first name in it."""
+    """Return the kind of a claimed value, which is that of the first name in it."""
     return names[0].kind or UNRESOLVED if names else _first(claim)
 
 
 def _first(claim: Claim) -> str:
-    """The kind of a value without a name: what it would be, or nothing of this file."""
+    """Return the kind of a value without a name: what it would be, or nothing of this file."""
     kind = claim.site.kinds[0]
     return UNRESOLVED if kind in DECLARED_KINDS else kind
 
@@ -137,7 +137,7 @@ def _first_or(tally: Tally | None, document: Document, start: int, value: str) -
 
 
 def ranked(tallies: Iterable[tuple[_Thing, Tally]]) -> list[tuple[_Thing, Tally]]:
-    """The most frequent first, those of one frequency by name."""
+    """Return the most frequent first, those of one frequency by name."""
     return sorted(tallies, key=lambda pair: (-pair[1].times, pair[0]))
 
 
@@ -148,7 +148,7 @@ def share(total: Survey, type_: str) -> tuple[int, int]:
 
 
 def surveyed(paths: Sequence[str]) -> tuple[Survey, list[str]]:
-    """What is known of all files below the paths, and why some cannot be read; raises UsageError."""
+    """Return what is known of all files below the paths, and why some are unread; raises UsageError."""
     tree, found, unreadable = builtin_tree((), NEWEST_LTS), [], []
     for path in find_files(paths, SUFFIXES, everything=True).files:
         try:
@@ -160,12 +160,12 @@ def surveyed(paths: Sequence[str]) -> tuple[Survey, list[str]]:
 
 
 def percentage(count: int, known: int) -> float:
-    """Rounded down, so that 100 means all; all of nothing is all."""
+    """Return a percentage rounded down, so that 100 means all; all of nothing is all."""
     return 1000 * known // count / 10 if count else 100.0
 
 
 def report(total: Survey, unreadable: Sequence[str]) -> Iterator[str | Grid]:
-    """What is printed."""
+    """Yield what is printed."""
     yield f"{plural(total.files, 'file')} read, {len(unreadable)} cannot be read"
     yield from (f"  {it}" for it in unreadable)
     yield from _loaded_parts(total, "plugin", "plugins")

@@ -44,7 +44,7 @@ def badges() -> dict[str, str]:
 
 
 def badge(label: str, text: str, colour: str) -> str:
-    """A picture of two words."""
+    """Return a picture of two words."""
     long, wide = (round(LETTER * len(it)) for it in (label, text))
     left, whole = long + 2 * MARGIN, long + wide + 4 * MARGIN
     return SVG.format(

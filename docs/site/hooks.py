@@ -45,12 +45,12 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 
 @cache
 def made() -> dict[str, str]:
-    """The made pages, once for all builds of this process."""
+    """Return the made pages, once for all builds of this process."""
     return every_page()
 
 
 def as_markdown(text: str) -> str:
-    """The change log, which catkin's tools want in reStructuredText."""
+    """Return the change log, which catkin's tools want in reStructuredText."""
     text = re.sub(r"^\^+\n(.*)\n\^+$", r"# \1", text, flags=re.MULTILINE)
     text = re.sub(r"^(.+)\n-+$", r"## \1", text, flags=re.MULTILINE)
     return text.replace("``", "`")
@@ -79,12 +79,12 @@ def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Fil
 
 
 def place(uri: str) -> str:
-    """The path in the repository of a page of the site."""
+    """Return the path in the repository of a page of the site."""
     return uri if (ROOT / uri).exists() else f"docs/{uri}"
 
 
 def target(path: str, page: Page, config: MkDocsConfig, files: Files) -> str:
-    """What leads from a page to a file of the repository."""
+    """Return what leads from a page to a file of the repository."""
     uri = "index.md" if path == "README.md" else path.removeprefix("docs/")
     if files.get_file_from_path(uri):
         return posixpath.relpath(uri, posixpath.dirname(page.file.src_uri) or ".")

@@ -74,7 +74,7 @@ def robots_in(layout: str) -> Mapping[str, Robot]:
 
 
 def first_link(text: str) -> str:
-    """The first link of a description."""
+    """Return the first link of a description."""
     return str(etree.fromstring(text.encode()).find("link").get("name"))
 
 
@@ -107,14 +107,14 @@ def _depths() -> Iterator[tuple[str, int]]:
 
 
 def without_name(robot: Robot) -> Robot:
-    """The same before a rewrite: nothing has the name of a robot."""
+    """Return the same before a rewrite: nothing has the name of a robot."""
     names = (robot.nodes, robot.topics)
     bare = (tuple(f"/{it.split('/', 2)[2]}" for it in them) for them in names)
     return Robot(robot.link, "/tf", robot.frames, *bare)
 
 
 def picture(robots: Mapping[str, Robot]) -> str:
-    """The robots beside each other, SVG; a name that both have is red where it is in the way."""
+    """Return the robots beside each other, SVG; a name that both have is red where it is in the way."""
     first, second = robots.values()
     columns = [
         _column(name, robots[name], MARGIN + at * (COLUMN + GAP), other)
@@ -150,7 +150,7 @@ def _column(name: str, robot: Robot, left: int, other: Robot) -> Column:
 
 
 def _kind(frame: str, robot: Robot, other: Robot) -> str:
-    """The same frame of two robots is in the way on one tf topic only."""
+    """Return the same frame of two robots is in the way on one tf topic only."""
     same = frame in dict(other.frames) and robot.tf == other.tf
     return "clash" if same else "own"
 
@@ -181,7 +181,7 @@ def _style(kind: str, colour: str) -> str:
 
 
 def _coloured(text: str, name: str, kind: str) -> str:
-    """The name of the robot in its colour, wherever it stands."""
+    """Return the name of the robot in its colour, wherever it stands."""
     mark = f'<tspan fill="{ROBOTS[name]}" font-weight="bold">{name}</tspan>'
     return escape(text) if kind == "robot" else escape(text).replace(name, mark)
 

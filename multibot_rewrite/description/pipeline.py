@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import chain
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, RewriteRefused
-from multibot_rewrite.base.gc_pause import gc_paused
+from multibot_rewrite.base.lazy import gc_paused
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import TWIN, Naming, overlap
 from multibot_rewrite.description.checks import audit, robots as checks

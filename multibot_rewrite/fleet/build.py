@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base import editors
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.gc_pause import gc_paused
+from multibot_rewrite.base.lazy import gc_paused
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.companions.yaml_text import quoted
 from multibot_rewrite.description.sources.read import is_xacro

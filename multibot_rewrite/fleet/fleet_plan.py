@@ -8,8 +8,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.gc_pause import gc_paused
 from multibot_rewrite.base.grouping import lists_by_key
+from multibot_rewrite.base.lazy import gc_paused
 from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.fleet.checks.described import wrong_in_descriptions
 from multibot_rewrite.fleet.checks.meeting import robots_meet

@@ -15,8 +15,7 @@ from lxml.etree import _Element
 from multibot_rewrite.base.file_kinds import refuse_templates
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Rule, by_place, locate
 from multibot_rewrite.base.findings.selection import level_of
-from multibot_rewrite.base.gc_pause import gc_paused
-from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.lazy import gc_paused, lazy_compile
 from multibot_rewrite.base.model import InputError, VocabularyError
 from multibot_rewrite.companions.named_file import is_named_beside, kind_of
 from multibot_rewrite.description.checks.problem import Problem

@@ -8,11 +8,13 @@ in another one is never met. Robots are compared wherever they are."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding, Rule
-from multibot_rewrite.base.gc_pause import gc_paused
+from multibot_rewrite.base.grouping import lists_by_key
+from multibot_rewrite.base.lazy import gc_paused, with_gaps
 from multibot_rewrite.producers.bags.recording import is_recorded
 from multibot_rewrite.rules.declaration import rules_in
 from multibot_rewrite.rules.folded import folded, in_order
@@ -32,10 +34,11 @@ from multibot_rewrite.system.domains import (
 )
 from multibot_rewrite.system.index import NO_COUNTS, Index, beside, index
 from multibot_rewrite.system.ownership import whose_by_plan
-from multibot_rewrite.system.patterns import fitted
-from multibot_rewrite.system.records import System, clocks as time_by_node, unseen
+from multibot_rewrite.system.records import End, System, clocks as time_by_node, unseen
 from multibot_rewrite.system.tf_copies import without_bridged
 
+# What is made at run time, in names of a plan.
+ANY = "*"
 RULES = {it.code: it for it in sorted(rules_in("system"), key=lambda it: it.code)}
 _LACKS = likes.lacks_what_its_likes_have
 # Findings about something missing: an incomplete view cannot prove them.
@@ -134,10 +137,55 @@ def side_by_side(
     before: System | None = None,
 ) -> tuple[Index, Index]:
     """Return the indexes of a plan and of a system, with run-time names written alike in both."""
-    fitting, there = fitted(plan, graph)
+    there = _with_patterns(plan, graph)
+    fitting = _with_names(plan, there)
     by_plan = index(fitting, whose_by_plan(fitting))
     edges = without_bridged(fitting, there.edges)
     return by_plan, beside(by_plan, there._replace(edges=edges), messages, before)
+
+
+def _with_patterns(plan: System, graph: System) -> System:
+    """Return the graph, with a pattern of the plan in place of each node name that fits it. Two
+    nodes of one process that a pattern fits are one node of the plan."""
+    patterns = {it.name: _compiled(it.name) for it in plan.nodes if ANY in it.name}
+    if not patterns:
+        return graph
+    names = {
+        node.name: pattern
+        for node in graph.nodes
+        for pattern, found in patterns.items()
+        if found.fullmatch(node.name)
+    }
+    nodes = (it._replace(name=names[it.name]) for it in graph.nodes if it.name in names)
+    others = (it for it in graph.nodes if it.name not in names)
+    endpoints = (it._replace(node=names.get(it.node, it.node)) for it in graph.ends)
+    return graph._replace(
+        nodes=(*others, *dict.fromkeys(nodes)), ends=tuple(dict.fromkeys(endpoints))
+    )
+
+
+def _with_names(plan: System, graph: System) -> System:
+    """Return the plan, with what runs in place of each pattern of an end's name; a pattern that
+    nothing fits stays, and is missing. ``graph`` has its nodes as the plan calls them."""
+    if not any(ANY in it.name for it in plan.ends):
+        return plan
+    by_node = lists_by_key((end.node, end) for end in graph.ends)
+    found = (end for it in plan.ends for end in _matching_ends(it, by_node))
+    return plan._replace(ends=tuple(dict.fromkeys(found)))
+
+
+def _matching_ends(planned: End, by_node: Mapping[str, Sequence[End]]) -> Iterator[End]:
+    if ANY not in planned.name:
+        yield planned
+        return
+    pattern, kind = _compiled(planned.name), (planned.kind, planned.role)
+    own = [it.name for it in by_node.get(planned.node, ()) if (it.kind, it.role) == kind]
+    fitting = [name for name in own if pattern.fullmatch(name)]
+    yield from (planned._replace(name=name) for name in fitting or [planned.name])
+
+
+def _compiled(pattern: str) -> re.Pattern[str]:
+    return re.compile(with_gaps(pattern.split(ANY), "[^/]"))
 
 
 def inconclusive_where_in_doubt(found: list[Finding], graph: System) -> list[Finding]:

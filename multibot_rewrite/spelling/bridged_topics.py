@@ -13,7 +13,7 @@ from lxml import etree
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming, make_naming, spelled
-from multibot_rewrite.description.readback.model_namespaces import scoped_namespace
+from multibot_rewrite.description.readback.other_topics import scoped_namespace
 from multibot_rewrite.description.readback.xml import values_at
 from multibot_rewrite.description.rewriters.model_namespaces import is_model_namespace
 from multibot_rewrite.description.rewriters.text import text_at

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple, TypeAlias
 
-from multibot_rewrite.base.gc_pause import gc_paused
+from multibot_rewrite.base.lazy import gc_paused
 from multibot_rewrite.base.naming import NAMESPACE, Naming, affix, spelled
 from multibot_rewrite.base.rosnames import bind, expand
 from multibot_rewrite.description.readback.nodes import ReadNode

@@ -62,11 +62,12 @@ def _of_parts(edges: Iterable[Edge]) -> set[str]:
 def guess_robots(graph: System) -> tuple[GuessedRobot, ...]:
     """Return the robots of a graph, in the order of their names; empty where none has a name."""
     parts = _of_parts(graph.edges)
-    namespaces = [it for it in _namespaces(graph) if not _is_a_part(it, parts)]
+    lived_in = [node.name for node in graph.nodes if not is_tool(node.name)]
+    namespaces = [it for it in _namespaces(graph, lived_in) if not _is_a_part(it, parts)]
     frames = {it for edge in graph.edges for it in (edge.child, edge.parent)}
     words = [] if namespaces else _last_words(graph)
     if not (namespaces or words):
-        namespaces = sorted(_alike(graph, _lived_in(graph), numbered=True))
+        namespaces = sorted(_alike(graph, lived_in, numbered=True))
     if namespaces:
         found = [GuessedRobot(_name(it, namespaces), it) for it in namespaces]
         return tuple(with_frames(found, frames))
@@ -89,14 +90,13 @@ def _name(namespace: str, all_of_them: Iterable[str]) -> str:
     return last if len(alike) == 1 else namespace.strip("/")
 
 
-def _namespaces(graph: System) -> list[str]:
+def _namespaces(graph: System, lived_in: Collection[str]) -> list[str]:
     """Return the namespaces of robots, in order."""
     nodes = {node.name for node in graph.nodes}
     parts = (end.name.rpartition("/") for end in graph.ends if end.kind == TOPIC)
     shown = ((space, word) for space, _, word in parts if space and word in OF_A_ROBOT)
     # Below a node's own name are its private names.
     found = sets_by_key((space, word) for space, word in shown if space not in nodes)
-    lived_in = _lived_in(graph)
     bodies = [
         space
         for space, words in found.items()
@@ -111,10 +111,6 @@ def _namespaces(graph: System) -> list[str]:
     ]
     outer = [it for it in bodies if not any(it.startswith(f"{other}/") for other in bodies)]
     return sorted({*outer, *_numbered_alike(outer, lived_in)})
-
-
-def _lived_in(graph: System) -> list[str]:
-    return [node.name for node in graph.nodes if not is_tool(node.name)]
 
 
 def _alike(graph: System, nodes: Iterable[str], numbered: bool = False) -> Iterator[str]:

@@ -17,8 +17,7 @@ from typing import Any
 
 from multibot_rewrite.base.bounded import QUOTED, load_json, load_yaml
 from multibot_rewrite.base.file_kinds import PLAN, SNAPSHOT, refuse_others
-from multibot_rewrite.base.gc_pause import gc_paused
-from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.lazy import gc_paused, lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.system.nested import fields_of, has_rows, system_from
 from multibot_rewrite.system.record_values import WrongValue, in_file, plain_value, reader, shown

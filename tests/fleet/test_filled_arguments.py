@@ -180,7 +180,9 @@ def test_a_prefix_that_misses_a_reference_is_not_filled(tmp_path: Path) -> None:
     assert names(outputs, "robot1", "joint") == ["robot1_elbow", "robot1_elbow"]
     assert nobodys(outputs, "robot1") == ""
     (message,) = said(outputs)
-    assert message.endswith("not filled: something still names elbow, which it renames")
+    assert message.endswith(
+        "not filled: elbow would be renamed, and something still uses the old name"
+    )
 
 
 @pytest.mark.slow

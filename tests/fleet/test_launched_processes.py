@@ -601,7 +601,7 @@ def test_a_bridge_under_another_name_is_that_of_the_build(tmp_path: Path) -> Non
             arguments=['/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock']),
         Node(package='rviz2', executable='rviz2', name='view'), here('first'),
     """
-    assert told(actions(tmp_path, body)) == ["first"]
+    assert told(actions(tmp_path, body)) == ["first", "rviz2"]
 
 
 def test_a_controller_manager_gets_the_description_that_its_launch_file_gives_it(

@@ -262,7 +262,7 @@ NO_NAME = "/lidar is running: it was started without the robot's name; use"
             "/robot1/lidar",
             "/lidar",
             {"way": HOST, "taker": "/robot1/host"},
-            "/lidar is running: /robot1/host makes it; start that as the plan says",
+            "/lidar is running in the process of /robot1/host: start /robot1/host as planned",
         ),
         (
             "/robot1/lidar",

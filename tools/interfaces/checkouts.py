@@ -28,7 +28,7 @@ SKIPPED = {
 
 
 def read_folder(folder: Path) -> Source:
-    """What all files of a checkout say; raises UsageError for what is no checkout."""
+    """Return what all files of a checkout say; raises UsageError for what is no checkout."""
     if not folder.is_dir() or "@" not in folder.name:
         raise UsageError(f"{folder}: not a folder called REPOSITORY@VERSION")
     repository, _, version = folder.name.partition("@")
@@ -49,7 +49,7 @@ def _read(path: Path, folder: Path, repository: str, version: str) -> Source:
 
 
 def _package(path: Path, folder: Path) -> str:
-    """The nearest folder above that has a package.xml."""
+    """Return the nearest folder above that has a package.xml."""
     for above in path.parents:
         if above == folder or (above / "package.xml").exists():
             return above.name if above != folder else folder.name.partition("@")[0]

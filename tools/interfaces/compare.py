@@ -43,7 +43,7 @@ def differences(facts: Iterable[Fact], library: NodeLibrary) -> Iterator[Differe
 
 
 def difference_of(found: Class) -> Difference:
-    """That of a node without a line in ``nodes.txt``."""
+    """Return that of a node without a line in ``nodes.txt``."""
     place = found.place
     return Difference(
         f"{place.package}/{found.name}", "", "", "", UNLISTED, f"{place.path}:{place.line}"
@@ -51,7 +51,7 @@ def difference_of(found: Class) -> Difference:
 
 
 def _read(library: NodeLibrary, endpoints: Iterable[Endpoint]) -> Iterator[Endpoint]:
-    """The endpoints that sources can say something about."""
+    """Return the endpoints that sources can say something about."""
     names = {(it.role, it.name) for part in NOT_READ for it in library.parts[part]}
     return (it for it in endpoints if (it.role, it.name) not in names)
 
@@ -119,12 +119,12 @@ class Excepted(NamedTuple):
 
 
 def exceptions_of(text: str) -> tuple[Excepted, ...]:
-    """The exceptions of a table with a head line."""
+    """Return the exceptions of a table with a head line."""
     return tuple(Excepted(*line.split("\t")) for line in text.splitlines()[1:])
 
 
 def excepted(found: Difference, exceptions: Iterable[Excepted]) -> str:
-    """The reason why a difference may stay; empty for none."""
+    """Return the reason why a difference may stay; empty for none."""
     for it in exceptions:
         pairs = zip(it[:3], found[:3], strict=True)
         if it.what == found.what and all(_fits(pattern, text) for pattern, text in pairs):

@@ -59,7 +59,7 @@ _NONE = _Default("", NO_DEFAULT)
 def cpp_parameters(
     source: Source, package: str, shared: Mapping[str, str]
 ) -> Iterator[ParameterFact]:
-    """The parameters of a C++ file; ``shared`` are the package's constants."""
+    """Yield the parameters of a C++ file; ``shared`` are the package's constants."""
     known = {**shared, **constants(source.values)}
     read_as, held = _read_as(source.calls), _literals(source.values)
     for call in source.calls:
@@ -75,7 +75,7 @@ def cpp_parameters(
 
 
 def _read_as(calls: Iterable[Call]) -> dict[str, str]:
-    """The types that parameters are read as, by their names."""
+    """Return the types that parameters are read as, by their names."""
     return {
         call.on[2:-1]: call.name.removeprefix("as_")
         for call in calls
@@ -84,8 +84,8 @@ def _read_as(calls: Iterable[Call]) -> dict[str, str]:
 
 
 def _literals(values: Iterable[Value]) -> dict[tuple[str, str], str]:
-    """The types of variables of a function that are set to numbers with a point, or to true or false;
-    a number without one may be of any type."""
+    """Return the types of variables of a function that are set to numbers with a point, or to true
+    or false; a number without one may be of any type."""
     found: dict[tuple[str, str], set[str]] = {}
     for it in values:
         type_ = _default(it.text, {}).type if it.text.startswith("<") else ""
@@ -97,7 +97,7 @@ def _literals(values: Iterable[Value]) -> dict[tuple[str, str], str]:
 
 
 def shared_constants(values: Iterable[Value]) -> dict[str, str]:
-    """The constants of a package by their names in capitals, which mean one thing in all its files."""
+    """Return the constants of a package by their names in capitals, the same in all its files."""
     return {name: text for name, text in constants(values).items() if name.isupper()}
 
 
@@ -130,7 +130,7 @@ def _name_and_default(call: Call, known: Mapping[str, str]) -> tuple[str, _Defau
 
 
 def _path(text: str, known: Mapping[str, str]) -> str:
-    """The dotted path of a name's text; empty if it holds no word of its own."""
+    """Return the dotted path of a name's text; empty if it holds no word of its own."""
     text = _UNKNOWN.sub(lambda found: _UNKNOWN.sub(ID, known.get(found[1], ID)), text)
     text = re.sub(rf"({ID})+", ID, text)
     text = re.sub(rf"{ID}(?=[a-z])", f"{ID}.", text)
@@ -139,7 +139,7 @@ def _path(text: str, known: Mapping[str, str]) -> str:
 
 
 def _default(text: str, known: Mapping[str, str]) -> _Default:
-    """The type and text of a default's expression, which is in <> unless it is a string."""
+    """Return the type and text of a default's expression, which is in <> unless it is a string."""
     if "<" not in text:
         return _Default("string", text_of(text))
     if braces := _BRACES.fullmatch(text):
@@ -156,7 +156,7 @@ def _default(text: str, known: Mapping[str, str]) -> _Default:
 
 
 def _of_type(written: str, default: _Default) -> _Default:
-    """The type that is written, with the default if it is of that type: {} is none of a text."""
+    """Return the type that is written, with the default if it is of that type: {} is none of a text."""
     if not written or written == default.type:
         return default
     return default._replace(type=written) if default.type != "string" else _Default(written, "")
@@ -167,7 +167,7 @@ def _template_type(types: tuple[str, ...]) -> str:
 
 
 def python_parameters(text: str, place: Place, package: str) -> Iterator[ParameterFact]:
-    """The parameters of a Python file; nothing if it is not Python 3."""
+    """Yield the parameters of a Python file; nothing if it is not Python 3."""
     try:
         module = ast.parse(text)
     except (SyntaxError, ValueError):

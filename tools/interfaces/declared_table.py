@@ -62,7 +62,7 @@ class Row(NamedTuple):
 
 @lru_cache
 def plugin_owners() -> PluginOwners:
-    """The data of the folder."""
+    """Return the data of the folder."""
     found = load_yaml(
         files(__package__).joinpath("plugin_owners.yaml").read_text("utf-8"), "plugin_owners.yaml"
     )
@@ -80,13 +80,13 @@ def plugin_owners() -> PluginOwners:
 
 
 def linted_packages() -> frozenset[str]:
-    """The packages whose classes declare parameters of known nodes."""
+    """Return the packages whose classes declare parameters of known nodes."""
     nodes = every_release().parameters.values()
     return frozenset(it for node in nodes for it in (node.package, *node.declared_in) if it)
 
 
 def rows(fact: ParameterFact, alone: bool = False) -> Iterator[Row]:
-    """The rows of a fact: that of its package, and those of plugins. ``alone``: it has one class."""
+    """Yield the rows of a fact: of its package, and of plugins. ``alone``: it has one class."""
     known = plugin_owners()
     if fact.package in linted_packages():
         above = known.below.get(fact.package, "")
@@ -100,7 +100,7 @@ def rows(fact: ParameterFact, alone: bool = False) -> Iterator[Row]:
 
 
 def _is_needed(fact: ParameterFact) -> bool:
-    """Does generate_parameter_library refuse what the parameter is where nobody sets it?"""
+    """Return whether generate_parameter_library refuses the parameter if nobody sets it."""
     if fact.how != YAML or fact.type == "none" or "<" in fact.path:
         return False
     value = load_yaml(fact.default, fact.path)
@@ -109,7 +109,7 @@ def _is_needed(fact: ParameterFact) -> bool:
 
 
 def _below(fact: ParameterFact, plugin: str, known: PluginOwners) -> str:
-    """The path below the name of the plugin; empty for a parameter of another one, or of the node."""
+    """Return the path below the plugin's name; empty for a parameter of another one or the node."""
     above = ID * (2 if known.packages[plugin] in known.inner else 1)
     path = fact.path.removeprefix(above)
     if path == fact.path:
@@ -119,7 +119,7 @@ def _below(fact: ParameterFact, plugin: str, known: PluginOwners) -> str:
 
 
 def table(folder: Path) -> str:
-    """The table of a folder's facts."""
+    """Return the table of a folder's facts."""
     found: dict[Row, dict[str, Place]] = {}
     for release in EVERY:
         facts = read_parameters((folder / f"parameters_{release}.tsv").read_text())

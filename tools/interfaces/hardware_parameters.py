@@ -64,7 +64,7 @@ def _package(path: Path, folder: Path) -> Path:
 
 
 def _parameters(package: Path, folder: Path, class_: str) -> Iterator[Parameter]:
-    """What the files of a package read: base classes and helpers count; what is required, only in
+    """Yield what the files of a package read: base classes and helpers count; what is required, only in
     those that mention the class."""
     found: dict[str, Parameter] = {}
     for path in sorted(package.rglob("*")):
@@ -82,14 +82,14 @@ def _parameters(package: Path, folder: Path, class_: str) -> Iterator[Parameter]
 
 
 def _type(text: str, start: int, end: int) -> str:
-    """The type by the statement that reads it."""
+    """Return the type by the statement that reads it."""
     before = max(text.rfind(sign, 0, start) for sign in ";{}")
     statement = text[before + 1 : text.find(";", end)]
     return next((type_ for pattern, type_ in _TYPES if pattern.search(statement)), ANY)
 
 
 def _required(text: str) -> Iterator[str]:
-    """What ``on_init`` asks with ``at``, which throws, whatever else is given."""
+    """Yield what ``on_init`` asks with ``at``, which throws, whatever else is given."""
     for call in nodes_of(text, ("call_expression",)):
         asked = _AT.fullmatch(text_of(call))
         if asked and _function_of(call) == "on_init" and not is_conditional(call):
@@ -97,7 +97,7 @@ def _required(text: str) -> Iterator[str]:
 
 
 def _function_of(node: Node) -> str:
-    """The name of the function that a node is in."""
+    """Return the name of the function that a node is in."""
     above = node.parent
     while above is not None and above.type != "function_definition":
         above = above.parent

@@ -37,8 +37,8 @@ class _Helper(NamedTuple):
 def by_prefix(
     code: Mapping[str, str], headers: Mapping[str, str]
 ) -> tuple[list[Parameter], set[str]]:
-    """What the files of a plugin have helpers read, and the prefixes, which are no parameters; all
-    files are given as path and text."""
+    """Return what the files of a plugin have helpers read, and the prefixes, which are no
+    parameters; all files are given as path and text."""
     helpers = _helpers(headers)
     members = {
         name: class_
@@ -59,7 +59,7 @@ def _parameters(helper: _Helper, prefix: str) -> Iterator[Parameter]:
 
 
 def _helpers(headers: Mapping[str, str]) -> dict[str, _Helper]:
-    """The classes that read by a prefix, by each of their names."""
+    """Return the classes that read by a prefix, by each of their names."""
     found: dict[str, _Helper] = {}
     for path, text in headers.items():
         suffixes: dict[str, int] = {}

@@ -39,7 +39,7 @@ def _mode(text: str) -> tuple[tuple[str, str], ...]:
 
 
 def extracted(index: Index) -> Iterator[Fact]:
-    """What all known nodes declare in the sources, each once."""
+    """Yield what all known nodes declare in the sources, each once."""
     own = frozenset(mode[0] for it in known_nodes() for mode in it.modes)
     for node in known_nodes():
         usual: dict[tuple[str, ...], Fact] = {}
@@ -51,7 +51,7 @@ def extracted(index: Index) -> Iterator[Fact]:
 
 
 def _only(fact: Fact, mode: str) -> Fact:
-    """A fact that holds in one mode only."""
+    """Return a fact that holds in one mode only."""
     words = "; ".join(filter(None, (f"class {mode}" if mode else "", fact.condition)))
     return fact._replace(condition=words)
 
@@ -59,7 +59,7 @@ def _only(fact: Fact, mode: str) -> Fact:
 def _of_mode(
     index: Index, node: str, mode: tuple[tuple[str, str], ...], own: frozenset[tuple[str, str]]
 ) -> dict[tuple[str, ...], Fact]:
-    """The facts of the classes of a mode; of equal ones that with the weakest condition."""
+    """Return the facts of the classes of a mode; of equal ones that with the weakest condition."""
     found: dict[tuple[str, ...], Fact] = {}
     for root in _roots(index, mode):
         for fact in facts_of(index, node, root, own - {(root.place.package, root.name)}):

@@ -47,7 +47,7 @@ def launch_files() -> Mapping[str, Sequence[str]]:
 
 
 def stack_nodes(stacks: str, stack: str, release: str) -> tuple[StackNode, ...]:
-    """The nodes of a stack in a release, from the text of stacks.yaml; not those it includes."""
+    """Return the nodes of a stack in a release, from the text of stacks.yaml; not those it includes."""
     entries = load_yaml(stacks, "stacks.yaml")["stacks"][stack].get("nodes", ())
     rows = [it if isinstance(it, dict) else {"node": it} for it in entries]
     return tuple(_node(it) for it in rows if has_release(it.get("releases", ""), release))

@@ -45,7 +45,7 @@ class LaunchedNode(NamedTuple):
 
 
 def launched_nodes(file: str, text: str) -> tuple[LaunchedNode, ...]:
-    """The nodes of a launch file by its name's end; none for one that cannot be read."""
+    """Return the nodes of a launch file by its name's end; none for one that cannot be read."""
     try:
         if file.endswith(".py"):
             return tuple(_of_python(ast.parse(text)))
@@ -99,7 +99,7 @@ def _assigned(module: ast.Module) -> dict[str, ast.expr]:
 
 
 def _text(node: ast.expr, names: Mapping[str, ast.expr], depth: int = 0) -> str:
-    """A text; ``$(var x)`` for an argument, ``<...>`` for what only a run tells."""
+    """Return a text; ``$(var x)`` for an argument, ``<...>`` for what only a run tells."""
     if isinstance(node, ast.Constant):
         return "" if node.value is None else str(node.value)
     if isinstance(node, ast.Name) and node.id in names and depth < _ALTERNATIVES:
@@ -112,7 +112,7 @@ def _text(node: ast.expr, names: Mapping[str, ast.expr], depth: int = 0) -> str:
 
 
 def _rules(node: ast.expr, names: Mapping[str, ast.expr], depth: int = 0) -> tuple[str, ...]:
-    """The rules of a list, of lists that are added, or of a name for one."""
+    """Return the rules of a list, of lists that are added, or of a name for one."""
     if isinstance(node, ast.Name) and node.id in names and depth < _ALTERNATIVES:
         return _rules(names[node.id], names, depth + 1)
     if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):

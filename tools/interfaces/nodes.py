@@ -49,7 +49,7 @@ class Visit(NamedTuple):
 def facts_of(
     index: Index, node: str, root: Class, others: frozenset[tuple[str, str]]
 ) -> Iterator[Fact]:
-    """What a node declares. ``others`` are classes that are nodes of their own."""
+    """Yield what a node declares. ``others`` are classes that are nodes of their own."""
     seen: set[tuple[str, ...]] = set()
     waiting = deque([Visit(root, {}, bound_types(root, ""))])
     while waiting:
@@ -87,7 +87,7 @@ def _bases(index: Index, found: Class, depth: int = 0) -> Iterator[str]:
 
 
 def _calls(index: Index, visit: Visit) -> tuple[Call, ...]:
-    """What the class itself does; another package may have one of its name."""
+    """Return what the class itself does; another package may have one of its name."""
     rows = index.calls.get(visit.found.name, ())
     if visit.function:
         return nearest(index.functions[visit.function], visit.found.place)
@@ -123,7 +123,7 @@ def _name(api: Api, argument: Resolved) -> Resolved:
 
 
 def _told_apart(index: Index, scope: Scope, call: Call) -> tuple[list[str], Resolved]:
-    """The arguments that are nodes, and the first that is none."""
+    """Return the arguments that are nodes, and the first that is none."""
     nodes, others = [], []
     for given in call.given:
         found = text_in(index, scope, call.function, given)
@@ -135,7 +135,7 @@ def _told_apart(index: Index, scope: Scope, call: Call) -> tuple[list[str], Reso
 
 
 def _function(index: Index, scope: Scope, call: Call) -> tuple[str, tuple[str, ...]]:
-    """The name of what is called or made, and its template arguments, behind other names of types."""
+    """Return the name of what is called or made, and its template arguments, in an expression."""
     name, types = call.name, call.types
     for owner in scope.owners:
         for alias in index.aliases.get(name, ()):
@@ -146,7 +146,7 @@ def _function(index: Index, scope: Scope, call: Call) -> tuple[str, tuple[str, .
 
 
 def _member(index: Index, scope: Scope, name: str) -> str:
-    """The type of a member that is initialised."""
+    """Return the type of a member that is initialised."""
     for owner in scope.owners:
         for found in index.classes.get(owner, ()):
             if name in found.members:

@@ -28,7 +28,7 @@ KIND = {PUBLISHES: TOPIC, SUBSCRIBES: TOPIC, SERVES: SERVICE, CALLS: SERVICE}
 
 
 def nodl_of(node: str, facts: Iterable[Fact]) -> NodlFile:
-    """The document of a node; raises UsageError for a node that the sources do not have."""
+    """Return the document of a node; raises UsageError for a node that the sources do not have."""
     own = [it for it in facts if it.node == node]
     if not own:
         raise UsageError(f"{node}: these sources have no such node; name one of the printed table")

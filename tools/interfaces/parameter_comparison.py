@@ -64,7 +64,7 @@ class Difference(NamedTuple):
 
 
 def our_parameters(nodes: Iterable[NodeParameters]) -> tuple[OurParameter, ...]:
-    """The known parameters; one with several forms has a row for each."""
+    """Return the known parameters; one with several forms has a row for each."""
     return tuple(
         OurParameter(
             node.name,
@@ -98,8 +98,8 @@ def differences(
 
 
 def _full(fact: ParameterFact, below: Below) -> tuple[str, ...]:
-    """The paths on the node that it may have. In some packages the first ``<id>`` is a fixed word, or
-    is left out; what a YAML file has may be below a prefix."""
+    """Return the paths on the node that it may have. In some packages the first ``<id>`` is a fixed
+    word, or is left out; what a YAML file has may be below a prefix."""
     above = below.get(fact.package, "")
     if not above or fact.path.startswith(f"{above}."):
         return (fact.path, f"{_PREFIX}.{fact.path}") if fact.how == YAML else (fact.path,)
@@ -139,7 +139,7 @@ def same(ours: str, theirs: str) -> bool:
 
 @lru_cache(4096)
 def pattern(path: str) -> re.Pattern[str]:
-    """An expression for the paths of sources that a path of ours stands for."""
+    """Return an expression for the paths of sources that a path of ours stands for."""
     words = re.split(r"(<index>|<\w+>|\*)", path)
     texts = (
         _SEGMENTS.get(it if it in _SEGMENTS else "<>", "")
@@ -177,8 +177,8 @@ def _unknown(
 
 
 def looks_like_a_name(fact: ParameterFact) -> bool:
-    """Does the name or default of a text suggest a frame, topic, joint, link, node, namespace or
-    interface?"""
+    """Return whether the name or default of a text suggests a frame, topic, joint, link,
+    node, namespace or interface."""
     if fact.type not in _STRINGS or not fact.package:
         return False
     words = re.split(r"[._]", fact.path)

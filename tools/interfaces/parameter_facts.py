@@ -33,13 +33,13 @@ class ParameterFact(NamedTuple):
 
 
 def parameter_lines(facts: Iterable[ParameterFact]) -> Iterator[str]:
-    """A line for each fact, with tabs between, sorted, each once."""
+    """Yield a line for each fact, with tabs between, sorted, each once."""
     for fact in sorted(set(facts)):
         yield "\t".join((*fact[:-1], *map(str, fact.place[:PLACE_COLUMNS])))
 
 
 def read_parameters(text: str) -> tuple[ParameterFact, ...]:
-    """The facts of such lines."""
+    """Return the facts of such lines."""
     return tuple(_fact(line.split("\t")) for line in text.splitlines())
 
 

@@ -50,7 +50,7 @@ class Checkout(NamedTuple):
 
 
 def checkout_of(folder: Path) -> Checkout:
-    """A folder by its name; raises UsageError for what is no checkout."""
+    """Return a folder by its name; raises UsageError for what is no checkout."""
     name, _, version = folder.name.partition("@")
     if not folder.is_dir() or not version:
         raise UsageError(f"{folder}: not a folder called REPOSITORY@VERSION")
@@ -58,7 +58,7 @@ def checkout_of(folder: Path) -> Checkout:
 
 
 def parameters_of(checkout: Checkout) -> Iterator[ParameterFact]:
-    """The parameters of a repository; what is read is left out where it is declared, too."""
+    """Return the parameters of a repository; what is read is left out where it is declared, too."""
     paths = tuple(_files(checkout.folder))
     facts = [fact for path in paths for fact in _of_data(checkout, path)]
     facts += _of_cpp(checkout, [it for it in paths if it.suffix in _CPP])
@@ -67,7 +67,7 @@ def parameters_of(checkout: Checkout) -> Iterator[ParameterFact]:
 
 
 def launches_of(checkout: Checkout) -> Iterator[LaunchFact]:
-    """The nodes that a repository's launch files start."""
+    """Yield the nodes that a repository's launch files start."""
     for path in _files(checkout.folder):
         if "launch" in path.name and path.suffix in _LAUNCH:
             place = _place(checkout, path)
@@ -77,13 +77,13 @@ def launches_of(checkout: Checkout) -> Iterator[LaunchFact]:
 
 
 def launch_lines(facts: Iterable[LaunchFact]) -> Iterator[str]:
-    """A line for each fact, with tabs between, sorted, each once."""
+    """Yield a line for each fact, with tabs between, sorted, each once."""
     for fact in sorted(set(facts)):
         yield "\t".join((fact.package, *fact.node[:-1], *map(str, fact.place[:PLACE_COLUMNS])))
 
 
 def read_launches(text: str) -> tuple[LaunchFact, ...]:
-    """The facts of such lines."""
+    """Return the facts of such lines."""
     return tuple(_launch(line.split("\t")) for line in text.splitlines())
 
 
@@ -94,7 +94,7 @@ def _launch(cells: list[str]) -> LaunchFact:
 
 
 def _of_cpp(checkout: Checkout, paths: Iterable[Path]) -> Iterator[ParameterFact]:
-    """The parameters of C++ files, package by package, since its files share constants."""
+    """Yield the parameters of C++ files, package by package, since its files share constants."""
     for package, group in groupby(paths, lambda it: _package(checkout.folder, it)):
         texts = ((path, _text(path)) for path in group)
         sources = [
@@ -108,7 +108,7 @@ def _of_cpp(checkout: Checkout, paths: Iterable[Path]) -> Iterator[ParameterFact
 
 
 def _of_data(checkout: Checkout, path: Path) -> Iterator[ParameterFact]:
-    """The parameters of a Python or YAML file."""
+    """Yield the parameters of a Python or YAML file."""
     package, place = _package(checkout.folder, path), _place(checkout, path)
     if path.suffix == ".py" and "launch" not in path.name:
         yield from python_parameters(_text(path), place, package)
@@ -137,7 +137,7 @@ def _place(checkout: Checkout, path: Path) -> Place:
 
 
 def _package(folder: Path, path: Path) -> str:
-    """The package that a file belongs to: the nearest folder with a package.xml."""
+    """Return the package that a file belongs to: the nearest folder with a package.xml."""
     for above in path.parents:
         if (above / "package.xml").exists():
             return _named(above / "package.xml")
@@ -147,7 +147,7 @@ def _package(folder: Path, path: Path) -> str:
 
 
 def _named(manifest: Path) -> str:
-    """The name that a package.xml gives."""
+    """Return the name that a package.xml gives."""
     return _text(manifest).partition("<name>")[2].partition("</name>")[0].strip()
 
 

@@ -58,7 +58,7 @@ def is_conditional(node: Node) -> bool:
 
 
 def words_in(text: str, variables: dict[str, str]) -> dict[str, tuple[str, ...]]:
-    """The words that the value of a parameter is compared with, where there are two or more."""
+    """Return the words that the value of a parameter is compared with, where there are two or more."""
     found: dict[str, dict[str, None]] = {}
     for variable, name in variables.items():
         for it in re.finditer(rf'\b{re.escape(variable)} == "(\w+)"', text):

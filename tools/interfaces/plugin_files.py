@@ -95,7 +95,7 @@ def new_values(folders: Iterable[Path], vocabulary: Vocabulary) -> str:
 
 
 def read_plugins(folder: Path) -> Iterator[Plugin]:
-    """The plugins of a checkout that is called OWNER+REPOSITORY@TAG."""
+    """Yield the plugins of a checkout that is called OWNER+REPOSITORY@TAG."""
     if not folder.is_dir() or "@" not in folder.name:
         raise UsageError(f"{folder}: not a folder called OWNER+REPOSITORY@TAG")
     repository, _, tag = folder.name.partition("@")
@@ -123,7 +123,7 @@ def _releases_of(folder: Path, tag: str) -> tuple[str, ...]:
 
 
 def _libraries(cmake: Path) -> Iterator[tuple[str, list[Path]]]:
-    """The libraries of a CMakeLists.txt with their files."""
+    """Yield the libraries of a CMakeLists.txt with their files."""
     text = _with_lists(cmake.read_text(encoding="utf-8", errors="replace"))
     project = (_PROJECT.findall(text) or [""])[0]
     systems = _SYSTEM.findall(text)
@@ -137,7 +137,7 @@ def _libraries(cmake: Path) -> Iterator[tuple[str, list[Path]]]:
 
 
 def _with_lists(text: str) -> str:
-    """A CMakeLists.txt with its lists in place of their names, and what is done for each of them."""
+    """Return a CMakeLists.txt with lists in place of their names, and with loops unrolled."""
     lists: dict[str, str] = {}
     for name, words in _SET.findall(text):
         lists[name] = words.replace(f"${{{name}}}", lists.get(name, ""))
@@ -149,7 +149,7 @@ def _with_lists(text: str) -> str:
 
 
 def _headers(code: dict[str, str], folder: Path) -> dict[str, str]:
-    """The headers of its own checkout that code includes."""
+    """Return the headers of its own checkout that code includes."""
     found: dict[str, str] = {}
     for path, text in code.items():
         homes = [it for it in (folder / path).parents if it.is_relative_to(folder)]
@@ -189,7 +189,7 @@ def _plugin(library: str, files: list[Path], folder: Path) -> Plugin | None:
 
 
 def _parameters(code: dict[str, str], headers: dict[str, str]) -> tuple[Parameter, ...]:
-    """What a plugin reads itself, what helpers read for it, and what its code mentions."""
+    """Return what a plugin reads itself, what helpers read for it, and what its code mentions."""
     helped, prefixes = by_prefix(code, headers)
     own = parameters_of(code.items(), headers.values())
     known = {it.name: it for it in helped} | {it.name: it for it in own if it.name not in prefixes}
@@ -200,7 +200,7 @@ def _parameters(code: dict[str, str], headers: dict[str, str]) -> tuple[Paramete
 
 
 def _shared(folder: Path) -> Iterator[Plugin]:
-    """What plugins of several packages call, where this checkout has it."""
+    """Yield what plugins of several packages call, where this checkout has it."""
     for name, _, where, files in SHARED:
         paths = [folder / where / it for it in files]
         if all(it.exists() for it in paths):
@@ -214,7 +214,7 @@ def _place(texts: dict[str, str], word: str) -> tuple[str, int]:
 
 
 def _section(plugins: list[Plugin], vocabulary: Vocabulary) -> list[str]:
-    """A plugin over all its tags, each row as the newest tag that has it says it."""
+    """Return a plugin over all its tags, each row as the newest tag that has it says it."""
     newest = plugins[-1]
     # A library that was renamed keeps the classes it was known by.
     names = list(dict.fromkeys(name for it in plugins for name in it.names))
@@ -236,7 +236,7 @@ def _section(plugins: list[Plugin], vocabulary: Vocabulary) -> list[str]:
 
 
 def _known(name: str, vocabulary: Vocabulary) -> Container[Value]:
-    """What the vocabulary has, without what it knows from elsewhere: units and ranges."""
+    """Return what the vocabulary has, without what it knows from elsewhere: units and ranges."""
     kind, _, own = name.rpartition(" ")
     found = vocabulary.values(own, kind == "ros1")
     return [

@@ -101,14 +101,14 @@ class _Scope(NamedTuple):
 
 
 def reads_any(text: str) -> bool:
-    """Does the plugin go through whatever children it has?"""
+    """Return whether the plugin goes through whatever children it has."""
     return bool(_GOES_THROUGH.search(text))
 
 
 def parameters_of(
     files: Iterable[tuple[str, str]], headers: Iterable[str] = ()
 ) -> tuple[Parameter, ...]:
-    """The parameters that files read, each given as its path and text; by name.
+    """Return the parameters that files read, each given as its path and text; by name.
 
     One that is called ``*`` says that there are more, whose names are computed.
     """
@@ -135,7 +135,7 @@ def parameters_of(
 
 
 def _functions(text: str) -> Iterator[str]:
-    """The functions that a file defines."""
+    """Yield the functions that a file defines."""
     for it in nodes_of(text, ("function_definition",)):
         declared = it.child_by_field_name("declarator")
         if declared is not None:
@@ -157,7 +157,7 @@ def _merged(old: Parameter | None, new: Parameter) -> Parameter:
 
 
 def declared_types(text: str) -> dict[str, str]:
-    """The types of variables, where all that have the name have the same."""
+    """Return the types of variables, where all that have the name have the same."""
     found: dict[str, set[str]] = {}
     for type_, name in _DECLARATION.findall(text):
         found.setdefault(name, set()).add(type_of(type_))
@@ -167,7 +167,7 @@ def declared_types(text: str) -> dict[str, str]:
 def _reads(
     text: str, own: frozenset[str], types: Mapping[str, str]
 ) -> tuple[list[_Read], dict[str, str]]:
-    """What is read, in order, and the parameter that each variable holds."""
+    """Return what is read, in order, and the parameter that each variable holds."""
     found: list[_Read] = []
     scopes: dict[int, dict[str, str]] = {}
     values: set[str] = set()
@@ -238,7 +238,7 @@ def _read(call: Node, scope: _Scope) -> _Read | None:
 
 
 def _is_computed(name: Node) -> bool:
-    """A variable that the function makes itself: what it is given is seen where it is called."""
+    """Return a variable that the function makes itself: what it is given is seen where it is called."""
     above: Node | None = name
     while above is not None and above.type not in ("function_definition", "lambda_expression"):
         above = above.parent
@@ -254,7 +254,7 @@ def _is_element(function: Node) -> bool:
 
 
 def _filled(call: Node, types: Mapping[str, str]) -> str:
-    """The type of what ``GetElement("a")->GetValue()->Get(variable)`` fills in."""
+    """Return the type of what ``GetElement("a")->GetValue()->Get(variable)`` fills in."""
     behind = ""
     above = call.parent
     while above is not None and above.type in ("field_expression", "call_expression"):
@@ -266,7 +266,7 @@ def _filled(call: Node, types: Mapping[str, str]) -> str:
 
 
 def _default(behind: list[Node]) -> str:
-    """The default that is behind a name, if it is a literal."""
+    """Return the default that is behind a name, if it is a literal."""
     default = text_of(behind[0]) if behind else ""
     return default if _LITERAL.fullmatch(default) else ""
 
@@ -278,7 +278,7 @@ def _below(above: str, name: str) -> str:
 def _by_helper(
     function: Node, given: list[Node], literals: list[str], variables: dict[str, str]
 ) -> _Read | None:
-    """A function that is given an element and a name, or one of gazebo_ros of ROS 1."""
+    """Return a function that is given an element and a name, or one of gazebo_ros of ROS 1."""
     line = function.end_point[0] + 1
     called = _CALLED.fullmatch(re.split(r"->|\.|::", text_of(function), maxsplit=1)[-1])
     names = [it for it in literals if _NAME.fullmatch(it)]
@@ -297,20 +297,20 @@ def _by_helper(
 
 
 def type_of(type_: str) -> str:
-    """The word of a type of C++, ``any`` for all others."""
+    """Return the word of a type of C++, ``any`` for all others."""
     bare = re.sub(r"^(?:gz|ignition|ignition::gazebo)::", "", type_.strip())
     return TYPES.get(bare, ANY)
 
 
 def _literal(node: Node, constants: Mapping[str, str]) -> str:
-    """The text that an argument is; empty where it is none."""
+    """Return the text that an argument is; empty where it is none."""
     if node.type == "string_literal":
         return text_of(node)[1:-1]
     return constants.get(text_of(node), "") if node.type == "identifier" else ""
 
 
 def _owner(node: Node | None, scope: _Scope) -> str:
-    """The parameter whose element is asked: by a variable, or by the call before it."""
+    """Return the parameter whose element is asked: by a variable, or by the call before it."""
     if node is None:
         return ""
     if node.type == "call_expression":
@@ -320,7 +320,7 @@ def _owner(node: Node | None, scope: _Scope) -> str:
 
 
 def _assigned(call: Node) -> str:
-    """The variable that a call's result is put in."""
+    """Return the variable that a call's result is put in."""
     below, above = call, call.parent
     while above is not None and above.type in ("field_expression", "call_expression"):
         below, above = above, above.parent

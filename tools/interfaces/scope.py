@@ -59,7 +59,7 @@ class Resolved(NamedTuple):
 
 
 def indexed(source: Source) -> Index:
-    """The index of what was read."""
+    """Return the index of what was read."""
     return Index(
         _by(source.classes, lambda it: it.name),
         _by(source.calls, lambda it: it.owner),
@@ -92,7 +92,7 @@ def nearest(items: Iterable[Located], place: Place) -> tuple[Located, ...]:
 
 
 def type_of(index: Index, scope: Scope, type_: str) -> str:
-    """A C++ type as ROS writes it, by the names that it has in a class; its own text if unknown."""
+    """Return a C++ type as ROS writes it, by its names in a class; its own text if unknown."""
     for _ in range(DEEPEST):
         ros = _ROS_TYPE.search(type_)
         if ros:
@@ -109,14 +109,14 @@ def type_of(index: Index, scope: Scope, type_: str) -> str:
 
 
 def _alias(index: Index, scope: Scope, name: str) -> str:
-    """What a name of a type stands for, nearest first."""
+    """Return what a name of a type stands for, nearest first."""
     rows = index.aliases.get(name, ())
     own = [it.type for owner in scope.owners for it in rows if it.owner == owner]
     return next(iter(own), rows[0].type if len({it.type for it in rows}) == 1 else "")
 
 
 def text_in(index: Index, scope: Scope, function: str, text: str, depth: int = 0) -> Resolved:
-    """A text with every name in <> replaced by what it stands for, where that is known."""
+    """Return a text with every name in <> replaced by what it stands for, where that is known."""
     parameter = ""
 
     def replaced(part: re.Match[str]) -> str:
@@ -158,7 +158,7 @@ def _candidates(index: Index, scope: Scope, function: str, name: str) -> Iterato
 
 
 def _parameter(index: Index, scope: Scope, function: str, name: str, depth: int) -> Resolved:
-    """The default of a parameter, and its name."""
+    """Return the default of a parameter, and its name."""
     rows = nearest(index.variables.get(name, ()), scope.place)
     texts = [it.text for it in rows if it.text and "<" not in it.text]
     parameter = _BRACED.sub(
@@ -169,7 +169,7 @@ def _parameter(index: Index, scope: Scope, function: str, name: str, depth: int)
 
 
 def bound(index: Index, name: str, given: tuple[str, ...]) -> dict[str, str]:
-    """What a constructor's parameters are given, by their names."""
+    """Return what a constructor's parameters are given, by their names."""
     fitting = [
         it.names
         for it in index.constructors.get(name, ())
@@ -180,7 +180,7 @@ def bound(index: Index, name: str, given: tuple[str, ...]) -> dict[str, str]:
 
 
 def bound_types(found: Class, type_: str) -> dict[str, str]:
-    """What a template's parameters are given, by their names."""
+    """Return what a template's parameters are given, by their names."""
     heads = [it.partition("=")[::2] for it in found.parameters]
     defaults = {name: default for name, default in heads if default}
     names = [name for name, _ in heads]

@@ -78,7 +78,7 @@ Rows = dict[tuple[str, str], dict[tuple[int, ...], Row]]
 
 
 def to_schema(folder: Path) -> str:
-    """The text of ``sdf.schema``; raises UsageError for what is no checkout of sdformat."""
+    """Return the text of ``sdf.schema``; raises UsageError for what is no checkout of sdformat."""
     if not (folder / "sdf").is_dir() or "@" not in folder.name:
         raise UsageError(f"{folder}: not a checkout of sdformat called sdformat@TAG")
     versions = sorted(_version(it.name) for it in (folder / "sdf").glob("1.*"))
@@ -102,7 +102,7 @@ def _version(name: str) -> tuple[int, ...]:
 def _read_file(
     files: Path, name: str, version: tuple[int, ...], rows: Rows, seen: set[str]
 ) -> None:
-    """A file and those it includes; its stem is the name of its section."""
+    """Read a file and those it includes; its stem is the name of its section."""
     path = files / f"{name}.sdf"
     if name in seen or not path.exists():
         return
@@ -115,7 +115,7 @@ def _read_file(
 def _read_element(
     element: etree._Element, section: str, version: tuple[int, ...], rows: Rows, files: Path
 ) -> Iterator[str]:
-    """Fills in the rows of an element; the names of the files that it includes."""
+    """Fill in the rows of an element; return the names of the files that it includes."""
     for child in element.iterchildren("attribute", "element", "include"):
         is_file = child.tag == "include"
         below = child.get("filename", "").removesuffix(".sdf") or child.get("ref", "")
@@ -139,7 +139,7 @@ def _tag(element: etree._Element) -> str:
 
 
 def _included(path: Path, include: etree._Element) -> etree._Element:
-    """The root of an included file, with the line and the number of the include."""
+    """Return the root of an included file, with the line and the number of the include."""
     root = etree.parse(str(path)).getroot()
     root.set("required", include.get("required", "0"))
     root.sourceline = include.sourceline
@@ -170,7 +170,7 @@ def _sections(rows: Rows, versions: list[tuple[int, ...]]) -> Iterator[str]:
 def _lines(
     tag: str, rows: Mapping[tuple[int, ...], Row], versions: list[tuple[int, ...]]
 ) -> Iterator[str]:
-    """A line for each group of versions that say the same; the line number is the last one's."""
+    """Yield a line for each group of versions that say the same; the line number is the last one's."""
     groups: list[list[tuple[int, ...]]] = []
     for version in versions:
         if version not in rows:
@@ -198,7 +198,7 @@ def _line(tag: str, row: Row, span: str) -> str:
 
 
 def _words(folder: Path) -> Iterator[str]:
-    """The words of enumerations, from arrays and from what a variable is compared with."""
+    """Yield the words of enumerations, from arrays and from what a variable is compared with."""
     for name, (path, variables, folded) in WORDS.items():
         if name == "light/@type":
             yield LOCALIZATION
@@ -220,7 +220,7 @@ def _known_words(text: str, variables: Iterable[str]) -> Iterator[tuple[int, str
 
 
 def _converter(text: str) -> Iterator[str]:
-    """The tags that the converter of URDF reads itself, and what it makes of their values."""
+    """Yield the tags that the converter of URDF reads itself, and what it makes of their values."""
     yield f"\n[urdf] {CONVERTER}"
     found = list(_TAKEN.finditer(text))
     ends = [it.start() for it in found[1:]] + [len(text)]
@@ -232,7 +232,7 @@ def _converter(text: str) -> Iterator[str]:
 
 
 def _taken_as(code: str) -> str:
-    """What the code between this tag and the next one makes of the value."""
+    """Return what the code between this tag and the next one makes of the value."""
     branch = code.partition("else if (strcmp")[0]
     if "std::stod" in branch or "std::stoi" in branch:
         return "double"

@@ -30,7 +30,7 @@ COLUMNS = (*Place._fields[:-1], *Fact._fields[:-1])
 
 
 def to_table(facts: Iterable[Fact]) -> str:
-    """The table's text."""
+    """Return the table's text."""
     rows = sorted({_row(fact) for fact in facts}, key=lambda it: (it[0], it[4:8], it))
     return "".join("\t".join(row) + "\n" for row in (COLUMNS, *rows))
 
@@ -43,7 +43,7 @@ def _row(fact: Fact) -> tuple[str, ...]:
 
 
 def from_table(text: str) -> tuple[Fact, ...]:
-    """The facts of a table that ``to_table`` wrote."""
+    """Return the facts of a table that ``to_table`` wrote."""
     return tuple(_fact(line.split("\t")) for line in text.splitlines()[1:])
 
 

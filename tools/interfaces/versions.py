@@ -107,7 +107,7 @@ def main(arguments: Sequence[str]) -> None:
 
 
 def _before(rosdistro: Path, day: str) -> str:
-    """The last commit of the day."""
+    """Return the last commit of the day."""
     return _git(rosdistro, "rev-list", "-1", f"--before={day}T23:59", "HEAD")
 
 
@@ -125,7 +125,7 @@ def _release(rosdistro: Path, commit: str, release: str) -> Release:
 
 
 def _commits() -> dict[str, dict[str, str]]:
-    """The commit of each repository that was read for each release, or for all (empty)."""
+    """Return the commit of each repository that was read for each release, or for all (empty)."""
     found = defaultdict[str, dict[str, str]](dict)
     with SOURCES.open(encoding="utf-8", newline="") as file:
         for row in csv.DictReader(file, delimiter="\t"):
@@ -141,7 +141,7 @@ def _commits() -> dict[str, dict[str, str]]:
 def _packages(
     now: Mapping[str, Release], read: dict[str, dict[str, str]]
 ) -> Mapping[str, Sequence[str]]:
-    """The packages of known nodes by their repository; one that no release has is its own."""
+    """Return the packages of known nodes by their repository; one that no release has is its own."""
     owner = {
         package: repository
         for release in now.values()
@@ -160,7 +160,7 @@ def _packages(
 
 @cache
 def _read(commit: str, packages: tuple[str, ...], checkouts: tuple[Path, ...]) -> Read:
-    """What a commit says of itself, by the checkout that has it."""
+    """Return what a commit says of itself, by the checkout that has it."""
     if not commit:
         return Read()
     for checkout in checkouts:
@@ -171,7 +171,7 @@ def _read(commit: str, packages: tuple[str, ...], checkouts: tuple[Path, ...]) -
 
 
 def _version(checkout: Path, commit: str, packages: Iterable[str]) -> str:
-    """The version of a package in its package.xml."""
+    """Return the version of a package in its package.xml."""
     every = _git(checkout, "ls-tree", "-r", "--name-only", commit).splitlines()
     manifests = [it for it in every if it.rpartition("/")[2] == "package.xml"]
     own = [it for it in manifests if it.split("/")[-2:-1] == [] or it.split("/")[-2] in {*packages}]
@@ -181,7 +181,7 @@ def _version(checkout: Path, commit: str, packages: Iterable[str]) -> str:
 
 
 def _git(folder: Path, *arguments: str) -> str:
-    """What git says, empty where it fails."""
+    """Return what git says, empty where it fails."""
     command = ["git", "-C", str(folder), *arguments]
     return subprocess.run(command, capture_output=True, text=True, check=False).stdout.strip()
 

@@ -17,7 +17,7 @@ What `--help` of each command says. Where ROS is sourced, `ros2 multibot` is `mu
 
 
 def page() -> str:
-    """The page, Markdown."""
+    """Return the page, Markdown."""
     named = [
         *PROGRAMS.items(),
         *((f"multibot {name}", it) for name, it in COMMANDS.items()),

@@ -44,7 +44,7 @@ _SOURCES = """
 
 
 def section(tables: Path) -> str:
-    """The section, from the tables of a folder."""
+    """Return the section, from the tables of a folder."""
     facts = {it: read_parameters(_text(tables / f"parameters_{it}.tsv")) for it in RELEASES}
     rows = "".join(_row(tables, release, facts[release]) for release in RELEASES)
     launches = "".join(_launches(tables, release) for release in RELEASES)
@@ -67,7 +67,7 @@ def _row(tables: Path, release: str, facts: tuple[ParameterFact, ...]) -> str:
 
 
 def _launches(tables: Path, release: str) -> str:
-    """The row of a release about launch files."""
+    """Return the row of a release about launch files."""
     facts = read_launches(_text(tables / f"launch_{release}.tsv"))
     stacks = files("multibot_rewrite.knowledge").joinpath("stacks.yaml").read_text("utf-8")
     left = sum(
@@ -82,7 +82,7 @@ def _launches(tables: Path, release: str) -> str:
 
 
 def _corrected(table: Path, release: str) -> int:
-    """The differences that a table has for a release, in its last column."""
+    """Return the differences that a table has for a release, in its last column."""
     return sum(release in it.rpartition("\t")[2].split() for it in _text(table).splitlines())
 
 

@@ -26,7 +26,7 @@ those with a reason in `fixtures/interfaces_exceptions.tsv`.
 
 
 def section(fixtures: Path) -> str:
-    """The section, from the tables of a folder."""
+    """Return the section, from the tables of a folder."""
     return TEXT + "".join(_row(fixtures, release) for release in RELEASES)
 
 

@@ -52,8 +52,8 @@ def every_page() -> dict[str, str]:
 
 
 def meant(words: str, section: str, pages: Mapping[str, object]) -> str:
-    """The page that a link to a section of ``reference.md`` leads to on the site: that of a code if its
-    words are one; empty where the section stands for none."""
+    """Return the page that a link to a section of ``reference.md`` leads to on the site: that of a
+    code if its words are one; empty where the section stands for none."""
     own = f"findings/{words}.md"
     if _CODE.fullmatch(words) and own in pages:
         return own

@@ -25,7 +25,7 @@ TITLES = {
 
 
 def page() -> str:
-    """The page, Markdown."""
+    """Return the page, Markdown."""
     return "\n".join((HEAD, *(line for it in TITLES.items() for line in _table(*it))))
 
 

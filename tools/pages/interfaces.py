@@ -18,6 +18,6 @@ are read and not copied; facts are kept with their place.
 
 
 def page() -> str:
-    """The page, from the committed tables."""
+    """Return the page, from the committed tables."""
     tables = FIXTURES / "interfaces"
     return f"{HEAD}{endpoints.section(FIXTURES)}\n{declared.section(tables)}"

@@ -56,13 +56,13 @@ def _judged(line: str) -> Judged:
 
 
 def committed() -> dict[str, tuple[int, int]]:
-    """The committed counts."""
+    """Return the committed counts."""
     rows = [line.split("\t") for line in COUNTS.read_text().splitlines()[1:]]
     return {code: (int(corpus), int(wheels)) for code, corpus, wheels in rows}
 
 
 def page() -> str:
-    """The page of judgements, Markdown."""
+    """Return the page of judgements, Markdown."""
     counts = committed()
     by_rule: dict[str, list[Judged]] = defaultdict(list)
     for it in judgements():

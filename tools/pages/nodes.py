@@ -34,7 +34,7 @@ HELPER = "a helper node uses it: only a rule for the whole process reaches it"
 
 
 def page() -> str:
-    """The whole page as Markdown."""
+    """Return the whole page as Markdown."""
     library = every_release()
     parts = [HEAD, *(_controllers(it) for it in CONTROLLER_WAYS), "\n## Stacks\n"]
     parts += [_stack(name, stack) for name, stack in library.stacks.items()]
@@ -71,7 +71,7 @@ def _member(node: NodeFacts) -> str:
 
 
 def _reach(node: NodeFacts) -> Iterator[str]:
-    """The rows of names that no rule reaches."""
+    """Yield the rows of names that no rule reaches."""
     for text in node.fixed:
         yield _row([f"`{node.name}`", "", plain(text)])
     if node.prefix_switch:
@@ -120,7 +120,7 @@ def _cells(endpoint: Endpoint) -> list[str]:
 
 
 def _in(releases: str) -> list[str]:
-    """The only releases that have it, as a list of one; empty for all."""
+    """Return the only releases that have it, as a list of one; empty for all."""
     return [f"in {releases}"] * bool(releases)
 
 

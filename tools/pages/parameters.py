@@ -22,7 +22,7 @@ rewritten, and how a node of your own is described: [parameter files](companions
 
 
 def page() -> str:
-    """The page, a row for each node that has names in its parameters."""
+    """Return the page, a row for each node that has names in its parameters."""
     return HEAD + "".join(_rows(built_in_nodes(NEWEST_LTS)))
 
 

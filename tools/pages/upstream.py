@@ -98,7 +98,7 @@ def _plain(text: str) -> str:
 
 
 def page() -> str:
-    """The page in Markdown."""
+    """Return the page in Markdown."""
     groups = [
         (key, list(its))
         for key, its in groupby(errors(), key=lambda it: (it.repository, it.revision))

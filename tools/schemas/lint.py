@@ -93,7 +93,7 @@ def _said(about: str, it: Schema) -> Schema:
 
 
 def _alone(it: Schema) -> Schema:
-    """A key of a fleet file, with the values that are the same here."""
+    """Return a key of a fleet file, with the values that are the same here."""
     return {"description": it["description"].partition(";")[0], "enum": it["enum"]}
 
 

@@ -45,13 +45,13 @@ def schema() -> Schema:
 
 
 def _keys(keys: Iterable[str], **known: Schema) -> Schema:
-    """A mapping with these keys alone; of some more is ``known`` than that they may be there."""
+    """Return a mapping with these keys alone; of some more is ``known`` than that they may be there."""
     properties = {key: known.get(key, {}) for key in keys}
     return {"type": "object", "properties": properties, "additionalProperties": False}
 
 
 def _named(kind: str) -> Schema:
-    """What has names of the user's own."""
+    """Return what has names of the user's own."""
     return {"type": "object", "additionalProperties": {"$ref": f"#/$defs/{kind}"}}
 
 
@@ -64,7 +64,7 @@ def _or_word(one: Schema) -> Schema:
 
 
 def _or_several(one: Schema) -> Schema:
-    """What differs from release to release is a list."""
+    """Return what differs from release to release is a list."""
     return {"anyOf": [*one["anyOf"], {"type": "array", "items": one}]}
 
 

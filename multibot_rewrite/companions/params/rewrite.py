@@ -14,7 +14,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 import yaml
 
 from multibot_rewrite.base.findings.finding import ERROR, Finding, declare
-from multibot_rewrite.base.gc_pause import gc_paused
+from multibot_rewrite.base.lazy import gc_paused
 from multibot_rewrite.companions.context import (
     NAMESPACE_SLOT,
     TAG_SLOT,

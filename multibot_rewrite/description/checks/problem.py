@@ -39,7 +39,7 @@ def fault(
     hint: str = "",
     level: str = "",
 ) -> Problem:
-    """Return a problem for the rule that asks for those of a ``word``."""
+    """Return a problem that the rule for the kind ``word`` reports."""
     return Problem(element, message, attribute, hint, (), word, level)
 
 

@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The topics of something that is no ROS 2 node: of Gazebo's transport, and of plugins of ROS 1."""
+"""The topics of something that is no ROS 2 node: of Gazebo's transport, and of plugins of ROS 1.
+
+Sources: gazebosim/sdformat 43fa4a69 (#1663) src/Model.cc (``{name}`` is the model's name), parser.cc
+(an empty ``<include><namespace>`` is none); gazebosim/gz-sim #3777 src/Util.cc scopedNamespace.
+"""
 
 from __future__ import annotations
 
@@ -9,8 +13,8 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import SiteRow
+from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.description.readback.active import TRANSFORMS_ON
-from multibot_rewrite.description.readback.model_namespaces import reads_it, scoped_namespace
 from multibot_rewrite.description.readback.nodes import (
     BELOW,
     SERVES,
@@ -26,7 +30,7 @@ from multibot_rewrite.description.readback.parameters import (
     values_of,
     wired_of,
 )
-from multibot_rewrite.description.readback.xml import values_at
+from multibot_rewrite.description.readback.xml import child_text, values_at
 from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
 
 _NOT_VALID = lazy_compile("@|~|//|:=")
@@ -120,3 +124,38 @@ def _namespace(host: _Element, section: VocabularySection) -> str | None:
 
 def _joined(above: str, name: str) -> str:
     return f"/{above.strip('/')}/{name.strip('/')}".replace("//", "/")
+
+
+def reads_it(section: VocabularySection, release: str) -> bool:
+    """Return whether this system puts the namespace of its model in front, in ``release``."""
+    return bool(section.model_namespace) and has_release(section.model_namespace, release)
+
+
+def scoped_namespace(host: _Element) -> str | None:
+    """Return ``/outer/inner``; ``/`` for the root, empty where no model has one, None where it
+    contains the name that the robot's model is spawned by."""
+    parts: list[str] = []
+    own_name = given = False
+    for model in host.iterancestors("model", "include"):
+        text = child_text(model, "namespace") if model.tag == "include" else model.get("namespace")
+        text = (text or "").strip()
+        if not text:
+            continue
+        given = True
+        if "{name}" in text:
+            name = _name(model)
+            own_name = own_name or not name
+            text = text.replace("{name}", name)
+        parts.append(text.strip("/"))
+        if text.startswith("/"):
+            break
+    if own_name:
+        return None
+    return "/" + "/".join(it for it in reversed(parts) if it) if given else ""
+
+
+def _name(model: _Element) -> str:
+    """Return a model's name in the file; empty for the outermost, which its spawner names."""
+    if next(model.iterancestors("model", "include"), None) is None:
+        return ""
+    return (child_text(model, "name") if model.tag == "include" else model.get("name")) or ""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Defaults that are made of the description's own names: ``{model}/{link}``, ``{sensor}``.
+"""Defaults that are made of the description's own names, and topics that switches turn off.
 
 Sources: gazebosim/gz-sim src/systems/diff_drive/DiffDrive.cc (gz-sim8 to 10: without frames the
 model's name, ``/`` and ``odom`` or the canonical link), sdformat src/Model.cc (the first link is
@@ -12,10 +12,10 @@ from collections.abc import Iterable
 
 from lxml import etree
 
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.base.naming import POSTFIX, Naming
-from multibot_rewrite.description.rewriters.switches import is_true
 from multibot_rewrite.description.rewriters.text import end_of, text_at
 from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.description.rewriters.vocabulary.grammar import MODEL as OF_MODEL, SPAWNED
@@ -109,3 +109,28 @@ def frame_sites(host: etree._Element, section: VocabularySection, naming: Naming
 def _of_model(section: VocabularySection) -> list[SiteRow]:
     """Return the rows for frames that are below the model's name by default."""
     return [it for it in section.sites if OF_MODEL in it.default and it.kinds[:1] == ("frame",)]
+
+
+# As sdformat reads booleans (Param.cc, ValueFromStringImpl): case and white space around do not
+# count, any other text leaves the default.
+def is_true(text: str) -> bool:
+    """Return whether this text of a parameter turns it on."""
+    return text.strip().lower() in ("true", "1")
+
+
+def is_false(text: str) -> bool:
+    """Return whether this text of a parameter turns it off."""
+    return text.strip().lower() in ("false", "0")
+
+
+def switched_off(plugin: etree._Element, section: VocabularySection) -> dict[str, str]:
+    """Return the topics that none of their switches turns on, with the parameters that would."""
+    found = [it.split("=") for it in section.switches]
+    on = set()
+    for parameter, topic, *usual in found:
+        text = text_at(plugin, parameter)
+        # One that is not there is as its code has it.
+        if is_true(text) or (usual == ["on"] and not is_false(text)):
+            on.add(topic)
+    off = lists_by_key((topic, parameter) for parameter, topic, *_ in found if topic not in on)
+    return {topic: " or ".join(parameters) for topic, parameters in off.items()}

@@ -215,7 +215,7 @@ def _escaped(letter: str) -> frozenset[str]:
     if len(letter) > 1:
         return frozenset(chr(int(letter[1:], 16)))
     if not letter or letter in _ELSEWHERE:
-        raise PatternError(f"\\{letter} looks elsewhere, or is not whole")
+        raise PatternError(f"\\{letter} is incomplete, or depends on the text around it")
     return frozenset(letter)
 
 

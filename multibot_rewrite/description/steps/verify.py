@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from multibot_rewrite.base.gc_pause import gc_paused
+from multibot_rewrite.base.lazy import gc_paused
 from multibot_rewrite.base.model import Claim, Edit, InputError, ProofError
 from multibot_rewrite.base.naming import FRAME_KINDS, Naming, affix, removal, spelled
 from multibot_rewrite.description.rewriters.contact import respell_collisions

@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from tempfile import TemporaryDirectory
 
 from multibot_rewrite.base.findings.finding import ERROR, Finding
-from multibot_rewrite.base.gc_pause import gc_paused
+from multibot_rewrite.base.lazy import gc_paused
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.description.readback.meeting import COMMAND, DATA
 from multibot_rewrite.description.sources.access import BOUNDED

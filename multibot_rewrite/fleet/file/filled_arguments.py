@@ -96,7 +96,9 @@ def _choice(it: Argument, naming: Naming, robot: RobotSpec) -> _Choice:
     ):
         return _Choice(it.name)
     if it.missed:
-        return _Choice(it.name, reason=f"something still names {it.missed}, which it renames")
+        return _Choice(
+            it.name, reason=f"{it.missed} would be renamed, and something still uses the old name"
+        )
     words = {robot.namespace if use.kind in ROS_KINDS else robot.tag for use in uses}
     if len(words) > 1 or "/" in min(words):
         return _Choice(it.name, reason="its namespace is not what its frames get")

@@ -212,7 +212,7 @@ def changed_environment(here: Visit) -> dict[str, str]:
 
 
 def _there(found: Mapping[str, str]) -> dict[str, str]:
-    """Return variables without those of which all parts are gone after the launch."""
+    """Return variables that still have a value after the launch, or are meant to be empty."""
     return {name: value for name, value in found.items() if value.strip(":") or not value}
 
 

@@ -117,7 +117,7 @@ def for_any(it: Any, robot: str) -> Any:
 
 
 def for_robot(it: Any, robot: str) -> Any:
-    """Return the same for a robot."""
+    """Return values with a robot's name filled in."""
     return _each(it, lambda text: filled(text, robot))
 
 

@@ -167,8 +167,7 @@ def with_launched(
 
 
 def _publishes_another(it: LaunchedNode) -> bool:
-    """Return whether it publishes the description of something else than the robot, by a rule for its
-    topic."""
+    """Return whether a rule for its topic says that it publishes no description of the robot."""
     old = (old.lstrip("/") for old, _ in it.remappings)
     return it.package == STATE_PUBLISHER and _DESCRIPTION in old
 

@@ -222,7 +222,8 @@ def _loaded(entity: Any, seen: Visit) -> Iterable[Any] | None:
         host = node(target, seen)
         name = f"{host.namespace.rstrip('/')}/{host.name}"
     else:
-        name = text(target, seen.context)
+        # Its service is asked for by launch's own node, which is in no namespace.
+        name = f"/{text(target, seen.context).lstrip('/')}"
     _components(entity._LoadComposableNodes__composable_node_descriptions, name, seen)
     return None
 

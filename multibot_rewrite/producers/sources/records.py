@@ -16,7 +16,7 @@ ANY, OTHERWISE = "<?>", "?"
 
 
 def braced(text: str) -> str:
-    """Return the text inside another name in <>."""
+    """Return a text with <> as {}, to be part of another name in <>."""
     return text.replace("<", "{").replace(">", "}")
 
 

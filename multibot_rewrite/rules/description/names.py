@@ -45,7 +45,7 @@ def space_in_name(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB305", "double-colon", ERROR)
 def double_colon(subject: Subject) -> Iterator[Problem]:
-    """Report names that become names in SDF."""
+    """Report names with '::', which SDF reads as a path of names."""
     for kind, name, element in named(subject):
         if "::" in name:
             hint = f"use {name.replace('::', '_')!r}"

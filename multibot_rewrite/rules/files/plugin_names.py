@@ -192,7 +192,7 @@ def without_plugin(file: NamedFile) -> Iterator[Finding]:
 
 
 def _is_misspelt(it: Demand, word: str, words: Sequence[str]) -> bool:
-    """Return whether nearly that name has parameters, which MB877 reports."""
+    """Return whether parameters have a similar name: MB877 reports that one."""
     own = {name.removeprefix(it.section.at).partition(".")[0] for name in it.section.whole}
     return bool(nearest(word, own - set(words)))
 

@@ -17,7 +17,7 @@ from collections import Counter
 from collections.abc import Iterator
 from itertools import pairwise
 
-from multibot_rewrite.base.findings.finding import INCONCLUSIVE, WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
 from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.base.rosnames import check_node_name, expand, resolve_bound
@@ -36,6 +36,7 @@ from multibot_rewrite.rules.declaration import LAUNCH, at, launch_rule
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 from multibot_rewrite.system.records import PUBLISHES, RUNS, SERVICE, SUBSCRIBES
+from multibot_rewrite.system.tool_nodes import last_word
 
 _START_MANAGER = (
     "start ros2_control_node there, load gz_ros2_control in the description, or name the launch file "
@@ -103,6 +104,21 @@ def names_all(launched: Launched) -> Iterator[Finding]:
             message = f"name= renames every node of the process: {who} become {run.node}"
             hint = "leave name= out: its code calls it controller_manager"
             yield at(names_all, run.place, message, hint)
+
+
+@launch_rule("MG731", "no-container")
+def no_container(launched: Launched) -> Iterator[Finding]:
+    """Yield the components of a container that nothing starts; inconclusive if none is called so."""
+    nodes = launched.graph.nodes
+    there = [f"{it.namespace.rstrip('/')}/{it.name}" for it in nodes if not it.container]
+    components = {it.container: it for it in reversed(nodes) if it.container}
+    for container, it in components.items():
+        same = (one for one in there if last_word(one) == last_word(container))
+        near = next(same, "") or nearest(container, there)
+        if container not in there:
+            hint, level = (f"did you mean {near}?", ERROR) if near else (_ELSEWHERE, INCONCLUSIVE)
+            message = f"{it.name} waits for the container {container}, which nothing starts"
+            yield at(no_container, it.place, message, hint, level=level)
 
 
 def _is(it: Run, known: str) -> bool:

@@ -175,7 +175,7 @@ def why_other_name(plan: Index, node: str, match: str) -> Cause:
         return caused(f"{match} is running: {plugin} has no {missing}, see {place}", place)
     way, taker = _way(plan, node)
     if way == HOST:
-        return Cause(f"{match} is running: {taker} makes it; start that as the plan says")
+        return Cause(f"{match} is running in the process of {taker}: start {taker} as planned")
     missing, rule = "name", Remap(match, "__node", node.rpartition("/")[2])
     if namespaced:
         missing, rule = "namespace", Remap(match, "__ns", f"/{robot}")

@@ -61,6 +61,8 @@ def differs_from_its_likes(seen: Index) -> Iterator[Finding]:
 # missed driver explains to that.
 COMPARED = (lacks_what_its_likes_have.code, differs_from_its_likes.code)
 BETWEEN_ROBOTS = (*COMPARED, driver_missing.code)
+# A tree in pieces, with other names, or without frames: its parts are not compared.
+_BROKEN = ("MG208", "MG406", "MG407")
 
 
 def unexplained(found: Sequence[Finding]) -> list[Finding]:
@@ -70,11 +72,15 @@ def unexplained(found: Sequence[Finding]) -> list[Finding]:
     others = [one for one in found if one.code not in COMPARED]
     about = {it for one in others for it in (one.node, *one.names)} - {""}
     robots = {one.robot for one in others if not one.node and not one.names}
+    broken = {one.robot for one in others if one.code in _BROKEN}
     return [
         it
         for it in found
         if it.code not in COMPARED
-        or (about.isdisjoint((it.node, *it.names)) and it.robot not in robots)
+        or (
+            (about.isdisjoint((it.node, *it.names)) and it.robot not in robots)
+            and (it.node or it.robot not in broken)
+        )
     ]
 
 

@@ -293,8 +293,8 @@ def meant(seen: Index, end: End) -> Ends | None:
 
 @once
 def _given(seen: Index) -> Mapping[tuple[str, str, str], list[tuple[int, Ends]]]:
-    """Return what is sent or served by kind, type and sending robot, each with its number.
-    Searching all names for each end would take the square of the robots."""
+    """Return what is sent or served, with its position, by kind, type and sending robot: a search
+    for each end would take the square of the robots."""
     found: dict[tuple[str, str, str], list[tuple[int, Ends]]] = defaultdict(list)
     for at, it in enumerate(seen.by_name.values()):
         for robot in {seen.robot(one.node) for one in _givers(it)}:

@@ -52,14 +52,9 @@ class MadeOf(NamedTuple):
 @system_rule("MG327", "lacks-what-its-likes-have", WARNING, absence=True)
 def lacks_what_its_likes_have(seen: Index) -> Iterator[Finding]:
     """Yield what one robot lacks and equal ones have; another finding about it replaces this one."""
-    told = [*_lost_of_likes(seen)]
-    yield from told
-    if not seen.expected:
-        yield from _lost_descriptions(seen, {it.robot for it in told})
-
-
-def _lost_of_likes(seen: Index) -> Iterator[Finding]:
     made = made_of(seen)
+    if not seen.expected:
+        yield from _lost_descriptions(seen)
     for likes in alike(nodes_of_each(seen)):
         others = len(likes) - 1
         nodes = Counter(node for it in likes for node in made[it].nodes)
@@ -79,11 +74,11 @@ def _lost_of_likes(seen: Index) -> Iterator[Finding]:
             )
 
 
-def _lost_descriptions(seen: Index, told: Set[str]) -> Iterator[Finding]:
-    """Find robots that have all nodes of another one but robot_state_publisher, however few."""
+def _lost_descriptions(seen: Index) -> Iterator[Finding]:
+    """Find robots of few nodes that have all of another one's but robot_state_publisher."""
     made = made_of(seen)
     for robot, own in made.items():
-        for other, its in made.items() if own.nodes and robot not in told else ():
+        for other, its in made.items() if 0 < len(own.nodes) < _ENOUGH else ():
             lost = [it for it in its.nodes if it not in own.nodes]
             if len(lost) == 1 and publishes_description(seen, its.nodes[lost[0]]):
                 yield from _lost_nodes(seen, made, robot, (other, robot), lost)

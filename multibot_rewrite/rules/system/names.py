@@ -312,7 +312,6 @@ def _unserved(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
     near = "" if outside else _served_instead(seen, end, served) or in_other_namespace(seen, end)
     asks = "sends goals to" if end.kind == ACTION else "calls"
     lost = f"{asks} {end.name}, which {seen.nobody} serves"
-    listed = "" if near else listed
     by_type = None if near or listed else sent_instead(seen, end)
     if other := near or (by_type.name if by_type else ""):
         sure = near or end.kind == ACTION
@@ -384,7 +383,7 @@ def _missed_server(seen: Index, end: End, lost: str, other: str, level: str) -> 
     remaps: tuple[Remap, ...] = (Remap(end.node, end.name, other),)
     managed = [it.node for it in seen.by_name[end.kind, other].clients if _manages(it.node)]
     if _manages(end.node) and managed:
-        cause, remaps = f"{managed[0]} calls that: leave {end.node} out", ()
+        cause, remaps = f"{managed[0]} manages that node already: do not start {end.node}", ()
     clicked = is_viewer(end.node) and not is_spawner(end.node)
     return server_names_miss.finding(
         f"{lost}; {nodes_of(servers)[0]} serves {other}", cause + see((servers[0], end)),

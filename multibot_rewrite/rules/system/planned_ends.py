@@ -329,7 +329,7 @@ def _recorded(plan: Index, seen: Index) -> Iterator[Finding]:
 
 
 def _of_each(plan: Index, *roles: str) -> Mapping[str, Mapping[str, str]]:
-    """Return name without the robot's -> robot -> planned topic of a node in a role; tf is of each."""
+    """Return, by name without the robot, each robot's planned topic with such a role, and its tf."""
     named = [name for _, kind, role, name in plan.by_key if kind == TOPIC and role in roles]
     trees = [it.tf_topic for it in plan.system.robots if it.frames]
     found: dict[str, dict[str, str]] = defaultdict(dict)

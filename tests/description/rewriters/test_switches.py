@@ -7,7 +7,7 @@ import pytest
 from lxml import etree
 
 from multibot_rewrite import rewrite
-from multibot_rewrite.description.rewriters.switches import is_false, is_true
+from multibot_rewrite.description.rewriters.own_defaults import is_false, is_true
 
 PLUGIN = """<robot name="a"><link name="l"/><joint name="j" type="fixed"/><gazebo>
 <plugin filename="gz-sim-joint-controller-system" name="gz::sim::systems::JointController">

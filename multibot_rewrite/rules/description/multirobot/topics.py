@@ -19,7 +19,7 @@ from multibot_rewrite.description.checks import hazards
 from multibot_rewrite.description.checks.hazards import ignored_namespaces, used_namespaces
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.rewriters.insert import Insertion, insertions, lacks_namespace
-from multibot_rewrite.description.rewriters.switches import switched_off
+from multibot_rewrite.description.rewriters.own_defaults import switched_off
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.rules.facts.memo import memoized
