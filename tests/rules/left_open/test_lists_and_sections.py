@@ -43,8 +43,3 @@ def test_a_section_that_nobody_declares(tmp_path: Path) -> None:
     assert linted(CONTROLLERS, tmp_path, "MB878") == []
     renamed = CONTROLLERS.replace("base_controller:\n  ros", "base_controler:\n  ros")
     assert linted(renamed, tmp_path, "MB878") == [(7, "did you mean base_controller")]
-
-
-def test_a_section_with_its_own_type_is_declared_by_it(tmp_path: Path) -> None:
-    own = "spare: {ros__parameters: {type: diff_drive_controller/DiffDriveController}}\n"
-    assert linted(CONTROLLERS + own, tmp_path, "MB878") == []
