@@ -7,17 +7,13 @@ import pytest
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.spelling.domain_bridge import (
-    Crossing,
     beyond,
     bridge_files,
     crossings,
     with_bridges,
 )
 from multibot_rewrite.system.records import (
-    CALLS,
     PUBLISHES,
-    SERVES,
-    SERVICE,
     SUBSCRIBES,
     TOPIC,
     Domain,
@@ -47,27 +43,6 @@ def plan(*ends: End, topics: tuple[Topic, ...] = ()) -> System:
 
 def sent(name: str, by: str, to: str, types: tuple[str, str] = (STRING, STRING)) -> list[End]:
     return [end(by, PUBLISHES, name, types[0]), end(to, SUBSCRIBES, name, types[1])]
-
-
-@pytest.mark.parametrize(
-    ("ends", "found"),
-    [
-        (sent("/x", "/a/n", "/all"), [Crossing("a/b", "/x", STRING, True)]),
-        (sent("/x", "/all", "/a/n"), [Crossing("a/b", "/x", STRING, False)]),
-        (sent("/x", "/all", "/a/n", ("", STRING)), [Crossing("a/b", "/x", STRING, False)]),
-        (sent("/x", "/all", "/a/n", (STRING, "")), [Crossing("a/b", "/x", STRING, False)]),
-        # Of two robots none is in the domain of all, and robot d is in that of all.
-        (sent("/x", "/a/n", "/c/n"), []), (sent("/x", "/d/n", "/all"), []),
-        (sent("/x", "/a/n", "/a/n"), []), (sent("/rosout", "/a/n", "/all"), []),
-        ([*sent("/x", "/a/n", "/all"), end("/d/n", PUBLISHES, "/x")], []),
-        ([end("/all", CALLS, "/x", kind=SERVICE), end("/a/n", SERVES, "/x", kind=SERVICE)], []),
-        ([end("/all", SUBSCRIBES, "/x")], []), ([end("/a/n", PUBLISHES, "/x")], []),
-    ],
-)  # fmt: skip
-def test_what_is_read_in_a_domain_and_not_sent_there_crosses(
-    ends: list[End], found: list[Crossing]
-) -> None:
-    assert crossings(plan(*ends), ()) == found
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from multibot_rewrite.knowledge.records import (
     SentTransform,
 )
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.spelling.of_runs import placed, target_of
+from multibot_rewrite.spelling.of_runs import target_of
 from multibot_rewrite.spelling.plan import expect
 from multibot_rewrite.spelling.table import build_table
 from multibot_rewrite.spelling.transforms import (
@@ -25,7 +25,6 @@ from multibot_rewrite.spelling.transforms import (
     edges_of,
     links_of,
     sent_by,
-    state_publisher_of,
     with_odometry,
 )
 from multibot_rewrite.system.records import (
@@ -73,21 +72,6 @@ def test_an_end_that_surely_is_there_stands_for_those_that_may_be() -> None:
 def test_what_names_a_node(text: str, origin: Origin) -> None:
     assert origin_of(text) == origin
     assert str(origin) == text
-
-
-@pytest.mark.parametrize(
-    ("layout", "node", "apart", "place"),
-    [
-        ("L1", "amcl", False, ("/a", "amcl")),
-        ("L1", "map/map", False, ("/a/map", "map")),
-        ("L4", "amcl", False, ("/", "amcl_a")),
-        ("L4", "map/map", False, ("/map", "map_a")),
-        ("L4", "map/map", True, ("/a/map", "map")),
-        ("L4", "/amcl/", True, ("/a", "amcl")),
-    ],
-)
-def test_a_node_is_placed(layout: str, node: str, apart: bool, place: tuple[str, str]) -> None:
-    assert placed("a", node, make_naming(layout), apart) == place
 
 
 @pytest.mark.parametrize(
@@ -181,20 +165,6 @@ def test_a_static_transform_may_have_the_robots_name_already() -> None:
         "a", "drive"
     ]
     assert edge == edge_of("a/a/base", "a/tip")
-
-
-@pytest.mark.parametrize(
-    ("names", "found"),
-    [
-        (["robot_state_publisher", "dock"], "robot_state_publisher"),
-        (["dock", "robot_state_publisher"], "robot_state_publisher"),
-        (["dock", "other"], "dock"),
-        ([], ""),
-    ],
-)
-def test_which_node_sends_the_description(names: list[str], found: str) -> None:
-    nodes = [NodeFacts("driver", "acme", ()), *(STATE._replace(name=it) for it in names)]
-    assert state_publisher_of(nodes) == found
 
 
 @pytest.mark.parametrize(
