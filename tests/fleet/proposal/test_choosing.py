@@ -180,17 +180,6 @@ def test_an_sdf_is_for_the_simulator_and_its_urdf_for_the_rest(tmp_path: Path) -
     assert fleet["simulator"] == "gazebo"
 
 
-@pytest.mark.more
-def test_a_real_robot_has_no_bridge(two: Path) -> None:
-    (two / "tractor.urdf").unlink()
-    (two / "bridge.yaml").write_text(
-        "- {ros_topic_name: scan, gz_topic_name: scan, ros_type_name: sensor_msgs/msg/LaserScan,\n"
-        "   gz_type_name: gz.msgs.LaserScan, direction: GZ_TO_ROS}\n"
-    )
-    fleet = taken(two)
-    assert fleet["simulator"] == "none" and "companions" not in fleet
-
-
 MASS = (
     '<inertial><mass value="1"/>'
     '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'

@@ -49,25 +49,6 @@ def test_the_layout_is_that_of_the_files(members: list[Member], layout: str, why
     assert (affix and affix.value) == (None if layout == "tf-per-robot" else "prefix")
 
 
-@pytest.mark.parametrize(
-    ("kinds", "simulator", "why"),
-    [
-        ("", "none", "the description has nothing for a simulator"),
-        ("gz", "gazebo", "plugins and sensors for gz-sim; write none for real robots"),
-        ("classic", "gazebo", "plugins and sensors for Gazebo Classic; write none for real robots"),
-        (
-            "gz classic", "gazebo",
-            "plugins and sensors for Gazebo Classic and gz-sim; write none for real robots",
-        ),
-    ],
-)  # fmt: skip
-def test_robots_are_simulated_where_a_description_has_something_for_it(
-    kinds: str, simulator: str, why: str
-) -> None:
-    members = [member(), *(member(simulator=it) for it in kinds.split())]
-    assert propose.simulator_of(members) == (simulator, why)
-
-
 def test_a_real_robot_that_stands_on_the_world_has_one_of_its_own() -> None:
     fixed = standing_on("world")
     found = propose.worlds_of([member(), fixed], True)
