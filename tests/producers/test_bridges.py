@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import pytest
 import yaml
 from launched_nodes import AT, started
 
@@ -23,22 +22,6 @@ def said(*arguments: str, program: tuple[str, ...] = BRIDGE, **more: object) -> 
     node = started(*program, arguments=arguments, **more)
     rows = bridge_rows(node, {"robot1"})
     return [f"{it.role} {it.kind} {it.name} {it.type}" for it in rows]
-
-
-@pytest.mark.parametrize(
-    ("row", "expected"),
-    [
-        ("/scan@sensor_msgs/msg/LaserScan[gz.msgs.LaserScan", ["publishes topic /scan"]),
-        ("/scan@sensor_msgs/LaserScan[ignition.msgs.LaserScan", ["publishes topic /scan"]),
-        ("scan@sensor_msgs/msg/LaserScan]gz.msgs.LaserScan", ["subscribes topic scan"]),
-        (
-            "/scan@sensor_msgs/msg/LaserScan@gz.msgs.LaserScan",
-            ["publishes topic /scan", "subscribes topic /scan"],
-        ),
-    ],
-)
-def test_a_row_is_a_topic_in_its_direction(row: str, expected: list[str]) -> None:
-    assert said(row) == [f"{it} sensor_msgs/msg/LaserScan" for it in expected]
 
 
 def test_rows_of_arguments_as_a_file_has_them_and_those_that_end_the_bridge() -> None:
