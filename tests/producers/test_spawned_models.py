@@ -6,7 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from launched_nodes import AT, started
+from launched_nodes import AT, launched, runs, started
 
 from multibot_rewrite.producers.launch.models import (
     Models,
@@ -16,7 +16,8 @@ from multibot_rewrite.producers.launch.models import (
     sent_in_simulator,
 )
 from multibot_rewrite.producers.launch.records import LaunchedNode, ParameterText
-from multibot_rewrite.system.records import edge_of
+from multibot_rewrite.spelling.transforms import sent_by
+from multibot_rewrite.system.records import Edge, edge_of
 
 ROBOT = '<robot name="r"><link name="base"/><gazebo>{}</gazebo></robot>'
 OWN = "<robot_base_frame>b</robot_base_frame>"
@@ -134,3 +135,20 @@ def test_classic_gives_plugins_the_namespace_of_the_spawner() -> None:
         assert [*sent_by_plugins([model])] == ["/bot/drive"]
         assert model.text == text
     assert spawned("<no", "-robot_namespace", "/bot").found == ()
+
+
+# What a launched static_transform_publisher sends, in a plan and in what a launch would run.
+
+ZEROS = ("0",) * 6
+
+
+def sends(
+    *words: str, executable: str = "static_transform_publisher", text: str = ""
+) -> list[Edge]:
+    parameters = (ParameterText("", text),) if text else ()
+    node = started("tf2_ros", executable, "placed", arguments=words, parameters=parameters)
+    return [*sent_by(runs(launched(node))["placed"], "base_link")]
+
+
+def test_a_frame_below_itself_is_sent_by_nobody() -> None:
+    assert sends(*ZEROS, "odom", "/odom") == []

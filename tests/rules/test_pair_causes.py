@@ -13,6 +13,8 @@ from graph_examples import read_example
 
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.rules.system.causes import (
+    Spelled,
+    alike,
     caused,
     how_to_pass,
     how_to_remap,
@@ -219,3 +221,25 @@ def test_why_a_node_has_another_name(
     plan = plan_of(f"{node} publishes /robot1/scan", **changes)
     place = ("arm.urdf", 12) if "plugin" in changes else ("", 0)
     assert why_other_name(plan, node, match)[:3] == (hint, *place)
+
+
+# Names that are another one but for a slip: expectations are what a person would call a slip.
+
+
+@pytest.mark.parametrize(
+    ("name", "known", "found"),
+    [
+        ("/r/Scan", ["/r/odom", "/r/scan"], "/r/scan"),
+        ("/r/cmd-vel", ["/r/cmd_vel"], "/r/cmd_vel"),
+        ("/r/odmo", ["/r/scan", "/r/odom"], "/r/odom"),
+        # It is no slip of itself, and what it is there beside.
+        ("/r/scan", ["/r/scan"], ""),
+        ("/r/scan", ["/r/scan", "/r/Scan"], "/r/Scan"),
+        # Two things: numbers, sides, another word.
+        ("/r/scan1", ["/r/scan2"], ""),
+        ("/r/lidar_l", ["/r/lidar_r"], ""),
+        ("/r/odom", ["/r/map"], ""),
+    ],
+)
+def test_a_slip_is_the_known_name(name: str, known: list[str], found: str) -> None:
+    assert alike(name, Spelled(known), "acme/msg/A") == found
