@@ -82,6 +82,23 @@ def test_a_name_in_a_message_is_a_mention(where: str) -> None:
     assert codes(text.replace("'base'", "'other'")) == []
 
 
+UUV = """<robot name="r"><link name="base"/><gazebo>
+<plugin name="p" filename="libuuv_joint_state_publisher.so">{}</plugin></gazebo></robot>"""
+
+
+def test_nothing_of_ros_2_is_inserted_into_what_reads_none_of_it() -> None:
+    """JointStatePublisher.cc of uuv_simulator: robotNamespace, and no <ros>."""
+    old = UUV.format("<robotNamespace>r</robotNamespace><updateRate>5</updateRate>")
+    for layout in ("postfix", "both", "tf-per-robot"):
+        assert "<ros>" not in rewrite(old, "robot1", layout=layout).text
+    made = rewrite(old, "robot1")
+    assert "<robotNamespace>r_robot1</robotNamespace>" in made.text
+    assert made.not_verified == ()
+    made = rewrite(old, "robot1", layout="both")
+    assert "<robotNamespace>robot1/r</robotNamespace>" in made.text
+    assert made.not_verified == ()
+
+
 @pytest.mark.parametrize("layout", ["frame-prefix", "frames-per-robot"])
 def test_a_frame_that_is_fixed_in_code_is_shared_on_one_tf(layout: str) -> None:
     """kobuki's plugin sends odom -> base_footprint on /tf whatever its file says
