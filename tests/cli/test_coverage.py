@@ -139,21 +139,6 @@ def test_what_does_not_answer_is_silent(known: Built, capsys: pytest.CaptureFixt
     assert (found["silent"], [it["silent"] for it in found["robots"]]) == (1, [0, 1])  # type: ignore[attr-defined]
 
 
-def test_a_launch_file_with_unknown_nodes_is_not_as_planned(
-    unknown: Built, capsys: pytest.CaptureFixture[str]
-) -> None:
-    capsys.readouterr()
-    for words, text in (((), UNKNOWN), (("--plan", unknown.plan), f"{UNKNOWN}, all launched")):
-        assert main(["check-launch", unknown.launch, *words]) == 3
-        said = last(capsys)
-        assert said.startswith(f"{text}; ") and ": inconclusive, the view may be incomplete" in said
-        assert main(["check-launch", unknown.launch, *words, "--format", "json"]) == 3
-        seen = {"all launched": 6}.get(text.rpartition(", ")[2])
-        each = None if seen is None else 3
-        found = whole(text, row(6, 2, seen, None), row(3, 1, each, None))
-        assert numbers(capsys) == {**found, "incomplete": 1}
-
-
 def test_a_watch_and_its_lines_say_as_far_as_known(
     unknown: Built, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

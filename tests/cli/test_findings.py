@@ -40,18 +40,6 @@ def said(capsys: pytest.CaptureFixture[str]) -> Said:
 
 
 @pytest.fixture
-def siren(tmp_path: Path) -> list[str]:
-    """Options for a node that publishes one topic for all robots, which is an error."""
-    own = tmp_path / "own.yaml"
-    own.write_text(
-        "nodes:\n  siren:\n    package: siren\n    publishes:\n"
-        "      /alarm: {type: std_msgs/msg/String, fixed: it is written in its code}\n"
-        "stacks:\n  mine: {nodes: [siren]}\n"
-    )
-    return ["--nodes", str(own), "--stack", "mine", "--layout", "L2"]
-
-
-@pytest.fixture
 def fleet(tmp_path: Path) -> Path:
     """A fleet file whose description has a warning."""
     path = tmp_path / "fleet.yaml"
@@ -130,18 +118,6 @@ def test_every_format_tells_the_finding(
 
 
 @pytest.mark.slow
-def test_twenty_robots_are_one_line(check: Sequence[str], said: Said) -> None:
-    code, out, err = said(*check)
-    assert code == 1
-    (line,) = (it for it in out.splitlines() if "MG101" in it)
-    assert line.startswith("/robot1/robot_state_publisher: error: MG101 ")
-    assert "; the same for robot2 and 18 more" in line
-    assert err.startswith("multibot: 20 robots, ")
-    each = [it for it in said(*check, "--verbose")[1].splitlines() if "MG101" in it]
-    assert [it.split("/")[1] for it in each] == TWENTY
-
-
-@pytest.mark.slow
 def test_twenty_robots_are_one_finding_in_every_format(check: Sequence[str], said: Said) -> None:
     only = ("--select", "MG101", "--format")
     (finding,) = json.loads(said(*check, *only, "json")[1])["findings"]
@@ -160,13 +136,6 @@ def junit(check: Sequence[str], said: Said) -> bytes:
 
 
 @pytest.mark.slow
-def test_a_check_fails_by_what_is_selected(check: Sequence[str], said: Said) -> None:
-    assert said(*check, "--select", "MG101")[0] == 1
-    assert said(*check, "--ignore", "MG")[:2] == (0, "")
-    assert said(*check, "--ignore", "MG1,MG2", "--fail-on", "note")[0] == 0
-
-
-@pytest.mark.slow
 def test_a_report_of_a_check_goes_to_a_file(
     check: Sequence[str], tmp_path: Path, said: Said
 ) -> None:
@@ -175,32 +144,6 @@ def test_a_report_of_a_check_goes_to_a_file(
     assert (code, out) == (1, "")
     suites: Any = JUnitXml.fromstring(target.read_bytes())
     assert suites.failures > 0
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("form", ["plan", "table"])
-def test_a_table_s_findings(form: str, tmp_path: Path, siren: list[str], said: Said) -> None:
-    words = [
-        "multibot",
-        "plan",
-        "--form",
-        form,
-        ROVER,
-        "r1",
-        "r2",
-        *siren,
-        "-o",
-        str(tmp_path / "result"),
-    ]
-    code, out, err = said(*words)
-    assert (code, out) == (0, "")
-    assert "siren: warning: MR101 " in err
-    assert codes(said(*words, "--format", "json")[1]) == ["MR101"]
-    assert said(*words, "--fail-on", "warning")[0] == 1
-    code, _, err = said(*words, "--fail-on", "warning", "--ignore", "MR101")
-    assert (code, err) == (0, "")
-    # The table is written all the same: it shows what the finding is about.
-    assert (tmp_path / "result").stat().st_size > 100
 
 
 def test_many_warnings_of_one_matter_are_one_line_with_their_number(

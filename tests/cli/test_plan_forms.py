@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import pytest
@@ -24,25 +23,6 @@ GZ = str(FIXTURES / "robots" / "rover_gz.urdf")
 def run(capture: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str]:
     code = main(["plan", "--form=table", *words])
     return code, *capture.readouterr()
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("layout", ["tf-per-robot", "frames-per-robot", "both", "postfix"])
-def test_nav2_for_two_robots_has_no_error(layout: str, capsys: pytest.CaptureFixture[str]) -> None:
-    code, out, err = run(
-        capsys, ROVER, "robot1", "robot2", "--stack", "nav2", "--layout", layout, "--form", "json"
-    )
-    assert code == 0, err
-    assert "error" not in err
-    table = json.loads(out)
-    names = {
-        robot: {name["name"] for name in table["names"] if name["robot"] == robot}
-        for robot in ("robot1", "robot2")
-    }
-    shared = names["robot1"] & names["robot2"]
-    allowed = {"/clock", "/rosout", "/parameter_events", "/diagnostics"}
-    assert shared <= allowed | ({"/tf", "/tf_static"} if layout == "frames-per-robot" else set())
-    assert len(names["robot1"]) > 100
 
 
 def test_a_postfix_names_six_rules_for_an_action(capsys: pytest.CaptureFixture[str]) -> None:

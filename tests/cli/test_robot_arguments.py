@@ -10,10 +10,8 @@ from pathlib import Path
 import pytest
 from lxml import etree
 from paths import FIXTURES
-from plans import robot_named
 
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
-from multibot_rewrite.spelling.plan import read_plan
 
 pytestmark = pytest.mark.slow
 
@@ -142,32 +140,3 @@ def test_lint_fills_in_its_first_robot(tmp_path: Path, capfd: pytest.CaptureFixt
     found = json.loads(capfd.readouterr().out)["findings"]
     assert {it["arguments"] for it in found} <= {"", "p:=left_"}
     assert urdf_lint.main([ARM, PREFIX, "--robots", "left,right", "--select", "MB43,MB106"]) == 0
-
-
-def test_a_plan_has_the_names_of_the_argument(tmp_path: Path) -> None:
-    plan = tmp_path / "plan.yaml"
-    words = ["plan", ARM, "left", "right", PREFIX, "--stack", "robot_state_publisher"]
-    assert multibot.main([*words, "-o", str(plan), "--layout", "frames-per-robot"]) == 0
-    robots = read_plan(plan.read_bytes(), "plan.yaml")
-    for name in ("left", "right"):
-        own = [f"{name}_base_link", f"{name}_tool0", f"{name}_gripper", f"camera_link/{name}"]
-        assert [*robot_named(robots, name).frames] == own
-
-
-def test_a_table_has_the_namespace_once(capfd: pytest.CaptureFixture[str]) -> None:
-    words = [
-        "plan",
-        "--form=table",
-        BASE,
-        "r1",
-        "r2",
-        "namespace:={robot}",
-        "--layout",
-        "tf-per-robot",
-    ]
-    assert multibot.main(words) == 0
-    out = capfd.readouterr().out
-    assert {it for it in out.split() if it.startswith("/r") and "drive" in it} == {
-        "/r1/diff_drive",
-        "/r2/diff_drive",
-    }

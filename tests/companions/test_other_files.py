@@ -11,7 +11,7 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.behavior_tree.rewrite import node_name
 from multibot_rewrite.companions.context import NAMESPACE_SLOT, TAG_SLOT
 from multibot_rewrite.companions.engine import splices_of
-from multibot_rewrite.companions.params.sections import raw_sections
+from multibot_rewrite.companions.params.sections import meant_for, raw_sections
 from multibot_rewrite.companions.params.shared_defaults import takes_sections
 from multibot_rewrite.companions.rviz.read_config import read_config
 from multibot_rewrite.companions.sites import UNCLEAR, Site, Slot
@@ -162,3 +162,31 @@ def test_one_text_cannot_be_two_names() -> None:
         "f:7: an alias uses 'a' as two kinds of name, 'ROBOT/a' and '/ROBOT/a';"
         " write the value out in both places"
     )
+
+
+# Sections that have the name of a node which reads the file, and another namespace.
+
+NODES = ("/robot1/amcl", "/robot2/amcl", "/robot1/costmap/costmap")
+
+
+@pytest.mark.parametrize(
+    ("paths", "meant"),
+    [
+        (("amcl",), "amcl"),
+        (("/other/amcl",), "/other/amcl"),
+        (("amcl", "/**"), "amcl"),
+        # rcl_yaml_param_parser: wildcards match any namespace.
+        (("/**/amcl",), ""),
+        (("/*/amcl",), ""),
+        (("/**",), ""),
+        (("robot1/amcl",), ""),
+        (("/robot1/amcl", "/other/amcl"), ""),
+        # That of the other robot is for a node that runs.
+        (("/robot2/amcl",), ""),
+        (("controller", "costmap/costmap"), ""),
+    ],
+)
+def test_a_section_that_gives_its_node_nothing(paths: tuple[str, ...], meant: str) -> None:
+    text = "".join(f"{it}:\n  ros__parameters: {{a: 1}}\n" for it in paths)
+    found = meant_for(raw_sections(read_yaml(text.encode(), "f.yaml")), "/robot1/amcl", NODES)
+    assert (found.path if found else "").strip("/") == meant.strip("/")

@@ -93,19 +93,6 @@ def test_a_section_is_put_under_the_nodes_full_name(
     assert text.splitlines()[0] == f"{new}:"
 
 
-def test_rcl_would_find_every_section() -> None:
-    """The keys joined as rcl joins them are the full names that the nodes run under."""
-    context = setting(L2)
-    for name, full in context.nodes.items():
-        first, _, rest = name.partition("/")
-        keys = f"{first}:\n  {rest}:\n" if rest else f"{first}:\n"
-        indent = "    " if rest else "  "
-        text, _ = made(f"{keys}{indent}ros__parameters:\n{indent}  x: 1\n")
-        joined = "/".join(line.strip(" :/") for line in text.splitlines() if line.endswith(":"))
-        expected = full.replace(NAMESPACE_SLOT, "robot1").strip("/")
-        assert joined.removesuffix("/ros__parameters") == expected
-
-
 @pytest.mark.parametrize("key", ["robot1", "/robot1", "robot1/", "/"])
 def test_the_namespace_of_the_robot_that_a_file_is_for_is_no_name_of_a_node(key: str) -> None:
     """Clearpath's generator writes a key with the namespace alone above the nodes."""
@@ -337,47 +324,6 @@ def test_no_controller_puts_its_namespace_before_frames(policy: tuple[str, str],
     text, _ = made(section("diff_drive_controller", line), policy)
     assert text.count("tf_frame_prefix_enable: false") == 1
     assert "tf_frame_prefix_enable: true" not in text
-
-
-AMCL = """\
-# multibot: the default is every robot's
-/robot1/amcl:
-  ros__parameters:
-    base_frame_id: r1/base_footprint
-    odom_frame_id: r1/odom
-"""
-SMOOTHER = """\
-# multibot: the default is every robot's
-/robot1/smoother_server:
-  ros__parameters:
-    robot_base_frame: r1/base_link
-"""
-BOTH = {"amcl": AMCL, "smoother_server": SMOOTHER}
-
-
-@pytest.mark.parametrize(
-    ("source", "beside", "added"),
-    [
-        (section("map_server", "a: 1"), "", ["amcl", "smoother_server"]),
-        (section("amcl", "a: 1"), "", ["smoother_server"]),
-        (section("map_server", "a: 1"), section("amcl", "a: 1"), ["smoother_server"]),
-        (section("/**/amcl", "a: 1"), "", ["smoother_server"]),
-        (section("/**", "robot_base_frame: tool0"), "", ["amcl"]),
-        (section("/*/*", "a: 1"), section("/**", "robot_base_frame: tool0"), ["amcl"]),
-    ],
-)
-def test_the_first_file_gets_the_sections_that_no_file_has(
-    source: str, beside: str, added: list[str]
-) -> None:
-    others = [read_yaml(beside.encode(), "q.yaml")] if beside else []
-    text, findings = made(source, beside=others, is_first=True)
-    assert "MF124" not in codes(findings)
-    assert [name for name, it in BOTH.items() if it in text] == added
-    assert not {it for it in BOTH.values() if it in made(source, beside=others)[0]}
-    with_bare_frames, _ = made(source, L1, beside=others, is_first=True)
-    assert "_frame" not in with_bare_frames.replace("tf_frame_prefix_enable", "").replace(
-        source, ""
-    )
 
 
 def test_a_file_that_no_section_can_be_added_to_is_told() -> None:
@@ -691,25 +637,6 @@ def test_the_page_has_codes_that_exist() -> None:
     codes_named = set(re.findall(r"MF1\d\d", text))
     assert codes_named
     assert codes_named <= set(catalogue.rules())
-
-
-def test_a_frame_that_a_node_makes_is_known() -> None:
-    """pose_broadcaster.cpp sends it; force_torque_sensor_broadcaster of the same file uses it."""
-    type_ = "force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster"
-    text = f"""\
-controller_manager:
-  ros__parameters:
-    pose: {{type: pose_broadcaster/PoseBroadcaster}}
-    force: {{type: {type_}}}
-pose:
-  ros__parameters: {{frame_id: base_link, pose_name: imu_sensor, tf: {{child_frame_id: flange}}}}
-force:
-  ros__parameters: {{sensor_name: imu_sensor, frame_id: flange}}
-"""
-    assert [it for it in made(text)[1] if it.code == "MB853"] == []
-    alone = text.replace("child_frame_id: flange", "child_frame_id: other")
-    (missing,) = (it for it in made(alone)[1] if it.code == "MB853")
-    assert (missing.line, "'flange'" in missing.message) == (8, True)
 
 
 # The forms and variables that camera_info_manager.cpp reads.

@@ -135,15 +135,6 @@ def test_interfaces_that_nobody_publishes(given: tuple[str, ...], found: list[st
 
 
 @pytest.mark.parametrize(
-    ("release", "frame"), [("humble", "r1/odom"), ("jazzy", "map"), ("lyrical", "map")]
-)
-def test_the_default_of_a_release_is_inserted(release: str, frame: str) -> None:
-    """behavior_server's global_frame is odom in Humble; map is shared."""
-    found = lines("behavior_server", "use_sim_time: true", release=release)
-    assert (f"global_frame: {frame}" in found) == (release == "humble")
-
-
-@pytest.mark.parametrize(
     ("node", "line", "release", "others"),
     [
         # nav2_behaviors: costmap_topic until Humble, local_costmap_topic since Iron.

@@ -229,15 +229,6 @@ def test_how_the_window_of_one_robot_is_started() -> None:
     assert start_command(make()[0][0], "c.rviz") == ["rviz2", "-d", "c.rviz"]
 
 
-def test_the_topic_of_a_panel_is_the_robots_in_its_window() -> None:
-    """rviz_plugin_tutorials teleop_panel.cpp saves the topic that it sends on."""
-    panel = "  - Class: acme/Teleop\n    Name: Teleop\n    Topic: /cmd_vel\n"
-    text = CONFIG.replace("Panels:\n", f"Panels:\n{panel}", 1)
-    windows = [yaml.safe_load(it.text) for it in make(text, layout="L1")[0]]
-    topics = [it["Topic"] for window in windows for it in window["Panels"] if "Topic" in it]
-    assert topics == ["/robot1/cmd_vel", "/robot2/cmd_vel"]
-
-
 NO_RVIZ = "name the node set rviz_moveit or rviz_nav2: each robot gets an rviz2 with its rules"
 RULE_OF_EACH = (
     "its topics are absolute: delete it here, and open it in an rviz2 that has a rule for each of"

@@ -96,19 +96,3 @@ def test_each_robots_tool_gets_its_topic_however_it_is_written(
         *({**before, "Topic": topic} for topic in topics),
         {"Class": "rviz_default_plugins/Measure"},
     ]
-
-
-@pytest.mark.slow
-def test_a_tool_in_braces_in_a_window_of_one_robot(tmp_path: Path) -> None:
-    """The goal's own topic is relative and goes with the window's namespace."""
-    point = "{Class: rviz_default_plugins/PublishPoint, Single click: true}"
-    text = f"{EMPTY}    - {point}\n    - {{Class: rviz_default_plugins/SetGoal}}\n"
-    assert build(tmp_path, "tf-per-robot", one_robot__rviz=text) == 0
-    for robot in ("robot1", "robot2"):
-        (path,) = (tmp_path / "out").rglob(f"*{robot}*/*.rviz")
-        click, goal = tools(tmp_path, path.relative_to(tmp_path / "out").as_posix())
-        assert (click["Topic"].strip("/"), click["Single click"]) == (
-            f"{robot}/clicked_point",
-            True,
-        )
-        assert goal.get("Topic", "goal_pose").removeprefix(f"/{robot}/") == "goal_pose"

@@ -16,7 +16,7 @@ from multibot_rewrite.companions.context import (
     make_context,
 )
 from multibot_rewrite.companions.names import by_kind
-from multibot_rewrite.companions.names.by_kind import SPELLERS, expressible
+from multibot_rewrite.companions.names.by_kind import SPELLERS
 from multibot_rewrite.companions.names.node_topics import TopicText, spell_topic
 from multibot_rewrite.companions.names.rename_map import companion_names, with_srdf
 from multibot_rewrite.companions.params.shared_defaults import missing_defaults
@@ -114,19 +114,6 @@ def test_a_node_of_all_robots_keeps_its_name() -> None:
     for policy, told in ((L2, "/map_server"), (L4, "map_server")):
         shared = setting(policy)._replace(nodes={"map_server": "/map_server"})
         assert by_kind.node(shared, "map_server") == told
-
-
-@pytest.mark.parametrize(
-    ("policy", "kind", "can"),
-    [
-        (L2, "stem", True), (AFTER, "stem", False), (L2, "link_prefix", True),
-        (AFTER, "link_prefix", False), (L1, "link_prefix", True), (AFTER, "joint_stem", False),
-        (AFTER, "gpio_prefix", False), (AFTER, "joint_prefix", False), (L2, "joint_stem", True),
-        (AFTER, "frame", True), (L1, "stem", True),
-    ],
-)  # fmt: skip
-def test_a_prefix_cannot_be_a_postfix(policy: tuple[str, str], kind: str, can: bool) -> None:
-    assert expressible(setting(policy), kind) is can
 
 
 def test_an_argument_of_the_xacro_is_the_prefix() -> None:

@@ -167,21 +167,6 @@ def test_without_namespaces_a_window_has_the_rules_of_its_robot(tmp_path: Path) 
     assert "MotionPlanning" in next(it.message for it in findings if it.code == "MF202")
 
 
-def test_a_list_of_sensors_names_the_keys_of_its_file(tmp_path: Path) -> None:
-    for layout in ("both", "postfix"):
-        made = yaml.safe_load(built(tmp_path, layout=layout)[0]["left/sensors_3d.yaml"])
-        assert made["sensors"] == [it for it in made if it != "sensors"]
-
-
-def test_files_follow_groups_that_an_argument_names(tmp_path: Path) -> None:
-    words = {"own": "$(arg prefix)", "group": "${p}manipulator"}
-    files, findings = built(tmp_path, OWN + TWO, "frames-per-robot", **words)
-    assert list(yaml.safe_load(files["right/kinematics.yaml"])) == ["right_manipulator"]
-    request = displays(files["right/moveit.rviz"])["Planning Request"]
-    assert request == {"Planning Group": "right_manipulator"}
-    assert errors(findings) == []
-
-
 def test_an_srdf_whose_prefix_is_spelled_otherwise_follows_its_urdf(tmp_path: Path) -> None:
     """Franka's URDF makes left_base of arm_prefix, its SRDF leftbase."""
     own = "${'$(arg prefix)'.replace('_', '')}"
@@ -249,13 +234,6 @@ def test_one_device_of_two_robots(
     assert all(f"arm.urdf.xacro:{at}" in it.hint for it in found for at in where)
     # Robots may have computers of their own.
     assert {it.level for it in found if "reverse_port" in it.message} <= {NOTE}
-
-
-def test_simulated_robots_have_no_devices(tmp_path: Path) -> None:
-    more = IPS.replace("A}", "10.0.0.1}").replace("B}", "10.0.0.1}")
-    more = more.replace("name: right", "name: right, simulator: gazebo")
-    _, findings = built(tmp_path, more, plugin=UR)
-    assert not [it for it in findings if it.code == "MB412"]
 
 
 @pytest.mark.parametrize("own", ["", OWN])

@@ -42,7 +42,6 @@ pytestmark = pytest.mark.slow
 
 COMMAND = [sys.executable, "-m", "multibot_rewrite.cli.multibot", "build"]
 Files = dict[str, bytes]
-Build = Callable[..., int]
 
 
 def held(folder: Path) -> Files:
@@ -133,14 +132,6 @@ def test_the_manifest_names_what_was_read_and_written(out: Path) -> None:
     assert set(data["inputs"]) == {f"../{it}" for it in inputs}
 
 
-def test_included_files_and_nodes_are_inputs(tmp_path: Path) -> None:
-    (tmp_path / "site.yaml").write_text("layout: L2\naffix: prefix\n")
-    text = "include: site.yaml\nrobots:\n  - {name: a, description: rover.urdf}\n"
-    fleet_folder(tmp_path, text)
-    assert build(tmp_path) == 0
-    assert "../site.yaml" in json.loads((tmp_path / "out" / MANIFEST).read_text())["inputs"]
-
-
 def test_a_second_build_changes_nothing(out: Path) -> None:
     before = {path: path.stat() for path in out.rglob("*")}
     assert build(out.parent) == 0
@@ -160,13 +151,6 @@ def test_a_change_writes_only_what_follows_from_it(out: Path) -> None:
     assert changed == {"robot1/params.yaml", "robot2/params.yaml", MANIFEST}
 
 
-def test_what_is_no_longer_made_goes_with_its_folder(out: Path) -> None:
-    renamed(out.parent)
-    assert build(out.parent) == 0
-    assert not (out / "robot2").exists()
-    assert (out / "robot3" / "params.yaml").exists()
-
-
 def test_what_others_put_there_stays(out: Path) -> None:
     (out / "robot2" / "notes.txt").write_text("mine")
     (out / "maps" / "empty").mkdir(parents=True)
@@ -181,13 +165,6 @@ def test_what_others_put_there_stays(out: Path) -> None:
     assert os.readlink(out / "link") == "maps"
     assert (out / "pipe").is_fifo()
     assert (out / "robot1").stat().st_mode & 0o777 == 0o750
-
-
-def test_a_file_keeps_its_mode(out: Path) -> None:
-    (out / "commands.md").chmod(0o640)
-    renamed(out.parent)
-    assert build(out.parent) == 0
-    assert (out / "commands.md").stat().st_mode & 0o777 == 0o640
 
 
 @pytest.mark.sample(2)
@@ -244,17 +221,6 @@ def test_check_says_what_is_stale_and_writes_nothing(
     assert held(out) == before
 
 
-def test_check_of_nothing_writes_nothing(tmp_path: Path) -> None:
-    fleet_folder(tmp_path)
-    assert build(tmp_path, "--check") == 1
-    assert not (tmp_path / "out").exists()
-
-
-def test_check_finds_a_file_that_was_deleted(out: Path) -> None:
-    (out / "robot1" / "rover.urdf").unlink()
-    assert build(out.parent, "--check") == 1
-
-
 # ---------------------------------------------------------------- the same from everywhere
 
 
@@ -286,37 +252,12 @@ def test_the_output_is_the_same_from_everywhere_and_in_any_order(text: str, tmp_
     assert not any(str(tmp_path).encode() in it for it in first.values())
 
 
-def test_findings_are_sorted_and_said_once(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    text = SMALL.replace("{name: robot2,", "{name: robot2, pose: {x: 9},")
-    fleet_folder(tmp_path, text.replace("stack: nav2", "simulator: none\nstack: nav2_slam"))
-    assert build(tmp_path) == 0
-    lines = capsys.readouterr().err.splitlines()
-    told = [it for it in lines if "MF701" in it]
-    assert len(told) == 1
-    assert "robot 'robot1'" in told[0]
-    assert "; the same for robot2 (" in told[0]
-    assert "multibotNamespaceSlot" not in "".join(lines)
-    assert "multibotTagSlot" not in "".join(lines)
-
-
 def test_findings_that_differ_in_their_hints_alone_are_sorted_too(tmp_path: Path) -> None:
     """A set of them has another order in every process."""
     fleet_folder(tmp_path)
     plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {}))
     found = [Finding("MB853", WARNING, "unknown", hint=f"did you mean {it}?") for it in "abcdefghi"]
     assert said_once(plan, found[::-1]) == found
-
-
-@pytest.mark.slow
-def test_errors_stop_the_job_and_strict_makes_errors(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    fleet_folder(tmp_path)
-    assert build(tmp_path, "--fail-on", "warning") == 1
-    assert "nothing was written" in capsys.readouterr().err
-    assert not (tmp_path / "out").exists()
 
 
 # ---------------------------------------------------------------- links and folders in the way
@@ -736,18 +677,6 @@ def test_any_words_in_a_plan_read_back(word: str, other: str, frames: list[str])
     with contextlib.suppress(InputError):
         assert from_yaml(text.encode(), "p") == plan
     assert isinstance(yaml.safe_load(text), dict)
-
-
-def test_parameters_of_a_node_of_your_own(tmp_path: Path) -> None:
-    fleet_folder(tmp_path, f"nodes: facts.yaml\n{SMALL}")
-    facts = "nodes:\n  mast:\n    package: acme\n    params:\n      eye: {kind: frame}\n"
-    (tmp_path / "facts.yaml").write_text(facts)
-    own = "mast:\n  ros__parameters:\n    eye: base_link\n    note: base\n"
-    (tmp_path / "params.yaml").write_text(own)
-    assert build(tmp_path) == 0
-    made = (tmp_path / "out" / "robot1" / "params.yaml").read_text()
-    mast = own.replace("mast:", "/robot1/mast:").replace("base_link", "robot1/base_link")
-    assert made.startswith(mast) and made.count("/mast:") == 1
 
 
 # ---------------------------------------------------------------- undo

@@ -7,7 +7,6 @@ import shlex
 from pathlib import Path
 
 import pytest
-import yaml
 from paths import ROBOTS
 
 from multibot_rewrite import load_fleet
@@ -52,15 +51,6 @@ def test_each_controller_of_each_robot_has_its_line(
     assert any(it.endswith("  # only where you start it") for it in rows)
 
 
-@pytest.mark.more
-def test_the_table_of_a_build_says_the_same(tmp_path: Path) -> None:
-    made = outputs(tmp_path, "lyrical")
-    found = yaml.safe_load(made["remappings.yaml"])
-    assert found["distro"] == "lyrical"
-    controller = found["robots"]["robot2"]["diff_drive_controller"]
-    assert (controller["way"], controller["remappings"]) == ("spawner", [["/tf", "tf"]])
-
-
 MASS = """\
 <link name="tool">
   <inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
@@ -72,28 +62,6 @@ HARDWARE = """\
   <hardware><plugin>acme_driver/Arm</plugin></hardware>
 </ros2_control>
 """
-
-
-@pytest.mark.parametrize(
-    ("inside", "spawned"),
-    [
-        ("", False),
-        (MASS, True),
-        (HARDWARE, False),
-        (f"{MASS}{HARDWARE}", False),
-        (f'{HARDWARE}<gazebo reference="base_link"><mu1>1</mu1></gazebo>', False),
-        (f'{MASS}{HARDWARE}<gazebo><plugin name="p" filename="libacme.so"/></gazebo>', True),
-    ],
-)
-def test_a_robot_that_has_nothing_for_gazebo_is_not_spawned(
-    inside: str, spawned: bool, tmp_path: Path
-) -> None:
-    (tmp_path / "arm.urdf").write_text(
-        f'<robot name="arm"><link name="base_link"/>{inside}</robot>'
-    )
-    (tmp_path / "fleet.yaml").write_text("robots: [{name: robot1, description: arm.urdf}]\n")
-    made = load_fleet(tmp_path / "fleet.yaml").files["commands.md"].data.decode()
-    assert ("ros_gz_sim create" in made) == spawned
 
 
 @pytest.mark.parametrize(

@@ -66,16 +66,6 @@ def test_the_manager_gets_the_type(layout: str, name: str, distro: str, tmp_path
     )
 
 
-@pytest.mark.parametrize(("distro", "is_named"), [("humble", False), ("jazzy", True)])
-def test_the_manager_of_humble_gets_no_name(distro: str, is_named: bool, tmp_path: Path) -> None:
-    """Its controllers take the rules of the process (ros2_control#1684): name= would rename them."""
-    assert _built(tmp_path, "both", distro) == 0
-    text = (tmp_path / "out" / "fleet.launch.py").read_text()
-    manager = text.partition("executable='ros2_control_node'")[2].partition("parameters=")[0]
-    assert "namespace=" in manager
-    assert ("name='controller_manager'" in manager) == is_named
-
-
 @pytest.mark.more
 def test_what_a_file_declares_is_not_said_again(tmp_path: Path) -> None:
     assert _built(tmp_path, "both", "jazzy", params=TYPED.format(BROADCASTER)) == 0

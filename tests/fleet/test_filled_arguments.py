@@ -164,14 +164,6 @@ def test_the_fleet_file_may_say_otherwise(keys: dict[str, Any], tmp_path: Path) 
 
 
 @pytest.mark.slow
-def test_a_value_of_the_fleet_file_wins(tmp_path: Path) -> None:
-    keys = {**WITH_PREFIX, "arguments": {"tf_prefix": "{robot}_arm_"}}
-    outputs = made(xacro(tmp_path, "tf_prefix", ARM), **keys)
-    assert names(outputs, "robot1", "link") == ["robot1_arm_base_link", "robot1_arm_tool0"]
-    assert said(outputs) == []
-
-
-@pytest.mark.slow
 def test_a_prefix_that_misses_a_reference_is_not_filled(tmp_path: Path) -> None:
     """Kinova's gripper_joint_name is an argument of its own, with a name without the prefix."""
     hardware = """<ros2_control name="s" type="system"><hardware><plugin>a/B</plugin></hardware>
@@ -204,18 +196,6 @@ def test_a_namespace_of_several_levels_is_not_filled(tmp_path: Path) -> None:
     outputs = made(xacro(tmp_path, "namespace", body), robots, **TF_PER_ROBOT)
     assert [it.text for it in root(outputs, "robot1").iter("topic")] == ["a/robot1/scan"]
     assert ["not filled" in it for it in said(outputs)] == [True]
-
-
-@pytest.mark.slow
-def test_what_a_simulator_gets_is_filled_too(tmp_path: Path) -> None:
-    (tmp_path / "r.urdf").write_text('<robot name="r"><link name="base_link"/></robot>')
-    arg = f'<sdf version="1.8" {SPACE}><xacro:arg name="namespace" default=""/>'
-    sensor = '<sensor name="s" type="gpu_lidar"><topic>$(arg namespace)/scan</topic></sensor>'
-    model = f'<model name="r"><link name="base_link">{sensor}</link></model></sdf>'
-    (tmp_path / "r.sdf.xacro").write_text(arg + model)
-    keys = {**TF_PER_ROBOT, "simulated": str(tmp_path / "r.sdf.xacro")}
-    outputs = made(str(tmp_path / "r.urdf"), **keys)
-    assert [it.text for it in root(outputs, "robot2", "r.sdf").iter("topic")] == ["robot2/scan"]
 
 
 def test_what_cannot_be_expanded_is_told_as_ever(tmp_path: Path) -> None:

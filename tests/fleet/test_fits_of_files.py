@@ -199,19 +199,6 @@ def test_assisted_teleop_takes_the_type_of_its_server(
     assert len({it.type for it in of_server if "/Twist" in it.type}) == 1
 
 
-@pytest.mark.parametrize("layout", ["both", "postfix"])
-def test_a_mux_that_the_build_starts_sends_to_the_drive(layout: str, tmp_path: Path) -> None:
-    """Its output has a name that is there to be remapped (twist_mux.cpp: cmd_vel_out)."""
-    text = f"layout: {layout}\ndistro: jazzy\nstack: [twist_mux]\ndescription: {ROVER}\n"
-    more = "companions: {params: mux.yaml}\n"
-    assert build(tmp_path, text + more, mux_yaml=MUX.format("")) == 0
-    node, topic = ("/twist_mux_robot1", "/cmd_vel/robot1")
-    if layout == "both":
-        node, topic = "/robot1/twist_mux", "/robot1/cmd_vel"
-    assert ("publishes", topic) in ends(tmp_path, node)
-    assert is_as_planned(tmp_path)
-
-
 @pytest.mark.sample(2)
 @pytest.mark.parametrize("layout", ["tf-per-robot", "postfix"])
 @pytest.mark.parametrize("release", ["jazzy", "lyrical"])

@@ -80,22 +80,6 @@ def test_a_filter_leaves_the_odometry_to_the_drive(release: str, tmp_path: Path)
     assert given(out, "publish_tf") == {"ekf_filter_node": "False"}
 
 
-@pytest.mark.parametrize(
-    ("layout", "frame"), [("tf-per-robot", "base_link"), ("frames-per-robot", "robot1/base_link")]
-)
-def test_amcl_looks_for_a_frame_of_the_robot(layout: str, frame: str, tmp_path: Path) -> None:
-    """amcl_node.cpp: base_footprint by default, which this rover has not."""
-    fleet, out = tmp_path / "fleet.yaml", tmp_path / "out"
-    affix = "" if layout == "tf-per-robot" else "affix: prefix\n"
-    fleet.write_text(
-        f"layout: {layout}\n{affix}distro: lyrical\nstack: nav2\ndescription: {ROVER}\n{ROBOTS}\n"
-    )
-    assert main(["build", str(fleet), "-o", str(out), "-q"]) == 0
-    params = yaml.safe_load((out / "robot1" / "params.yaml").read_text())
-    for node in ("amcl", "collision_monitor"):
-        assert params[f"/robot1/{node}"]["ros__parameters"]["base_frame_id"] == frame
-
-
 def test_odometry_without_a_topic_comes_where_it_is_read(tmp_path: Path) -> None:
     """The drive of the SDF has no <odom_topic>; Nav2 reads odom."""
     out = built(tmp_path, "distro: jazzy\nstack: nav2", FIXTURES / "robots" / "rover.sdf")

@@ -182,22 +182,6 @@ def test_a_start_pose_is_for_the_node_that_runs(fleet: tuple[str, dict[str, str]
 
 
 @pytest.mark.slow
-def test_the_plan_reads_back_and_holds_each_robots_nodes(fleet: tuple[str, dict[str, str]]) -> None:
-    layout, files = fleet
-    plan = from_yaml(files["plan.yaml"].encode(), "plan.yaml")
-    by_name = {it.name: it for it in plan.robots}
-    assert set(by_name) == {"fleet_scout", "reach", "grip", "bare"}
-    assert all(
-        any("robot_state_publisher" in node for node in own(plan, it.name)) for it in plan.robots
-    )
-    assert any("amcl" in it for it in own(plan, "fleet_scout"))
-    assert any("move_group" in it for it in own(plan, "reach"))
-    assert not any("amcl" in it for it in own(plan, "reach"))
-    frames = {frame for it in plan.robots for frame in it.frames}
-    assert layout == "L1" or spell(layout, "base_link", "s1") in frames
-
-
-@pytest.mark.slow
 def test_remappings_hold_every_node_of_the_plan(fleet: tuple[str, dict[str, str]]) -> None:
     _, files = fleet
     table = yaml.safe_load(files["remappings.yaml"])["robots"]

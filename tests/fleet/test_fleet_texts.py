@@ -307,24 +307,6 @@ def test_a_pose_is_a_static_transform(
     assert words[20:] == ["--ros-args", *(text for rule in rules for text in ("-r", rule))]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("stack", "initial"), [("nav2", ["amcl"]), ("nav2_slam", [])])
-@pytest.mark.parametrize("layout", LAYOUTS)
-def test_no_second_parent_beside_a_localisation(
-    fleet: Any, layout: str, stack: str, initial: list[str]
-) -> None:
-    found = start_poses.start_poses(fleet(layout, stack, DRIVE))
-    assert not found.transforms
-    assert [it.code for it in found.findings] == ([] if initial else ["MF701"])
-    assert [it.node for it in found.initial] == initial
-    for it in found.initial:
-        assert it.values == {
-            "set_initial_pose": True,
-            **{"initial_pose.x": 1.0, "initial_pose.y": -0.5},
-            **{"initial_pose.z": 0.25, "initial_pose.yaw": 1.57},
-        }
-
-
 def test_the_map_frame_of_each_robot_is_below_the_world(fleet: Any) -> None:
     more = "shared_frames: [world]\n"
     slam = start_poses.start_poses(

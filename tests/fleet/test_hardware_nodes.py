@@ -7,7 +7,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from named_ends import named_ends
 
 from multibot_rewrite import load_fleet, rewrite
 from multibot_rewrite.base.findings.finding import ERROR
@@ -51,23 +50,6 @@ def fleet(
         f"description: k.urdf.xacro\ncompanions: {{params: c.yaml}}\nrobots: {robots}\n"
     )
     return str(file)
-
-
-@pytest.mark.slow
-def test_the_services_of_hardware_get_a_rule_at_the_manager(tmp_path: Path) -> None:
-    """sts_hardware_interface.cpp:575 makes a node with absolute services in ros2_control_node: rcl
-    applies the rules of the process to it (rcl arguments.c)."""
-    made = load_fleet(fleet(tmp_path))
-    launch = made.text("fleet.launch.py")
-    assert "sts_hardware_interface_node:/emergency_stop', 'emergency_stop'" in launch
-    names = {
-        it.name for it in named_ends(made.plan.fleet.table) if it.endpoint.name == "/emergency_stop"
-    }
-    assert names == {"/r1/emergency_stop", "/r2/emergency_stop"}
-    assert not {it.code for it in made.made.findings} & {"MG305", "MG101", "MG102"}
-    (moved,) = [it for it in made.made.findings if it.code == "MF851"]
-    assert "/emergency_stop:=/r1/emergency_stop" in moved.message
-    assert "nothing serves /emergency_stop any more" in moved.hint
 
 
 @pytest.mark.slow

@@ -11,7 +11,6 @@ import pickle
 from pathlib import Path
 
 import pytest
-import yaml
 from fleet_folder import built_fleet
 from lxml import etree
 
@@ -98,22 +97,6 @@ def names(data: bytes, tag: str) -> list[str | None]:
     return [it.get("name") for it in etree.fromstring(data).iterchildren(tag)]
 
 
-@pytest.mark.slow
-def test_parts_are_one_robot_and_get_its_name(folder: Path) -> None:
-    made = outputs()
-    urdf = made["cell1/robot.urdf"]
-    links = ["table", "left_base", "left_tool", "right_base", "right_tool"]
-    assert names(urdf, "link") == [f"cell1_{it}" for it in links]
-    assert names(urdf, "ros2_control") == ["cell1_left_driver", "cell1_right_driver"]
-    assert b"multibot part" not in urdf
-    assert names(made["cell1/robot.srdf"], "group") == ["left_arm", "right_arm"]
-    found = yaml.safe_load(made["cell1/robot_controllers.yaml"])
-    assert found["/cell1/left_follow"]["ros__parameters"]["joints"] == ["cell1_left_turn"]
-    assert found["/cell1/right_follow"]["ros__parameters"]["joints"] == ["cell1_right_turn"]
-    manager = found["/cell1/controller_manager"]["ros__parameters"]
-    assert manager.keys() >= {"left_follow", "right_follow", "joint_state_broadcaster"}
-
-
 def test_arguments_of_the_robot_reach_parts_that_have_none_of_their_own(folder: Path) -> None:
     root = etree.fromstring(outputs()["cell1/robot.urdf"])
     assert [it.text for it in root.iter("param")] == ["10.0.0.1", "10.0.0.2"]
@@ -151,19 +134,6 @@ def test_a_file_that_lists_the_parts_does_the_same(folder: Path) -> None:
 
 
 @pytest.mark.slow
-def test_robots_may_be_of_other_parts(folder: Path) -> None:
-    own = (
-        "robots:\n  - name: a\n    join: [{description: parts/table.urdf}, OTHER]\n  - {name: b}\n"
-    )
-    other = "{description: parts/arm.urdf.xacro, at: {parent: table}}"
-    (folder / "fleet.yaml").write_text(f"{KEYS}{PARTS}{own.replace('OTHER', other)}")
-    made = outputs()
-    assert names(made["a/robot.urdf"], "link") == ["a_table", "a_base", "a_tool"]
-    assert len(names(made["b/robot.urdf"], "link")) == 5
-    assert "a/robot.srdf" not in made
-
-
-@pytest.mark.slow
 def test_each_robot_may_have_a_list_of_its_own(folder: Path) -> None:
     own = "  - {{name: {}, join: [{{description: parts/table.urdf}}, {}]}}\n"
     arm = "{{description: parts/arm.urdf.xacro, prefix: {}, at: {{parent: table}}}}"
@@ -192,13 +162,6 @@ def test_a_build_knows_the_parts_as_its_inputs(folder: Path) -> None:
     assert main(["build", "fleet.yaml", "-o", "out", "--check", "-q"]) == 0
     Path("parts/table.urdf").write_text('<robot name="other"><link name="table"/></robot>')
     assert main(["build", "fleet.yaml", "-o", "out", "--check", "-q"]) == 1
-
-
-@pytest.mark.slow
-def test_it_is_the_same_from_every_folder(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    made = outputs()
-    monkeypatch.chdir(folder / "parts")
-    assert outputs("../fleet.yaml") == made
 
 
 def test_every_part_is_an_input(folder: Path) -> None:

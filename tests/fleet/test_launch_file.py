@@ -71,20 +71,6 @@ def test_the_nodes_of_nav2_with_their_lifecycle(tmp_path: Path) -> None:
     assert "'node_names': ['map_server', 'amcl']" in text
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("layout", ["frames-per-robot", "postfix"])
-def test_a_plugin_of_the_simulator_is_not_started_again(layout: str, tmp_path: Path) -> None:
-    """gz_ros2_control makes the controller manager; controllers that files declare are spawned."""
-    out = built(tmp_path, "gz", layout)
-    found = [it[1] for it in of_python(out)]
-    assert "ros2_control_node" not in found
-    assert "spawner" in found
-    if layout == "postfix":
-        return
-    text = (out / "fleet.launch.py").read_text()
-    assert "arguments=['wheels'" in text
-
-
 @pytest.mark.more
 @pytest.mark.parametrize(
     ("release", "library"), [("humble", "ignition-gazebo"), ("jazzy", "gz-sim")]
@@ -152,15 +138,6 @@ def of_nav2(folder: Path, distro: str = "jazzy", **keys: str) -> str:
     return (out / "fleet.launch.py").read_text()
 
 
-@pytest.mark.slow
-def test_slam_toolbox_is_brought_up(tmp_path: Path) -> None:
-    """It has a life cycle from Jazzy on, and no manager of Nav2 knows it."""
-    python = of_nav2(tmp_path, layout="tf-per-robot", stack="nav2_slam")
-    before = python.partition("executable='sync_slam_toolbox_node'")[0].split()
-    assert before[-3:] == ["*brought_up(", "LifecycleNode(", "package='slam_toolbox',"]
-    assert python.count("*brought_up(") == 1, "in the one function for both robots"
-
-
 CLASSIC = """\
 <robot name="arm">
   <link name="base"><inertial><mass value="1"/>
@@ -224,32 +201,6 @@ def test_slam_toolbox_is_left_to_a_manager_that_lists_it(tmp_path: Path) -> None
     python = (tmp_path / "out" / "fleet.launch.py").read_text()
     assert "executable='sync_slam_toolbox_node'" in python
     assert "brought_up" not in python
-
-
-@pytest.mark.slow
-def test_in_humble_slam_toolbox_has_no_life_cycle(tmp_path: Path) -> None:
-    python = of_nav2(tmp_path, layout="postfix", stack="nav2_slam", distro="humble")
-    assert "executable='sync_slam_toolbox_node'" in python
-    assert "brought_up" not in python
-
-
-@pytest.mark.slow
-def test_a_container_has_its_components(tmp_path: Path) -> None:
-    python = of_nav2(tmp_path, layout="both", stack="nav2_composed")
-    assert "plugin='nav2_controller::ControllerServer'" in python
-    assert "executable='component_container_isolated'" in python
-    assert python.count("\ndef start(") == 1
-    assert python.partition("\nROBOTS")[0].count(" ComposableNode(") > 10
-
-
-@pytest.mark.slow
-def test_a_shared_map_server_has_a_manager(tmp_path: Path) -> None:
-    topics = "[/map, /clock, /rosout, /parameter_events, /diagnostics]"
-    python = of_nav2(
-        tmp_path, layout="both", stack="nav2", shared_nodes="[map_server]", shared_topics=topics
-    )
-    assert "{'autostart': True, 'node_names': ['map_server']}" in python
-    assert python.count("executable='map_server'") == 1
 
 
 @pytest.mark.slow

@@ -60,25 +60,9 @@ def test_each_robot_loads_its_own(path: str, tmp_path: Path) -> None:
     assert (folder / "config" / "c.yaml").read_text() == CONTROLLERS
 
 
-def test_its_controllers_are_planned_and_started(tmp_path: Path) -> None:
-    folder, out = package(tmp_path / "src", "config/c.yaml"), tmp_path / "out"
-    assert main(["build", str(folder / "fleet.yaml"), "-o", str(out), "-q"]) == 0
-    assert "/robot1/wheels" in (out / "plan.yaml").read_text()
-    assert "'wheels'" in (out / "fleet.launch.py").read_text()
-
-
 def test_one_that_is_not_there_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = package(tmp_path / "src", "package://nowhere/config/c.yaml")
     assert main(["build", str(folder / "fleet.yaml"), "-o", str(tmp_path / "out")]) == 0
     said = capsys.readouterr().err
     assert said.count("note: MF834") == 1
     assert "'package://nowhere/config/c.yaml', which is not there" in said
-
-
-def test_a_real_robot_loads_none(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    folder = package(tmp_path / "src", "package://nowhere/config/c.yaml")
-    (folder / "fleet.yaml").write_text(f"simulator: none\n{FLEET}{ROBOTS_TWO}")
-    words = ["build", str(folder / "fleet.yaml"), "-o", str(tmp_path / "out")]
-    # The hardware of its description is a simulator's.
-    assert main([*words, "--ignore", "MF843"]) == 0
-    assert "MF834" not in capsys.readouterr().err

@@ -55,17 +55,6 @@ def test_what_is_gone_already_is_not_left_over(
     assert not (out / "robot2").exists()
 
 
-def test_a_folder_that_is_gone_already_is_not_left_over(
-    out: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    for path in (out / "robot2").iterdir():
-        path.unlink()
-    (out / "robot2").rmdir()
-    assert stale(out, capsys) == set()
-    assert build(out.parent) == 0
-    assert build(out.parent, "--check") == 0
-
-
 def test_a_folder_in_the_place_of_a_file_is_not_removed(out: Path) -> None:
     """It is not what the build made."""
     path = out / "robot2" / "params.yaml"

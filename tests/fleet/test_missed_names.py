@@ -6,7 +6,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from closed_robot import FILES
 
 from multibot_rewrite.cli.multibot import main
 
@@ -109,46 +108,3 @@ def test_a_launch_file_whose_nodes_are_known_is_asked_as_well(
     """What it starts the built launch file starts, too, with its rules."""
     assert build(tmp_path, ODOMETRY, "launch: system_model.yaml\n") == 1
     assert levels(capsys.readouterr().err, "MG308") == {"error"}
-
-
-@pytest.mark.slow
-def test_one_node_of_nav2_that_drives_is_not_all_of_it(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """The velocities of Nav2's controller reach the drive by velocity_smoother alone
-    (nav2_bringup humble navigation_launch.py)."""
-    assert build(tmp_path, f"{ODOMETRY}, behavior_server: {{cmd_vel: {DRIVEN}}}") == 1
-    assert (
-        "/velocity_smoother of robot1 publishes /cmd_vel, which no node" in capsys.readouterr().err
-    )
-
-
-@pytest.mark.slow
-def test_the_rules_that_are_named_are_all_that_is_needed(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    rules = f"{ODOMETRY}, behavior_server: {{cmd_vel: {DRIVEN}}}"
-    assert build(tmp_path, f"{rules}, velocity_smoother: {{cmd_vel_smoothed: {DRIVEN}}}") == 0
-    out = tmp_path / "out"
-    assert f"('cmd_vel', '{DRIVEN}')" in (out / "fleet.launch.py").read_text()
-    words = ["check-launch", str(out / "fleet.launch.py"), "--plan", str(out / "plan.yaml")]
-    assert main(words) == 0
-    assert "as planned" in capsys.readouterr().err
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("started", "level"), [(False, "warning"), (True, "error")])
-def test_two_senders_in_one_robot_are_told_once(
-    started: bool, level: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """By the parameter files, and by the built folder if its launch file starts both: one line, with
-    its place in the file."""
-    both = FILES["controllers.yaml"].replace("    enable_odom_tf: false\n", "")
-    stacks = "twist_mux, robot_localization" if started else "twist_mux"
-    fleet = FILES["fleet.yaml"].replace("twist_mux", stacks)
-    for name, text in {**FILES, "controllers.yaml": both, "fleet.yaml": fleet}.items():
-        (tmp_path / name).write_text(text)
-    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out")]) == started
-    (line,) = (it for it in capsys.readouterr().err.splitlines() if " MG408 " in it)
-    assert ".yaml:" in line and f": {level}: MG408" in line
-    assert (tmp_path / "out").exists() is not started

@@ -17,7 +17,6 @@ from multibot_rewrite.spelling.plan import to_yaml
 from multibot_rewrite.system.json import from_yaml
 from multibot_rewrite.system.records import System
 
-NAMESPACED = ("tf-per-robot", "frames-per-robot", "both")
 # Two fleets with robots of one name, and a robot beside them.
 FLEET = """\
 layout: {layout}
@@ -40,27 +39,6 @@ def planned(folder: Path, layout: str) -> System:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("layout", NAMESPACED)
-def test_a_fleet_as_planned_has_no_findings(tmp_path: Path, layout: str) -> None:
-    plan = planned(tmp_path, layout)
-    names = [robot.name for robot in plan.robots]
-    assert names == ["fleet_a/robot1", "fleet_b/robot1", "guard"]
-    assert compare(plan, healthy(plan)) == []
-    scans = {it.name for it in plan.ends if it.code_name in {"/scan", "scan"}}
-    assert scans == {"/fleet_a/robot1/scan", "/fleet_b/robot1/scan", "/guard/scan"}
-
-
-@pytest.mark.more
-def test_frames_have_the_robots_word_and_not_its_path(tmp_path: Path) -> None:
-    plan = planned(tmp_path, "both")
-    assert [robot.tf_topic for robot in plan.robots][:2] == [
-        "/fleet_a/robot1/tf",
-        "/fleet_b/robot1/tf",
-    ]
-    assert [robot.frames[0].rpartition("/")[2] for robot in plan.robots] == ["a1", "b1", "guard"]
-
-
-@pytest.mark.slow
 def test_faults_name_the_robot(tmp_path: Path) -> None:
     """A leak, another robot's scan, a node without its namespace and a node of nobody's plan."""
     plan = planned(tmp_path, "both")
@@ -75,17 +53,6 @@ def test_faults_name_the_robot(tmp_path: Path) -> None:
     assert ("MG108", "fleet_b/robot1", "/fleet_b/robot1/gripper") in found
     hints = " ".join(it.hint for it in compare(plan, graph))
     assert "robot1/fleet_" not in hints
-
-
-@pytest.mark.more
-def test_a_robot_above_another_one_keeps_its_names(tmp_path: Path) -> None:
-    """/site and /site/robot1 are both robots: the longer path wins."""
-    file = tmp_path / "fleet.yaml"
-    text = FLEET.format(layout="both", rover=ROVER)
-    file.write_text(text.replace("name: guard", "name: guard, namespace: fleet_a"))
-    plan = expected(planned_fleet(file).fleet)
-    graph = with_end(healthy(plan), "/fleet_a/robot1/gripper", "/fleet_a/robot1/open")
-    assert [(it.code, it.robot) for it in compare(plan, graph)] == [("MG108", "fleet_a/robot1")]
 
 
 def test_the_layout_without_namespaces_refuses_them(tmp_path: Path) -> None:

@@ -9,19 +9,12 @@ import pytest
 from fleet_folder import built_fleet, planned_fleet
 
 from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.checks.read_back import read_back
 
 DOG = """\
 <robot name="dog">
   <link name="base_link"/><link name="leg"/>
   <joint name="hip" type="fixed"><parent link="base_link"/><child link="leg"/></joint>
 </robot>
-"""
-# CHAMP: nothing starts this filter by the name of a stack.
-FILTER = """\
-footprint_to_odom_ekf:
-  ros__parameters:
-    {odom_frame: odom, base_link_frame: base_footprint, world_frame: odom, odom0: odom/raw}
 """
 SUB = """\
 <sdf version="1.9"><model name="sub">
@@ -42,19 +35,6 @@ companions: {params: ekf.yaml}
 """
 
 
-@pytest.mark.more
-@pytest.mark.parametrize("layout", ["tf-per-robot", "frames-per-robot"])
-def test_frames_of_a_filter_that_is_started_elsewhere(layout: str, tmp_path: Path) -> None:
-    (tmp_path / "dog.urdf").write_text(DOG)
-    (tmp_path / "ekf.yaml").write_text(FILTER)
-    (tmp_path / "fleet.yaml").write_text(FLEET.replace("LAYOUT", layout))
-    plan = planned_fleet(tmp_path / "fleet.yaml")
-    made = make_outputs(plan, str(tmp_path / "out"))
-    (first, *_) = made.planned.robots
-    assert any("base_footprint" in it for it in first.frames)
-    assert read_back(plan, made, str(tmp_path / "out")) == []
-
-
 def test_a_plugin_that_says_where_the_robot_is_has_a_name(tmp_path: Path) -> None:
     """Odometry in the map: the pose of the fleet file would be a second parent."""
     (tmp_path / "sub.sdf").write_text(SUB)
@@ -64,14 +44,6 @@ def test_a_plugin_that_says_where_the_robot_is_has_a_name(tmp_path: Path) -> Non
     found = built_fleet(tmp_path / "fleet.yaml", "jazzy").findings
     (said,) = [it.message for it in found if it.code == "MF701"]
     assert "because its description already says where it is" in said
-
-
-SEEN = """\
-<robot name="dog"><link name="base_link"/><link name="head"/>
-<joint name="neck" type="fixed"><parent link="base_link"/><child link="head"/></joint>
-<gazebo reference="head"><sensor name="eye" type="gpu_lidar"><topic>scan</topic>{}</sensor></gazebo>
-</robot>
-"""
 
 
 COSTMAP = """\
@@ -98,16 +70,3 @@ def test_all_that_read_a_frame_that_nothing_sends_are_told(tmp_path: Path) -> No
         plan = planned_fleet(tmp_path / "fleet.yaml")
         lines = [it for it in make_outputs(plan).findings if it.code == "MG413"]
         assert {it.level for it in lines if "frame odom," in it.message} == codes
-
-
-def test_a_frame_of_a_node_that_hears_no_transforms_is_not_missed(tmp_path: Path) -> None:
-    """imu_filter_madgwick sends fixed_frame, or writes it into nothing: it has no buffer of tf2."""
-    filter_ = "imu_filter_madgwick: {ros__parameters: {fixed_frame: odom, publish_tf: false}}\n"
-    (tmp_path / "imu.yaml").write_text(filter_)
-    (tmp_path / "dog.urdf").write_text(SEEN.format("<gz_frame_id>head</gz_frame_id>"))
-    (tmp_path / "fleet.yaml").write_text(
-        "layout: tf-per-robot\nsimulator: gazebo\ndescription: dog.urdf\n"
-        "companions: {params: imu.yaml}\nrobots: [{name: r1}]\n"
-    )
-    plan = planned_fleet(tmp_path / "fleet.yaml", "jazzy")
-    assert [it for it in make_outputs(plan).findings if it.code == "MG413"] == []

@@ -102,15 +102,6 @@ def test_all_files_of_a_robot_agree(tmp_path: Path, robots: str, name: str) -> N
     assert worth_a_look(made.made.findings) == []
 
 
-@pytest.mark.slow
-def test_robots_with_and_without_the_argument(tmp_path: Path) -> None:
-    robots = BY_VALUE.replace(", arguments: {tf_prefix: right_}", "")
-    made = load_fleet(fleet(tmp_path, FLEET + robots))
-    assert links(made.robot("right").description)[0] == "right_base_link"
-    assert links(made.robot("left").description)[0] == "left_base_link"
-    assert "right_elbow" in made.text("right/controllers.yaml")
-
-
 @pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("key", ["prefix", "namespace"])
@@ -129,20 +120,6 @@ def test_a_name_of_its_own_beside_another_prefix_or_namespace(tmp_path: Path, ke
     assert 'base_link="left_base_link" tip_link="left_tool0"' in srdf
     assert f'link2="{camera}"' in srdf
     assert worth_a_look((*made.findings, *made.made.findings)) == []
-
-
-@pytest.mark.more
-def test_a_namespace_argument(tmp_path: Path) -> None:
-    text = f"""\
-layout: tf-per-robot
-description: {XACROS / "base.urdf.xacro"}
-arguments: {{namespace: '{{robot}}'}}
-robots: [{{name: robot1, pose: {{x: 1}}}}, {{name: robot2, pose: {{x: 2}}}}]
-"""
-    made = load_fleet(fleet(tmp_path, text))
-    root = etree.fromstring(made.robot("robot2").description.encode())
-    assert [it.text for it in root.iter("namespace")] == ["robot2", "/robot2"]
-    assert worth_a_look(made.made.findings) == []
 
 
 @pytest.mark.more

@@ -92,28 +92,6 @@ def test_a_value_of_a_description_is_told_at_its_line(case: str, tmp_path: Path)
     assert (code, 3) in found_in(tmp_path, "rover.urdf", text, rover__urdf=plugin(value))
 
 
-RIGHT = {
-    "comment": "what: 1  # robot2/base_link, robot1odom",
-    "file": "map_file: /maps/robot2/site.yaml",
-    "package": "url: package://robot2/meshes/a.stl",
-    "substitution": "x: $(find-pkg-share robot2)/params",
-    "another-word": "what: robot1_front/scan",
-    "a-longer-word": "what: robot11/lamp",
-    "robot-alone": "what: robot1",
-    "map": "what: map",
-    "topic": "what: odom",
-}
-
-
-@pytest.mark.more
-@pytest.mark.sample(4)
-@pytest.mark.parametrize("case", RIGHT)
-def test_what_is_no_fault(case: str, tmp_path: Path) -> None:
-    assert found_in(tmp_path, "params.yaml", SMALL, params__yaml=params(RIGHT[case])) == []
-    if case != "comment":
-        assert found_in(tmp_path, "rover.urdf", SMALL, rover__urdf=plugin(RIGHT[case])) == []
-
-
 OWN = """\
 layout: frames-per-robot
 robots:

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import json
-import math
 import random
 import subprocess
 import sys
@@ -19,7 +18,7 @@ from paths import FIXTURES, SUPPORT
 
 from multibot_rewrite import InputError, RewriteRefused, UsageError, load_fleet
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.companions.params.rcl_parameters import node_parameters, typed
+from multibot_rewrite.companions.params.rcl_parameters import node_parameters
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
 from multibot_rewrite.fleet.scripts import LoadedFleet
@@ -176,19 +175,6 @@ def test_a_file_goes_by_its_name(file: str, robot: LoadedRobot) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("layout", LAYOUTS)
-def test_parameters_in_every_layout(layout: str, tmp_path: Path) -> None:
-    one = fleet(tmp_path, layout).robots[1]
-    costmap = one.params("params.yaml", "local_costmap/local_costmap")
-    assert costmap["global_frame"] == one.frame("odom")
-    assert one.params("params.yaml", "my_node").keys() == {"use_sim_time", "alpha1", "frame"}
-    # Of a stack, but not in the file: what is for all, and frames where robots have their own.
-    of_all = {"use_sim_time": True, "alpha1": 0.1}
-    frames = {} if layout == "L1" else {"robot_base_frame": one.frame("base_link")}
-    assert one.params("params.yaml", "bt_navigator") == {**of_all, **frames}
-
-
-@pytest.mark.slow
 def test_a_node_as_launch_ros_takes_it(robot: LoadedRobot) -> None:
     made = robot.node("amcl", "params.yaml")
     start = {"set_initial_pose": True, "initial_pose.x": 1.0, "initial_pose.y": 0.5}
@@ -336,39 +322,6 @@ def test_no_part_of_ros_is_needed() -> None:
 def test_a_representation_is_short(robot: LoadedRobot) -> None:
     assert repr(robot) == "LoadedRobot('robot1')"
     assert len(repr(robot._fleet)) < 300
-
-
-@pytest.mark.parametrize(
-    ("text", "value"),
-    [
-        ("y", True),
-        ("N", False),
-        ("oN", "oN"),
-        ("tRUE", "tRUE"),
-        ("010", 8),
-        ("08", 8.0),
-        ("0x1F", 31),
-        ("-0x10", -16),
-        ("+5", 5),
-        ("1_000", "1_000"),
-        ("0o17", "0o17"),
-        ("9223372036854775808", 9223372036854775808.0),
-        ("1e-9", 1e-9),
-        ("1.", 1.0),
-        (".", "."),
-        ("1e400", "1e400"),
-        ("1e-400", "1e-400"),
-        ("0x1p3", 8.0),
-        ("-.inf", -math.inf),
-        ("Infinity", math.inf),
-        ("+.nan", "+.nan"),
-        ("~", "~"),
-        ("null", "null"),
-        ("12:30", "12:30"),
-    ],
-)
-def test_scalars_are_typed_as_rcl_types_them(text: str, value: object) -> None:
-    assert repr(typed(text)) == repr(value)
 
 
 WILD = """\

@@ -182,18 +182,6 @@ def test_the_fleet_file_says_that_hardware_is_simulated(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("distro", "word"), [("jazzy", " use_namespace:=True"), ("kilted", "")])
-def test_nav2_gets_a_file_without_the_namespace(distro: str, word: str, tmp_path: Path) -> None:
-    given = "params_file:=$PWD/'robot1/my controller_server.yaml'"
-    head = "ros2 launch nav2_bringup bringup_launch.py namespace:=robot1"
-    lines = commands(tmp_path, "nav2", distro=distro, simulator="gazebo")
-    assert lines == [f"{head}{word} use_sim_time:=true {given}"]
-    made = load_fleet(fleet(tmp_path, "nav2", distro=distro))
-    text = made.text("robot1/my controller_server.yaml")
-    assert list(yaml.safe_load(text)) == ["controller_server"]
-
-
-@pytest.mark.slow
 def test_turtlebot4_as_it_is(tmp_path: Path) -> None:
     """standard.launch.py puts the file below the namespace, turtlebot4_spawn.launch.py does not."""
     node = "robot1/my turtlebot4_node.yaml"
@@ -251,14 +239,6 @@ def test_another_shape_leaves_nothing_of_the_one_before(tmp_path: Path) -> None:
         assert main(["build", str(file), "-o", out, "-q"]) == 0
         assert (tmp_path / "out/robot1/platform/config/control.yaml").is_file() is there
     assert not (tmp_path / "out/robot1/platform").exists()
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("style", ["", "full"])
-def test_the_usual_style_may_be_written_out(style: str, tmp_path: Path) -> None:
-    keys = {"params_style": style} if style else {}
-    made = load_fleet(fleet(tmp_path, "", layout="tf-per-robot", stack="nav2", **keys))
-    assert "nav2_controller" in made.text("fleet.launch.py")
 
 
 # Recipe or system, shape, simulator -> nodes that get what was built.

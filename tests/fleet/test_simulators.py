@@ -10,10 +10,8 @@ import yaml
 from fleet_folder import planned_fleet
 from nav2_graphs import environment
 from paths import ROBOTS
-from plans import optional
 
 from multibot_rewrite import compare
-from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.checks.closed_plan import closed_plan
 from multibot_rewrite.fleet.fleet import expected
@@ -33,8 +31,6 @@ DESCRIPTION = """\
 </robot>
 """
 AMCL = "    /amcl: {pkg: nav2_amcl, exec: amcl, node_name: amcl}\n"
-BRIDGE = "    /bridge: {pkg: ros_gz_bridge, exec: parameter_bridge, node_name: bridge}\n"
-SPAWN = "    /spawn: {pkg: ros_gz_sim, exec: create, node_name: spawn}\n"
 FLEET = """\
 layout: tf-per-robot
 distro: jazzy
@@ -42,8 +38,6 @@ robots:
   - {name: r1, description: robot.urdf}
   - {name: r2, description: robot.urdf}
 """
-LAUNCH = "launch: system_model.yaml\n"
-DRIVE, SCAN = "/r1/drive", "/r1/scan"
 
 
 def plan_of(folder: Path, more: str = "", launched: str = AMCL, fleet: str = FLEET) -> FleetPlan:
@@ -55,25 +49,6 @@ def plan_of(folder: Path, more: str = "", launched: str = AMCL, fleet: str = FLE
 
 def expectation(folder: Path, more: str = "", launched: str = AMCL) -> System:
     return expected(closed_plan(plan_of(folder, more, launched)))
-
-
-def asked(plan: FleetPlan) -> list[Finding]:
-    return [it for it in plan.fleet.table.problems if it.code == "MF828"]
-
-
-def bridged(plan: System) -> list[str]:
-    return [it.name for it in plan.topics if it.bridge]
-
-
-@pytest.mark.more
-@pytest.mark.parametrize("launched", [AMCL + SPAWN, AMCL + BRIDGE])
-def test_launch_files_with_a_simulator_or_a_bridge_say_that_it_is_one(
-    launched: str, tmp_path: Path
-) -> None:
-    plan = expectation(tmp_path, LAUNCH, launched)
-    assert DRIVE not in optional(plan, plan.robots[0].name)
-    assert SCAN in bridged(plan)
-    assert asked(plan_of(tmp_path, LAUNCH, launched)) == []
 
 
 def test_no_bridge_is_missing_for_a_real_robot(tmp_path: Path) -> None:

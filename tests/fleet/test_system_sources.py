@@ -18,7 +18,6 @@ from multibot_rewrite import (
     system_of_fleet,
     system_of_folder,
     system_of_graph,
-    system_of_launch,
 )
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.producers.ros import child
@@ -26,18 +25,6 @@ from multibot_rewrite.producers.ros import child
 ROVER = FIXTURES / "robots" / "rover.urdf"
 GRAPHS = FIXTURES / "graphs"
 ROBOTS = ["robot1", "robot2"]
-LAUNCH = """\
-from launch import LaunchDescription
-from launch.actions import DeclareLaunchArgument
-from launch.substitutions import LaunchConfiguration
-from launch_ros.actions import Node
-
-
-def generate_launch_description():
-    space = LaunchConfiguration("space")
-    amcl = Node(package="nav2_amcl", executable="amcl", name="amcl", namespace=space)
-    return LaunchDescription([DeclareLaunchArgument("space"), amcl])
-"""
 
 
 def healthy() -> System:
@@ -79,15 +66,6 @@ def test_a_fleet_file_is_a_plan() -> None:
     plan = system_of_fleet(ROOT / "examples" / "two_robots_nav2" / "fleet.yaml")
     assert len(plan.robots) == 2
     assert {it.robot for it in plan.nodes} >= {it.name for it in plan.robots}
-
-
-@pytest.mark.slow
-def test_a_launch_file_is_what_it_would_start(tmp_path: Path) -> None:
-    file = tmp_path / "one.launch.py"
-    file.write_text(LAUNCH)
-    made = system_of_launch(file, {"space": "robot1"})
-    assert [it.name for it in made.nodes] == ["/robot1/amcl"]
-    assert "/robot1/amcl_pose" in {it.name for it in made.ends}
 
 
 def test_what_cannot_be_read_is_said(tmp_path: Path) -> None:

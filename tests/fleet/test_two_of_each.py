@@ -50,17 +50,6 @@ def test_two_are_read_of_robots_that_differ_in_names_and_poses() -> None:
     assert read_back(*five(*NAMES), OUT) == []
 
 
-def test_what_is_read_has_no_word_of_the_others() -> None:
-    plan, made = five(*NAMES)
-    few = two_of_each(made, [it.spec for it in plan.robots]).made
-    assert {it.name for it in few.planned.robots} == {"robot3", "robot4"}
-    launch = next(it.text for it in few.files if it.path == LAUNCH)
-    assert {*re.findall(r"(?m)^    '(robot\d)': ", launch)} == {"robot3", "robot4"}
-    assert {it.path.partition("/")[0] for it in few.files} & {*NAMES} == {"robot3", "robot4"}
-    topics = {it.name.split("/")[1] for it in few.planned.topics}
-    assert topics & {*NAMES} == {"robot3", "robot4"}
-
-
 def test_a_topic_that_only_a_bridge_brings_leaves_with_its_robot() -> None:
     """No node of the plan has an end of it, so that all robots were read for its sake."""
     plan, made = five(*NAMES)

@@ -28,11 +28,6 @@ def conditions(node: NodeFacts) -> dict[str, str]:
     return {it.name: it.when for it in node.endpoints}
 
 
-def test_an_endpoint_is_there_in_its_releases_only() -> None:
-    assert "~/reload" not in conditions(dock("kilted"))
-    assert conditions(dock("kilted"))["staging_pose"] == ""
-
-
 def test_what_came_with_a_version_of_the_package_is_conditional_there() -> None:
     found = conditions(dock("jazzy"))
     assert found["staging_pose"] == found["~/reload"] == "version: opennav_docking 1.3.9"
@@ -44,18 +39,6 @@ def test_a_node_that_came_with_a_version_is_conditional_beside_its_own_condition
     text += "stacks: {s: {nodes: [{node: a, when: asked}]}}"
     (node,) = stack_of(library("jazzy", text), "s")
     assert node.when == "asked and version: p 2.0"
-
-
-@pytest.mark.parametrize(("release", "type_"), [("jazzy", "Twist"), ("lyrical", "TwistStamped")])
-def test_an_endpoint_may_differ_from_release_to_release(release: str, type_: str) -> None:
-    (found,) = (it.type for it in dock(release).endpoints if it.name == "cmd_vel")
-    assert found == f"geometry_msgs/msg/{type_}"
-
-
-def test_a_frame_that_a_release_lacks_is_not_sent_there() -> None:
-    assert [it.parameter for it in dock("jazzy").frames] == ["base_frame"]
-    assert dock("jazzy").sends == ()
-    assert [it[:2] for it in dock("kilted").sends] == [("fixed_frame", "base_frame")]
 
 
 @pytest.mark.parametrize(

@@ -7,13 +7,10 @@ import pytest
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.knowledge.conditions import (
-    Condition,
     holds,
-    joined,
     of_release,
     parse_condition,
     said,
-    settled,
     verdict,
 )
 
@@ -95,12 +92,6 @@ def test_what_parameters_do_not_say_is_open(text: str, known: bool | None) -> No
     assert verdict(text, VALUES.get) is known
 
 
-def test_two_conditions_hold_together() -> None:
-    assert joined("", "on") == "on"
-    assert joined("off or on", "off") == "off and off or on and off"
-    assert verdict(joined("open: device", "off"), VALUES.get) is False
-
-
 @pytest.mark.parametrize(
     "text", ["open: it is dark", "open: device | moment", "on and open: Device"]
 )
@@ -154,24 +145,6 @@ def test_what_a_parameter_says_of_how_it_is_started(text: str, known: bool | Non
     """MoveIt's capabilities are words of one text. What a file does not pass, a launch file may."""
     values = {"words": "a/one two", "use_sim_time": True}
     assert verdict(text, values.get) is known
-
-
-@pytest.mark.parametrize(
-    ("text", "left"),
-    [
-        ("program: one", ""),
-        ("program: other", None),
-        ("on and program: one", "on"),
-        ("program: other or on", "on"),
-        ("program: one or on", ""),
-        ("", ""),
-    ],
-)
-def test_what_is_known_of_a_kind_is_asked_no_more(text: str, left: str | None) -> None:
-    def decide(it: Condition) -> bool | None:
-        return it.values == ("one",) if it.parameter == "program" else None
-
-    assert settled(text, decide) == left
 
 
 @pytest.mark.parametrize(

@@ -9,43 +9,29 @@ import pytest
 from paths import fixture_text
 
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.knowledge import declared
 from multibot_rewrite.knowledge.declared import (
     Base,
     Declared,
     _base,
     canonical,
-    declared_by,
-    is_known,
-    packages,
-    plugin_bases,
 )
 from multibot_rewrite.knowledge.node_library import (
     NodeLibrary,
-    Stack,
     extend,
-    stack_of,
-    with_included,
 )
-from multibot_rewrite.knowledge.parameter_entries import has_default
 from multibot_rewrite.knowledge.parameters import (
     _anywhere,
     _node,
     guess,
-    is_absolute,
-    is_below_costmap,
-    is_called,
     load_known_nodes,
 )
 from multibot_rewrite.knowledge.programs import (
     NAV2,
     Program,
     container_of,
-    is_unmanaged,
     known_program,
     program_of,
-    runs,
 )
 from multibot_rewrite.knowledge.records import (
     Claim,
@@ -56,9 +42,8 @@ from multibot_rewrite.knowledge.records import (
     Param,
     SentTransform,
 )
-from multibot_rewrite.knowledge.stacks import in_release, is_apart
+from multibot_rewrite.knowledge.stacks import in_release
 from multibot_rewrite.knowledge.worlds import DEFAULTS, SENT_BY, SENT_BY_ANY, SYSTEMS
-from multibot_rewrite.knowledge.yaml_with_lines import unknown
 
 EMPTY = NodeLibrary({}, {}, {})
 FILE = fixture_text("entries_file.yaml")
@@ -177,38 +162,6 @@ def test_the_whole_record_of_its_parameters() -> None:
     assert LIBRARY.parts == {"listener": (TF,)}
 
 
-def test_the_whole_record_of_a_stack() -> None:
-    out = Endpoint("topic", "publishes", "out", "a/msg/B", remapped="in")
-    renamed = NodeFacts(
-        "renamed",
-        "",
-        (out, TF),
-        shared=True,
-        when="sim",
-        known="plain",
-        releases="kilted",
-        plugin="p",
-        usual=(("rate", 5),),
-    )
-    driver = LIBRARY.nodes["costmap/driver"]
-    cell = Stack("what it is", ("base",), (driver, renamed), "jazzy+", "box")
-    assert LIBRARY.stacks["cell"] == cell
-    assert list(with_included(LIBRARY, "cell")) == ["cell", "base"]
-    assert list(with_included(LIBRARY, "plain")) == ["plain"]
-    # A node of another one's process, of all robots, and the container itself are no components.
-    assert [(it.name, it.container) for it in stack_of(LIBRARY, "cell")] == [
-        ("box", ""),
-        ("costmap/driver", ""),
-        ("renamed", ""),
-    ]
-    loaded = extend(LIBRARY, "stacks: {c: {container: box, nodes: [plain, box]}}", "c.yaml")
-    assert [(it.name, it.container) for it in stack_of(loaded, "c")] == [
-        ("plain", "box"),
-        ("box", ""),
-    ]
-    assert [it.container for it in stack_of(LIBRARY, "base")] == [""]
-
-
 def test_a_library_of_a_release_has_what_that_release_has() -> None:
     node = in_release(LIBRARY, "humble").nodes.get("costmap/driver")
     assert node is None
@@ -302,33 +255,6 @@ def test_what_is_wrong_in_an_entry(text: str, message: str) -> None:
     assert message in str(raised.value)
 
 
-def test_parts_of_an_action_may_be_published() -> None:
-    found = extend(EMPTY, "nodes: {a: {publishes: {b: n/action/Spin_Feedback}}}", "f")
-    assert found.nodes["a"].endpoints[0].kind == "topic"
-
-
-@pytest.mark.parametrize(
-    ("path", "name", "called"),
-    [
-        ("a.b", "a.b", True),
-        ("a.<joint>", "a.elbow", True),
-        ("a.*", "a.x", True),
-        ("a.b", "a.c", False),
-        ("a", "a.b", False),
-    ],
-)
-def test_a_path_may_have_placeholders(path: str, name: str, called: bool) -> None:
-    assert is_called(Param(path, "frame"), name) is called
-
-
-def test_a_topic_is_absolute_in_the_releases_that_say_so() -> None:
-    assert is_absolute(Param("x", "topic", absolute="<=jazzy"), "humble")
-    assert not is_absolute(Param("x", "topic", absolute="<=jazzy"), "kilted")
-    assert not is_absolute(Param("x", "topic"), "humble")
-    assert is_below_costmap("nav2_costmap_2d::BinaryFilter")
-    assert not is_below_costmap("nav2_costmap_2d::KeepoutFilter")
-
-
 def test_parameters_of_nodes_by_name_type_and_path(tmp_path) -> None:
     file = tmp_path / "mine.yaml"
     file.write_text(
@@ -354,28 +280,6 @@ def test_parameters_of_nodes_by_name_type_and_path(tmp_path) -> None:
     assert humble.defaults == ()
     assert guess(known, "any.thing.frame_id") == "frame"
     assert guess(known, "any.frame_id.thing") == ""
-
-
-def test_what_is_declared_by_packages() -> None:
-    rows = declared_by("nav2_amcl")
-    (alpha,) = {it for it in rows if it.path == "alpha1" and it.how == "declared"}
-    assert isinstance(alpha, Declared)
-    assert alpha.type == "double"
-    assert alpha.source.startswith("ros-navigation/navigation2@")
-    assert is_known("nav2_amcl") and not is_known("nav2_acml")
-    assert declared_by("nav2_acml") == ()
-
-
-def test_classes_of_pluginlib_with_their_older_names() -> None:
-    base = plugin_bases()["controller_interface::ControllerInterface"]
-    now = "joint_state_broadcaster/JointStateBroadcaster"
-    assert base.older["joint_state_controller/JointStateController"] == now
-    assert base.classes[now] == ""
-    assert "joint_state_controller/JointStateController" not in base.classes
-    late = "battery_state_broadcaster/BatteryStateBroadcaster"
-    assert base.classes[late] == "jazzy,kilted,lyrical,rolling"
-    assert "joint_state_broadcaster" in packages()
-    assert canonical(" a/B ") == "a::B"
 
 
 def test_programs_of_nodes() -> None:
@@ -404,30 +308,6 @@ def test_programs_of_nodes() -> None:
     assert (*started.split(), "lifecycle_manager") == NAV2
 
 
-@pytest.mark.parametrize(
-    ("program", "run"),
-    [("acme/drive", True), ("b/run", True), ("acme/acme::D", True), ("acme/run", False)],
-)
-def test_a_program_runs_a_node(program: str, run: bool) -> None:
-    node = NodeFacts("driver", "acme", (), programs=("drive", "b/run"), component="acme::D")
-    assert runs(node, program) is run
-    assert not runs(NodeFacts("driver", "acme", ()), "acme/driver")
-
-
-def test_a_life_cycle_that_no_manager_takes_care_of() -> None:
-    node = NodeFacts("x", "acme", (), unmanaged="<=jazzy")
-    assert [is_unmanaged(node, it) for it in ("humble", "jazzy", "kilted")] == [True, True, False]
-    assert not is_unmanaged(node._replace(unmanaged=""), "humble")
-
-
-def test_a_costmap_keeps_its_name_and_its_helpers_go_with_it() -> None:
-    for node in ("local_costmap/local_costmap", "/a/local_costmap/local_costmap"):
-        assert is_apart(node, NEWEST_LTS)
-    assert is_apart("a/local_costmap/clear", NEWEST_LTS)
-    assert not is_apart("amcl", NEWEST_LTS)
-    assert not is_apart("my_local_costmap/x", NEWEST_LTS)
-
-
 def test_a_world_needs_a_system_for_each_sensor() -> None:
     """gz-sim8 src/systems."""
     drawn = (
@@ -450,18 +330,6 @@ def test_a_world_needs_a_system_for_each_sensor() -> None:
     poses, scene = ("pose/info", "dynamic_pose/info"), {"scene/info": "Scene"}
     sent = {**dict.fromkeys(poses, "Pose_V"), **scene, "scene/deletion": "UInt32_V"}
     assert dict(SENT_BY) == {"scene-broadcaster": {**sent, "state": "SerializedStepMap"}}
-
-
-def test_a_word_in_brackets_stands_for_something() -> None:
-    for path, names, others in (
-        ("rate", ("rate",), ("rates", "a.rate")),
-        ("<joint>.p", ("arm.p", "a.b.p"), (".p", "p", "arm.pp")),
-        ("gains.<joint>.p", ("gains.arm.p",), ("gains..p", "gains.arm.i", "gain.arm.p")),
-        ("<a>.map.<b>.x", ("l.map.r.x",), ("l.mapp.r.x", ".map.r.x", "l.map..x", "l.m.r.x")),
-        ("of.<a>.to.<b>", ("of.x.to.y",), ("of.x.y", "of.x.to.", "of.to.y")),
-    ):
-        known = Declared(path, "double", "", "", "", "")
-        assert [it for it in (*names, *others) if known.has_name(it)] == [*names], path
 
 
 def test_a_row_of_what_a_package_declares() -> None:
@@ -488,19 +356,6 @@ def test_a_row_of_what_a_package_declares() -> None:
 
 
 @pytest.mark.parametrize(
-    ("bounds", "checks"),
-    [
-        ("", ()), ("gt([0.0])", (("gt", "[0.0]"),)),
-        ("a::b(1, f(2)) lt()", (("a::b", "1, f(2)"), ("lt", ""))),
-    ],
-)  # fmt: skip
-def test_checks_of_a_value_with_their_arguments(
-    bounds: str, checks: tuple[tuple[str, str], ...]
-) -> None:
-    assert declared.checks_in(bounds) == checks
-
-
-@pytest.mark.parametrize(
     ("path", "name", "words"),
     [
         ("rate", "rate", {}), ("rate", "rates", None), ("<a>.x", "b.x", {"<a>": "b"}),
@@ -516,11 +371,6 @@ def test_a_path_stands_for_names(path: str, name: str, words: dict[str, str] | N
     assert declared.stands_for(path, name) == (words or {})
 
 
-def test_a_path_of_words_in_brackets_alone_says_nothing() -> None:
-    said = {it: declared.says_something(it) for it in ("<a>", "<a>.<b>", "<a>.x", "x", "")}
-    assert said == {"<a>": False, "<a>.<b>": False, "<a>.x": True, "x": True, "": False}
-
-
 def test_the_classes_of_a_base_with_their_releases_and_older_names() -> None:
     """A name that a migration guide of Nav2 has is of an older release of ROS 2."""
     section = "\n".join((
@@ -531,14 +381,6 @@ def test_the_classes_of_a_base_with_their_releases_and_older_names() -> None:
         {"a::B": "", "a::C": "jazzy,kilted"}, {"a/D": "a::B", "A": "a::B"}, frozenset({"a/D"})
     )
     assert canonical(" a/b::C\n") == "a::b::C"
-
-
-def test_what_is_known_is_listed_in_order() -> None:
-    said = "part 'x' is not known; known: a, b, c"
-    assert unknown("part", "x", {"c": 1, "a": 2, "b": 3}) == said
-    assert unknown("part", "x", ()) == "part 'x' is not known; known: none"
-    near = "part 'abcd' is not known; did you mean 'abce'? known: b"
-    assert unknown("part", "abcd", ("b",), ("abce",)) == near
 
 
 def test_a_node_that_activates_itself_has_its_life_cycle_in_those_releases() -> None:
@@ -580,16 +422,21 @@ def test_what_parameters_of_known_nodes_say_of_others(
     assert [it.path for it in _anywhere(nodes, guessing)] == taken
 
 
+# What starts a node: the executables are those of each package's CMakeLists.txt or setup.py.
+
+
 @pytest.mark.parametrize(
-    ("param", "there"),
+    ("node", "package", "executable"),
     [
-        (Param("a", "frame", "base"), True),
-        (Param("a", "frame"), False),
-        # An empty prefix is one.
-        (Param("a", "joint_prefix"), True),
-        (Param("<x>.a", "frame", "base"), False),
-        (Param("<x>.a", "joint_prefix"), False),
+        ("ukf_filter_node", "robot_localization", "ukf_node"),
+        ("urg_node", "urg_node", "urg_node_driver"),
+        ("joy_linux", "joy_linux", "joy_linux_node"),
+        ("turtlebot3_node", "turtlebot3_node", "turtlebot3_ros"),
+        ("docking_server", "opennav_docking", "opennav_docking"),
+        ("robot_state_publisher", "robot_state_publisher", "robot_state_publisher"),
     ],
 )
-def test_a_parameter_with_a_default(param: Param, there: bool) -> None:
-    assert has_default(param) is there
+def test_a_node_is_started_by_the_executable_of_its_package(
+    node: str, package: str, executable: str
+) -> None:
+    assert known_program(node, "jazzy")[:2] == (package, executable)

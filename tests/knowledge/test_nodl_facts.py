@@ -13,7 +13,6 @@ from multibot_rewrite.knowledge.nodl.document import Parameter
 from multibot_rewrite.knowledge.nodl.lookup import (
     INDEX,
     NONE,
-    NOT_IN_NODL,
     Identity,
     NodeKnowledge,
     _frames,
@@ -100,14 +99,6 @@ def test_the_place_of_a_file_says_which_node_it_is_for(tmp_path: Path) -> None:
     }
 
 
-def test_a_file_alone_may_stand_where_the_user_is(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    written(tmp_path, "plain.nodl.yaml", document())
-    monkeypatch.chdir(tmp_path)
-    assert find_interfaces(["plain.nodl.yaml"]).given == {Identity("", "plain"): "plain.nodl.yaml"}
-
-
 def test_a_folder_where_packages_are_installed_is_read_as_such(tmp_path: Path) -> None:
     installed(tmp_path, "acme__gripper", document("grip"))
     assert set(ends(node_of("acme/gripper", str(tmp_path)))) == {"grip"}
@@ -118,14 +109,6 @@ def test_two_documents_of_a_node_are_refused(tmp_path: Path) -> None:
     written(tmp_path, "b/acme__gripper.nodl.yaml", document())
     with pytest.raises(UsageError, match=r"two interfaces of acme/gripper: .*a/.* and .*b/.*"):
         find_interfaces([str(tmp_path)])
-
-
-def test_documents_are_in_order_whatever_the_disk_says(tmp_path: Path) -> None:
-    names = [f"p{it}/n{it}.nodl.yaml" for it in range(9)]
-    for name in reversed(names):
-        written(tmp_path, name, document())
-    found = find_interfaces([str(tmp_path)]).given
-    assert [*found.values()] == [str(tmp_path / it) for it in names]
 
 
 @pytest.mark.parametrize("name", ["missing", "empty"])
@@ -216,12 +199,6 @@ def test_a_document_is_above_the_tables(tmp_path: Path) -> None:
     # A document of a running node has private names in full.
     assert ends(amcl, "serves")["~/get_state"].when == ""
     assert "/amcl/get_state" not in ends(amcl, "serves")
-
-
-def test_what_a_document_does_not_have_keeps_its_rule_and_is_not_asked_for(tmp_path: Path) -> None:
-    amcl = amcl_as(tmp_path, document("brand_new"))
-    assert ends(amcl)["brand_new"].when == ""
-    assert ends(amcl)["particle_cloud"].when == NOT_IN_NODL
 
 
 def test_rosout_parameters_and_clock_are_left_out(tmp_path: Path) -> None:

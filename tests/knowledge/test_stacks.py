@@ -157,10 +157,6 @@ def test_frames_are_reported_with_their_defaults() -> None:
     }
 
 
-def test_a_node_is_a_stack_of_its_own() -> None:
-    assert load_stack("rplidar_node", NEWEST_LTS) == (load_nodes(NEWEST_LTS)["rplidar_node"],)
-
-
 def test_the_example_of_the_page_is_read() -> None:
     text = (ROOT / "docs" / "stacks.md").read_text().partition("```yaml\n")[2].partition("```")[0]
     nodes = {node.name: node for node in stack_of(extra(text), "cell")}
@@ -174,22 +170,6 @@ def test_unknown_stack_is_reported_with_the_nearest() -> None:
         load_stack("nav", NEWEST_LTS)
 
 
-def test_a_user_adds_nodes_and_stacks() -> None:
-    library = extra(
-        "nodes:\n  gripper:\n    package: acme\n    serves: {grip: acme_msgs/srv/Grip}\n"
-        "stacks:\n  cell: {include: [robot_state], nodes: [gripper, {node: amcl, as: amcl2}]}\n"
-    )
-    names = [node.name for node in stack_of(library, "cell")]
-    assert names == ["robot_state_publisher", "joint_state_publisher", "gripper", "amcl2"]
-    assert endpoint(library.nodes["gripper"], "serves", "grip").kind == SERVICE
-
-
-def test_a_users_file_is_read(tmp_path: Path) -> None:
-    path = tmp_path / "mine.yaml"
-    path.write_text("stacks:\n  cell:\n    nodes: [rviz2]\n")
-    assert [node.name for node in stack_of(user_stack(str(path), NEWEST_LTS), "cell")] == ["rviz2"]
-
-
 def test_a_type_may_be_left_out() -> None:
     library = extra("nodes: {a: {calls: {b: }, publishes: {c: {when: asked}}}}")
     assert [(e.kind, e.name, e.type) for e in library.nodes["a"].endpoints] == [
@@ -200,27 +180,6 @@ def test_a_type_may_be_left_out() -> None:
 
 def test_an_empty_file_adds_nothing() -> None:
     assert extra("") == built_in(NEWEST_LTS)
-
-
-def test_a_name_can_be_taken_out() -> None:
-    library = extra("stacks: {cell: {nodes: [{node: amcl, names: {scan: [], map: [/a, /b]}}]}}")
-    (node,) = stack_of(library, "cell")
-    heard = {e.name for e in node.endpoints if e.role == "subscribes"}
-    assert "scan" not in heard
-    assert {"/a", "/b"} <= heard
-
-
-def test_the_same_node_by_two_ways_is_one() -> None:
-    library = extra("stacks: {cell: {include: [localization, nav2]}}")
-    assert stack_of(library, "cell") == load_stack("nav2", NEWEST_LTS)
-
-
-def test_what_a_file_says_anew_counts_in_its_stacks() -> None:
-    library = extra(
-        "nodes: {amcl: {publishes: {x: std_msgs/msg/Empty}}}\nstacks: {cell: {nodes: [amcl]}}"
-    )
-    assert [e.name for e in stack_of(library, "cell")[0].endpoints] == ["x"]
-    assert stack_of(library, "nav2") == load_stack("nav2", NEWEST_LTS)
 
 
 @pytest.mark.parametrize(

@@ -540,15 +540,6 @@ def test_a_trajectory_controller_without_joints_is_told_by_its_release(
     assert it.message == "arm: joints is missing"
 
 
-def test_a_class_is_not_asked_for_what_another_one_of_its_package_needs(tmp_path: Path) -> None:
-    """JointGroupPositionController sets interface_name itself (joint_group_position_controller.cpp)."""
-    file = tmp_path / "hand.yaml"
-    class_ = "position_controllers/JointGroupPositionController"
-    text = FORWARD.replace("forward_command_controller/ForwardCommandController", class_)
-    file.write_text(text.replace("    interface_name: position\n", ""))
-    assert lint_file(str(file), Settings(distro="jazzy", select=("MB115",))) == []
-
-
 def test_a_name_of_older_releases_is_told_with_the_new_one(tmp_path: Path) -> None:
     file = tmp_path / "nav.yaml"
     file.write_text(PLUGINS.replace("raytrace_max_range", "obstacle_range"))

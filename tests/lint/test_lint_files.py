@@ -125,23 +125,6 @@ def test_fixes_take_away_what_is_not_used(source: bytes, fixed: bytes) -> None:
     assert fix("robot.urdf", source, ONE)[0] == fixed
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("body", "expected"),
-    [
-        ('<link name="a"/>\n<xacro:include filename="x"/>', (2, 1)),
-        ('<link name="a"/>\n  <link name="${x}"/><link name="${y}"/>', (2, 3)),
-        ('<link name="ä"/><link name="$(arg x)"/>', (1, 17)),
-        ("<!-- ${x} $(arg y) -->", None),
-        ('<link name="$100"/>', None),
-    ],
-)
-def test_leftover_xacro_is_told_once(body: str, expected: tuple[int, int] | None) -> None:
-    source = f"<robot name='r' {XACRO}>\n{body}</robot>"
-    found = lint_data("r.urdf", source.encode(), Settings(select=("MB105",)))
-    assert [(it.line - 1, it.column) for it in found] == ([expected] if expected else [])
-
-
 def test_faults_of_an_expansion_are_told_in_the_source(tmp_path: Path) -> None:
     file = tmp_path / "r.urdf.xacro"
     body = '<xacro:macro name="m" params="n">\n<link name="${n}"><inertail/></link></xacro:macro>'

@@ -143,23 +143,6 @@ def test_fix_writes_and_tells_what_is_left(
         assert "urdf-lint: nothing that --fix can fix\n" in capsys.readouterr().err
 
 
-@pytest.mark.slow
-def test_what_is_found_through_another_file_is_not_lost(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """The whole is fixed; what its part does to it is found through it, and still is."""
-    space = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
-    (tmp_path / "part.xacro").write_text(f'<robot {space}><link name="b"/></robot>')
-    comment = "<!-- urdf-lint: ignore MB201 -->\n"
-    include = '<xacro:include filename="part.xacro"/>'
-    whole = tmp_path / "whole.xacro"
-    whole.write_text(f'<robot name="r" {space}>\n{comment}<link name="a"/>{include}</robot>')
-    assert main([str(tmp_path), "--fix", "--select", "MB501,MB002,MB201"]) == 1
-    assert "ignore" not in whole.read_text()
-    out = capsys.readouterr().out
-    assert out.startswith(f"{tmp_path}/part.xacro:1:") and out.count("MB") == 1
-
-
 def test_a_second_run_has_nothing_to_do(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "r.urdf"
     file.write_bytes(FIXABLE)

@@ -235,24 +235,6 @@ def test_unused_is_told_only_of_rules_that_are_asked(
     assert reported(linted(tmp_path, text, **options)) == ([] if spared else ["MB002:2"])
 
 
-@pytest.mark.parametrize(
-    ("body", "wanted"),
-    [
-        (f'<link name="base"/>\n{HERE}', ["MB002:3"]),
-        (f"{HERE}\n{HERE}", ["MB002:2", "MB002:3"]),
-        (f"<a>\n{HERE}\n</a>", []),  # a text could begin there
-        (f"<a/> {HERE}", []),
-        (f'<a\nb="c"/> {HERE}', []),
-    ],
-)
-def test_where_nothing_can_be_found_it_is_told_of_every_rule(
-    tmp_path: Path, body: str, wanted: list[str]
-) -> None:
-    found = linted(tmp_path, robot(body), select=("MB0",))
-    assert reported(found) == wanted
-    assert {it.hint for it in found} <= {"put it on the line above the element"}
-
-
 def test_a_rule_without_its_settings_is_not_asked(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

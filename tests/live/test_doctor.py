@@ -91,19 +91,6 @@ def test_names_to_which_nobody_listens_are_no_robot() -> None:
 # ---------------------------------------------------------------- close to a fault, and none
 
 
-@pytest.mark.more
-def test_one_robot_may_have_plain_frames_beside_robots_that_have_not() -> None:
-    """The first robot kept its description: nothing meets."""
-    graph = nav2_with_tools("L2")
-    frames = [
-        it._replace(
-            child=it.child.removesuffix("/robot1"), parent=it.parent.removesuffix("/robot1")
-        )
-        for it in graph.edges
-    ]
-    assert diagnose(graph._replace(edges=tuple(frames))).findings == ()
-
-
 def second_lidar(graph: System) -> System:
     """A second lidar with another QoS: the reader gets the scans of one."""
     graph = added("/robot1/rear_lidar", (PUBLISHES, "/robot1/scan", SCAN))(graph)

@@ -113,23 +113,6 @@ def test_one_more_of_a_planned_node_is_called_that() -> None:
     assert "a second one" in found.hint
 
 
-@pytest.mark.sample(1)
-@pytest.mark.parametrize(
-    "node",
-    [
-        "/_ros2cli_daemon_0_1234", "/launch_ros_4711", "/robot1/transform_listener_impl_55e1",
-        "/transform_listener_impl_55e1", "/rqt_gui_py_node_1", "/rviz2", "/robot1/rviz",
-        "/rosbag2_recorder", "/foxglove_bridge", "/ros_gz_bridge", "/robot1/_hidden", "/gazebo",
-        "/teleop_twist_keyboard", "/teleop_twist_joy_node", "/joy_node",
-        "/robot1/bt_navigator_navigate_to_pose_rclcpp_node", "/robot1/spawner_diff_drive",
-    ],
-)  # fmt: skip
-def test_tools_are_no_surprise(node: str) -> None:
-    assert check(plan(), with_node(healthy(), node)) == []
-    twice = with_node(with_node(healthy(), node), node)
-    assert check(plan(), twice) == []
-
-
 # ---------------------------------------------------------------- types
 
 

@@ -11,13 +11,13 @@ from pathlib import Path
 
 import guides
 import pytest
-from graph_cases import CASES, FLEET, FOLDERS, GRAPHS, Case, healthy, read_plan
+from graph_cases import CASES, FOLDERS, GRAPHS, Case, healthy
 from paths import ROOT
 from pytest import CaptureFixture, MonkeyPatch
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.rules.check import RULES
-from multibot_rewrite.system.json import from_json, from_yaml, to_json
+from multibot_rewrite.system.json import from_json, to_json
 from multibot_rewrite.system.records import System
 
 ids = [f"{case.layout}-{case.code}" for case in CASES]
@@ -42,14 +42,6 @@ def test_nothing_else_is_in_the_folders() -> None:
     cases = {f"{case.stem}{end}" for case in CASES for end in (".json", ".txt")}
     plans = {f"{f}/{name}" for f in FOLDERS.values() for name in ("plan.yaml", "healthy.json")}
     assert there == cases | plans | {f"{GRAPHS}/nodes.yaml"}
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("layout", FOLDERS)
-def test_the_plan_is_what_the_command_makes(layout: str, tmp_path: Path) -> None:
-    made = tmp_path / "plan.yaml"
-    assert main(["plan", *FLEET, "--layout", layout, "-o", str(made)]) == 0
-    assert from_yaml(made.read_bytes(), "made") == read_plan(layout)
 
 
 def same(path: str, graph: System) -> None:

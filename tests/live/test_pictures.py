@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import itertools
 import os
 import random
 import re
@@ -20,22 +19,18 @@ from graph_calls import to_json, to_yaml
 from hypothesis import given, settings, strategies as st
 from lxml import html
 from page_calls import (
-    OK,
     DrawnGroup,
     Scene,
-    Verdict,
     clipped,
     columns,
     make_scene,
-    only_common,
     to_html,
     visible,
     without_common,
 )
-from plans import own as nodes_of
 
 from multibot_rewrite.cli import multibot
-from multibot_rewrite.pages.svg import NODE_ROW, ROW, lay_out
+from multibot_rewrite.pages.svg import lay_out
 from multibot_rewrite.system.records import Edge, System
 
 # What a page is made of.
@@ -51,10 +46,6 @@ TAGS = frozenset(
 
 def group(scene: Scene, robot: str) -> DrawnGroup:
     return next(group for group in scene.groups if group.robot == robot)
-
-
-def node_states(scene: Scene) -> dict[str, str]:
-    return {node.name: node.state for group in scene.groups for node in group.nodes}
 
 
 def page(scene: Scene) -> html.HtmlElement:
@@ -78,21 +69,6 @@ def swarm() -> System:
 # ---------------------------------------------------------------- the scene
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("layout", nav2_graphs.LAYOUTS)
-def test_a_healthy_fleet_has_nothing_in_red(layout: str) -> None:
-    plan = nav2_graphs.nav2(layout)
-    scene = nav2_graphs.scene(plan, nav2_graphs.healthy(plan))
-    assert scene.outcome.verdict == Verdict.PLANNED
-    assert {edge.state for group in scene.groups for edge in group.edges} == {OK}
-    assert set(node_states(scene).values()) == {OK}
-    assert [group.robot for group in scene.groups] == ["robot1", "robot2", ""]
-    assert scene.crossings == ()
-    for robot in plan.robots:
-        drawn = {n.name for n in group(scene, robot.name).nodes if n.robot == robot.name}
-        assert drawn == set(nodes_of(plan, robot.name))
-
-
 # ---------------------------------------------------------------- places
 
 
@@ -104,32 +80,6 @@ def scenes() -> Iterable[Scene]:
     yield nav2_graphs.scene(plan, nav2_graphs.spoiled(plan))
     yield nav2_graphs.scene(*nav2_graphs.nasty(plan))
     yield nav2_graphs.scene(swarm(), nav2_graphs.healthy(swarm()))
-
-
-@pytest.mark.slow
-def test_nothing_overlaps_and_everything_has_a_place() -> None:
-    for scene in scenes():
-        for one in scene.groups:
-            for part in (one, without_common(one), only_common(one)):
-                place = lay_out(part)
-                assert {name.name for name, _ in place.names} == {n.name for n in part.names}
-                both = {node.name for node, _ in (*place.left, *place.right)}
-                assert both == {node.name for node in part.nodes}
-                for column, gap in ((place.left, NODE_ROW), (place.right, NODE_ROW)):
-                    assert_apart([y for _, y in column], gap)
-                assert_apart([y for _, y in place.names], ROW)
-                every = [y for column in place[:3] for _, y in column]
-                assert all(0 < y < place.height for y in every)
-
-
-def assert_apart(places: list[float], gap: float) -> None:
-    order = sorted(places)
-    assert all(b - a >= gap - 0.01 for a, b in itertools.pairwise(order))
-
-
-def crossings(edges: list[tuple[float, float]]) -> int:
-    pairs = itertools.combinations(edges, 2)
-    return sum((a[0] - b[0]) * (a[1] - b[1]) < 0 for a, b in pairs)
 
 
 # ---------------------------------------------------------------- tf

@@ -3,14 +3,13 @@
 
 from __future__ import annotations
 
-import json
 import re
 from pathlib import Path
 
 import pytest
 from graph_cases import as_planned as planned_graph, environment, moved, without_node
 from paths import FIXTURES
-from plans import optional, places
+from plans import optional
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli.multibot import main
@@ -65,16 +64,6 @@ def test_a_plan_is_read_back_as_it_was_written(plan: Path) -> None:
     assert "base_link/robot1" in wanted.robots[0].frames
 
 
-@pytest.mark.slow
-def test_a_plan_in_json_is_the_same_plan(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    written = plan.with_name("plan.json")
-    assert main(["plan", *FLEET, "-o", str(written)]) == 0
-    kept = json.loads(written.read_text())
-    assert [it["name"] for it in kept["robots"]] == ["robot1", "robot2"]
-    assert read_plan(written.read_bytes(), "plan") == from_yaml(plan.read_bytes(), "plan")
-    assert held(written, as_planned(plan), capsys)[:2] == (0, "")
-
-
 @pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
@@ -99,16 +88,6 @@ def test_a_wrong_plan_in_json_is_one_line(
     code, _, err = held(written, as_planned(plan), capsys)
     assert (code, err.count("\n")) == (2, 1)
     assert words in err
-
-
-@pytest.mark.more
-def test_a_fleet_as_planned(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    code, out, err = held(plan, as_planned(plan), capsys)
-    assert (code, out) == (0, "")
-    assert err == (
-        "multibot: 2 robots, 24 nodes each: all known, all seen; 0 findings: as planned"
-        " (ROS 2 lyrical)\n"
-    )
 
 
 @pytest.mark.more
@@ -195,19 +174,6 @@ def test_a_file_that_is_not_a_snapshot(plan: Path, capsys: pytest.CaptureFixture
 
 
 # ---------------------------------------------------------------- where a node comes from
-
-
-def sources(path: Path) -> dict[str, str]:
-    return places(from_yaml(path.read_bytes(), "plan"))
-
-
-@pytest.mark.slow
-def test_the_lines_of_a_xacro_are_those_of_the_expanded_text(tmp_path: Path) -> None:
-    path = tmp_path / "plan.yaml"
-    assert main(["plan", f"{ROVER}.xacro", "robot1", "-o", str(path)]) == 0
-    places = sources(path).values()
-    assert places
-    assert all(" (expanded):" in place for place in places)
 
 
 @pytest.mark.more

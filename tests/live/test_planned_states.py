@@ -12,7 +12,6 @@ import pytest
 from graph_cases import environment
 from graph_examples import read_example
 from node_answers import told
-from paths import ROBOTS
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.cli import multibot
@@ -208,26 +207,6 @@ def test_the_files_of_a_build_say_what_each_node_has(built: Path) -> None:
     # What is from a file stays that.
     again = read_plan(to_yaml(planned).encode(), "y").parameters
     assert {*again} == {*planned.parameters}
-
-
-@pytest.mark.slow
-def test_a_robot_whose_namespace_is_not_its_name(tmp_path: Path) -> None:
-    """A build names the folder after the robot, the plan has its namespace."""
-    (tmp_path / "nav2.yaml").write_text("amcl: {ros__parameters: {alpha1: 0.25}}\n")
-    robots = (
-        "[{name: a, namespace: robot1, pose: {x: 0}}, {name: b, namespace: robot2, pose: {x: 3}}]"
-    )
-    fleet = tmp_path / "fleet.yaml"
-    fleet.write_text(
-        f"layout: frames-per-robot\ndescription: {ROBOTS / 'rover.urdf'}\nrobots: {robots}\n"
-        "companions: {params: nav2.yaml}\n"
-    )
-    out = tmp_path / "out"
-    assert multibot.main(["build", str(fleet), "-o", str(out), "-q"]) == 0
-    assert (out / "a" / "nav2.yaml").is_file()
-    states = parameters(with_built(plan(), str(out)))
-    for node in ("/robot1/amcl", "/robot2/amcl"):
-        assert ("alpha1", "0.25") in {(it.name, it.value) for it in states[node]}
 
 
 def test_two_files_that_disagree_plan_nothing(built: Path) -> None:

@@ -82,14 +82,6 @@ def test_an_open_end_of_the_plan_is_a_finding_with_its_explanation() -> None:
     assert cards(report_pages.not_closed()) == {"robot2": "odd", "robot1": "good"}
 
 
-@pytest.mark.slow
-def test_a_fault_in_tf_makes_its_robots_red() -> None:
-    assert [it.finding.code for it in report_pages.tf_collision().rows] == ["MG402"]
-    assert cards(report_pages.tf_collision()) == {"robot1": "bad"}
-    (card,) = page(report_pages.tf_collision()).find_class("card")
-    assert card.get("data-robot") == "0 1"
-
-
 @pytest.mark.more
 def test_the_tree_with_the_fault_is_above_the_nodes() -> None:
     order = ["findings", "tf", "graph", "rules", "environment"]

@@ -110,27 +110,6 @@ def test_a_bare_odom_where_nothing_else_has_it(layout: str) -> None:
     assert finding.line == 88
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("layout", NAMED)
-@pytest.mark.parametrize("several", [True, False])
-def test_the_parameters_of_robot1_in_the_drive_of_robot2(layout: str, several: bool) -> None:
-    def swapped(frame: Edge) -> Edge | None:
-        if frame.child == spelled(layout, "base_footprint"):
-            return None
-        first = frame.child == spelled(layout, "base_footprint").replace("robot2", "robot1")
-        return frame._replace(several=several) if first else frame
-
-    found = torn(layout, swapped)
-    (finding,) = (it for it in found if it.code == "MG406")
-    drive = named(layout, "diff_drive")
-    edge = f"{spelled(layout, 'odom')} -> {spelled(layout, 'base_footprint')}"
-    assert f" {drive} sends {edge}, and does not: " in finding.hint
-    known = several and layout == "frames-per-robot"
-    whose = "it has the parameters of robot1" if known else "has it those of another robot?"
-    assert "(see fixtures/robots/rover.urdf:88)" in finding.hint
-    assert finding.hint.endswith(f"and does not: {whose}")
-
-
 @pytest.mark.parametrize("layout", ["both", "postfix"])
 def test_the_transform_of_robot1_on_the_tf_topic_of_robot2(layout: str) -> None:
     def swapped(frame: Edge) -> Edge:

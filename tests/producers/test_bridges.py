@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 import yaml
-from launched_nodes import AT, started
+from launched_nodes import AT, launched, started
 
 from multibot_rewrite.producers.launch.bridges import (
     Row,
@@ -23,22 +23,6 @@ def said(*arguments: str, program: tuple[str, ...] = BRIDGE, **more: object) -> 
     node = started(*program, arguments=arguments, **more)
     rows = bridge_rows(node, {"robot1"})
     return [f"{it.role} {it.kind} {it.name} {it.type}" for it in rows]
-
-
-@pytest.mark.parametrize(
-    ("row", "expected"),
-    [
-        ("/scan@sensor_msgs/msg/LaserScan[gz.msgs.LaserScan", ["publishes topic /scan"]),
-        ("/scan@sensor_msgs/LaserScan[ignition.msgs.LaserScan", ["publishes topic /scan"]),
-        ("scan@sensor_msgs/msg/LaserScan]gz.msgs.LaserScan", ["subscribes topic scan"]),
-        (
-            "/scan@sensor_msgs/msg/LaserScan@gz.msgs.LaserScan",
-            ["publishes topic /scan", "subscribes topic /scan"],
-        ),
-    ],
-)
-def test_a_row_is_a_topic_in_its_direction(row: str, expected: list[str]) -> None:
-    assert said(row) == [f"{it} sensor_msgs/msg/LaserScan" for it in expected]
 
 
 def test_rows_of_arguments_as_a_file_has_them_and_those_that_end_the_bridge() -> None:
@@ -100,3 +84,29 @@ def rows_of_text(text: str) -> list[Row]:
 def running(program: str = "ros_gz_bridge/parameter_bridge", **more: object) -> Run:
     node = Run("", "b", "/", "b", (), program=program, place=AT)
     return node._replace(**more)  # type: ignore[arg-type]
+
+
+# Spawners that ask for a controller manager that nothing starts.
+
+MANAGER = started("controller_manager", "ros2_control_node", namespace="/robot1")
+
+
+@pytest.mark.parametrize(
+    ("words", "asked"),
+    [
+        # As Husarion's ROSbot has it: the namespace is there twice.
+        (("-n", "robot1", "-c", "robot1/controller_manager"), "/robot1/robot1/controller_manager"),
+        (("-n", "robot1", "-c", "controller_manager"), ""),
+        (("-c", "/robot1/controller_manager"), ""),
+        (("-c", "/robot1/manager"), "/robot1/manager"),
+        ((), "/controller_manager"),
+    ],
+)
+def test_a_spawner_asks_for_a_manager_that_runs(words: tuple[str, ...], asked: str) -> None:
+    spawner = started("controller_manager", "spawner", arguments=("drive", "lift", *words))
+    found = launched(MANAGER, spawner)
+    said = [it.message for it in found.findings if it.code == "MG723"]
+    text = f"the spawner of drive, lift asks for {asked}, which nothing starts"
+    assert said == ([text] if asked else [])
+    assert {it.manager for it in found.spawned.values()} == {"/robot1/controller_manager"}
+    assert {"drive", "lift"} == set(found.spawned)

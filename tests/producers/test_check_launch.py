@@ -28,7 +28,7 @@ from multibot_rewrite.producers.launch.records import (
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import launched
 from multibot_rewrite.rules.launch.judge import judge_launch
-from multibot_rewrite.system.records import System, clocks
+from multibot_rewrite.system.records import System
 
 TF = (("/tf", "tf"), ("/tf_static", "tf_static"))
 URDF = '<robot name="r"><link name="base_link"/><link name="laser"/><joint name="j" type="fixed">\
@@ -74,16 +74,6 @@ def names(made: System, of: str) -> set[tuple[str, str]]:
     return {(it.role, it.name) for it in made.ends if it.node == of}
 
 
-def test_robots_whose_frames_all_differ_may_share_one_tf(run: Graph) -> None:
-    """tf2 joins trees by the names of frames alone; a parent that both have joins them."""
-    mine = URDF.replace("base_link", "base1_link").replace("laser", "lidar")
-    assert "MG402" not in codes(
-        run(publisher("/robot1", robot_description=mine), publisher("/robot2"))
-    )
-    mine = URDF.replace("laser", "lidar")
-    assert "MG402" in codes(run(publisher("/robot1", robot_description=mine), publisher("/robot2")))
-
-
 def test_two_of_a_program_whose_name_is_not_known_are_not_two_of_one_name(run: Graph) -> None:
     """The code of spawn.py names it: `create_node("entity_spawner")`. A name given twice counts."""
     assert not codes(made := run(*[node("acme/spawn.py", "", "/")] * 2))
@@ -91,28 +81,9 @@ def test_two_of_a_program_whose_name_is_not_known_are_not_two_of_one_name(run: G
     assert codes(run(*[node("acme/spawn.py", "spawner", "/")] * 2)) == {"MG301"}
 
 
-def test_what_another_robots_same_node_sends_is_not_meant(run: Graph) -> None:
-    """slam_toolbox reads a LaserScan and sends one: its twin's is not the scan that it lacks."""
-    slams = [
-        node("slam_toolbox/async_slam_toolbox_node", "slam_toolbox", it)
-        for it in ("/tb_0", "/tb_1")
-    ]
-    assert "MG303" not in codes(run(*slams))
-
-
 def test_what_nothing_in_the_launch_sends_is_told_as_in_a_build(run: Graph) -> None:
     (found,) = diagnose(run(publisher("/robot1"))).findings
     assert (found.code, found.level, found.names) == ("MG316", "note", ("/robot1/joint_states",))
-
-
-@pytest.mark.parametrize(
-    ("program", "hears"), [("localization", True), ("async", False), ("sync", False)]
-)
-def test_a_program_has_its_own_topics(run: Graph, program: str, hears: bool) -> None:
-    """slam_toolbox: only the localization node subscribes to initialpose
-    (src/slam_toolbox_localization.cpp)."""
-    made = run(node(f"slam_toolbox/{program}_slam_toolbox_node", "slam_toolbox"))
-    assert (("subscribes", "/robot1/initialpose") in names(made, "/robot1/slam_toolbox")) is hears
 
 
 @pytest.mark.parametrize(("release", "wanted"), [("jazzy", "Twist"), ("kilted", "TwistStamped")])
@@ -242,21 +213,6 @@ def controlled(known: Knowledge, space: str, asked: str) -> System:
     return launched(graph, known).system
 
 
-def test_controllers_of_a_simulators_plugin_are_those_of_its_description(known: Knowledge) -> None:
-    """gz_ros2_control_plugin.cpp: the manager is in the namespace of the plugin, with its rules and its
-    file; simulated time is forced on it, and it gives that to its controllers
-    (controller_manager.cpp). A spawner skips what is loaded (spawner.py)."""
-    made = controlled(known, "robot1", "controller_manager")
-    assert [it.name for it in made.nodes].count("/robot1/drive") == 1
-    ends = names(made, "/robot1/drive")
-    assert {("publishes", "/robot1/tf"), ("publishes", "/robot1/odom")} <= ends
-    edges = {(it.parent, it.child, it.topic) for it in made.edges}
-    assert ("robot1/odom", "robot1/base_link", "/robot1/tf") in edges
-    timed = clocks(made)
-    assert timed["/robot1/drive"] is timed["/robot1/controller_manager"] is True
-    assert timed["/robot1/rsp"] is False
-
-
 def test_a_spawner_that_asks_for_another_manager_is_told(known: Knowledge) -> None:
     made = controlled(known, "other", "controller_manager")
     assert [it.name for it in made.nodes] == ["/robot1/rsp"]
@@ -264,30 +220,6 @@ def test_a_spawner_that_asks_for_another_manager_is_told(known: Knowledge) -> No
         "/robot1/controller_manager is started by no node of the launch and no plugin" in it.message
         for it in made.environment.caveats
     )
-
-
-def test_the_bridge_of_tf_is_known(run: Graph) -> None:
-    """tf_namespace_bridge.cpp: no layout moves its topics."""
-    ends = names(run(node("tf_namespace_bridge/tf_namespace_bridge", "b")), "/robot1/b")
-    assert ends == {
-        (role, f"{above}/{topic}")
-        for role, above in (("publishes", ""), ("subscribes", "/robot1"))
-        for topic in ("tf", "tf_static")
-    }
-
-
-DRIVE = """<robot name="r"><link name="base_link"/><gazebo><plugin name="gz::sim::systems::DiffDrive"
- filename="gz-sim-diff-drive-system"><topic>{0}/cmd_vel</topic><tf_topic>{0}/tf</tf_topic>
- <frame_id>{0}/odom</frame_id><child_frame_id>{0}/base_link</child_frame_id></plugin></gazebo></robot>"""
-CREATE = ("-name", "robot1", "-topic", "/robot1/robot_description")
-TF_ROW = "/{}/tf@tf2_msgs/msg/TFMessage[gz.msgs.Pose_V"
-
-
-def bridged_model(run: Graph, bridged: str, *words: str) -> System:
-    state = publisher("/robot1", TF, robot_description=DRIVE.format("robot1"))
-    create = node("ros_gz_sim/create", "", "/", arguments=words)
-    row = (TF_ROW.format(bridged),)
-    return run(state, create, node("ros_gz_bridge/parameter_bridge", "b", "/", arguments=row))
 
 
 def test_a_bridge_has_services_and_images_in_ros(run: Graph) -> None:
@@ -300,19 +232,6 @@ def test_a_bridge_has_services_and_images_in_ros(run: Graph) -> None:
     assert ("serves", "/world/w/control") in names(made, "/robot1/b")
     assert names(made, "/robot1/i") == {("publishes", "/robot1/front")}
     assert not any(it.incomplete for it in made.environment.caveats)
-
-
-def test_a_bridge_sends_what_systems_of_the_spawned_model_do(run: Graph) -> None:
-    """gz-sim DiffDrive.cc: frame_id to child_frame_id on tf_topic."""
-    made = bridged_model(run, "robot1", *CREATE)
-    (edge,) = made.edges
-    assert (edge.parent, edge.child, edge.topic) == (
-        "robot1/odom",
-        "robot1/base_link",
-        "/robot1/tf",
-    )
-    assert edge.publishers == ("/b",)
-    assert made.environment.caveats == ()
 
 
 LASER = """<robot name="r"><link name="base_link"/><gazebo reference="base_link"><sensor name="s"
@@ -507,16 +426,6 @@ def test_frames_that_code_makes_of_two_robots_meet(
     assert frames <= met and bool(met) is bool(frames)
     own = of_both(program, name, *values, rules=TF)
     assert not {"MG402", "MG408", "MG407"} & codes(run(*own))
-
-
-def test_fixed_frames_below_odometry_are_no_odometry(run: Graph) -> None:
-    """mavros uas_tf.cpp: odom -> odom_ned is static; who sends odom -> base_link has odometry."""
-    frames = {"base_link_frame": "robot1/base_link", "odom_frame": "robot1/odom"}
-    own = (mavros("/robot1", **frames), publisher("/robot1", frame_prefix="robot1/"))
-    assert "MG406" not in codes(run(*own))
-    ekf = node("robot_localization/ekf_node", "ekf", base_link_frame="robot1/body",
-               odom_frame="robot1/odom", world_frame="robot1/odom")  # fmt: skip
-    assert "MG406" in codes(run(*own, ekf))
 
 
 GPIO = """\

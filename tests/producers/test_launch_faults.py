@@ -368,29 +368,6 @@ def of_nodes(folder: Path, *nodes: str, head: str = "") -> None:
     (folder / LAUNCH).write_text(f"{text}{lines}    ])\n")
 
 
-COSTMAP = """\
-/r1/global_costmap/global_costmap:
-  ros__parameters:
-    plugins: [static_layer]
-    static_layer: {plugin: "nav2_costmap_2d::StaticLayer"}
-"""
-
-
-def test_a_costmap_is_no_map(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Alvar007/multi_robot_ros2: the map comes from another launch file."""
-    (tmp_path / "p.yaml").write_text(COSTMAP)
-    file = f"parameters=[{str(tmp_path / 'p.yaml')!r}]"
-    of_nodes(
-        tmp_path,
-        *(
-            f'Node(package="nav2_{it}", executable="{it}_server", namespace="r1", {file})'
-            for it in ("planner", "controller")
-        ),
-    )
-    _, found = found_in(tmp_path, capsys)
-    assert not [it for it in found if it["code"] == "MG303" and "costmap/costmap" in str(it)]
-
-
 def test_a_variable_that_is_not_set_is_named(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -493,27 +493,6 @@ def test_what_is_missing_costs_its_part(tmp_path: Path) -> None:
     assert not graph.whole and not any(it.fails for it in graph.notes)
 
 
-@pytest.mark.more
-@pytest.mark.sample(1)
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("def generate(:\n", "SyntaxError"),
-        ("print('no')\n", "generate_launch_description"),
-        ("raise SystemExit(0)\n", "it ends itself (sys.exit(0))"),
-    ],
-)
-def test_a_launch_file_that_cannot_be_read_is_one_line(
-    text: str, said: str, tmp_path: Path
-) -> None:
-    file = tmp_path / "broken.launch.py"
-    file.write_text(text)
-    with pytest.raises(InputError) as caught:
-        launch_graph(LaunchOrder(str(file), trusted=True))
-    assert str(caught.value).startswith(f"{file}: ") and said in str(caught.value)
-    assert "\n" not in str(caught.value)
-
-
 @pytest.mark.parametrize(("made", "said"), [("None", "nothing"), ("[1]", "a value of type list")])
 def test_a_launch_file_that_makes_no_description(made: str, said: str, tmp_path: Path) -> None:
     file = tmp_path / "odd.launch.py"

@@ -6,18 +6,18 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from launched_nodes import AT, started
+from launched_nodes import AT, launched, runs, started
 
 from multibot_rewrite.producers.launch.models import (
     Models,
     Published,
-    frames_of_plugins,
     models_of,
     sent_by_plugins,
     sent_in_simulator,
 )
 from multibot_rewrite.producers.launch.records import LaunchedNode, ParameterText
-from multibot_rewrite.system.records import edge_of
+from multibot_rewrite.spelling.transforms import sent_by
+from multibot_rewrite.system.records import Edge, edge_of
 
 ROBOT = '<robot name="r"><link name="base"/><gazebo>{}</gazebo></robot>'
 OWN = "<robot_base_frame>b</robot_base_frame>"
@@ -64,26 +64,6 @@ def test_a_system_sends_the_transform_of_its_odometry(
 
 
 @pytest.mark.parametrize(
-    ("inside", "edges"),
-    [
-        ("<publish_odom_tf>true</publish_odom_tf>", [("/tf", edge_of("odom", "base_footprint"))]),
-        (f"<publish_odom_tf>1</publish_odom_tf>{OWN}<odometry_frame>o</odometry_frame>"
-         "<ros><namespace>/a</namespace></ros>", [("/tf", edge_of("o", "b"))]),
-        (OWN, []),
-    ],
-)  # fmt: skip
-def test_a_drive_of_classic_sends_the_transform_where_it_is_told_to(
-    inside: str, edges: list[object]
-) -> None:
-    """gazebo_ros_diff_drive.cpp: publish_odom_tf is false by default."""
-    found = spawned(plugin("libgazebo_ros_diff_drive.so", inside, "drive")).found
-    name = "/a/drive" if "/a<" in inside else "/drive"
-    assert sent_by_plugins(found) == ({name: edges} if edges else {})
-    assert sent_in_simulator(found) == {}
-    assert sent_by_plugins(it._replace(spawned=False) for it in found) == {}
-
-
-@pytest.mark.parametrize(
     ("library", "inside", "edges"),
     [
         ("diff_drive", "<publish_wheel_tf>true</publish_wheel_tf>", []),
@@ -122,15 +102,6 @@ def test_a_drive_of_classic_with_transforms_of_wheels_sends_odometry_by_its_own_
     assert sent == ({"/drive": [("/tf", edge_of(*it)) for it in edges]} if edges else {})
 
 
-def test_the_frame_that_a_plugin_of_classic_is_told() -> None:
-    """gazebo_ros utils.cpp, SensorFrameID: frame_name, else the link's."""
-    told = "<frame_name>f</frame_name><ros><namespace>a</namespace></ros>"
-    found = spawned(plugin("libgazebo_ros_imu_sensor.so", told, "imu")).found
-    assert frames_of_plugins(found) == {"/a/imu": "f"}
-    assert frames_of_plugins(it._replace(spawned=False) for it in found) == {}
-    assert frames_of_plugins(spawned(plugin("libgazebo_ros_imu_sensor.so")).found) == {}
-
-
 # ---------------------------------------------------------------- what spawns which
 
 
@@ -164,3 +135,20 @@ def test_classic_gives_plugins_the_namespace_of_the_spawner() -> None:
         assert [*sent_by_plugins([model])] == ["/bot/drive"]
         assert model.text == text
     assert spawned("<no", "-robot_namespace", "/bot").found == ()
+
+
+# What a launched static_transform_publisher sends, in a plan and in what a launch would run.
+
+ZEROS = ("0",) * 6
+
+
+def sends(
+    *words: str, executable: str = "static_transform_publisher", text: str = ""
+) -> list[Edge]:
+    parameters = (ParameterText("", text),) if text else ()
+    node = started("tf2_ros", executable, "placed", arguments=words, parameters=parameters)
+    return [*sent_by(runs(launched(node))["placed"], "base_link")]
+
+
+def test_a_frame_below_itself_is_sent_by_nobody() -> None:
+    assert sends(*ZEROS, "odom", "/odom") == []

@@ -63,27 +63,6 @@ def test_what_another_configuration_has_gets_the_prefix(case: str, tmp_path: Pat
     assert there in expand(str(path), {**given, "prefix": "a_"})
 
 
-@pytest.mark.parametrize(
-    ("default", "other"),
-    [
-        ("true", "false"),
-        ("false", "true"),
-        ("True", "False"),
-        ("False", "True"),
-        ("1", "0"),
-        ("0", "1"),
-    ],
-)
-def test_a_switch_is_turned(default: str, other: str, tmp_path: Path) -> None:
-    """As people write them: xacro takes each."""
-    inside = (
-        f'<xacro:arg name="arm" default="{default}"/><xacro:arg name="arm" default="x"/>'
-        '<xacro:if value="$(arg arm)"><link name="arm"/></xacro:if>'
-    )
-    path = written(tmp_path, inside)
-    assert adopt(str(tmp_path)).configurations == (f"{path} arm:={other}",)
-
-
 def test_the_world_of_another_configuration_is_no_name_of_the_robot(tmp_path: Path) -> None:
     """By default the macro's parent is a link of the robot, with the switch it is the world."""
     inside = (

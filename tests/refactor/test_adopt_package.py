@@ -302,15 +302,6 @@ def test_sections_of_nodes_that_get_the_namespace_are_told(
     assert [f"{at} {name}{one}" for (at, name), one in zip(names, more, strict=True)] == said
 
 
-def test_names_are_searched_in_code_and_data_of_every_kind(package: Path) -> None:
-    code = {"py", "cpp", "hpp", "cc", "hh", "h", "c", "lua"}
-    data = {"yaml", "yml", "world", "sdf", "srdf", "rviz"}
-    for kind in (*code, *data):
-        (package / f"src/a.{kind}").write_text("x = 'arm'\n" if kind in code else "x: arm\n")
-    found = named_elsewhere(str(package), ["arm"], ())
-    assert {it.place.rpartition(".")[2] for it in found} == {f"{it}:1" for it in code | data}
-
-
 @pytest.mark.parametrize("folder", ["build", "install", "log", "node_modules", ".git", "src/build"])
 def test_what_a_build_made_is_not_searched(package: Path, folder: str) -> None:
     (package / folder).mkdir()
@@ -353,12 +344,6 @@ def test_an_argument_with_the_name_of_the_robot_is_one(package: Path) -> None:
         text = text.replace(f'"{it}"', f'"$(arg robot_name)_{it}"')
     (package / "urdf/r.urdf.xacro").write_text(text)
     assert list(adopt(str(package)).already.values()) == ["robot_name"]
-
-
-def test_the_world_is_no_name_of_the_robot(package: Path) -> None:
-    (package / "urdf/r.urdf.xacro").write_text(ROBOT.format('  <link name="world"/>\n'))
-    (package / "config/c.yaml").write_text("a: {frame: world, other: base}\n")
-    assert [it.why.split()[2] for it in adopt(str(package)).left] == ["'base',"]
 
 
 def test_an_argument_for_something_else_is_none(package: Path) -> None:

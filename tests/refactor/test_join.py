@@ -486,15 +486,6 @@ def test_a_frame_that_its_own_author_lost_is_no_fault_of_the_join() -> None:
     assert b"<frame_id>{model}/odom</frame_id>" in made.data
 
 
-def test_parts_may_come_one_by_one() -> None:
-    arm = b'<robot name="arm"><link name="base"/></robot>'
-    hand = b'<robot name="hand"><link name="palm"/></robot>'
-    parts = (Part(arm), Part(hand, "base", prefix="h_"))
-    made = join(it for it in parts)
-    assert made == join(parts)
-    assert b'<link name="h_palm"/>' in made.data
-
-
 def test_two_materials_that_got_the_prefix_lose_it_again() -> None:
     def robot(name: str, link: str, red: str, blue: str) -> bytes:
         colours = "".join(

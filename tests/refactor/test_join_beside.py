@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 import yaml
-from lxml import etree
 from paths import fixture_text
 
 from multibot_rewrite import InputError, Part, join
@@ -74,14 +73,6 @@ def test_one_srdf_has_what_the_parts_have_and_the_pair_that_meets() -> None:
     )
 
 
-def test_an_srdf_of_one_part_is_enough() -> None:
-    first, second = parts()
-    made = etree.fromstring(join([first._replace(srdf=None), second]).srdf)
-    assert made.get("name") == "arm"
-    assert made.xpath("group/@name") == ["g_fingers"]
-    assert join([it._replace(srdf=None) for it in (first, second)]).srdf == b""
-
-
 def test_a_group_of_two_parts_and_what_is_no_srdf_are_refused() -> None:
     first, second = parts("")
     both = ARM_SRDF.replace('"arm"', '"fingers"')
@@ -129,24 +120,6 @@ def test_of_two_lists_each_item_is_there_once_and_a_long_one_stays_a_line(tmp_pa
     made = join([arm._replace(controllers=[one]), gripper._replace(controllers=[other])])
     text = ", ".join([*long, "more"])
     assert f"    hardware_unconfigured: [{text}]\n" in made.controllers.decode()
-
-
-def test_a_broadcaster_of_all_joints_gets_no_frame_of_one_part(tmp_path: Path) -> None:
-    one, other = files(tmp_path)
-    own = "\njoint_state_broadcaster: {ros__parameters: {use_local_topics: false}}\n"
-    Path(other).write_text(Path(other).read_text() + own)
-    arm, gripper = parts()
-    made = join([arm._replace(controllers=[one]), gripper._replace(controllers=[other])])
-    found = yaml.safe_load(made.controllers)["/joint_state_broadcaster"]
-    assert found == {"ros__parameters": {"use_local_topics": False}}
-
-
-def test_a_link_of_an_srdf_that_no_description_has_is_told() -> None:
-    arm, gripper = parts()
-    said = GRIPPER_SRDF.replace('link2="finger"', 'link2="thumb"')
-    made = join([arm, gripper._replace(srdf=said)])
-    assert said != GRIPPER_SRDF
-    assert any("MB807" in it and "'thumb'" in it for it in made.notes)
 
 
 def test_controllers_that_meet_are_refused_and_other_values_told(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ from types import FunctionType
 import pytest
 from lxml import etree
 
-from multibot_rewrite import Joined, Part, ProofError, join, split
+from multibot_rewrite import Joined, Part, ProofError, join
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.joining import blocks
 
@@ -63,24 +63,6 @@ def test_parts_of_one_hardware_have_one_system() -> None:
 
 def test_without_it_each_part_has_its_own() -> None:
     assert driven(two(one_system=False)) == {"l_driver": LEFT, "r_driver": RIGHT}
-
-
-def test_the_parts_come_out_byte_by_byte() -> None:
-    parts = split(two().data)
-    assert [parts[it].decode() for it in ("l", "r")] == [ONE, ONE]
-
-
-def test_a_third_part_goes_into_the_same_one() -> None:
-    made = join(
-        [
-            Part(ONE, prefix="a_"),
-            Part(ONE, "a_tool", prefix="b_", one_system=True),
-            Part(ONE, "b_tool", prefix="c_", one_system=True),
-        ]
-    )
-    names = [f"{it}_{name}" for it in "abc" for name in ("turn", "wrist")]
-    assert [name for _, name in driven(made)["a_driver"]] == names
-    assert {it.decode() for it in split(made.data).values()} == {ONE}
 
 
 @pytest.mark.parametrize(

@@ -63,13 +63,6 @@ def test_a_python_launch_file_takes_it(case: str) -> None:
     assert changed(HEAD + before) == HEAD[:-1] + MORE + after
 
 
-def test_what_is_imported_is_not_again() -> None:
-    head = f"{HEAD}from launch.actions import DeclareLaunchArgument\n"
-    before, after = PYTHON["one line"]
-    more = "from launch.substitutions import LaunchConfiguration\n"
-    assert changed(head + before) == head + more + after
-
-
 @pytest.mark.parametrize("case", LEFT)
 def test_what_runs_xacro_otherwise_is_left_with_its_line(case: str) -> None:
     made = with_argument("a.launch.py", f"{HEAD}{LEFT[case]}".encode(), "prefix", ["r.urdf.xacro"])
@@ -210,15 +203,6 @@ def test_a_namespace_that_no_xacro_takes_is_for_what_belongs_to_the_description(
         made = with_argument(path, text.encode(), "prefix", ["r.urdf.xacro"], (), space)
         assert made.spaced == of_robot
         assert made.data and (b"namespace" in made.data) == of_robot
-
-
-def test_a_line_of_its_own_is_for_the_namespace_where_each_has_one() -> None:
-    node = 'Node(\n    package="robot_state_publisher",\n    executable="a",\n)'
-    source = f'{HEAD}t = Command(["xacro ", "r.urdf.xacro"])\nx = LaunchDescription([{node}])\n'
-    space = Space("namespace", True)
-    made = with_argument("a.launch.py", source.encode(), "prefix", ["r.urdf.xacro"], (), space)
-    wanted = node.replace(",\n", ',\n    namespace=LaunchConfiguration("namespace"),\n', 1)
-    assert wanted in (made.data or b"").decode()
 
 
 def test_an_xml_launch_file_puts_it_there_too() -> None:

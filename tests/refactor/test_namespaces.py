@@ -62,10 +62,6 @@ def test_names_of_arguments_are_those_that_people_use() -> None:
     assert SPACES == ("namespace", "robot_namespace", "ros_namespace")
 
 
-def test_what_the_rewrite_makes_is_proved(tmp_path: Path) -> None:
-    assert verified(tmp_path, lambda it: it) == (("r.urdf.xacro",), [])
-
-
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [

@@ -296,12 +296,6 @@ def test_a_class_of_other_releases(distro: str, expected: list[str], tmp_path: P
     assert said("MB124", text, tmp_path, distro) == expected
 
 
-def test_a_node_of_another_name_since_humble(tmp_path: Path) -> None:
-    assert said("MB110", "recoveries_server {a: 1}", tmp_path) == [
-        "warning no supported release has a node recoveries_server: it is called behavior_server"
-    ]
-
-
 VOXELS = (
     "local_costmap/local_costmap {plugins: [v], v.plugin: 'nav2_costmap_2d::VoxelLayer',"
     " v.observation_sources: scan, "

@@ -66,38 +66,12 @@ def test_one_manager_of_nodes_that_are_gone_is_one_line() -> None:
     assert len(it.names) == 9
 
 
-def test_no_clock_explains_what_waits_for_time() -> None:
-    lines = [f"/robot1/{it} subscribes /clock {CLOCK}" for it in ("amcl", "pilot")]
-    lines += ["/robot1/amcl has use_sim_time true", "/robot1/slam has use_sim_time false"]
-    (it,) = found(*lines)
-    assert it.code == "MG501" and "(MG514)" in it.hint
-
-
-def test_two_parents_of_a_circle_are_the_circle() -> None:
-    told = found(
-        "transform base_footprint -> base_link on /robot1/tf by /robot1/rsp",
-        "transform base_link -> laser on /robot1/tf by /robot1/rsp",
-        "transform laser -> base_link on /robot1/tf by /robot1/other",
-    )
-    assert codes(told) == ["MG403"]
-
-
 def test_data_of_two_robots_on_one_topic_explains_who_misses_it() -> None:
     told = found(
         *(f"/robot{it}/base publishes /odom {ODOM}" for it in "12"),
         *(f"/fleet subscribes /robot{it}/odom {ODOM}" for it in "12"),
     )
     assert codes(told) == ["MG320"]
-
-
-def test_a_relay_to_another_robot_is_why_it_has_two_senders() -> None:
-    told = found(
-        *(f"/robot{it}/base subscribes /robot{it}/cmd_vel {TWIST}" for it in "12"),
-        *(f"/robot{it}/pilot publishes /robot{it}/cmd_vel {TWIST}" for it in "12"),
-        f"/relay subscribes /robot1/cmd_vel {TWIST}",
-        f"/relay publishes /robot2/cmd_vel {TWIST}",
-    )
-    assert codes(told) == ["MG314"]
 
 
 FIX, POSE = "sensor_msgs/msg/NavSatFix", "geometry_msgs/msg/PoseWithCovarianceStamped"

@@ -162,27 +162,6 @@ def test_a_slash_before_a_name_or_a_rule_is_no_slip(rule: str, known: Knowledge)
     assert judged(known, "MR103", started(*names, remappings=((rule, "x"),))) == []
 
 
-@pytest.mark.parametrize(("namespace", "count"), [("/robot1", 0), ("/robot2", 1)])
-def test_a_rule_for_a_name_that_a_parameter_has_below_the_namespace(
-    namespace: str, count: int, known: Knowledge
-) -> None:
-    """The standard file of Nav2 names a footprint; a build writes it and keeps the rule."""
-    name, rule = "/robot1/local_costmap/published_footprint", "/local_costmap/published_footprint"
-    node = started(
-        *("nav2_collision_monitor", "collision_monitor", "collision_monitor"),
-        namespace=namespace,
-        parameters=with_values(
-            {
-                "polygons": ["Front"],
-                "Front.action_type": "approach",
-                "Front.footprint_topic": name,
-            }
-        ),
-        remappings=((rule, "local_costmap/published_footprint"),),
-    )
-    assert len(judged(known, "MR103", node)) == count
-
-
 def test_files_that_are_not_there(known: Knowledge, tmp_path: Path) -> None:
     there, gone = tmp_path / "there.yaml", tmp_path / "gone.yaml"
     there.write_text("")

@@ -43,21 +43,6 @@ def test_a_reader_outside_the_robots_is_told_whoever_else_reads(robots: list[str
     assert bool(found[0].remaps) is not several
 
 
-@pytest.mark.parametrize(
-    "line",
-    [
-        f"/rviz2 subscribes /scan {SCAN}",
-        f"/rosbag2_recorder subscribes /scan {SCAN}",
-        f"/my_node subscribes /cmd_vel {TWIST}",
-        "/my_node subscribes /scan std_msgs/msg/String",
-        f"/my_node subscribes /robot1/scan {SCAN}",
-    ],
-)
-def test_what_is_no_reader_of_a_robots_data(line: str) -> None:
-    robots = [*ROBOTS, *(f"/robot{it}/base publishes /robot{it}/odom {ODOM}" for it in "12")]
-    assert told(*robots, line) == []
-
-
 def test_scans_that_robots_share_on_purpose() -> None:
     shared = [
         f"/robot{it}/slam_toolbox {does} /localized_scan {SCAN}"

@@ -7,68 +7,12 @@ Of ``rules/system``: what asks a plan.
 from __future__ import annotations
 
 import pytest
-from graph_calls import beside, check, index, whose_by_plan
+from graph_calls import check
 from graph_examples import read_example
 
-from multibot_rewrite.rules.system.tf_causes import silent_topics
 from multibot_rewrite.system.records import Edge
 
 TWIST, TEXT = "geometry_msgs/msg/Twist", "std_msgs/msg/String"
-
-
-@pytest.mark.parametrize(
-    ("running", "found"),
-    [
-        ("/robot1/gripper", ["/robot1/gripper"]),
-        ("/gripper", ["/gripper"]),
-        # What comes and goes beside any fleet.
-        ("/rviz2", []),
-        ("/robot1/rviz2", []),
-        ("/_ros2cli_12", []),
-        ("/rosbag2_recorder", []),
-        # A planned one is no tool, whatever it is called.
-        ("/robot1/driver", []),
-    ],
-)
-def test_a_node_that_is_in_no_plan_and_no_tool(running: str, found: list[str]) -> None:
-    plan, graph = read_example(f"as planned: /robot1/driver\nrunning: {running}")
-    assert [it.node for it in check(plan, graph) if it.code == "MG108"] == found
-
-
-@pytest.mark.parametrize(
-    ("lines", "silent"),
-    [
-        (f"planned: /robot1/a subscribes /robot1/cmd {TWIST}", {"/robot1/cmd"}),
-        (f"as planned: /robot1/a publishes /robot1/cmd {TWIST}", set()),
-        (f"planned: /robot1/a subscribes /robot1/cmd {TEXT}", set()),
-        (f"planned: /robot2/a subscribes /robot2/cmd {TWIST}", set()),
-        (
-            f"planned: /robot1/a subscribes /robot1/cmd {TWIST}\n"
-            f"running: /x publishes /robot1/cmd {TWIST}",
-            set(),
-        ),
-        (
-            "planned: /robot1/b publishes /robot1/x\n"
-            f"planned: topic /robot1/cmd over a bridge that publishes {TWIST}",
-            {"/robot1/cmd"},
-        ),
-        (
-            "planned: /robot1/b publishes /robot1/x\n"
-            f"planned: topic /robot1/cmd over a bridge that subscribes {TWIST}",
-            set(),
-        ),
-        (
-            "planned: /robot1/b publishes /robot1/x\n"
-            f"planned: topic /robot1/cmd over a bridge that publishes {TEXT}",
-            set(),
-        ),
-    ],
-)
-def test_topics_that_a_robot_needs_and_nobody_sends(lines: str, silent: set[str]) -> None:
-    made, graph = read_example(f"planned: /robot1/driver\nplanned: /robot2/driver\n{lines}")
-    plan = index(made, whose_by_plan(made))
-    seen = beside(plan, graph)
-    assert silent_topics(plan, seen, plan.declared["robot1"], TWIST) == silent
 
 
 ORDER = f"/robot1/driver subscribes /robot1/cmd_vel {TWIST}"
@@ -451,18 +395,6 @@ def test_each_robot_that_lacks_a_name_is_told() -> None:
     assert all(
         f"by the plan /robot{at}/a should publish" in it.hint for at, it in enumerate(found, 1)
     )
-
-
-def test_the_only_name_of_its_type_is_the_one_in_its_place() -> None:
-    """One line, although it is missing and the other one is of no robot."""
-    lines = f"planned: /robot1/a publishes /robot1/x {TEXT}\nplanned: /robot2/a\n"
-    (found,) = (
-        it
-        for it in check(*read_example(f"{lines}running: /robot1/a publishes /y/other {TEXT}"))
-        if it.node == "/robot1/a"
-    )
-    assert (found.code, found.names) == ("MG102", ("/robot1/x", "/y/other"))
-    assert "it publishes /y/other of that type" in found.hint
 
 
 TF = "tf2_msgs/msg/TFMessage"

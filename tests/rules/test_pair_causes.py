@@ -13,12 +13,11 @@ from graph_examples import read_example
 
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.rules.system.causes import (
+    Spelled,
+    alike,
     caused,
     how_to_pass,
     how_to_remap,
-    name_without_rules,
-    names_without_rules,
-    remap_rule,
     why_not_remapped,
     why_other_name,
 )
@@ -58,30 +57,6 @@ def plan_of(lines: str, **changes: Any) -> Index:
 )
 def test_a_similar_name(name: str, known: list[str], found: str) -> None:
     assert similar(name, known) == found
-
-
-@pytest.mark.parametrize(
-    ("others", "tools", "found"),
-    [
-        (["/lidar"], [], "/lidar"),
-        (["/robot_1/lidar"], [], "/robot_1/lidar"),
-        (["/Robot1/lidar"], [], "/Robot1/lidar"),
-        (["/robot1/lidar_node"], [], "/robot1/lidar_node"),
-        (["/robot1/lidra"], [], "/robot1/lidra"),
-        (["/robot2/lidar_node"], [], ""),
-        (["/robot1/camera"], [], ""),
-        # A tool may have the name itself, and no similar one.
-        ([], ["/lidar"], "/lidar"),
-        ([], ["/robot1/lidar_node"], ""),
-    ],
-)
-def test_the_node_that_a_missing_one_probably_is(
-    others: list[str], tools: list[str], found: str
-) -> None:
-    plan = plan_of(SCAN + "\n/robot2/lidar")
-    missing = {"/robot1/lidar": "robot1"}
-    matches = probable_matches(missing, [*others, *tools], others, plan.of_names)
-    assert matches == ({"/robot1/lidar": found} if found else {})
 
 
 def test_nothing_is_missing() -> None:
@@ -127,44 +102,6 @@ def test_a_prefix_in_front_of_planned_frames(
 )
 def test_a_cause_has_its_place(place: str, file: str, line: int) -> None:
     assert caused("why", place)[:3] == ("why", file, line)
-
-
-@pytest.mark.parametrize(
-    ("code", "without", "rule"),
-    [
-        ("/scan", "/scan", "/scan:=scan"),
-        ("scan", "/robot1/scan", ""),
-        ("laser", "/robot1/laser", "laser:=scan"),
-        ("~/scan", "/robot1/lidar/scan", "~/scan:=scan"),
-    ],
-)
-def test_the_rule_for_a_name_in_the_code(code: str, without: str, rule: str) -> None:
-    plan = plan_of(SCAN)
-    end = plan.system.ends[0]._replace(code_name=code)
-    assert (name_without_rules(end), remap_rule(end)) == (without, rule)
-    pass_it = f"; pass it with --ros-args -r {rule}, or with remappings=[{(code, 'scan')}] in the"
-    assert how_to_remap(plan, end) == (f"{pass_it} launch file" if rule else "")
-    why = f"the remap rule {rule} is not applied"
-    other = "another remap rule, or an absolute name in its parameters, changes it"
-    assert why_not_remapped(plan, end)[:3] == (why if rule else other, "", 0)
-
-
-@pytest.mark.parametrize(
-    ("node", "code", "names"),
-    [
-        ("/robot1/lidar", "~/scan", ("/robot1/lidar/scan", "/scan", "/scan")),
-        ("/robot1/lidar", "laser", ("/robot1/laser", "/laser", "/scan")),
-        # A node of no robot, with a name of one.
-        ("/server", "laser", ("/laser", "/laser", "/scan")),
-        ("/robot1/lidar", "scan", ("/scan", "/scan")),
-    ],
-)
-def test_names_of_a_node_that_is_given_no_rule(
-    node: str, code: str, names: tuple[str, ...]
-) -> None:
-    plan = plan_of(f"{node} publishes /robot1/scan\n/robot1/driver")
-    end = plan.system.ends[0]._replace(code_name=code)
-    assert names_without_rules(plan, end) == names
 
 
 @pytest.mark.parametrize(
@@ -284,3 +221,25 @@ def test_why_a_node_has_another_name(
     plan = plan_of(f"{node} publishes /robot1/scan", **changes)
     place = ("arm.urdf", 12) if "plugin" in changes else ("", 0)
     assert why_other_name(plan, node, match)[:3] == (hint, *place)
+
+
+# Names that are another one but for a slip: expectations are what a person would call a slip.
+
+
+@pytest.mark.parametrize(
+    ("name", "known", "found"),
+    [
+        ("/r/Scan", ["/r/odom", "/r/scan"], "/r/scan"),
+        ("/r/cmd-vel", ["/r/cmd_vel"], "/r/cmd_vel"),
+        ("/r/odmo", ["/r/scan", "/r/odom"], "/r/odom"),
+        # It is no slip of itself, and what it is there beside.
+        ("/r/scan", ["/r/scan"], ""),
+        ("/r/scan", ["/r/scan", "/r/Scan"], "/r/Scan"),
+        # Two things: numbers, sides, another word.
+        ("/r/scan1", ["/r/scan2"], ""),
+        ("/r/lidar_l", ["/r/lidar_r"], ""),
+        ("/r/odom", ["/r/map"], ""),
+    ],
+)
+def test_a_slip_is_the_known_name(name: str, known: list[str], found: str) -> None:
+    assert alike(name, Spelled(known), "acme/msg/A") == found

@@ -157,13 +157,6 @@ IN_BOTH = [it for it in EVERY if BUILT not in it.options]
 CODES = {it.code for it in (*EVERY, *SHARED)}
 
 
-@pytest.mark.parametrize("name", ["map_server", "map_server2", "gps_node"])
-def test_a_managed_node_may_be_of_another_file(name: str, tmp_path: Path) -> None:
-    more = f"map_server{'s' if name == 'map_server' else 3}:\n  ros__parameters: {{a: 1}}\n"
-    (tmp_path / "nav2.yaml").write_text(MANAGED.format(name) + more)
-    assert "MB894" not in {it.code for it in lint_file(str(tmp_path / "nav2.yaml"), Settings())}
-
-
 @pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("name", BROKEN)

@@ -6,7 +6,7 @@ from __future__ import annotations
 import pytest
 
 from multibot_rewrite.rules.schema.sdf_values import misread, number_in
-from multibot_rewrite.rules.schema.sections import is_fine, shortened, wrong_numbers
+from multibot_rewrite.rules.schema.sections import wrong_numbers
 from multibot_rewrite.rules.schema.srdf import ELEMENTS, numbers_in
 from multibot_rewrite.rules.schema.versions import (
     RVIZ,
@@ -148,36 +148,6 @@ FINITE = (VALUE, ", which is not finite", "write a large number, or leave it out
 )
 def test_what_is_wrong_with_numbers(kind: str, value: str, wrong: tuple[str, str, str]) -> None:
     assert wrong_numbers(value, kind) == wrong
-
-
-@pytest.mark.parametrize(
-    ("kind", "value", "fine"),
-    [
-        ("number", " 1.5e-3", True),
-        ("number", "1 ", False),
-        ("number", "1" * 201, False),
-        ("number", "1" * 200, True),
-        ("unsigned", "0", True),
-        ("unsigned", " -1", False),
-        ("positive", "0.05", True),
-        ("positive", "0.0", False),
-        ("positive", "-1", False),
-        ("positives", "1 2 0", False),
-        ("positives", "1 2 3", True),
-        ("version", "1.2", True),
-        ("version", "1.3", False),
-        ("rgba", "0 0.5 1.0 1", True),
-        ("rgba", "0 0 0 2", False),
-        ("one", "1", False),
-    ],
-)
-def test_a_value_that_looks_as_most_do(kind: str, value: str, fine: bool) -> None:
-    assert is_fine(kind, value) == fine
-
-
-def test_a_long_text_is_shortened() -> None:
-    assert shortened("x" * 59) == "x" * 59
-    assert shortened("x" * 60) == "x" * 56 + " ..."
 
 
 @pytest.mark.parametrize(

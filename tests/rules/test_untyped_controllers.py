@@ -70,12 +70,3 @@ def test_its_type_is_a_parameter_of_its_manager(
         text = "from launch.substitutions import LaunchConfiguration\n" + text
     (tmp_path / "a.launch.py").write_text(text)
     assert _codes(tmp_path, capsys) == found
-
-
-@pytest.mark.more
-def test_a_manager_that_is_started_elsewhere_may_have_it(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    text = LAUNCH.format(manager="", space="", spawner=JSB.format("cm", ""))
-    (tmp_path / "a.launch.py").write_text(text)
-    assert "MG728" not in _codes(tmp_path, capsys)

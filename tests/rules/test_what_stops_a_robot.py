@@ -121,22 +121,6 @@ def test_one_joystick_for_two_robots() -> None:
     assert codes(*lines[:2]) == []
 
 
-@pytest.mark.parametrize(
-    ("lines", "told"),
-    [
-        ([f"/robot1/app calls /robot1/clear {CLEAR}"], ["MG304"]),
-        # Another robot's, and what all robots call in vain by their make.
-        ([f"/robot1/app calls /robot2/clear {CLEAR}"], []),
-        ([f"/robot{it}/app calls /robot{it}/clear {CLEAR}" for it in "12"], []),
-    ],
-)
-def test_a_service_that_nobody_serves(lines: list[str], told: list[str]) -> None:
-    others = [f"/robot{it}/base publishes /robot{it}/odom {ODOM}" for it in "12"]
-    assert [(it.code, it.level) for it in found(*others, *lines)] == [
-        (it, "warning") for it in told
-    ]
-
-
 def test_goals_for_the_one_controller_under_another_name() -> None:
     lines = [
         f"/robot1/moveit calls /robot1/arm_controller/follow {FOLLOW}",

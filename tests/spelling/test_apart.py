@@ -12,12 +12,10 @@ import pytest
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import RELEASES
-from multibot_rewrite.base.rosnames import bind, parse_remap, resolve_bound
 from multibot_rewrite.knowledge.stacks import load_stack
 from multibot_rewrite.live.rehearsal import stub_nodes
 from multibot_rewrite.spelling.records import Run, Table
 from multibot_rewrite.spelling.table import build_table
-from multibot_rewrite.spelling.way_checks import running_nodes
 
 ROBOTS = ("robot1", "robot2")
 
@@ -28,46 +26,6 @@ def made(release: str, stack: str = "nav2") -> Table:
 
 def found(table: Table, node: str) -> Run:
     return next(it for it in table.runs if it.node == node and it.robot == "robot1")
-
-
-@pytest.mark.more
-@pytest.mark.parametrize("release", RELEASES)
-@pytest.mark.parametrize("stack", ["nav2", "nav2_composed"])
-def test_a_costmap_keeps_its_name_and_its_server_has_a_namespace(release: str, stack: str) -> None:
-    table = made(release, stack)
-    full = {it.node: it.full_name for it in table.runs if it.robot == "robot1"}
-    assert full["controller_server"] == "/robot1/controller_server"
-    assert full["local_costmap/local_costmap"] == "/robot1/local_costmap/local_costmap"
-    assert full["global_costmap/global_costmap"] == "/robot1/global_costmap/global_costmap"
-    assert full["amcl"] == "/amcl_robot1"
-    assert table.problems == made(release, "no_robot_state_publisher").problems
-
-
-@pytest.mark.more
-@pytest.mark.parametrize("release", RELEASES)
-@pytest.mark.parametrize("stack", ["nav2", "nav2_composed"])
-def test_topics_of_a_costmap_are_those_that_others_use(release: str, stack: str) -> None:
-    """With the rules that it has in its process, as rcl reads them."""
-    table = made(release, stack)
-    running = {it.node: it for _, it in running_nodes(table) if it.robot == "robot1"}
-
-    def name(node: str, topic: str, kind: str = "topic") -> str:
-        it = running[node]
-        rules = (parse_remap(f"{source}:={target}") for source, target in it.rules)
-        bound = bind(it.name, it.namespace, filter(None, rules))
-        return resolve_bound(topic, kind, bound)
-
-    behaviors, costmap = "behavior_server", "local_costmap/local_costmap"
-    raw = name(behaviors, "local_costmap/costmap_raw")
-    assert raw == "/local_costmap/costmap_raw/robot1"
-    assert name(costmap, "costmap_raw") == raw
-    clear = "clear_entirely_local_costmap"
-    asked = name("bt_navigator", f"local_costmap/{clear}", "service")
-    assert name(costmap, clear, "service") == asked == f"/local_costmap/{clear}/robot1"
-    assert name("controller_server", "cmd_vel") == name("velocity_smoother", "cmd_vel")
-    # The static layer joins "map" with the namespace above its own (layer.cpp joinWithParentNamespace).
-    assert name(costmap, "/robot1/map") == name(costmap, "/map") == "/map/robot1"
-    assert name(costmap, "/tf") == name("amcl", "/tf") == "/tf/robot1"
 
 
 @pytest.mark.more
@@ -105,15 +63,3 @@ def test_a_name_that_is_joined_with_the_namespace_above(release: str, rule: str 
     assert rules["speed_limit"] == "/global_costmap/speed_limit/robot1"
     server = dict(found(table, "controller_server").rules)
     assert server["speed_limit"] == "/speed_limit/robot1"
-
-
-@pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
-def test_a_shared_map_reaches_a_costmap_in_its_namespace(release: str) -> None:
-    """Its layer asks for /robot1/map (nav2_costmap_2d layer.cpp, joinWithParentNamespace)."""
-    naming = make_naming("both", shared_topics=["map"])
-    table = build_table(ROBOTS, load_stack("nav2", release), naming, release=release)
-    rules = dict(found(table, "global_costmap/global_costmap").rules)
-    assert rules["/robot1/map"] == "/map"
-    alone = build_table(ROBOTS, load_stack("nav2", release), make_naming("both"), release=release)
-    own = dict(found(alone, "global_costmap/global_costmap").rules)
-    assert "/robot1/map" not in own

@@ -7,10 +7,10 @@ import pytest
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.spelling.domain_bridge import (
-    Crossing,
     beyond,
     bridge_files,
     crossings,
+    services_apart,
     with_bridges,
 )
 from multibot_rewrite.system.records import (
@@ -50,27 +50,6 @@ def sent(name: str, by: str, to: str, types: tuple[str, str] = (STRING, STRING))
 
 
 @pytest.mark.parametrize(
-    ("ends", "found"),
-    [
-        (sent("/x", "/a/n", "/all"), [Crossing("a/b", "/x", STRING, True)]),
-        (sent("/x", "/all", "/a/n"), [Crossing("a/b", "/x", STRING, False)]),
-        (sent("/x", "/all", "/a/n", ("", STRING)), [Crossing("a/b", "/x", STRING, False)]),
-        (sent("/x", "/all", "/a/n", (STRING, "")), [Crossing("a/b", "/x", STRING, False)]),
-        # Of two robots none is in the domain of all, and robot d is in that of all.
-        (sent("/x", "/a/n", "/c/n"), []), (sent("/x", "/d/n", "/all"), []),
-        (sent("/x", "/a/n", "/a/n"), []), (sent("/rosout", "/a/n", "/all"), []),
-        ([*sent("/x", "/a/n", "/all"), end("/d/n", PUBLISHES, "/x")], []),
-        ([end("/all", CALLS, "/x", kind=SERVICE), end("/a/n", SERVES, "/x", kind=SERVICE)], []),
-        ([end("/all", SUBSCRIBES, "/x")], []), ([end("/a/n", PUBLISHES, "/x")], []),
-    ],
-)  # fmt: skip
-def test_what_is_read_in_a_domain_and_not_sent_there_crosses(
-    ends: list[End], found: list[Crossing]
-) -> None:
-    assert crossings(plan(*ends), ()) == found
-
-
-@pytest.mark.parametrize(
     ("word", "told"), [("odon", "did you mean 'odom'?"), ("zzz", "add the node that has it")]
 )
 def test_what_is_asked_for_and_no_robot_has_is_refused(word: str, told: str) -> None:
@@ -106,3 +85,27 @@ def test_a_bridge_has_a_node_in_each_domain_and_a_file() -> None:
         "  /map:", f"    type: {MAP}", "    from_domain: 4", "    to_domain: 5", kept, "",
     ]  # fmt: skip
     assert [*bridge_files(made)] == [("domain_bridge/a_b_bridge.yaml", "\n".join(text).encode())]
+
+
+# What a node of all robots makes for itself, as a cell's move_group does, is in the domain of
+# all.
+
+HELPER = "/move_group_private_*"
+TYPE = "sensor_msgs/msg/JointState"
+PLAN = System(
+    (Node("/move_group"), Node("/a/driver", robot="a")),
+    (
+        End(TOPIC, SUBSCRIBES, "/a/joint_states", TYPE, node=HELPER),
+        End(TOPIC, PUBLISHES, "/a/joint_states", TYPE, node="/a/driver"),
+        End(SERVICE, CALLS, "/a/reset", "std_srvs/srv/Empty", node=HELPER),
+        End(SERVICE, SERVES, "/a/reset", "std_srvs/srv/Empty", node="/a/driver"),
+    ),
+    robots=(Robot("a"),),
+    domains=(Domain("a", 11),),
+)
+
+
+def test_a_helper_of_all_robots_is_in_the_domain_of_all() -> None:
+    (one,) = crossings(PLAN, ())
+    assert (one.robot, one.name, one.type, one.out) == ("a", "/a/joint_states", TYPE, True)
+    assert [(end.name, *numbers) for end, *numbers in services_apart(PLAN)] == [("/a/reset", 0, 11)]

@@ -17,7 +17,7 @@ from multibot_rewrite.knowledge.records import (
     SentTransform,
 )
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.spelling.of_runs import placed, target_of
+from multibot_rewrite.spelling.of_runs import target_of
 from multibot_rewrite.spelling.plan import expect
 from multibot_rewrite.spelling.table import build_table
 from multibot_rewrite.spelling.transforms import (
@@ -25,7 +25,6 @@ from multibot_rewrite.spelling.transforms import (
     edges_of,
     links_of,
     sent_by,
-    state_publisher_of,
     with_odometry,
 )
 from multibot_rewrite.system.records import (
@@ -73,21 +72,6 @@ def test_an_end_that_surely_is_there_stands_for_those_that_may_be() -> None:
 def test_what_names_a_node(text: str, origin: Origin) -> None:
     assert origin_of(text) == origin
     assert str(origin) == text
-
-
-@pytest.mark.parametrize(
-    ("layout", "node", "apart", "place"),
-    [
-        ("L1", "amcl", False, ("/a", "amcl")),
-        ("L1", "map/map", False, ("/a/map", "map")),
-        ("L4", "amcl", False, ("/", "amcl_a")),
-        ("L4", "map/map", False, ("/map", "map_a")),
-        ("L4", "map/map", True, ("/a/map", "map")),
-        ("L4", "/amcl/", True, ("/a", "amcl")),
-    ],
-)
-def test_a_node_is_placed(layout: str, node: str, apart: bool, place: tuple[str, str]) -> None:
-    assert placed("a", node, make_naming(layout), apart) == place
 
 
 @pytest.mark.parametrize(
@@ -184,20 +168,6 @@ def test_a_static_transform_may_have_the_robots_name_already() -> None:
 
 
 @pytest.mark.parametrize(
-    ("names", "found"),
-    [
-        (["robot_state_publisher", "dock"], "robot_state_publisher"),
-        (["dock", "robot_state_publisher"], "robot_state_publisher"),
-        (["dock", "other"], "dock"),
-        ([], ""),
-    ],
-)
-def test_which_node_sends_the_description(names: list[str], found: str) -> None:
-    nodes = [NodeFacts("driver", "acme", ()), *(STATE._replace(name=it) for it in names)]
-    assert state_publisher_of(nodes) == found
-
-
-@pytest.mark.parametrize(
     ("frames", "condition", "root", "edges"),
     [
         ("odom base", "", "", [("odom", "base")]),
@@ -250,3 +220,36 @@ def test_odometry_that_no_node_is_known_to_send_is_added() -> None:
     assert with_odometry(fixed, "a", naming) == (fixed, "")
     two = {**edges, ("a", "x"): [edge_of("map", "a/other")]}
     assert with_odometry(two, "a", naming) == (two, "")
+
+
+# Frames of a plan that no description declares: what messages, plugins and parameters may name.
+
+
+def others(layout: str, *defaults: str) -> set[str]:
+    """Of robot1, which has base_link alone and a node with frames that are called so by default."""
+    naming = make_naming(layout)
+    frames = tuple(FrameParameter(f"f{at}", default=it) for at, it in enumerate(defaults))
+    facts = [NodeFacts("scanner", "acme", (), frames=frames)]
+    table = build_table(["robot1"], facts, naming, release=NEWEST_LTS)
+    (robot,) = expect(table, naming, {"robot1": ["base_link"]}).robots
+    return {*robot.other_frames}
+
+
+@pytest.mark.parametrize(
+    ("default", "planned"),
+    [
+        ("laser", True),
+        # tf2 takes no slash in front.
+        ("/laser", True),
+        # It is that of another parameter, or there is none.
+        ("<laser>", False),
+        ("", False),
+    ],
+)
+def test_a_default_frame_of_a_node_may_come(default: str, planned: bool) -> None:
+    assert others("tf-per-robot", default) - others("tf-per-robot") == (
+        {"laser"} if planned else set()
+    )
+    assert others("postfix", default) - others("postfix") == (
+        {"laser/robot1"} if planned else set()
+    )

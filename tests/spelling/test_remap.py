@@ -79,28 +79,6 @@ def rules(found: Table, robot: str, node: str) -> dict[str, str]:
 # ---------------------------------------------------------------- what is needed
 
 
-@pytest.mark.parametrize(
-    ("layout", "wanted"),
-    [
-        pytest.param("L1", {"/tf": "tf", "/tf_static": "tf_static"}, id="tf-per-robot"),
-        pytest.param("L2", {}, id="frames-per-robot"),
-        pytest.param("L3", {"/tf": "tf", "/tf_static": "tf_static"}, id="both"),
-        pytest.param(
-            "L4",
-            {
-                "/tf": "/tf/robot1",
-                "/tf_static": "/tf_static/robot1",
-                "robot_description": "robot_description/robot1",
-                "joint_states": "joint_states/robot1",
-            },
-            id="postfix",
-        ),
-    ],
-)
-def test_rules_of_a_state_publisher(layout: str, wanted: dict[str, str]) -> None:
-    assert rules(table(layout), "robot1", "robot_state_publisher") == wanted
-
-
 # ---------------------------------------------------------------- what is wrong
 
 

@@ -18,7 +18,7 @@ from multibot_rewrite.spelling.records import Run, Table
 from multibot_rewrite.spelling.table import build_table
 from multibot_rewrite.spelling.way_checks import running_nodes
 from multibot_rewrite.spelling.ways import deliveries, rules_by_taker
-from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 
 TF = Endpoint(TOPIC, PUBLISHES, "/tf")
 HEARD = Endpoint(TOPIC, SUBSCRIBES, "/tf", helper=True)
@@ -115,13 +115,3 @@ def test_a_component_has_the_rules_of_its_loading_alone_its_helper_those_of_the_
     costmap = (("map:/tf", "/robot2/tf"), ("/tf", "/robot2/tf"))
     assert set(amcl.process_rules) == {*tf, *costmap}
     assert running(made, "controller_server").rules == (("/cmd", "cmd"),)
-
-
-def test_a_container_has_all_rules_of_an_action_that_a_helper_calls() -> None:
-    """rcl resolves each of the five parts by itself (rcl_action names.c)."""
-    called = Endpoint(ACTION, CALLS, "/spin", helper=True)
-    navigator = NodeFacts("bt_navigator", "nav2_bt_navigator", (called,), container="box")
-    parts = ("send_goal", "cancel_goal", "get_result", "feedback", "status")
-    names = ["spin", *(f"spin/_action/{it}" for it in parts)]
-    rules = dict(running(table("jazzy", BOX, navigator), "box").process_rules)
-    assert rules == {f"/{it}": it for it in names}

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import pytest
-from graph_calls import GuessedRobot, guess_robots, whose_by_guess
+from graph_calls import GuessedRobot, guess_robots
 
 from multibot_rewrite.system.environment import setting_caveats
 from multibot_rewrite.system.records import (
@@ -92,75 +92,6 @@ def graph(nodes: str, topics: str, frames: str = "") -> System:
 )
 def test_robots_show_by_their_topics(nodes: str, topics: str, robots: list[str]) -> None:
     assert [it.name for it in guess_robots(graph(nodes, topics))] == robots
-
-
-@pytest.mark.parametrize(
-    ("frames", "robots"),
-    [
-        # A part has a base of its own, which hangs on that of a robot without a name.
-        ("base_link>plate plate>a/base_link", []),
-        ("/base_link>/a_base_footprint", []),
-        ("base_link>arm arm>a/base_link", []),
-        ("odom>a/base_link", [("a", "a/", "")]),
-        ("base_link>a/arm", [("a", "a/", "")]),
-        ("a_odom>a_base_link a/x>a_y", [("a", "a_", "")]),
-        ("odom.a>base_link.a", [("a", "", ".a")]),
-        ("odom>base_link", [("a", "", "")]),
-    ],
-)
-def test_a_robot_with_a_namespace_has_the_word_that_most_frames_have(
-    frames: str, robots: list[tuple[str, str, str]]
-) -> None:
-    found = guess_robots(graph("/f/a/x", "/f/a/tf", frames))
-    assert found == tuple(GuessedRobot(name, "/f/a", *way) for name, *way in robots)
-
-
-@pytest.mark.parametrize(
-    ("name", "robot", "plain"),
-    [
-        ("/f/a/scan", "a", "/scan"),
-        ("/f/a/x/scan", "a", "/x/scan"),
-        ("/f/a", "a", "/f"),
-        ("/a", "a", "/a"),
-        ("/scan/a", "a", "/scan"),
-        ("/x/a_scan", "", "/x/a_scan"),
-        ("/scan_a", "a", "/scan"),
-        ("/a_scan", "a", "/scan"),
-        ("/x_b_scan", "", "/x_b_scan"),
-        ("/b_scan", "b", "/scan"),
-        # Words of a name count in the root only.
-        ("/b/b_scan", "", "/b/b_scan"),
-        ("/c_scan", "", "/c_scan"),
-        ("/scan", "", "/scan"),
-    ],
-)
-def test_whose_a_name_is_by_guess(name: str, robot: str, plain: str) -> None:
-    whose = whose_by_guess(GUESSED)
-    assert (whose.robot(name), whose.plain(name)) == (robot, plain)
-
-
-@pytest.mark.parametrize(
-    ("frame", "robot", "plain"),
-    [
-        ("a/odom", "a", "odom"),
-        ("odom_b", "b", "odom"),
-        ("c/odom", "c", "odom"),
-        ("d/odom", "", "d/odom"),
-        ("odoma/", "", "odoma/"),
-        ("_bodom", "", "_bodom"),
-    ],
-)
-def test_whose_a_frame_is_by_guess(frame: str, robot: str, plain: str) -> None:
-    whose = whose_by_guess(GUESSED)
-    assert (whose.frame_robot(frame), whose.plain_frame(frame)) == (robot, plain)
-    assert whose.robots == ("a", "b", "c")
-
-
-GUESSED = (
-    GuessedRobot("b", "", behind="_b"),
-    GuessedRobot("c", "", before="c/", only_frames=True),
-    GuessedRobot("a", "/f/a", before="a/"),
-)
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,6 @@ import pytest
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.system.ownership import (
     NameOwnership,
-    name_ownership,
     whose_by_plan,
     without_name,
 )
@@ -93,54 +92,6 @@ def topic(node: str, name: str, code: str = "") -> End:
     return End(TOPIC, PUBLISHES, name, "", "", node, None, "", code)
 
 
-PLAN = System(
-    nodes=(node("/a/driver", "a"), node("/scan/driver", "scan"), node("/map_server")),
-    ends=(
-        topic("/a/driver", "/elsewhere", "/scan"),
-        topic("/a/driver", "/of_both"),
-        topic("/scan/driver", "/of_both"),
-    ),
-    robots=(
-        Robot("scan", ("s/base_link",), "/scan/tf", ("gps",), "s"),
-        Robot("a", ("a/base_link", "a/s"), "/a/tf", ("gps", "camera")),
-    ),
-    shared_topics=("/a/shared",),
-)
-
-
-@pytest.mark.parametrize(
-    ("name", "robot", "plain"),
-    [
-        ("/a/driver", "a", "/driver"),
-        ("/elsewhere", "a", "/elsewhere"),
-        ("/of_both", "", "/of_both"),
-        ("/map_server", "", "/map_server"),
-        ("/a/shared", "", "/a/shared"),
-        # A word of the code is no robot's, but at its place.
-        ("/x_scan", "", "/x_scan"),
-        ("/scan/odom", "scan", "/odom"),
-    ],
-)
-def test_a_plan_says_whose_a_name_is(name: str, robot: str, plain: str) -> None:
-    whose = whose_by_plan(PLAN)
-    assert (whose.robot(name), whose.plain(name)) == (robot, plain)
-
-
-@pytest.mark.parametrize(
-    ("frame", "robot", "plain"),
-    [
-        ("s/base_link", "scan", "base_link"),
-        ("a/odom", "a", "odom"),
-        ("camera", "a", "camera"),
-        ("gps", "", "gps"),
-        ("map", "", "map"),
-    ],
-)
-def test_a_plan_says_whose_a_frame_is(frame: str, robot: str, plain: str) -> None:
-    whose = whose_by_plan(PLAN)
-    assert (whose.frame_robot(frame), whose.plain_frame(frame)) == (robot, plain)
-
-
 BARE = System(
     robots=(
         Robot("barrow", ("base_link", "axle")),
@@ -169,22 +120,6 @@ BARE = System(
 )
 def test_a_part_of_a_word_is_a_robot_if_the_rest_is_a_frame(frame: str, robot: str) -> None:
     assert whose_by_plan(BARE).frame_robot(frame) == robot
-
-
-@pytest.mark.parametrize(
-    ("names", "last"),
-    [
-        ("/lidar/max /lidar/rex", True),
-        ("/max/lidar /rex/lidar", False),
-        # More at the end than at the beginning.
-        ("/lidar/max /lidar/rex /max/arm", True),
-        ("/lidar/max /max/arm", False),
-    ],
-)
-def test_where_most_names_have_their_robot(names: str, last: bool) -> None:
-    nodes = tuple(Node(it, robot="max" if "max" in it else "rex") for it in names.split())
-    plan = System(nodes=nodes, robots=(Robot("max", tf_topic="/tf"), Robot("rex", tf_topic="/tf")))
-    assert name_ownership(plan).robot_is_last is last
 
 
 def test_a_plan_of_one_robot_without_its_namespace() -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from multibot_rewrite.system import records
-from multibot_rewrite.system.environment import hidden_from_here, machines, why_not_seen
+from multibot_rewrite.system.environment import machines, why_not_seen
 from multibot_rewrite.system.merging import Look, merged
 from multibot_rewrite.system.parameters import (
     Answer,
@@ -24,7 +24,6 @@ from multibot_rewrite.system.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
-    Caveat,
     Controller,
     Edge,
     End,
@@ -108,26 +107,6 @@ ONE, TWO = "010f1111aaaaaaaa", "010f2222bbbbbbbb"
 def seen(*processes: str, **around: Any) -> System:
     nodes = (Node(f"/n{at}", it) for at, it in enumerate(processes))
     return System(nodes=tuple(nodes), environment=Environment(**{"range": "SUBNET", **around}))
-
-
-@pytest.mark.parametrize(
-    ("graph", "hidden"),
-    [
-        (seen(ONE, ONE), True),
-        (seen(ONE, TWO), False),
-        (seen(), False),
-        (seen(ONE, range="LOCALHOST"), False),
-        (seen(ONE, range="OFF"), False),
-        (seen(ONE, range="LOCALHOST", static_peers=("h",)), True),
-        (seen(ONE, discovery_server="h"), False),
-        (seen(ONE, caveats=(Caveat("looks-merged", False, ""),)), False),
-        (seen(ONE, caveats=(Caveat("same-name", False, ""),)), True),
-    ],
-)
-def test_a_robot_may_be_hidden_where_one_machine_is_all_that_was_seen(
-    graph: System, hidden: bool
-) -> None:
-    assert hidden_from_here(graph, machines(graph)) is hidden
 
 
 STARTED = "is the robot started, and with this ROS_DOMAIN_ID?"

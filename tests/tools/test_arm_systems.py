@@ -22,6 +22,7 @@ from nav2_graphs import environment
 from paths import FIXTURES, fixture_text
 
 from multibot_rewrite import compare
+from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.base.rosnames import bind, resolve_bound
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
@@ -220,3 +221,29 @@ def test_every_node_of_the_systems_has_facts() -> None:
         if kind not in facts(release)
     }
     assert lacking == set()
+
+
+# Every controller type that packages register is known, in the releases that have it.
+
+ROWS = [
+    line.split("\t")
+    for line in (FIXTURES / "interfaces/controller_types.tsv").read_text().splitlines()[1:]
+]
+# These have a branch for every release.
+WHOLE = ("ros2_controllers", "Universal_Robots_ROS2_Driver")
+
+
+@pytest.mark.parametrize("release", RELEASES)
+def test_a_registered_type_is_known(release: str) -> None:
+    nodes, types = built_in(release).nodes, built_in_nodes(release).types
+    there = {type_ for type_, _, releases in ROWS if release in releases.split()}
+    assert len(there) >= 35
+    assert sorted(it for it in there if types.get(it) not in nodes) == []
+
+
+@pytest.mark.parametrize("release", RELEASES)
+def test_no_controller_of_another_release_is_known(release: str) -> None:
+    nodes, types = built_in(release).nodes, built_in_nodes(release).types
+    every = {types[type_] for type_, repository, _ in ROWS if repository in WHOLE}
+    there = {types[type_] for type_, _, releases in ROWS if release in releases.split()}
+    assert sorted((every & nodes.keys()) - there) == []

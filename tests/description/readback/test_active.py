@@ -97,15 +97,6 @@ def test_a_plugin_of_classic_is_not_proved_where_no_gazebo_loads_it(
     assert [it for it, reason in given.items() if not reason] == loaded
 
 
-def test_the_last_hardware_block_counts() -> None:
-    """ros2_control component_parser.cpp parse_resource_from_xml: each <hardware> replaces the one
-    before it."""
-    known, other = "mock_components/GenericSystem", "my/Own"
-    blocks = "<hardware><plugin>{}</plugin></hardware><hardware><plugin>{}</plugin></hardware>"
-    assert why(robot(hardware("", blocks.format(other, known)))) == ()
-    assert why(robot(hardware("", blocks.format(known, other)))) == ("1 hardware class not known",)
-
-
 # ---------------------------------------------------------------- ROS 1
 
 

@@ -52,23 +52,6 @@ def test_the_node_of_a_classic_plugin(inside: str, node: str, topic: str) -> Non
     assert topic in names(text)
 
 
-# gazebo_ros_diff_drive.cpp: odom and /tf only where these parameters are true.
-@pytest.mark.parametrize(
-    ("inside", "found"),
-    [
-        ("", set()),
-        ("<publish_odom>true</publish_odom>", {"/odom"}),
-        ("<publish_odom>True</publish_odom>", {"/odom"}),
-        ("<publish_odom>no</publish_odom>", set()),
-        ("<publish_odom_tf>1</publish_odom_tf>", {"/tf"}),
-        ("<publish_wheel_tf><!-- x -->true</publish_wheel_tf>", {"/tf"}),
-    ],
-)
-def test_topics_that_a_parameter_turns_on(inside: str, found: set[str]) -> None:
-    topics = set(names(plugin("libgazebo_ros_diff_drive.so", inside)))
-    assert topics & {"/odom", "/tf"} == found
-
-
 # gz-sim SystemLoader.cc: lib, .so, a version and the old family's name do not count.
 @pytest.mark.parametrize(
     ("library", "name"),
@@ -87,23 +70,6 @@ def test_names_of_a_system(library: str, name: str) -> None:
     text = plugin(library, "<topic>drive</topic><odom_topic>/o</odom_topic>", name)
     assert names(text) == ["/drive", "/o"]
     assert not reading(text).unknown
-
-
-# gazebo_ros_imu.cpp of noetic reads robotNamespace and topicName, gazebo_ros_imu_sensor.cpp of ros2
-# neither; only ROS 2 has <ros>.
-@pytest.mark.parametrize(
-    ("inside", "release"),
-    [
-        ("<topicName>/imu</topicName><bodyName>b</bodyName><ros/>", "2"),
-        ("<topicName>/imu</topicName><bodyName>b</bodyName>", "1"),
-        ("<frame_name>b</frame_name>", "2"),
-        ("", "2"),
-    ],
-)
-def test_which_ros_a_plugin_is_for(inside: str, release: str) -> None:
-    text = plugin("libgazebo_ros_imu_sensor.so", inside)
-    assert ("node" in {it.kind for it in reading(text).names}) == (release == "2")
-    assert ("/imu" in names(text)) == (release == "1")
 
 
 # gz-sensors CameraSensor.cc: camera_info is beside the image, unless it is given.

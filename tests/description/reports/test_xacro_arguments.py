@@ -47,17 +47,6 @@ def written(path: Path, body: str) -> Path:
 
 
 @pytest.mark.more
-def test_a_prefix_of_an_arm() -> None:
-    arm = by_name(XACROS / "arm.urdf.xacro")
-    assert arm["tf_prefix"].uses == (
-        Use("link", "prefix", "", 3, 4, "{robot}base_link"),
-        Use("joint", "prefix", "", 2, 3, "{robot}elbow"),
-        Use("hardware", "prefix", "", 1, 1, "{robot}arm"),
-    )
-    assert arm["tf_prefix"].value == "{robot}_"
-
-
-@pytest.mark.more
 def test_an_argument_of_an_included_file_that_names_one_link() -> None:
     tool = by_name(XACROS / "arm.urdf.xacro")["tool"]
     assert tool == Argument("tool", "gripper", (Use("link", "whole", "", 1, 4, "{robot}"),), 0, "")

@@ -39,12 +39,6 @@ TEXTS = (
 )  # fmt: skip
 
 
-def spelled(naming: Naming, kind: str, text: str, namespaced: bool = False) -> str:
-    """The name for the robot; unchanged where it stays."""
-    there = affix(naming, kind, text, namespaced)
-    return there.spell(text, ROBOT) if there else text
-
-
 def takes(kind: str, mark: str) -> bool:
     """Is the separator allowed for the kind?"""
     try:
@@ -99,16 +93,6 @@ def test_removal_undoes_affix_for_any_text(
     assume(not layout.at_run_time or (side == PREFIX and (mark == "/" or kind not in FRAME_KINDS)))
     naming = make_naming(layout.name, side, topics, {kind: mark})
     assert_inverse(naming, kind, text, robot, namespaced)
-
-
-@pytest.mark.sample(3)
-@pytest.mark.parametrize("text", TEXTS)
-@pytest.mark.parametrize("kind", KINDS)
-def test_nothing_is_removed_that_was_not_put_there(kind: str, text: str) -> None:
-    naming = make_naming()
-    span = removal(naming, ROBOT, kind, text)
-    if span is not None:
-        assert spelled(naming, kind, text[: span[0]] + text[span[1] :]) == text
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from description_calls import RELEASES, builtin_tree, load_vocabulary
+from description_calls import RELEASES, load_vocabulary
 from paths import fixture_text
 
 from multibot_rewrite.base.model import VocabularyError
@@ -26,19 +26,6 @@ def rows(path: str, release: str, name: str = "beam") -> dict[str, str]:
     return {it.path: " ".join(it.kinds) for section in found for it in section.sites}
 
 
-@pytest.mark.parametrize(
-    ("release", "known"),
-    [
-        ("humble", {"old": "link", "both": "joint", "rate": "joint", "never": ""}),
-        ("jazzy", {"old": "link", "both": "joint"}),
-        ("kilted", {"both": "link"}),
-        ("rolling", {"both": "link", "rate": "link"}),
-    ],
-)
-def test_a_row_is_there_in_its_releases_only(path: str, release: str, known: object) -> None:
-    assert rows(path, release) == known
-
-
 @pytest.mark.parametrize(("release", "topics"), [("kilted", 1), ("lyrical", 2), ("rolling", 2)])
 def test_a_section_given_again_adds_in_its_releases(path: str, release: str, topics: int) -> None:
     (beam,) = load_vocabulary((path,), release).find("plugin", "beam")
@@ -48,15 +35,6 @@ def test_a_section_given_again_adds_in_its_releases(path: str, release: str, top
 @pytest.mark.parametrize("release", RELEASES)
 def test_a_plugin_is_unknown_where_its_release_lacks_it(path: str, release: str) -> None:
     assert bool(rows(path, release, "young")) == (release in ("kilted", "rolling"))
-
-
-@pytest.mark.sample(1)
-@pytest.mark.parametrize("release", RELEASES)
-def test_an_element_and_what_is_in_it_are_not_read_without_their_release(
-    path: str, release: str
-) -> None:
-    robot = builtin_tree((path,), release).formats["robot"]
-    assert ("ray" in robot.children) == (release == "humble")
 
 
 def test_all_releases_together_are_one_page(path: str) -> None:

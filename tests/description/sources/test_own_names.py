@@ -12,16 +12,12 @@ from lxml import etree
 from paths import FIXTURES
 
 from multibot_rewrite import RewriteRefused, UsageError, explain, rewrite, rewrite_all, strip
-from multibot_rewrite.description.readback.meeting import SHARED_CODES
 from multibot_rewrite.description.sources.expand import expand
 from multibot_rewrite.description.sources.own_names import filled
 
 ARM = FIXTURES / "xacros" / "arm.urdf.xacro"
 BASE = FIXTURES / "xacros" / "base.urdf.xacro"
 PREFIX = {"tf_prefix": "{robot}_"}
-# What the file of the arm says for the robot left, and what is renamed as everywhere else.
-ARMS_OWN = ["left_base_link", "left_tool0", "left_gripper"]
-ARMS_JOINTS = ["left_elbow", "left_tool_joint"]
 
 
 def names(text: str, tag: str) -> list[str]:
@@ -39,34 +35,6 @@ def made(head: str, body: str, folder: Path) -> Path:
     space = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
     path.write_text(f'<robot name="made" {space}>{head}{body}</robot>')
     return path
-
-
-@pytest.mark.more
-@pytest.mark.sample(1)
-@pytest.mark.parametrize("value", ["{robot}_", "left_"])
-@pytest.mark.parametrize("affix", ["prefix", "postfix"])
-@pytest.mark.parametrize("separator", ["/", "_"])
-def test_names_with_the_argument_stay_and_others_are_rewritten(
-    value: str, affix: str, separator: str
-) -> None:
-    made = rewrite(
-        ARM,
-        "left",
-        affix=affix,
-        separators={"link": separator, "joint": "_"},
-        xacro_args={"tf_prefix": value},
-    ).text
-    camera = f"left{separator}camera_link" if affix == "prefix" else f"camera_link{separator}left"
-    joint = "left_camera_joint" if affix == "prefix" else "camera_joint_left"
-    assert names(made, "link") == [*ARMS_OWN, camera]
-    assert names(made, "joint") == [*ARMS_JOINTS, joint]
-    # What refers to them has the same names, and so have parts that only the prefix reaches.
-    root = etree.fromstring(made.encode())
-    assert [it.get("reference") for it in root.findall("gazebo")] == [camera]
-    assert [it.get("name") for it in root.findall("ros2_control/joint")] == ["left_elbow"]
-    assert names(made, "ros2_control") == ["left_arm"]
-    assert texts(made, "frame_name") == [camera]
-    assert {it.get("link") for it in root.iter("parent", "child")} == {*ARMS_OWN, camera}
 
 
 @pytest.mark.more
@@ -236,15 +204,6 @@ def test_an_srdf_that_knows_nothing_of_the_argument(layout: str) -> None:
     urdf = rewrite(ARM, "left", xacro_args=PREFIX, layout=layout).data
     back = strip(done.data, "left", urdf=urdf, xacro=ARM, xacro_args=PREFIX, layout=layout)
     assert back.decode() == PLAIN_SRDF
-
-
-@pytest.mark.more
-@pytest.mark.sample(1)
-@pytest.mark.parametrize("layout", ["tf-per-robot", "frames-per-robot", "both", "postfix"])
-def test_names_of_an_argument_are_not_shared_by_all(layout: str) -> None:
-    base = rewrite(BASE, "robot1", layout=layout, xacro_args={"namespace": "{robot}"})
-    arm = rewrite(ARM, "robot1", layout=layout, xacro_args=PREFIX)
-    assert not SHARED_CODES & {it.code for it in (*base.findings, *arm.findings)}
 
 
 @pytest.mark.more

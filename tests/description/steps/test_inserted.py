@@ -87,12 +87,3 @@ def test_a_marker_that_counts_an_element_of_the_user_is_refused_in_one_line() ->
     assert strip(made, "r1") == source.encode()
     with pytest.raises(InputError, match="edited by hand"):
         strip(made.replace(b"r1 +3", b"r1 +4"), "r1")
-
-
-def test_gz_ros2_control_reads_no_settings_beside_ros() -> None:
-    """gz_ros2_control_plugin.cpp: only what is in <ros> counts."""
-    source = """<robot name="a"><link name="l"/><gazebo>
-<plugin filename="gz_ros2_control-system" name="c"><namespace/></plugin></gazebo></robot>"""
-    made = etree.fromstring(rewrite(source, "r1", layout="L1").data)
-    assert made.findtext(".//ros/namespace") == "/r1"
-    assert made.findtext(".//plugin/namespace") == ""

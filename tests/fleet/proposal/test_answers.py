@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -11,7 +12,7 @@ import pytest
 
 from multibot_rewrite.cli import init
 from multibot_rewrite.fleet.proposal.looking import Looked
-from multibot_rewrite.fleet.proposal.propose import Choice
+from multibot_rewrite.fleet.proposal.propose import Choice, release_of_files
 from multibot_rewrite.fleet.proposal.seeing import Wanted
 
 
@@ -149,3 +150,34 @@ def test_another_layout_is_made_and_the_same_is_not(asked: Any, monkeypatch: Any
     questions = asked("", "postfix")
     assert init._in_layout(made) is made and init._in_layout(made) == "postfix"
     assert questions[0] == ("Layout (tf has one topic)", "both")
+
+
+# The release of parameter files, by what ros2_controllers declares in each.
+
+MANAGER = """controller_manager:
+  ros__parameters:
+    drive: {type: tricycle_steering_controller/TricycleSteeringController}
+drive:
+  ros__parameters: {%s}
+"""
+OLD = "wheel_track: 1.0, front_wheels_radius: 0.1, rear_wheels_radius: 0.1"
+
+
+@pytest.mark.parametrize(
+    ("own", "release", "why"),
+    [
+        (OLD, "jazzy", "lyrical lacks 3 parameters or plugins of p.yaml"),
+        # One may be left over.
+        ("wheel_track: 1.0", "lyrical", ""),
+        ("wheelbase: 1.0", "lyrical", ""),
+        ("of_nobody: 1.0, nor_this: 2.0", "lyrical", ""),
+        ("]", "lyrical", ""),
+    ],
+)
+def test_the_release_is_that_which_has_most(
+    own: str, release: str, why: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "p.yaml"
+    file.write_text(MANAGER % own)
+    assert release_of_files([str(file), str(tmp_path / "gone.yaml")]) == (release, why)
+    assert release_of_files([]) == ("lyrical", "")

@@ -9,7 +9,7 @@ import pytest
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.proposal.companions import companions_of
-from multibot_rewrite.fleet.proposal.looking import CLASSIC, GZ, NO_SIMULATOR, Looked
+from multibot_rewrite.fleet.proposal.looking import NO_SIMULATOR, Looked
 from multibot_rewrite.fleet.proposal.searching import Found
 
 
@@ -31,26 +31,6 @@ def test_of_two_files_for_one_node_the_first_is_taken(tmp_path: Path) -> None:
     made = companions_of(looked(tmp_path), Found(params=(alone, left, taken)), "jazzy")
     assert made.files["params"] == (taken, alone)
     assert made.left == {left: "a.yaml has parameters of alpha, too"}
-
-
-@pytest.mark.parametrize(
-    ("simulator", "control", "why"),
-    [
-        (NO_SIMULATOR, False, "the description has no <ros2_control>"),
-        (GZ, False, "no plugin of the simulated robot makes a controller manager"),
-        (CLASSIC, False, "no plugin of the simulated robot makes a controller manager"),
-        (NO_SIMULATOR, True, ""),
-        (GZ, True, ""),
-    ],
-)
-def test_controllers_are_for_a_robot_that_has_a_manager(
-    simulator: str, control: bool, why: str, tmp_path: Path
-) -> None:
-    own = params(tmp_path, "driver.yaml", "driver")
-    file = params(tmp_path, "controllers.yaml", "controller_manager", "arm_controller")
-    made = companions_of(looked(tmp_path, simulator, control), Found(params=(file, own)), "jazzy")
-    assert made.left == ({file: why} if why else {})
-    assert sorted(made.files["params"]) == sorted([own] if why else [file, own])
 
 
 EKF = ("ekf_filter_node_odom", "ekf_filter_node_map", "navsat_transform")

@@ -14,9 +14,10 @@ from lxml import etree
 from small_robots import PACKAGE, init, loads, robot, taken
 
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.fleet.proposal import owners
 from multibot_rewrite.fleet.proposal.choosing import may_be_partners
 from multibot_rewrite.fleet.proposal.looking import Looked
-from multibot_rewrite.fleet.proposal.owners import fitting
+from multibot_rewrite.fleet.proposal.owners import Fitting, fitting
 from multibot_rewrite.fleet.proposal.searching import Found
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.spelling.records import Given
@@ -178,17 +179,6 @@ def test_an_sdf_is_for_the_simulator_and_its_urdf_for_the_rest(tmp_path: Path) -
     fleet = taken(tmp_path)
     assert (fleet["description"], fleet["simulated"]) == ("car.urdf", "car.sdf")
     assert fleet["simulator"] == "gazebo"
-
-
-@pytest.mark.more
-def test_a_real_robot_has_no_bridge(two: Path) -> None:
-    (two / "tractor.urdf").unlink()
-    (two / "bridge.yaml").write_text(
-        "- {ros_topic_name: scan, gz_topic_name: scan, ros_type_name: sensor_msgs/msg/LaserScan,\n"
-        "   gz_type_name: gz.msgs.LaserScan, direction: GZ_TO_ROS}\n"
-    )
-    fleet = taken(two)
-    assert fleet["simulator"] == "none" and "companions" not in fleet
 
 
 MASS = (
@@ -388,3 +378,35 @@ def test_partners_are_of_the_other_kind_and_called_alike_or_launched_together(
     ):
         there = [str(tmp_path / it) for it in partners]
         assert [*may_be_partners(str(tmp_path / path), found)] == there, path
+
+
+# Which names are a robot's, and how well a file goes with it; by hand.
+
+
+@pytest.mark.parametrize(
+    ("given", "names", "plain"),
+    [
+        ("{robot}_", {"robot1_base", "robot1/x", "y", "robot1_"}, {"base", "x", "y", "robot1_"}),
+        ("{robot}", {"robot1_base", "robot1base"}, {"base", "robot1base"}),
+        ("tool_", {"tool_base", "robot1_base"}, {"tool_base", "robot1_base"}),
+    ],
+)  # fmt: skip
+def test_names_are_known_without_what_arguments_put_in_front(
+    given: str, names: set[str], plain: set[str]
+) -> None:
+    robot = Looked("a.urdf.xacro", arguments=(("prefix", given),))
+    assert owners._plain(robot, frozenset(names)) == plain
+
+
+def fit(names: str) -> Fitting:
+    return Fitting("p.yaml", frozenset({"amcl"}), frozenset(names))
+
+
+def test_a_file_with_clearly_more_strange_names_is_no_rival() -> None:
+    assert owners._is_rival(fit("abcd"), fit("ab"))
+    assert not owners._is_rival(fit("abcde"), fit("ab"))
+
+
+@pytest.mark.parametrize(("names", "shown"), [("ba", "a, b"), ("cab", "a, b ..."), ("a", "a")])
+def test_of_many_strange_names_two_are_shown(names: str, shown: str) -> None:
+    assert owners._shown(names) == shown

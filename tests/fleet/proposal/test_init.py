@@ -18,22 +18,6 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.file.fleet_data import FleetText
 from multibot_rewrite.fleet.proposal import trying
 
-ARM = """\
-<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
-  <xacro:arg name="prefix" default=""/>
-  <xacro:arg name="title" default=""/>
-  <xacro:include filename="tool.xacro"/>
-  <link name="$(arg prefix)base_link"/>
-  <link name="$(arg prefix)hand"/>
-  <link name="$(arg title)sign"/>
-  <joint name="$(arg prefix)shoulder" type="continuous">
-    <parent link="$(arg prefix)base_link"/><child link="$(arg prefix)hand"/>
-  </joint>
-  <joint name="sign_joint" type="fixed">
-    <parent link="$(arg prefix)base_link"/><child link="$(arg title)sign"/>
-  </joint>
-</robot>
-"""
 TOOL = '<robot name="tool" xmlns:xacro="http://www.ros.org/wiki/xacro"/>'
 
 
@@ -53,16 +37,6 @@ def made(folder: Path, *words: object, code: int = 0) -> Mapping[str, Any]:
 
 
 @pytest.mark.slow
-def test_two_robots_of_a_description(tmp_path: Path) -> None:
-    shutil.copy(ROBOTS / "rover.urdf", tmp_path)
-    fleet = made(tmp_path, tmp_path / "rover.urdf")
-    assert fleet["description"] == "rover.urdf"
-    assert fleet["simulator"] == "gazebo"
-    assert [it["name"] for it in fleet["robots"]] == ["robot1", "robot2"]
-    assert (tmp_path / "out" / "robot2" / "rover.urdf").exists()
-
-
-@pytest.mark.slow
 def test_so_many_robots_apart_from_each_other(tmp_path: Path) -> None:
     shutil.copy(ROBOTS / "rover.urdf", tmp_path)
     fleet = made(tmp_path, tmp_path, "-n", 4, "--layout", "L4", "--distro", "jazzy")
@@ -71,50 +45,6 @@ def test_so_many_robots_apart_from_each_other(tmp_path: Path) -> None:
     places = [it["pose"]["y"] for it in fleet["robots"]]
     assert len(places) == 4
     assert all(b - a >= 0.5 for a, b in pairwise(places))
-
-
-@pytest.mark.slow
-def test_one_rviz_config_is_taken(tmp_path: Path) -> None:
-    shutil.copy(ROBOTS / "rover.urdf", tmp_path)
-    for name in ("rover.rviz", "zoo.rviz"):
-        shutil.copy(
-            ROOT / "examples" / "multibot_example" / "config" / "rover.rviz", tmp_path / name
-        )
-    assert made(tmp_path, tmp_path)["companions"] == {"rviz": "rover.rviz"}
-    assert (
-        "#   zoo.rviz: rover.rviz of another folder was taken"
-        in (tmp_path / "fleet.yaml").read_text()
-    )
-
-
-@pytest.mark.slow
-def test_a_prefix_argument_of_a_xacro_is_used_and_no_other(tmp_path: Path) -> None:
-    """``title`` is empty and goes in front of a name, too; it is not called as a prefix is."""
-    (tmp_path / "arm.urdf.xacro").write_text(ARM)
-    (tmp_path / "tool.xacro").write_text(TOOL)
-    fleet = made(tmp_path, tmp_path)
-    assert fleet["arguments"] == {"prefix": "{robot}_"}
-    assert fleet["description"] == "arm.urdf.xacro", "what it includes is no robot of its own"
-    assert 'name="robot1_base_link"' in (tmp_path / "out/robot1/arm.urdf").read_text()
-
-
-@pytest.mark.slow
-def test_companions_and_stacks_of_a_folder(tmp_path: Path) -> None:
-    shutil.copytree(ROOT / "examples" / "namespace_and_prefix", tmp_path / "source")
-    for name in ("fleet", "joint_states", "nav2"):
-        (tmp_path / "source" / f"{name}.yaml").unlink()
-    other = tmp_path / "source" / "nav2_params_other.yaml"
-    other.write_text((tmp_path / "source" / "nav2_params.yaml").read_text())
-    fleet = made(tmp_path, tmp_path / "source")
-    assert fleet["stack"] == ["nav2"]
-    assert fleet["layout"] == "tf-per-robot"
-    names = fleet["companions"]
-    assert names["rviz"] == "source/nav2.rviz"
-    assert names["bridge"] == ["source/bridge.yaml"]
-    assert "source/nav2_params.yaml" in names["params"]
-    assert "source/nav2_params_other.yaml" not in names["params"]
-    text = (tmp_path / "fleet.yaml").read_text()
-    assert "#   source/nav2_params_other.yaml: nav2_params.yaml has parameters of" in text
 
 
 @pytest.mark.slow
@@ -446,16 +376,6 @@ def test_files_that_are_not_surely_of_another_robot_stay(yard: Path, named: obje
     assert params_of(yard, some=named) == ["some"]
 
 
-@pytest.mark.slow
-def test_files_in_the_folder_of_the_robot_are_its_own(yard: Path) -> None:
-    """Those are nearer to it than to the crane, whatever they name."""
-    (yard / "crane").mkdir()
-    (yard / "urdf" / "crane.urdf").rename(yard / "crane" / "crane.urdf")
-    text = yaml.safe_dump({"a": {"ros__parameters": {"it": ["lift_joint", "crane_hook"]}}})
-    (yard / "urdf" / "a.yaml").write_text(text)
-    assert params_of(yard) == ["a"]
-
-
 @pytest.mark.more
 def test_files_of_moveit_go_with_the_nearest_srdf(yard: Path) -> None:
     shutil.copy(ROBOTS / "rover.srdf", yard / "urdf")
@@ -474,19 +394,6 @@ def test_a_house_is_not_the_robot_of_a_folder(tmp_path: Path) -> None:
     (tmp_path / "a.sdf").write_text(f'<sdf version="1.9"><model name="a">{walls}</model></sdf>')
     (tmp_path / "the_crane.urdf").write_text(CRANE)
     assert made(tmp_path, tmp_path)["description"] == "the_crane.urdf"
-
-
-@pytest.mark.more
-def test_a_robot_that_its_description_has_in_the_map_gets_no_pose(tmp_path: Path) -> None:
-    """go2_ros2_sdk go2.urdf: robot_state_publisher sends map -> odom, so a pose has no place in tf."""
-    joint = '<joint name="{0}" type="fixed"><parent link="{1}"/><child link="{2}"/></joint>'
-    joints = joint.format("a", "map", "odom") + joint.format("b", "odom", "base_link")
-    links = "".join(f'<link name="{it}"/>' for it in ("map", "odom", "base_link"))
-    (tmp_path / "dog.urdf").write_text(f'<robot name="dog">{links}{joints}</robot>')
-    file = tmp_path / "fleet.yaml"
-    assert main(["init", str(tmp_path / "dog.urdf"), "-n", "2", "--yes", "-o", str(file)]) == 0
-    assert yaml.safe_load(file.read_text())["robots"] == [{"name": "robot1"}, {"name": "robot2"}]
-    assert main(["build", str(file), "-o", str(tmp_path / "out")]) == 0
 
 
 STEERED = """\

@@ -110,25 +110,6 @@ def test_an_rviz_config_of_the_robots_packages_goes_first(tmp_path: Path) -> Non
     assert taken(tmp_path)["companions"]["rviz"] == "car_bringup/car.rviz"
 
 
-UP = """from launch import LaunchDescription; from launch_ros.actions import Node
-def generate_launch_description():
-    return LaunchDescription([{}])
-"""
-
-
-def test_the_fleet_file_names_them(tmp_path: Path) -> None:
-    """Where it is open which of them starts the robot."""
-    (tmp_path / "car.urdf").write_text(robot("car", "wheel"))
-    for name in ("up", "down"):
-        node = f"Node(package='own', executable='{name}.py')"
-        (tmp_path / f"{name}.launch.py").write_text(UP.format(node))
-    taken(tmp_path)
-    text = (tmp_path / "fleet.yaml").read_text()
-    assert (
-        "#   up.launch.py:3: own up.py\n" in text and "#   down.launch.py:3: own down.py\n" in text
-    )
-
-
 BROKEN = {
     "link": (lambda path: path.symlink_to(path), "it is a link to nothing"),
     "empty": (lambda path: path.write_text(""), "the file is empty"),

@@ -66,18 +66,6 @@ def package(tmp_path: Path) -> Path:
     return tmp_path
 
 
-@pytest.mark.parametrize("given", [(), ("rover.urdf",), ("rover_sim.sdf",)])
-def test_both_files_of_a_robot_are_named(given: tuple[str, ...], package: Path) -> None:
-    found = made(package, *(given or (".",)))
-    assert (found["description"], found["simulated"]) == ("rover.urdf", "rover_sim.sdf")
-    assert found["simulator"] == "gazebo"
-
-
-def test_an_sdf_of_other_links_is_no_partner(package: Path) -> None:
-    (package / "sim.launch.py").write_text(SPAWNS.replace("rover_sim", "dock"))
-    assert "simulated" not in made(package, "rover.urdf")
-
-
 def test_the_file_whose_names_the_robot_has_is_taken(package: Path) -> None:
     (package / "a_husky.yaml").write_text(AMCL.format("husky_base", "scan"))
     (package / "rover.yaml").write_text(AMCL.format("base_link", "scan"))
@@ -97,18 +85,3 @@ def test_without_a_winner_one_is_named(package: Path, capsys: Any) -> None:
     launched = made(package, "rover.urdf", launched=True)
     assert launched["launch"] == "nav.launch.py" and "companions" not in launched
     assert made(package, "rover.urdf", "husky.yaml")["companions"]["params"] == ["husky.yaml"]
-
-
-@pytest.mark.parametrize("turned", [False, True])
-def test_files_go_with_the_description_that_is_named_before_them(
-    tmp_path: Path, turned: bool
-) -> None:
-    """Where their own names do not say it: both fit both robots."""
-    first, second = ("two", "one") if turned else ("one", "two")
-    for name in ("red", "blue"):
-        (tmp_path / f"{name}.urdf").write_text(URDF.replace('"rover"', f'"{name}"'))
-    for name in ("one", "two"):
-        (tmp_path / f"{name}.yaml").write_text(AMCL.format("base_link", "scan"))
-    rows = made(tmp_path, "red.urdf", f"{first}.yaml", "blue.urdf", f"{second}.yaml")["robots"]
-    found = {row["description"]: row["companions"]["params"] for row in rows}
-    assert found == {"red.urdf": [f"{first}.yaml"], "blue.urdf": [f"{second}.yaml"]}

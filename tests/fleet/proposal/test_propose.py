@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Any
 
@@ -10,10 +11,10 @@ import pytest
 from lxml import etree
 
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.fleet.proposal import propose, seeing
+from multibot_rewrite.fleet.proposal import launches, propose, seeing, trying
 from multibot_rewrite.fleet.proposal.companions import Companions
 from multibot_rewrite.fleet.proposal.looking import Looked
-from multibot_rewrite.fleet.proposal.propose import Member
+from multibot_rewrite.fleet.proposal.propose import Member, Proposal
 from multibot_rewrite.fleet.proposal.searching import search
 from multibot_rewrite.fleet.proposal.seeing import Wanted
 
@@ -47,25 +48,6 @@ def test_the_layout_is_that_of_the_files(members: list[Member], layout: str, why
     assert found.value == layout and why in found.why
     affix = propose.affix_of(layout)
     assert (affix and affix.value) == (None if layout == "tf-per-robot" else "prefix")
-
-
-@pytest.mark.parametrize(
-    ("kinds", "simulator", "why"),
-    [
-        ("", "none", "the description has nothing for a simulator"),
-        ("gz", "gazebo", "plugins and sensors for gz-sim; write none for real robots"),
-        ("classic", "gazebo", "plugins and sensors for Gazebo Classic; write none for real robots"),
-        (
-            "gz classic", "gazebo",
-            "plugins and sensors for Gazebo Classic and gz-sim; write none for real robots",
-        ),
-    ],
-)  # fmt: skip
-def test_robots_are_simulated_where_a_description_has_something_for_it(
-    kinds: str, simulator: str, why: str
-) -> None:
-    members = [member(), *(member(simulator=it) for it in kinds.split())]
-    assert propose.simulator_of(members) == (simulator, why)
 
 
 def test_a_real_robot_that_stands_on_the_world_has_one_of_its_own() -> None:
@@ -131,3 +113,35 @@ def test_the_release_is_asked_for_or_that_of_the_simulator() -> None:
     assert propose.release_of(classic, nothing, wanted(named=True)).value == "jazzy"
     assert propose.release_of(classic, nothing, wanted()).value == "humble"
     assert propose.release_of(classic[:1], nothing, wanted()).value == "jazzy"
+
+
+# Which file keeps a proposed fleet from building, and what of a launch file is shown; by hand.
+
+BESIDE = Companions({"params": ("w/p.yaml", "w/q.yaml"), "rviz": ("v.rviz",)}, "w/r.srdf", {}, {})
+MADE = Proposal({}, [Member(Looked("w/r.urdf"), BESIDE, ("robot1",), 0.5)], {})
+
+
+@pytest.mark.parametrize(
+    ("file", "line", "blamed"),
+    [
+        (os.path.abspath("w/p.yaml"), "MB1 said: x", ("w/p.yaml", "MB1 said: x")),
+        (os.path.abspath("w/r.srdf"), "MB2 said", ("w/r.srdf", "MB2 said")),
+        ("", "w/q.yaml:3:1: wrong: x", ("w/q.yaml", "wrong: x")),
+        ("", "v.rviz: wrong", ("v.rviz", "wrong")),
+        ("", "w/r.urdf:1: wrong", None), (os.path.abspath("p.yaml"), "MB1 said", None),
+    ],
+)  # fmt: skip
+def test_the_file_that_has_an_error(file: str, line: str, blamed: tuple[str, str] | None) -> None:
+    """A description is the robot itself."""
+    assert list(trying._blamed(MADE, [(file, line)])) == ([blamed] if blamed else [])
+
+
+@pytest.mark.parametrize(
+    ("topic", "moved"),
+    [
+        ("/tf", False), ("tf_static", False), ("/a/robot_description", False), ("/odom", True),
+        ("tf/x", True),
+    ],
+)  # fmt: skip
+def test_rules_that_a_build_writes_anyway_are_not_told(topic: str, moved: bool) -> None:
+    assert launches._is_moved(topic, "other") is moved

@@ -90,26 +90,6 @@ def test_hardware_without_a_class_is_of_the_other_world(
     assert fleet_of(folder).get("arguments") == arguments
 
 
-def test_the_parameters_that_the_description_loads_go_before_those_called_like_it(
-    folder: Path,
-) -> None:
-    write(folder, "use_sim", "false")
-    (folder / "rover.yaml").write_text(CONTROL.replace("50", "60"))
-    params = fleet_of(folder)["companions"]["params"]
-    assert [Path(it).name for it in params] == ["control.yaml"]
-
-
-def test_a_real_robot_gets_the_other_value(folder: Path) -> None:
-    write(folder, "use_sim", "true")
-    fleet = fleet_of(folder, "--simulator", "none")
-    assert (fleet["simulator"], fleet["arguments"]) == ("none", {"use_sim": "false"})
-
-
-def test_what_suits_stays(folder: Path) -> None:
-    write(folder, "use_sim", "true")
-    assert "arguments" not in fleet_of(folder)
-
-
 @pytest.mark.parametrize(
     ("simulator", "value", "says"),
     [
@@ -134,20 +114,6 @@ def test_hardware_of_the_other_world_stops_the_build(
     assert says in said and f"give the argument use_sim: '{other}'" in said
     assert said.count("MF843") == 1
     assert not (folder / "out").exists()
-
-
-def test_the_manager_of_another_plugin_loads_no_hardware(folder: Path) -> None:
-    """Where the simulator has no plugin of ros2_control, nothing reads the real robot's block."""
-    write(folder, "use_sim", "false")
-    path = folder / "rover.urdf.xacro"
-    text = path.read_text()
-    path.write_text(text[: text.index("  <gazebo>")] + "</robot>\n")
-    file = folder / "fleet.yaml"
-    file.write_text(
-        "layout: tf-per-robot\ndistro: jazzy\nsimulator: gazebo\ndescription: rover.urdf.xacro\n"
-        "robots:\n  - {name: robot1}\n"
-    )
-    assert main(["build", str(file), "-o", str(folder / "out")]) == 0
 
 
 IF, UNLESS = '<xacro:if value="$(arg {switch})">', '<xacro:unless value="$(arg {switch})">'

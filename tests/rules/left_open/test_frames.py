@@ -61,18 +61,6 @@ def test_nodes_whose_transforms_are_apart(
     assert [it.node for it in told(*tree, *sent)] == apart
 
 
-def test_both_places_are_told() -> None:
-    slam, ekf = Place("slam.yaml", 3), Place("ekf.yaml", 5)
-    (found,) = told(
-        edge(pair("map>odom"), "/slam", slam),
-        edge(pair("odom2>base"), "/ekf", ekf),
-        edge(pair("base>mast"), "/ekf", ekf),
-    )
-    assert (found.code, found.level, found.file, found.line) == ("MG406", "warning", *ekf[:2])
-    assert "odom2 -> base, apart from map -> odom of /slam" in found.message
-    assert "see slam.yaml:3" in found.hint
-
-
 @pytest.mark.more
 def test_a_tree_that_the_rewrite_has_cut_is_an_error(tmp_path: Path) -> None:
     for name, text in FILES.items():
@@ -115,11 +103,6 @@ def test_a_transform_that_another_one_sends_is_whole() -> None:
 def test_a_filter_of_the_map_would_send_another_one() -> None:
     of_map = OFF._replace(values={**OFF.values, "world_frame": Given("map", HERE)})  # type: ignore[arg-type]
     assert [it.names for it in told(*off(of_map))] == [("odom",)]
-
-
-def test_a_filter_that_sends_is_not_off() -> None:
-    on = OFF._replace(values={**OFF.values, "publish_tf": Given(True, HERE)})  # type: ignore[arg-type]
-    assert off(on) == []
 
 
 DRIVE = fixture_text("frames_drive.urdf")

@@ -65,15 +65,6 @@ def test_an_interface_has_one_owner(word: str, active: set[str], names: list[str
         assert "see c.yaml:6" in it.hint
 
 
-def test_a_state_is_read_by_many() -> None:
-    type_ = "joint_trajectory_controller/JointTrajectoryController"
-    text = CONTROLLERS.replace(FORWARD, type_).replace("WORD", "x")
-    for word in ("position", "velocity"):
-        own = f"command_interfaces: [{word}], state_interfaces: [position]"
-        text = text.replace("interface_name: " + ("position" if word == "position" else "x"), own)
-    assert commanded(text, {"one", "two"}) == []
-
-
 def test_controllers_of_another_robot() -> None:
     text = CONTROLLERS.replace("WORD", "position")
     place = Place("r.urdf", 1)
