@@ -278,15 +278,6 @@ def test_a_link_in_the_output_is_not_followed(
     assert held(outside) == before
 
 
-def test_an_output_folder_that_is_a_link_is_where_it_leads(tmp_path: Path) -> None:
-    fleet_folder(tmp_path)
-    (tmp_path / "real").mkdir()
-    (tmp_path / "out").symlink_to("real")
-    assert build(tmp_path) == 0
-    assert (tmp_path / "out").is_symlink()
-    assert (tmp_path / "real" / "plan.yaml").exists()
-
-
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("path", "folder", "words"),
