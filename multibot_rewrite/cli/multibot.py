@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 import sys
 from collections.abc import Sequence
 from functools import partial
@@ -87,6 +88,27 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; returns the exit code."""
     words = sys.argv[1:] if arguments is None else arguments
     return guarded(PROGRAM, partial(run, words), own_process=arguments is None)
+
+
+class MultibotCommand:
+    """Many robots in one ROS 2 system: rewrite, plan, build and check a fleet."""
+
+    # ros2cli finds the class by the entry point group ros2cli.command, makes one, sets NAME and calls it;
+    # it asks for no base class (ros2cli jazzy, ros2cli/command/__init__.py and ros2cli/cli.py).
+    NAME = "multibot"
+
+    def add_arguments(self, parser: argparse.ArgumentParser, cli_name: str) -> None:
+        """Take every word as it is: the command that is called knows its own options."""
+        parser.add_argument("--version", action="version", version=f"multibot {__version__}")
+        parser.add_argument("command", metavar="COMMAND", choices=tuple(COMMANDS), help="see below")
+        parser.add_argument("words", metavar="...", nargs=argparse.REMAINDER, help="its arguments")
+        rows = [f"  {name:<12}{it.about}" for name, it in COMMANDS.items()]
+        more = f"\n\n{cli_name} COMMAND --help shows the options of each"
+        parser.epilog = "commands:\n" + "\n".join(rows) + more
+
+    def main(self, *, parser: argparse.ArgumentParser, args: argparse.Namespace) -> int:
+        """Run the command; returns its exit code."""
+        return main([args.command, *args.words])
 
 
 if __name__ == "__main__":

@@ -35,7 +35,7 @@ from multibot_rewrite.cli.declared.options import (
     choice,
     switch,
 )
-from multibot_rewrite.cli.ros2_verb import MultibotCommand
+from multibot_rewrite.cli.multibot import MultibotCommand
 from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.description.reports.xacro_arguments import Argument, Use, XacroArguments
 from multibot_rewrite.description.rewriters.lookup import look_up

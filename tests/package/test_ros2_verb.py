@@ -11,8 +11,7 @@ import pytest
 from paths import FIXTURES
 
 from multibot_rewrite.cli.declared.commands import COMMANDS
-from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.cli.ros2_verb import MultibotCommand
+from multibot_rewrite.cli.multibot import MultibotCommand, main
 from multibot_rewrite.version import __version__
 
 
