@@ -93,8 +93,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 class MultibotCommand:
     """Many robots in one ROS 2 system: rewrite, plan, build and check a fleet."""
 
-    # ros2cli finds the class by the entry point group ros2cli.command, makes one, sets NAME and calls it;
-    # it asks for no base class (ros2cli jazzy, ros2cli/command/__init__.py and ros2cli/cli.py).
+    # ros2cli finds the class by the entry point group ros2cli.command, makes one, sets NAME and calls
+    # it; it asks for no base class (ros2cli jazzy, ros2cli/command/__init__.py and ros2cli/cli.py).
     NAME = "multibot"
 
     def add_arguments(self, parser: argparse.ArgumentParser, cli_name: str) -> None:
