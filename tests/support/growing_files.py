@@ -319,6 +319,11 @@ GRAPHS: Mapping[str, Callable[[int], str]] = {
             for role in ("publishes", "subscribes")
         ],
     ),
+    "robots with one tf": lambda n: snapshot(
+        _many(n, "/robot#/n"),
+        [_end(it, "/tf", "publishes", "tf2_msgs/msg/TFMessage") for it in _many(n, "/robot#/n")],
+        [_edge(f"robot{at}/base", f"robot{at}/odom", sender=f"/robot{at}/n") for at in range(n)],
+    ),
     "robots by postfix": lambda n: snapshot(
         _many(n, "/n_robot#"),
         [
