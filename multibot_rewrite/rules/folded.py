@@ -5,7 +5,8 @@ below it, and what several nodes do alike, or one node does often, is one line."
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
+from itertools import product
 
 from multibot_rewrite.base.bounded import own_rows
 from multibot_rewrite.base.findings.finding import (
@@ -16,11 +17,12 @@ from multibot_rewrite.base.findings.finding import (
     Finding,
     Remap,
 )
-from multibot_rewrite.base.grouping import lists_by_key
+from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.wording import SEVERAL, shorten, unique
-from multibot_rewrite.rules.system.planned_ends import missing
-from multibot_rewrite.system.index import TF, Index, ends_of
-from multibot_rewrite.system.records import PUBLISHES, TOPIC, End
+from multibot_rewrite.system.index import TF, Index, ends_of, once
+from multibot_rewrite.system.records import PUBLISHES, SERVES, End
+
+_GIVES = (PUBLISHES, SERVES)
 
 
 def _ends(seen: Index | None, names: Iterable[str]) -> Iterator[End]:
@@ -32,11 +34,10 @@ def _planned(seen: Index, it: Finding) -> Sequence[End]:
     return seen.expected.by_node.get(it.node, ()) if seen.expected else ()
 
 
-def _lacked(seen: Index, it: Finding) -> Iterator[str]:
-    """Yield the names of a finding, and those that its node lacks by the plan."""
-    plan = seen.expected
-    lacks = (key[3] for key in missing(plan, seen) if key[0] == it.node) if plan else ()
-    return map(seen.plain, (*it.names, *lacks))
+def has_to_give(seen: Index, it: Finding) -> bool:
+    """Return whether a node has to send or serve, by the plan, what others wait for."""
+    planned = _ends(seen.expected, it.names[:1])
+    return any(end.node == it.node and end.role in _GIVES for end in planned)
 
 
 def _described(seen: Index, it: Finding) -> Iterable[str]:
@@ -45,16 +46,17 @@ def _described(seen: Index, it: Finding) -> Iterable[str]:
     return {it.robot, *(seen.frame_robot(link) for one in own for link in one.links)} - {""}
 
 
-def _givers(seen: Index, it: Finding) -> Iterator[str]:
-    """Yield the nodes that send a topic of these names in any robot, all without the robots' names."""
-    for plain in map(seen.plain, it.names):
-        own = (seen.of_robot(robot, TOPIC, plain) for robot in seen.robots)
-        yield from (seen.plain(end.node) for ends in own if ends for end in ends.publishers)
+@once
+def _senders(seen: Index) -> Mapping[str, Set[str]]:
+    """Return by topic the nodes that send it in any robot, all without the robots' names."""
+    ends = (x for it in seen.topics if seen.robot(it.name) for x in it.publishers)
+    return sets_by_key((seen.plain(it.name), seen.plain(it.node)) for it in ends)
 
 
-def _frame_senders(seen: Index, it: Finding) -> Iterator[str]:
-    edges = (one for tree in seen.trees for one in tree.edges if one.child in it.names)
-    return (node for edge in edges for node in edge.publishers)
+@once
+def _frame_senders(seen: Index) -> Mapping[str, Sequence[str]]:
+    edges = (edge for tree in seen.trees for edge in tree.edges)
+    return lists_by_key((edge.child, node) for edge in edges for node in edge.publishers)
 
 
 # What a finding has in common with another one, by the words of explains.schema.
@@ -65,15 +67,17 @@ _FACETS: Mapping[str, Callable[[Index, Finding], Iterable[str]]] = {
     "node": lambda seen, it: filter(None, (it.node,)),
     "plain node": lambda seen, it: (seen.plain(it.node),),
     "names": lambda seen, it: it.names,
+    "own names": lambda seen, it: (f"{seen.frame_robot(x) or it.robot} {x}" for x in it.names),
     "plain names": lambda seen, it: map(seen.plain, it.names),
     "frames": lambda seen, it: map(seen.plain_frame, it.names),
     "users": lambda seen, it: (end.node for end in _ends(seen, it.names)),
     "senders": lambda seen, it: (x.node for x in _ends(seen, it.names) if x.role == PUBLISHES),
-    "frame senders": _frame_senders,
+    "frame senders": lambda seen, it: (x for name in it.names for x in _frame_senders(seen)[name]),
     "server": lambda seen, it: (seen.plain(name.rpartition("/")[0]) for name in it.names),
-    "givers": _givers,
+    "givers": lambda seen, it: (x for name in it.names for x in _senders(seen)[seen.plain(name)]),
     "planned names": lambda seen, it: (seen.plain(end.name) for end in _planned(seen, it)),
-    "lacked names": _lacked,
+    "given names": lambda seen, it: (x.name for x in _planned(seen, it) if x.role in _GIVES),
+    "wanted names": lambda seen, it: it.names[:1] * (not has_to_give(seen, it)),
     "described robots": _described,
     "a clock": lambda seen, it: ("",) * is_about_a_clock(seen, it),
     "no tf": lambda seen, it: ("" for x in _ends(seen.expected, it.names[:1]) if x.type == TF),
@@ -83,14 +87,10 @@ _FACETS: Mapping[str, Callable[[Index, Finding], Iterable[str]]] = {
 }
 
 
-def _explains(seen: Index, cause: Finding, it: Finding, common: str) -> bool:
-    """Return whether both have all of this in common: ``robot``, or ``server = node``, of the cause and
-    of what comes of it."""
-    sides = (one.split(" = ") for one in common.split(" and "))
-    return all(
-        not {*_FACETS[side[0]](seen, cause)}.isdisjoint(_FACETS[side[-1]](seen, it))
-        for side in sides
-    )
+def _keys(seen: Index, it: Finding, common: str, side: int) -> Set[tuple[str, ...]]:
+    """Return what a cause (side 0) or what comes of it (-1) has of ``robot and server = node``."""
+    facets = (one.split(" = ")[side] for one in common.split(" and "))
+    return {*product(*(_FACETS[facet](seen, it) for facet in facets))}
 
 
 _EXPLAINS = own_rows(__file__, "explains.schema")
@@ -118,15 +118,16 @@ def folded(seen: Index, found: Sequence[Finding]) -> list[Finding]:
     below: dict[int, list[int]] = defaultdict(list)
     gone: set[int] = set()
     for code, codes, common in _EXPLAINS if len(found) > 1 else ():
-        causes = [it for it in by_code.get(code, ()) if it not in gone]
-        for at in (
-            it for other in codes.split() for it in by_code.get(other, ()) if it not in gone
-        ):
+        causes = [it for it in by_code[code] if it not in gone]
+        others = [it for other in codes.split() for it in by_code[other] if it not in gone]
+        pairs = ((key, it) for it in causes for key in _keys(seen, found[it], common, 0))
+        by_key = lists_by_key(pairs if others else ())
+        for at in others if by_key else ():
             # Each robot's cause has it, so that the robots' findings stay one.
-            why = [it for it in causes if _explains(seen, found[it], found[at], common)]
-            for cause in why:
+            keys = _keys(seen, found[at], common, -1)
+            for cause in {it for key in keys for it in by_key[key]}:
                 below[cause].append(at)
-            gone.update([at] if why else [])
+                gone.add(at)
     left = [
         _with_explained(it, [found[one] for one in below.get(at, ())])
         for at, it in enumerate(found)
@@ -208,7 +209,7 @@ def _without_unplanned(seen: Index, found: Iterable[Finding]) -> list[Finding]:
 
 def _users(seen: Index, it: Finding) -> Sequence[str]:
     """Return the nodes that have the names that a finding is about, or send its frames."""
-    own = (node for node in _frame_senders(seen, it) if seen.robot(node) == it.robot)
+    own = (x for name in it.names for x in _frame_senders(seen)[name] if seen.robot(x) == it.robot)
     return unique((it.node, *(end.node for end in _ends(seen, it.names)), *own))
 
 

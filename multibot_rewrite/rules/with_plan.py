@@ -14,7 +14,7 @@ from fnmatch import fnmatchcase
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding, Remap, Rule
 from multibot_rewrite.base.wording import shorten, unique
-from multibot_rewrite.rules.folded import of_one_target
+from multibot_rewrite.rules.folded import has_to_give, of_one_target
 from multibot_rewrite.rules.system.changed import untold
 from multibot_rewrite.rules.system.differing import BETWEEN_ROBOTS, unexplained
 from multibot_rewrite.rules.system.planned_ends import missing, missing_endpoint
@@ -22,7 +22,7 @@ from multibot_rewrite.rules.system.planned_frames import frame_without_robot_nam
 from multibot_rewrite.rules.system.planned_nodes import sender_not_planned
 from multibot_rewrite.rules.system.unsent import nothing_known_sends
 from multibot_rewrite.system.index import TF, Index, ends_of
-from multibot_rewrite.system.records import ACTION, PUBLISHES, SERVES, SERVICE, TOPIC, End
+from multibot_rewrite.system.records import PUBLISHES, End
 from multibot_rewrite.system.tf_copies import tree_topic
 
 # A node, or a name and whose it is: a node's or robot's, or beside which other name; empty for all.
@@ -98,16 +98,9 @@ def _same(seen: Index, it: Finding, rules: Mapping[str, Rule]) -> Iterator[_Abou
     elif _is_of_an_end(it, rules):
         # What all robots have, such as /clock, the nodes of a robot lack together; whoever has to send
         # it is not one of them, but the cause.
-        alone = seen.robot(it.names[0]) or _has_to_give(seen, it)
+        alone = seen.robot(it.names[0]) or has_to_give(seen, it)
         lacks = (it.node,) if alone else (it.node, it.robot)
         yield from ((whose, it.names[0]) for whose in lacks)
-
-
-def _has_to_give(seen: Index, it: Finding) -> bool:
-    """Return whether a node has to send or serve, by the plan, what others wait for."""
-    plan = seen.expected.by_key if seen.expected else ()
-    gives = ((TOPIC, PUBLISHES), (SERVICE, SERVES), (ACTION, SERVES))
-    return any((it.node, *way, it.names[0]) in plan for way in gives)
 
 
 def _is_there(it: Finding) -> bool:

@@ -69,8 +69,7 @@ def guess_robots(graph: System) -> tuple[GuessedRobot, ...]:
     if not (namespaces or words):
         namespaces = sorted(_alike(graph, lived_in, numbered=True))
     if namespaces:
-        found = [GuessedRobot(_name(it, namespaces), it) for it in namespaces]
-        return tuple(with_frames(found, frames))
+        return tuple(with_frames(_named(namespaces), frames))
     if words:
         return tuple(with_frames((GuessedRobot(it, "") for it in words), frames))
     parents = sets_by_key((it.child, it.parent) for it in graph.edges)
@@ -83,11 +82,12 @@ def _is_a_part(namespace: str, parts: Collection[str]) -> bool:
     return any(f"{word}{way}{base}" in parts for way in "/_" for base in BODY_FRAMES)
 
 
-def _name(namespace: str, all_of_them: Iterable[str]) -> str:
-    """Return its last word, or the whole namespace if two end alike."""
-    last = namespace.rpartition("/")[2]
-    alike = [it for it in all_of_them if it.rpartition("/")[2] == last]
-    return last if len(alike) == 1 else namespace.strip("/")
+def _named(namespaces: Collection[str]) -> Iterator[GuessedRobot]:
+    """Yield the robots by their last words, or by the whole namespaces where two end alike."""
+    last = [it.rpartition("/")[2] for it in namespaces]
+    times = Counter(last)
+    for word, space in zip(last, namespaces, strict=True):
+        yield GuessedRobot(word if times[word] == 1 else space.strip("/"), space)
 
 
 def _namespaces(graph: System, lived_in: Collection[str]) -> list[str]:

@@ -263,6 +263,7 @@ class Index(NamedTuple):
         return _by_robot(self).get((robot, kind, plain))
 
     @property
+    @once
     def is_live(self) -> bool:
         """Return whether it was seen running, and not read from launch files."""
         return not any(it.place.file for it in self.system.nodes)

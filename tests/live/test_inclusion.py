@@ -19,6 +19,8 @@ from multibot_rewrite.system.records import System
 
 # A node that no plan has.
 STRANGER = "MG108"
+# The parts of a tree that is in pieces by the plan are not compared with another robot's.
+IN_PIECES, COMPARED = "MG406", "MG328"
 
 
 def hidden(plan: System, graph: System) -> list[str]:
@@ -38,10 +40,12 @@ def _names(lines: str, node: str, plan: System) -> bool:
 
 
 def _says(one: Finding, other: Finding) -> bool:
-    """Is it the same, of the same node, name or robot?"""
+    """Is it the same, of the same node, name or robot, or does it explain the other?"""
     about = [
         {it.node, *it.names, f"of {it.robot}" if it.robot else ""} - {""} for it in (one, other)
     ]
+    if (one.code, other.code) == (IN_PIECES, COMPARED):
+        return one.robot == other.robot
     return one.code == other.code and not about[0].isdisjoint(about[1])
 
 

@@ -72,7 +72,7 @@ def test_a_hosted_nodes_rule_is_for_what_its_host_is_started_with(
     [
         ("nav2", "amcl", "--ros-args -r __ns:=/robot1"),
         ("nav2_composed", "amcl", "namespace='/robot1' of its ComposableNode"),
-        ("nav2", COSTMAP, "/robot1/controller_server makes it"),
+        ("nav2", COSTMAP, "start /robot1/controller_server as planned"),
     ],
 )
 def test_a_node_under_another_name_is_told_where_its_name_is_given(

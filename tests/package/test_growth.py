@@ -40,7 +40,7 @@ from multibot_rewrite.rules.system import causes
 SMALL, LARGE = 100, 400
 REMEMBERED = (
     nearest._nearest,
-    causes._letters,
+    causes.letters,
     parameter_files._sections,
     handed_on.document_of,
     handed_on.has_sections,

@@ -66,6 +66,23 @@ def test_one_manager_of_nodes_that_are_gone_is_one_line() -> None:
     assert len(it.names) == 9
 
 
+def test_a_circle_of_one_robot_explains_nothing_of_another() -> None:
+    """Their frames have the same names, on a tf topic of each robot."""
+    told = found(
+        "transform laser -> base_link on /robot1/tf by /robot1/rsp",
+        "transform base_link -> laser on /robot1/tf by /robot1/rsp",
+        "transform laser -> base_link on /robot2/tf by /robot2/rsp",
+        "transform odom -> base_link on /robot2/tf by /robot2/driver",
+        *(f"/robot{it}/{one}" for it in "12" for one in ("rsp", "driver")),
+        *(
+            f"/robot{it}/{one} publishes /robot{it}/tf {TF}"
+            for it in "12"
+            for one in ("rsp", "driver")
+        ),
+    )
+    assert [(it.code, it.robot) for it in told] == [("MG401", "robot2"), ("MG403", "robot1")]
+
+
 def test_data_of_two_robots_on_one_topic_explains_who_misses_it() -> None:
     told = found(
         *(f"/robot{it}/base publishes /odom {ODOM}" for it in "12"),

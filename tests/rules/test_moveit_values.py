@@ -338,13 +338,13 @@ AXIS = "{axis: 1, scale: 1.0, offset: 0.0}"
         (f"{TWIST}, axis_mappings: {{linear-x: {AXIS}, -angular-z: {AXIS}}}", []),
         (
             f"{TWIST}, axis_mappings: {{twist-linear-x: {AXIS}}}",
-            ["sets twist-linear-x of a geometry_msgs/msg/Twist, which has linear and angular; see"
-             " the message"],
+            ["sets twist-linear-x of a geometry_msgs/msg/Twist, which has linear and angular; use"
+             " one of these"],
         ),
         (
             f"{TWIST}, axis_mappings: {{linear-x: {AXIS}}}".replace("Twist,", "TwistStamped,"),
-            ["sets linear-x of a geometry_msgs/msg/TwistStamped, which has header and twist; see"
-             " the message"],
+            ["sets linear-x of a geometry_msgs/msg/TwistStamped, which has header and twist; use"
+             " one of these"],
         ),
         (
             f"{TWIST}, axis_mappings: {{twist-linear-x: {AXIS}}}".replace("st,", "stStamped,"),

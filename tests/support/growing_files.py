@@ -319,6 +319,19 @@ GRAPHS: Mapping[str, Callable[[int], str]] = {
             for role in ("publishes", "subscribes")
         ],
     ),
+    "robots with one tf": lambda n: snapshot(
+        _many(n, "/robot#/rsp") + _many(n, "/robot#/amcl"),
+        [
+            _end(f"/robot{at}/{node}", "/tf", "publishes", "tf2_msgs/msg/TFMessage")
+            for at in range(n)
+            for node in ("rsp", "amcl")
+        ],
+        [
+            _edge(f"robot{at}/l{link + 1}", f"robot{at}/l{link}", sender=f"/robot{at}/rsp")
+            for at in range(n)
+            for link in range(4)
+        ],
+    ),
     "robots by postfix": lambda n: snapshot(
         _many(n, "/n_robot#"),
         [

@@ -200,7 +200,7 @@ class Spelled:
         # The other words and the place of one -> that without its number -> the word, and the name.
         self.beside: dict[_Rest, dict[str, list[tuple[str, str]]]] = {}
         for name in names:
-            self.by_letters[_letters(name)].append(name)
+            self.by_letters[letters(name)].append(name)
             parts = name.split("/")
             for at in {1, len(parts) - 1}:
                 words = self.beside.setdefault(_rest(parts, at), defaultdict(list))
@@ -216,7 +216,7 @@ def alike(
     """Return the known name that is the same but for case, dashes or a misspelled word, among those
     that ``may_be`` allows; empty for none. Names that differ in their numbers alone are two
     things."""
-    same = known.by_letters.get(_letters(name), ())
+    same = known.by_letters.get(letters(name), ())
     folded = next((it for it in same if it != name and may_be(it)), "")
     if folded or type_.startswith(COMMON):
         return folded
@@ -251,6 +251,6 @@ def _is_slip(one: str, other: str) -> bool:
 
 
 @lru_cache(maxsize=4096)
-def _letters(name: str) -> str:
+def letters(name: str) -> str:
     """Return its letters, digits and slashes, in lower case."""
     return "".join(it for it in name.lower() if it.isalnum() or it == "/")

@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from itertools import combinations
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import EVERYBODYS, SENT_FRAMES, chooses
@@ -66,23 +67,28 @@ def lacks_what_its_likes_have(seen: Index) -> Iterator[Finding]:
             lost = [it for it in all_but_one if it not in made[robot].nodes]
             # Two robots of which each has a node of its own are made for two things.
             if lost and (others > 1 or not more):
-                yield from _lost_nodes(seen, made, robot, likes, lost)
+                yield from _lost_nodes(seen, robot, likes, lost)
             surely = {k for it in likes for k, end in made[it].ends.items() if end.sure == RUNS}
             gone = [it for it in ends_but_one if it not in made[robot].ends and it in surely]
-            yield from _lost_ends(
-                seen, made, robot, likes, [k for k in gone if k[0] in made[robot].nodes]
-            )
+            own = [it for it in gone if it[0] in made[robot].nodes]
+            yield from _lost_ends(seen, robot, likes, own)
 
 
 def _lost_descriptions(seen: Index) -> Iterator[Finding]:
     """Find robots of few nodes that have all of another one's but robot_state_publisher."""
     made = made_of(seen)
+    # The nodes that a robot has beside its robot_state_publisher -> that one, and the robot.
+    full: dict[Set[str], tuple[str, str]] = {}
+    for other, its in made.items():
+        for node in its.nodes if len(its.nodes) <= _ENOUGH else ():
+            if publishes_description(seen, its.nodes[node]):
+                full.setdefault(frozenset(its.nodes) - {node}, (node, other))
     for robot, own in made.items():
-        for other, its in made.items() if 0 < len(own.nodes) < _ENOUGH else ():
-            lost = [it for it in its.nodes if it not in own.nodes]
-            if len(lost) == 1 and publishes_description(seen, its.nodes[lost[0]]):
-                yield from _lost_nodes(seen, made, robot, (other, robot), lost)
-                break
+        counts = range(len(own.nodes), -1, -1) if 0 < len(own.nodes) < _ENOUGH else ()
+        parts = (frozenset(it) for count in counts for it in combinations(own.nodes, count))
+        node, other = next((full[it] for it in parts if it in full), ("", ""))
+        if node and node not in own.nodes:
+            yield from _lost_nodes(seen, robot, (other, robot), [node])
 
 
 @once
@@ -132,12 +138,12 @@ def _are_alike(one: Set[str], other: Set[str]) -> bool:
 
 
 def _lost_nodes(
-    seen: Index, made: Mapping[str, MadeOf], robot: str, likes: Sequence[str], lost: Sequence[str]
+    seen: Index, robot: str, likes: Sequence[str], lost: Sequence[str]
 ) -> Iterator[Finding]:
     """Report all nodes of one robot in one finding."""
-    like = next(it for it in likes if it != robot)
+    like, made = next(it for it in likes if it != robot), made_of(seen)
     keys = [key for key in made[like].ends if key[0] in lost]
-    own = _waiting(seen, made, robot, keys)
+    own = _waiting(seen, robot, keys)
     theirs = sorted(made[like].nodes[it] for it in lost)
     if not (own or len(likes) > 2 or any(publishes_description(seen, it) for it in theirs)):
         return
@@ -150,13 +156,13 @@ def _lost_nodes(
 
 
 def _lost_ends(
-    seen: Index, made: Mapping[str, MadeOf], robot: str, likes: Sequence[str], gone: Iterable[_Key]
+    seen: Index, robot: str, likes: Sequence[str], gone: Iterable[_Key]
 ) -> Iterator[Finding]:
     """Report all ends of a node in one finding."""
-    like = next(it for it in likes if it != robot)
+    like, made = next(it for it in likes if it != robot), made_of(seen)
     by_node = lists_by_key((key[0], key) for key in gone)
     for plain, keys in by_node.items():
-        own, node = _waiting(seen, made, robot, keys), made[robot].nodes[plain]
+        own, node = _waiting(seen, robot, keys), made[robot].nodes[plain]
         if not own:
             continue
         theirs = [made[like].ends[key] for key in keys]
@@ -170,13 +176,11 @@ def _lost_ends(
         )  # fmt: skip
 
 
-def _waiting(
-    seen: Index, made: Mapping[str, MadeOf], robot: str, keys: Sequence[_Key]
-) -> tuple[str, ...]:
+def _waiting(seen: Index, robot: str, keys: Sequence[_Key]) -> tuple[str, ...]:
     """Return the robot's names that a node waits for and only what the robot lacks would serve."""
     sides = {(kind, _OTHER_SIDE[role], name): role for _, kind, role, name in keys}
     found: dict[str, None] = {}
-    for (_, kind, role, name), it in made[robot].ends.items():
+    for (_, kind, role, name), it in made_of(seen)[robot].ends.items():
         lost = sides.get((kind, role, name))
         there = at_work(ends_of(seen, it.name)) if lost and not is_viewer(it.node) else ()
         if lost and _is_needy(it) and not any(one.role == lost for one in there):

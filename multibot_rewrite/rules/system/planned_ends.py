@@ -18,6 +18,7 @@ from multibot_rewrite.rules.system.causes import (
     caused,
     how_to_pass,
     how_to_remap,
+    letters,
     names_without_rules,
     plugin_of,
     remap_rule,
@@ -103,22 +104,17 @@ def probable_matches(
     by_robot: dict[str, list[str]] = defaultdict(list)
     for node in unplanned if missing else ():
         by_robot[ownership.robot(node)].append(node)
-    spaces = {_letters(node.split("/")[1]): node.split("/")[1] for node in by_robot.get("", ())}
+    spaces = {letters(node.split("/")[1]): node.split("/")[1] for node in by_robot.get("", ())}
     found: dict[str, str] = {}
     for node, robot in missing.items():
         plain = ownership.without_robot(node, robot)
-        space = spaces.get(_letters(robot), robot)
+        space = spaces.get(letters(robot), robot)
         likely = (plain, f"/{plain.rpartition('/')[2]}", f"/{space}{plain}")
         own = {ownership.without_robot(it, robot): it for it in by_robot.get(robot, ())}
         there = next((it for it in likely if it in others), "")
         if match := there or own.get(similar(plain, own), ""):
             found[node] = match
     return found
-
-
-def _letters(name: str) -> str:
-    """Return its letters and digits in lower case."""
-    return "".join(filter(str.isalnum, name)).lower()
 
 
 def similar(name: str, known: Collection[str]) -> str:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Container, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.wording import shorten, unique
@@ -16,7 +16,7 @@ from multibot_rewrite.rules.system.tf_trees import (
     taken_elsewhere,
 )
 from multibot_rewrite.rules.system.transforms import collide, tf_remaps
-from multibot_rewrite.system.index import Index, Tree
+from multibot_rewrite.system.index import Index, Tree, once
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Edge, incomplete
 from multibot_rewrite.system.tf_copies import static_topic
 from multibot_rewrite.system.tool_nodes import is_viewer, last_word
@@ -229,12 +229,17 @@ def _home(seen: Index, robot: str, topics: Mapping[str, Sequence[str]]) -> str:
     if robot in seen.home:
         return seen.home[robot]
     most = max(topics, key=lambda it: len(topics[it]))
-    tree = next(it for it in seen.trees if it.topic == most)
-    named = any(seen.frame_robot(it.child) == robot for it in tree.edges)
-    if named and not {*map(seen.robot, tree.senders)} <= {"", robot}:
+    if robot in _named_on_shared(seen).get(most, ()):
         return most
     own = [it for it in topics if seen.robot(it) == robot and seen.plain(it).strip("/") == TF]
     return next(iter(own), most)
+
+
+@once
+def _named_on_shared(seen: Index) -> Mapping[str, Set[str]]:
+    """Return by each tf topic on which several robots send those that its frames have the names of."""
+    shared = (it for it in seen.trees if len({*map(seen.robot, it.senders)} - {""}) > 1)
+    return {it.topic: {seen.frame_robot(edge.child) for edge in it.edges} for it in shared}
 
 
 def _elsewhere(
