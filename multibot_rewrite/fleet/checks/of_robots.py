@@ -28,7 +28,7 @@ from multibot_rewrite.fleet.robots.own_values import own_value, sources_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleet.robots.robot_groups import group_robots
 from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence, node_sources
-from multibot_rewrite.fleet.robots.simulators import is_simulated, other_hardware
+from multibot_rewrite.fleet.robots.simulators import is_simulated, other_hardware, two_simulators
 from multibot_rewrite.knowledge.parameters import KnownNodes, load_known_nodes
 from multibot_rewrite.knowledge.records import MANAGER
 from multibot_rewrite.producers.addresses import of_hardware, of_parameters, of_words
@@ -54,6 +54,7 @@ def of_robots(plan: FleetPlan) -> Iterator[Finding]:
     """Yield what is wrong with the robots themselves, whatever files go with them."""
     yield from plan.of_rewrites
     yield from other_hardware(plan.robots, plan.file)
+    yield from () if plan.file.apart.domains else two_simulators(plan.robots)
     yield from moved_services(plan)
     yield from named_twice(plan.robots)
     yield from _one_device_each(plan)
