@@ -13,7 +13,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from lxml import etree
 from lxml.etree import _Element
 
-from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, declare
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.base.wording import shorten
@@ -43,7 +42,6 @@ from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_ro
 from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence, stack_nodes
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.producers.evidence.semantics import FIXED
-from multibot_rewrite.rules.system.clocks import two_clocks
 from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, bridged_topics
 from multibot_rewrite.system.words import moves
 
@@ -108,16 +106,6 @@ def is_simulated(robot: RewrittenRobot) -> bool:
     if is_said(robot):
         return robot.spec.simulator != REAL
     return bool(robot.spec.simulated) or is_for_simulator(robot.member)
-
-
-def two_simulators(robots: Sequence[RewrittenRobot]) -> Iterator[Finding]:
-    """Yield a finding if no one simulator runs the simulated robots: the clock would have two."""
-    found = {it.is_classic: it for it in robots if is_simulated(it)}
-    if len(found) > 1:
-        classic, gz = (found[it].spec.description for it in (True, False))
-        message = f"{classic} is for Gazebo Classic and {gz} for gz-sim: no simulator runs both"
-        hint = "take descriptions for one simulator, or write simulator: none for real robots"
-        yield at_robot(two_clocks, found[True], message, hint)._replace(names=(CLOCK,))
 
 
 def is_said(robot: RewrittenRobot) -> bool:
