@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import count
 from typing import cast
@@ -14,6 +15,7 @@ from multibot_rewrite.fleet.outputs.output_file import OutputFile, line_in_sourc
 from multibot_rewrite.fleet.robots.rewritten_robots import SET_PREFIX, RewrittenRobot
 from multibot_rewrite.producers.ends import NEEDS
 from multibot_rewrite.rules.check import absences, contradictions
+from multibot_rewrite.rules.system.differing import differs_from_its_likes
 from multibot_rewrite.rules.system.localized import map_not_joined
 from multibot_rewrite.rules.system.states import (
     interface_claimed_twice,
@@ -50,13 +52,18 @@ def contradicted(plan: FleetPlan, whole: System, expected: System) -> Iterator[F
     met = {(it.code, name) for it in plan.fleet.table.problems for name in it.names}
     shared = {f"/{it}" for it in plan.fleet.naming.shared_topics}
     robots = {it.spec.namespace: it for it in plan.robots}
+    # A robot with a description of its own is not to be equal to the others.
+    kinds = Counter(it.spec.description for it in plan.robots)
     for it in contradictions(index(whole, whose)):
+        robot = robots.get(it.robot) or plan.robots[-1]
+        if it.code == differs_from_its_likes.code and kinds[robot.spec.description] == 1:
+            continue
         if it.node in copies or (it.names and shared.issuperset(it.names)):
             continue
         if any((it.code, about) in met for about in (*it.names, it.node)):
             continue
         level = WARNING if it.robot and it.level == ERROR else it.level
-        yield _in_file(it._replace(level=level), robots.get(it.robot) or plan.robots[-1])
+        yield _in_file(it._replace(level=level), robot)
 
 
 def left_open(

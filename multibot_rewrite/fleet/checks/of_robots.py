@@ -8,7 +8,7 @@ from collections.abc import Collection, Iterator, Sequence
 from itertools import combinations, pairwise
 from math import ceil, dist
 
-from multibot_rewrite.base.conventions import USUAL_FRAMES
+from multibot_rewrite.base.conventions import CLOCK, USUAL_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, declare
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.companions.names.rename_map import spell
@@ -37,7 +37,7 @@ from multibot_rewrite.producers.launch.handed_on import for_robot
 from multibot_rewrite.rules.check import judge
 from multibot_rewrite.rules.files.ros_names import in_description
 from multibot_rewrite.rules.launch.models import in_each_other
-from multibot_rewrite.rules.system.clocks import clocks_mixed, compares_times
+from multibot_rewrite.rules.system.clocks import clocks_mixed, compares_times, two_clocks
 from multibot_rewrite.rules.system.sharing import one_device
 from multibot_rewrite.spelling.bridged_topics import is_bridged
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
@@ -54,6 +54,7 @@ def of_robots(plan: FleetPlan) -> Iterator[Finding]:
     """Yield what is wrong with the robots themselves, whatever files go with them."""
     yield from plan.of_rewrites
     yield from other_hardware(plan.robots, plan.file)
+    yield from _two_simulators(plan)
     yield from moved_services(plan)
     yield from named_twice(plan.robots)
     yield from _one_device_each(plan)
@@ -89,6 +90,16 @@ def _not_started(plan: FleetPlan) -> Iterator[Finding]:
                 message = f"{' '.join(it.program)} is not started: a plugin makes the node {name}"
                 hint = "the robot has one node of a name; leave it out of the launch file"
                 yield NOT_LAUNCHED.finding(message, hint, file=it.place.file, line=it.place.line)
+
+
+def _two_simulators(plan: FleetPlan) -> Iterator[Finding]:
+    """Yield a finding if no one simulator runs the simulated robots: the clock would have two."""
+    found = {it.is_classic: it for it in plan.robots if is_simulated(it)}
+    if len(found) > 1 and not plan.file.apart.domains:
+        classic, gz = (found[it].spec.description for it in (True, False))
+        message = f"{classic} is for Gazebo Classic and {gz} for gz-sim: no simulator runs both"
+        hint = "take descriptions for one simulator, or write simulator: none for real robots"
+        yield at_robot(two_clocks, found[True], message, hint)._replace(names=(CLOCK,))
 
 
 def _on_another_time(plan: FleetPlan) -> Iterator[Finding]:

@@ -39,7 +39,6 @@ from multibot_rewrite.fleet.proposal.launches import (
 )
 from multibot_rewrite.fleet.proposal.looking import (
     CLASSIC,
-    GZ,
     NO_SIMULATOR,
     Looked,
     holds_the_world,
@@ -149,16 +148,6 @@ def simulator_of(members: Sequence[Member]) -> Choice:
         "gazebo",
         f"plugins and sensors for {' and '.join(sorted(names[it] for it in kinds))};"
         " write none for real robots",
-    )
-
-
-def two_simulators(members: Sequence[Member]) -> str:
-    """Return why no one simulator can run these robots; empty where one can."""
-    files = {it.looked.simulator: it.looked.files[-1] for it in members}
-    if not {GZ, CLASSIC} <= files.keys():
-        return ""
-    return (
-        f"{files[CLASSIC]} is for Gazebo Classic and {files[GZ]} for gz-sim: no simulator runs both"
     )
 
 

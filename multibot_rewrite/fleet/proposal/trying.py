@@ -28,13 +28,7 @@ from multibot_rewrite.fleet.proposal.looking import (
     with_hardware_loaded,
     without_names,
 )
-from multibot_rewrite.fleet.proposal.propose import (
-    Choice,
-    Proposal,
-    affix_of,
-    propose,
-    two_simulators,
-)
+from multibot_rewrite.fleet.proposal.propose import Choice, Proposal, affix_of, propose
 from multibot_rewrite.fleet.proposal.searching import Found, Undecided
 from multibot_rewrite.fleet.proposal.seeing import Seen, Wanted, with_arguments
 
@@ -218,10 +212,8 @@ def with_faults_of_sources(it: Proposal, wanted: Wanted) -> Proposal:
 
 
 def _with_notes(it: Proposal, errors: Sequence[tuple[str, str]]) -> Proposal:
-    lines = [line for _, line in errors[:3]]
-    if lines and (cause := two_simulators(it.members)):
-        lines.insert(0, cause)
-    return it._replace(notes=(*it.notes, *(f"It does not build yet: {line}" for line in lines)))
+    lines = (f"It does not build yet: {line}" for _, line in errors[:3])
+    return it._replace(notes=(*it.notes, *lines))
 
 
 def in_layout(it: Proposal, layout: Choice) -> Proposal:

@@ -119,6 +119,25 @@ def test_robots_of_two_simulators_are_the_first_reason(tmp_path: Path, capsys: A
     first = capsys.readouterr().err.splitlines()[0]
     rover, other = tmp_path / "rover.urdf", tmp_path / "rover_gz.urdf"
     what = f"{rover} is for Gazebo Classic and {other} for gz-sim: no simulator runs both"
-    assert first.endswith(f"It does not build yet: {what}")
+    assert f"It does not build yet: MG502 {what} (" in first
+    assert main(["build", str(tmp_path / "f.yaml"), "-o", str(tmp_path / "out")]) == 1
+    said = [it for it in capsys.readouterr().err.splitlines() if "MG502" in it]
+    assert [what in it for it in said] == [True]
     assert main([*words, "--simulator", "none", "--yes", "-o", str(tmp_path / "g.yaml")]) == 1
     assert "MF843" in capsys.readouterr().err
+
+
+def test_robots_of_other_descriptions_may_have_other_frames(tmp_path: Path, capsys: Any) -> None:
+    """One of the two kinds has no laser, and that is right."""
+    part = '<link name="{0}"/><joint name="{0}_joint" type="fixed"><parent link="base_link"/>'
+    part += '<child link="{0}"/></joint>'
+    for name, parts in {"rover": ("mast", "imu", "laser"), "scout": ("mast", "imu")}.items():
+        own = "".join(map(part.format, parts))
+        text = f'<robot name="{name}"><link name="base_link"/>{own}</robot>'
+        files(tmp_path, **{f"{name}.urdf": text})
+    kinds = ("rover.urdf", "rover.urdf", "scout.urdf")
+    robots = [{"name": f"r{number}", "description": it} for number, it in enumerate(kinds)]
+    fleet = {"layout": "tf-per-robot", "stack": ["nav2", "robot_state"], "robots": robots}
+    (tmp_path / "f.yaml").write_text(yaml.safe_dump(fleet))
+    assert main(["build", str(tmp_path / "f.yaml"), "-o", str(tmp_path / "out")]) == 0
+    assert "MG328" not in capsys.readouterr().err
