@@ -153,7 +153,8 @@ def _source(what: str, value: object) -> object:
         value = name if isinstance(name, str) and os.path.isfile(name) else value.read()
     elif hasattr(root, "iterfind"):  # of lxml and of Python, each with a function of this name
         value = sys.modules[type(root).__module__].tostring(root)
-    return _SOURCE(what, value or None)
+    # Empty text is no path; empty bytes are an empty file.
+    return _SOURCE(what, None if value == "" else value)
 
 
 _SOURCE = _path_or(bytes, "write a path, XML text or bytes")

@@ -230,7 +230,9 @@ def test_a_controller_runs_as_it_is_declared(name: str) -> None:
     example = str(ROOT / "examples" / "two_arms_moveit" / "fleet.yaml")
     plan = planned_fleet(example, around=os.environ, trust=True)
     found = read_back(plan, edited(make_outputs(plan, OUT), edit), OUT)
-    assert (code, lost) in {(it.code, it.node) for it in found if it.level == ERROR}
+    errors = [it for it in found if it.level == ERROR and it.code == code]
+    # Three missing nodes of a robot are one finding.
+    assert any(lost in (it.node, *it.names) or f"{lost}" in it.message for it in errors)
 
 
 @pytest.mark.more

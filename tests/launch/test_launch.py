@@ -640,6 +640,8 @@ def test_warnings_are_logged_once(
         def warning(self, text: str) -> None:
             told.append(text)
 
+        info = warning
+
     log = importlib.import_module("launch.logging")
     monkeypatch.setattr(log, "get_logger", lambda name: Log())
     for robot in ("robot1", "robot2"):

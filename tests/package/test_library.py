@@ -112,7 +112,6 @@ def test_xacro_arguments_need_a_xacro_file(path: Path) -> None:
         pytest.param("no.urdf", {}, "no.urdf: cannot be read: No such file", id="missing"),
         pytest.param("no.xacro", {}, "no.xacro: cannot be read: No such file", id="missing-xacro"),
         pytest.param(Path(), {}, ".: cannot be read: Is a directory", id="folder"),
-        pytest.param("", {}, "", id="nothing"),
         pytest.param("x" * 5000, {}, "x", id="long"),
         pytest.param("a\0b", {}, "", id="nul-in-path"),
         pytest.param('<robot name="\udc80"/>', {}, "<text>:", id="half-a-character"),
