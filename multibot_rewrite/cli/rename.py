@@ -37,7 +37,7 @@ def _tell(options: argparse.Namespace, made: Renaming) -> None:
         f"{options.kind} {options.old} -> {options.new}: {where}; {verified_words(made.unread)}",
     )
     note_unread(options, made.unread)
-    if left := made.mentions:
+    if left := made.left:
         note(options, f"left as they are: {plural(len(left), 'line')} with {options.old!r}")
-        for place in left[:MOST_MENTIONS]:
-            detail(options, f"  {place}")
+        for one in left[:MOST_MENTIONS]:
+            detail(options, f"  {one.place}: {one.why}")

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import NamedTuple
@@ -77,10 +78,12 @@ def join(
     trust: bool = False,
     distro: str = "",
     samples: int = 0,
+    output: str = "",
 ) -> Joined:
     """Join descriptions: each part after the first is fixed to a link of those before it.
 
-    Every part stays as it is but for its prefix, and ``split`` gives it back byte by byte. With
+    Every part stays as it is but for its prefix, and ``split`` gives it back byte by byte. Where
+    ``output`` names the file that it goes to, relative paths and ``<parameters>`` fit that. With
     ``samples`` random poses pinocchio tells which links of two parts never touch, for the SRDF. Raises
     UsageError and InputError, in one line, where parts cannot be joined: a link that is not there, a
     name that two of them have, a part with two roots. Raises ProofError as ``rewrite``.
@@ -92,7 +95,9 @@ def join(
     tree = builtin_tree(tuple(vocabulary), release_here(distro))
     texts = [read_whole(it.description, it.xacro_args, trust) for it in given]
     pairs = zip(given, texts, strict=True)
-    made = join_texts([GivenPart(it, text.data, text.file) for it, text in pairs], tree)
+    texts_given = [GivenPart(it, text.data, text.file) for it, text in pairs]
+    path = os.path.abspath(controllers_file(output)) if output else ""
+    made = join_texts(texts_given, tree, output, path)
     found = _with_beside(given, made, tree, trust, samples)
     unread = (
         f"{text.file}: no file of the xacro has the argument {name}"
@@ -100,6 +105,11 @@ def join(
         for name in (text.known.lacks(sorted(it.xacro_args)) if text.known else ())
     )
     return found._replace(notes=(*unread, *found.notes))
+
+
+def controllers_file(output: str) -> str:
+    """Return the path of the controllers' parameters beside a description."""
+    return f"{output.removesuffix('.urdf')}_controllers.yaml"
 
 
 def join_plain(parts: Sequence[Part], place: str, tree: Tree, trust: bool) -> Joined:
@@ -162,7 +172,7 @@ def _relative(made: JoinedText) -> Iterator[str]:
         root, file = it.part.inventory.document.root, it.part.file
         names = (one.get("filename", "") for one in root.iter("mesh", "texture"))
         found = [name for name in names if name and "://" not in name and name[0] != "/"]
-        if found:
+        if found and not it.references.output:
             what = f"{file}: {found[0]!r} is looked up from the folder of the file"
             more = f", and {len(found) - 1} more" if len(found) > 1 else ""
             yield f"{what}{more}; write package://NAME/..."

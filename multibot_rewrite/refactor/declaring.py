@@ -19,15 +19,22 @@ SPACES = ("namespace", "robot_namespace", "ros_namespace")
 _SPACE = b' xmlns:xacro="http://www.ros.org/wiki/xacro"'
 
 
-def free_name(found: Iterable[Description], names: Sequence[str] = NAMES) -> str:
-    """A name that no argument, property or parameter of a macro has."""
+def free_name(
+    found: Iterable[Description],
+    names: Sequence[str] = NAMES,
+    known: Collection[str] | None = None,
+) -> str:
+    """A name that no argument, property or parameter of a macro has; where properties are ``known`` to
+    take the argument, those may have it, and parameters."""
     taken: set[str] = set()
     sources = {file: data for it in found for file, data in it.sources.items()}
     # YAML that an expression loads is among them.
     for file, data in ((file, data) for file, data in sources.items() if b"<robot" in data):
         for element in read_document(data, file).root.iter("{*}arg", "{*}property", "{*}macro"):
+            is_argument = str(element.tag).endswith("}arg")
+            own = {element.get("name", "")}
             words = element.get("params", "").replace(":=", " ").replace("=", " ").split()
-            taken |= {element.get("name", ""), *words}
+            taken |= own.union(words) if known is None else own - set(() if is_argument else known)
     free = next((name for name in names if name not in taken), None)
     if free is None:
         raise UsageError(f"{', '.join(names)} are all names of its arguments or properties")
@@ -35,29 +42,49 @@ def free_name(found: Iterable[Description], names: Sequence[str] = NAMES) -> str
 
 
 def declared(
-    found: Sequence[Description],
+    tops: Iterable[Description],
     texts: Mapping[str, bytes],
-    changed: Collection[str],
+    using: Collection[str],
     argument: str,
+    edits: Iterable[SourceEdit] = (),
 ) -> Iterator[SourceEdit]:
-    """The argument and its property in the descriptions' own files, and the property in other files
-    that are ``changed``; ``texts`` are the bytes of all, by real path."""
-    own = {os.path.realpath(it.path) for it in found}
-    argued = f'\n  <xacro:arg name="{argument}" default=""/>'
-    value = f'\n  <xacro:property name="{argument}" value="$(arg {argument})"/>'
-    for path in own:
-        yield from _first(path, texts[path], argued + value)
-    for path in {*changed} - own:
+    """The argument in the descriptions' own files, before the ``edits`` that use it. Where a file is
+    ``using`` its property, that too: with the argument's value in those, otherwise empty. ``texts``
+    are the bytes by real path."""
+    argued = f'<xacro:arg name="{argument}" default=""/>'
+    value = f'<xacro:property name="{argument}" value="$(arg {argument})"/>'
+    own: set[str] = set()
+    starts = sorted((it.file, it.start) for it in edits)
+    for it in tops:
+        path = os.path.realpath(it.path)
+        first = next((start for file, start in starts if file == path), len(texts[path]))
+        texts_of_it = ((os.path.realpath(name), data) for name, data in it.sources.items())
+        word = b'arg name="%s"' % argument.encode()
+        known = any(word in (data[:first] if at == path else data) for at, data in texts_of_it)
+        lines = [argued] * bool(using or not known) + [value] * bool(using)
+        yield from _first(path, texts[path], lines, argument, first) if path not in own else ()
+        own.add(path)
+    for path in {*using} - own:
         if b"<robot" in texts[path]:
-            text = f'\n  <xacro:property name="{argument}" default=""/>'
-            yield from _first(path, texts[path], text)
+            line = f'<xacro:property name="{argument}" default=""/>'
+            yield from _first(path, texts[path], [line], argument, len(texts[path]))
 
 
-def _first(path: str, source: bytes, text: str) -> Iterator[SourceEdit]:
-    """A text, first in the root element."""
-    start = read_document(source, path).starts[0]
-    end = tag_end(source, start)
-    if b"xmlns:xacro" not in source[start:end]:
+def _first(
+    path: str, source: bytes, lines: Iterable[str], argument: str, before: int
+) -> Iterator[SourceEdit]:
+    """The lines that are not there ``before`` a place, first in the root element or behind the
+    argument."""
+    document = read_document(source, path)
+    start = document.starts[0]
+    there: dict[str, int] = {}
+    for element, at in zip(document.elements, document.starts, strict=True):
+        if element.get("name") == argument and at < before:
+            there.setdefault(str(element.tag).rpartition("}")[2], at)
+    text = "".join(f"\n  {it}" for it in lines if it[7:].split()[0] not in there)
+    if b"xmlns:xacro" not in source[start : tag_end(source, start)]:
         at = start + len(b"<robot")
         yield SourceEdit(path, at, at, _SPACE)
-    yield SourceEdit(path, end, end, text.encode())
+    if text:
+        end = tag_end(source, there.get("arg", start))
+        yield SourceEdit(path, end, end, text.encode())

@@ -73,7 +73,7 @@ def namespaced(found: Sequence[Description], texts: Mapping[str, bytes], tree: T
     made = placed(
         [it.found for it in every],
         [list(_changes(it.template)) for it in every],
-        lambda change: _written(change, argument),
+        lambda _, change: _written(change, argument),
     )
     edits, left = list(made.edits), [*left, *made.left]
     for (file, start), wanted in _added(every).items():

@@ -11,7 +11,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import redirect_stderr
+from contextlib import redirect_stderr, suppress
 from io import StringIO
 from itertools import chain, islice
 from types import MappingProxyType
@@ -20,6 +20,7 @@ from typing import NamedTuple
 from lxml.etree import _Element
 
 from multibot_rewrite.base.model import InputError
+from multibot_rewrite.description.joining.part import faults
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.expand import Expansion, expand_traced
@@ -83,11 +84,25 @@ def read_package(folder: str, tree: Tree, how: Expanding) -> Package:
             made.append(Description(path, inventory_of(data, path, tree, urdfs), read))
         except InputError as error:
             unread[path] = str(error)
+    made += _included(found.parts, tree, how)
     return Package(found, tuple(made), unread)
 
 
+def _included(paths: Iterable[str], tree: Tree, how: Expanding) -> Iterator[Description]:
+    """Yield the files that others include and that are complete robots themselves."""
+    for path in paths:
+        with suppress(InputError):
+            data, read = read_text(path, how)
+            inventory = inventory_of(data, path, tree)
+            if inventory.declared.get("joint") and not any(faults(inventory)):
+                yield Description(path, inventory, read)
+
+
 def read_text(
-    path: str, how: Expanding, texts: Mapping[str, bytes] | None = None
+    path: str,
+    how: Expanding,
+    texts: Mapping[str, bytes] | None = None,
+    in_pieces: bool = True,
 ) -> tuple[bytes, Expansion | None]:
     """The text of a description; ``texts`` are the bytes of files that are not as on the disk, by their
     real paths. Raises InputError."""
@@ -97,7 +112,7 @@ def read_text(
         return data, None
     # What xacro warns about is not said here.
     with redirect_stderr(StringIO()):
-        read = expand_traced(path, data, how.arguments, None, how.reach, True, known)
+        read = expand_traced(path, data, how.arguments, None, how.reach, in_pieces, known)
     return read.data, read
 
 

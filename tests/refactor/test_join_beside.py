@@ -10,7 +10,7 @@ import yaml
 from lxml import etree
 from paths import fixture_text
 
-from multibot_rewrite import InputError, Part, join
+from multibot_rewrite import InputError, Part, join, split
 from multibot_rewrite.cli.multibot import main
 
 SHAPE = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
@@ -314,3 +314,38 @@ def test_a_display_is_told_by_class_topic_and_frame(
     )
     made = join([arm, gripper._replace(name="g")])
     assert (b"rviz_common/Group" in made.rviz) == again
+
+
+SYSTEM = (
+    '<ros2_control name="s" type="system"><hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin>'
+    '</hardware><joint name="{}"><command_interface name="position"/></joint></ros2_control>'
+    '<gazebo><plugin filename="libgz_ros2_control-system.so" '
+    'name="gz_ros2_control::GazeboSimROS2ControlPlugin"><parameters>{}</parameters></plugin></gazebo>'
+    "</robot>"
+)
+
+
+def test_what_refers_to_files_refers_to_the_new_ones(tmp_path: Path) -> None:
+    """One plugin with one file of all controllers; meshes by paths from the new folder."""
+    given = []
+    for name, text, joint in (("arm", ARM, "turn"), ("hand", GRIPPER, "grip")):
+        (tmp_path / name).mkdir()
+        path, controllers = tmp_path / name / f"{name}.urdf", tmp_path / name / "c.yaml"
+        mesh = text.replace('<box size="1 1 1"/>', '<mesh filename="m/a&amp;b.stl"/>', 1)
+        path.write_text(mesh.replace("</robot>", SYSTEM.format(joint, controllers)))
+        controllers.write_text(f"{name}:\n  ros__parameters: {{joints: [{joint}]}}\n")
+        at = "arm_tool" if given else ""
+        given.append(Part(str(path), at, prefix=f"{name}_", controllers=[str(controllers)]))
+    made = join(given, output=str(tmp_path / "o/robot.urdf"))
+    root = etree.fromstring(made.data)
+    files = [it.text for it in root.iter("parameters")]
+    assert files == [str(tmp_path / "o/robot_controllers.yaml")]
+    meshes = [it.get("filename") for it in root.iter("mesh")]
+    assert meshes == ["../arm/m/a&b.stl", "../hand/m/a&b.stl"]
+    assert split(made.data) == {
+        Path(str(it.description)).stem: Path(str(it.description)).read_bytes() for it in given
+    }
+    assert [it.text for it in etree.fromstring(join(given).data).iter("parameters")] == [
+        str(tmp_path / "arm/c.yaml"),
+        str(tmp_path / "hand/c.yaml"),
+    ]

@@ -71,7 +71,7 @@ def read_joined(path: str, trust: bool) -> SourceText:
     """Return the joined description of a file, without comments; raises as ``join_texts``."""
     given, read = plain_texts(parts_of(path), trust)
     try:
-        made = join_texts(given, builtin_tree((), release_here()))
+        made = join_texts(given, builtin_tree((), release_here()), path)
     except UsageError as error:
         raise InputError(f"{path}: {error}") from None
     return SourceText(plain_text(made, path), f"{path} (expanded)", (path, *read))

@@ -34,6 +34,7 @@ from multibot_rewrite.description.joining.blocks import (
     prefixed,
     repeated,
     said_once,
+    same_ids,
     word_of,
 )
 from multibot_rewrite.description.joining.part import (
@@ -44,6 +45,7 @@ from multibot_rewrite.description.joining.part import (
     read_part,
     with_names,
 )
+from multibot_rewrite.description.joining.referring import References, referring
 from multibot_rewrite.description.joining.second_reading import Mounted, prove
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.steps.apply import cut
@@ -156,8 +158,11 @@ class GivenPart(NamedTuple):
     file: str
 
 
-def join_texts(given: Sequence[GivenPart], tree: Tree) -> JoinedText:
-    """Join descriptions; raises UsageError and InputError in one line, ProofError."""
+def join_texts(
+    given: Sequence[GivenPart], tree: Tree, output: str = "", controllers: str = ""
+) -> JoinedText:
+    """Join descriptions; relative paths and files of controllers are as the file ``output`` and the one
+    of all ``controllers`` need them. Raises UsageError and InputError in one line, ProofError."""
     if len(given) < 2:
         raise UsageError("one description alone: give those that are joined to it, too")
     parts = [read_part(*it, tree, at == 0) for at, it in enumerate(given)]
@@ -173,6 +178,12 @@ def join_texts(given: Sequence[GivenPart], tree: Tree) -> JoinedText:
         with_names(known, part)
         mounted.append(made)
         notes += told
+    several = (References(it.file, output, it.part.controllers, controllers) for it in given)
+    pairs = zip(mounted, several, strict=True)
+    mounted = [it._replace(references=references) for it, references in pairs]
+    if output:
+        before = len(kept.part_starts(parts[0].data))
+        data = referring(data, [it.references for it in mounted], JOINED, before)
     prove(data, mounted, tree)
     findings = tuple(found for part in parts for found in part.findings)
     return JoinedText(data, tuple(mounted), tuple(notes), findings)
@@ -211,7 +222,8 @@ def _added(
     if mount.joint in robot.joint or mount.joint in part.robot.joint:
         what = f"joint {mount.joint!r} is there already; name the part otherwise"
         raise InputError(f"{part.file}: {what}")
-    system = one_system(joined, part.inventory) if spec.one_system else Once()
+    twice_driven = Once(notes=tuple(same_ids(joined, part.inventory)))
+    system = one_system(joined, part.inventory) if spec.one_system else twice_driven
     twice = repeated(joined.document.root, spans)
     edits = [*mount.edits, *twice, *once.part, *system.part]
     made = _edited(text, [*edits, *own_spaces(joined.document, spans, edits)])

@@ -11,22 +11,28 @@ tag on. What was left out or changed is kept where it was, before the 0 or 1 ele
 
     <!-- multibot was 1 OLD -->
 
+A path that was changed is kept before its element, outside of what is kept whole:
+
+    <!-- multibot from meshes/hand.stl -->
+
 A comment holds no ``--``, and no colon before a blank: launch files pass a description as YAML.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from bisect import bisect_left
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 from urllib.parse import quote, unquote
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.description.steps.apply import cut
-from multibot_rewrite.description.steps.document import read_document, silenced
+from multibot_rewrite.description.steps.document import read_document, silenced, value_slot
 from multibot_rewrite.description.steps.spans import Spans
 
 _BASE = lazy_compile(rb"  <!-- multibot base (\w+)(?: prefix=(\w+))? -->\n")
@@ -38,9 +44,11 @@ _PART = lazy_compile(
 _LAST = b"<!-- multibot end "
 _END = _LAST + b"%s "
 _WAS = lazy_compile(rb"<!-- multibot was ([01]) (" + _INSIDE + rb") -->")
-_OURS = lazy_compile(rb"<!-- multibot (?:base|part|end|was) ")
+_ADDED = b"<!-- multibot was 1  -->"
+_FROM = lazy_compile(rb"<!-- multibot from (" + _INSIDE + rb") -->")
+_OURS = lazy_compile(rb"<!-- multibot (?:base|part|end|was|from) ")
 _MARKS = lazy_compile(
-    rb"  <!-- multibot (?:base %b-->\n|part %b-->)|<!-- multibot (?:was %b-->|end %b-->\n)"
+    rb"  <!-- multibot (?:base %b-->\n|part %b-->)|<!-- multibot (?:(?:was|from) %b-->|end %b-->\n)"
     % ((_INSIDE,) * 4)
 )
 _ESCAPED = lazy_compile(rb"%|-(?=-|\Z)|(?<=:) ")
@@ -66,6 +74,11 @@ def is_joined_whole(text: bytes) -> bool:
     return _BASE.search(text) is not None
 
 
+def part_starts(text: bytes) -> list[int]:
+    """Return where the parts behind the first one start in a joined text."""
+    return [it.start() for it in _PART.finditer(text)]
+
+
 def without_marks(text: bytes) -> bytes:
     """Return the text without the comments of a join, so that it cannot be split any more."""
     return _MARKS.sub(b"", text)
@@ -77,8 +90,32 @@ def was(start: int, end: int, old: bytes, new: bytes = b"") -> Edit:
     return Edit(start, end, kept + new, None)
 
 
+# What refers to a file, in this attribute or, where it is empty, in its text.
+REFERRING = {"mesh": "filename", "texture": "filename", "parameters": ""}
+
+
+def moved_path(spans: Spans, element: _Element, path: str, new: str) -> Iterator[Edit]:
+    """Yield the edits that change a path in an element, and keep it in a comment."""
+    start = spans.start_of(element)
+    slot = value_slot(spans.document.source, start, REFERRING[str(element.tag)], path)
+    if slot is not None:
+        old = spans.document.source[slice(*slot)]
+        yield Edit(start, start, b"<!-- multibot from %s -->" % _hidden(old), None)
+        yield Edit(*slot, new.translate(ESCAPES).encode(), None)
+
+
+def path_in(element: _Element) -> str:
+    """Return the path in an element that refers to a file."""
+    name = REFERRING[str(element.tag)]
+    return (element.get(name) if name else element.text or "") or ""
+
+
 def left_out(spans: Spans, element: _Element) -> Edit:
-    """Return the edit that removes an element and keeps it in a comment."""
+    """Return the edit that removes an element and keeps it in a comment, if it is not one that was
+    added."""
+    before = spans.document.source[: spans.start_of(element)].rstrip()
+    if before.endswith(_ADDED):
+        return Edit(len(before) - len(_ADDED), spans.end_of(element), b"", None)
     return was(spans.start_of(element), spans.end_of(element), spans.text_of(element))
 
 
@@ -113,7 +150,12 @@ def sections(text: bytes, file: str) -> list[KeptText]:
     edits = [
         Edit(it.start(), _end(spans, it, file), _shown(it[2]), None) for it in _WAS.finditer(text)
     ]
-    before = b"".join(cut(text, edits))
+    ends = [it.end for it in edits]
+    for it in _FROM.finditer(text):
+        at = bisect_left(ends, it.end())
+        if at == len(ends) or it.start() < edits[at].start:
+            edits += _path_back(spans, it, file)
+    before = b"".join(cut(text, sorted(edits, key=lambda it: it.start)))
     mark = _BASE.search(before)
     if mark is None:
         raise InputError(f"{file}: it was not made by multibot join: its parts are not known")
@@ -143,6 +185,16 @@ def _end(spans: Spans, found: re.Match[bytes], file: str) -> int:
     if element is None:
         raise InputError(f"{file}: what stood behind a comment 'multibot was' was edited by hand")
     return spans.end_of(element)
+
+
+def _path_back(spans: Spans, found: re.Match[bytes], file: str) -> Iterator[Edit]:
+    element, source = spans.first_from(found.end()), spans.document.source
+    if element is None or element.tag not in REFERRING:
+        raise InputError(f"{file}: what stood behind a comment 'multibot from' was edited by hand")
+    start, name = spans.start_of(element), REFERRING[str(element.tag)]
+    slot = value_slot(source, start, name, path_in(element).strip())
+    yield Edit(found.start(), found.end(), b"", None)
+    yield Edit(*(slot or (start, start)), _shown(found[1]), None)
 
 
 _SHOWN: Mapping[bytes, bytes] = {b"%25": b"%", b"%2D": b"-", b"%20": b" "}

@@ -64,7 +64,8 @@ def known_names() -> Mapping[str, Any]:
 class Found(NamedTuple):
     """Files by what they are for, each sorted; ``srdf`` are xacros, too. ``folders`` were searched.
 
-    ``descriptions`` are those that were named, if any were; ``every`` are all that are there. ``meant``
+    ``descriptions`` are those that were named, if any were; ``every`` are all that are there, ``parts``
+    are files that a description includes and that name a robot, too. ``meant``
     are files beside them that were named, ``follows`` those with the description that was named before
     each, ``named`` is the launch file that was.
     """
@@ -80,6 +81,7 @@ class Found(NamedTuple):
     worlds: tuple[str, ...] = ()
     folders: tuple[str, ...] = ()
     every: tuple[str, ...] = ()
+    parts: tuple[str, ...] = ()
     meant: tuple[str, ...] = ()
     follows: tuple[tuple[str, str], ...] = ()
     named: tuple[LaunchOrder, ...] = ()
@@ -215,7 +217,7 @@ def _can_be_named(path: str) -> bool:
 
 
 def _sorted(paths: Iterable[str], named: Sequence[Reading]) -> Iterator[tuple[str, str]]:
-    """Each path with its kind; those that others include, and no launch file loads, are none."""
+    """Each path with its kind; those that others include, and no launch file loads, are parts."""
     kinds: dict[str, str] = {}
 
     def texts() -> Iterator[tuple[str, bytes]]:
@@ -230,9 +232,8 @@ def _sorted(paths: Iterable[str], named: Sequence[Reading]) -> Iterator[tuple[st
     read = named or read_any(launch)
     loaded = {one.file for it in read for one in it.graph.read}
     parts = {it for it in parts if os.path.realpath(it) not in loaded}
-    yield from (
-        (it, kind) for it, kind in kinds.items() if kind != "descriptions" or it not in parts
-    )
+    for it, kind in kinds.items():
+        yield it, "parts" if kind == "descriptions" and it in parts else kind
 
 
 @lru_cache(maxsize=512)
