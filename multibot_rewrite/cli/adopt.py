@@ -39,7 +39,7 @@ def _tell(options: argparse.Namespace, made: Adopted) -> None:
         where = plural(len(made.after), "file")
         note(options, f"argument {made.argument}: {many} in {where}; {end}")
     for path in made.verified:
-        own = made.completed.get(path)
+        own = made.already.get(path)
         what = f"its argument {own} reaches all its names" if own else "it takes the argument"
         note(options, f"{path}: {what}; verified")
     if made.namespace:
@@ -49,8 +49,8 @@ def _tell(options: argparse.Namespace, made: Adopted) -> None:
         given = made.namespace and f"{made.namespace}:=".encode() in made.after[it]
         what = f"{made.argument} and {made.namespace}" if given else made.argument
         note(options, f"{it}: it hands {what} on; verified")
-    for path, name in made.already.items():
-        note(options, f"{path}: it has such an argument already: {name}")
+    for path in made.already.keys() - set(made.verified):
+        note(options, f"{path}: it has such an argument already: {made.already[path]}")
     for path, names in made.bare.items():
         what = f"error: {shorten(map(repr, names), _SHOWN)} stay without the prefix"
         note(options, f"{path}: {what}; put the argument before them by hand")

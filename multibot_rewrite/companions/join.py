@@ -26,6 +26,7 @@ from multibot_rewrite.description.checks.verdict import not_verified
 from multibot_rewrite.description.joining.from_file import plain_text, plain_texts
 from multibot_rewrite.description.joining.join import GivenPart, JoinedText, join_texts
 from multibot_rewrite.description.joining.part import Part, ReadPart, prefixing
+from multibot_rewrite.description.joining.referring import Output
 from multibot_rewrite.description.joining.second_reading import split_text
 from multibot_rewrite.description.joining.semantic import (
     JoinedSemantics,
@@ -95,21 +96,17 @@ def join(
     tree = builtin_tree(tuple(vocabulary), release_here(distro))
     texts = [read_whole(it.description, it.xacro_args, trust) for it in given]
     pairs = zip(given, texts, strict=True)
+    there = f"{os.path.abspath(output).removesuffix('.urdf')}_controllers.yaml" if output else ""
     texts_given = [GivenPart(it, text.data, text.file) for it, text in pairs]
-    path = os.path.abspath(controllers_file(output)) if output else ""
-    made = join_texts(texts_given, tree, output, path)
+    made = join_texts(texts_given, tree, Output(output, there))
     found = _with_beside(given, made, tree, trust, samples)
     unread = (
         f"{text.file}: no file of the xacro has the argument {name}"
         for it, text in zip(given, texts, strict=True)
         for name in (text.known.lacks(sorted(it.xacro_args)) if text.known else ())
     )
-    return found._replace(notes=(*unread, *found.notes))
-
-
-def controllers_file(output: str) -> str:
-    """Return the path of the controllers' parameters beside a description."""
-    return f"{output.removesuffix('.urdf')}_controllers.yaml"
+    told = () if output else _relative(made)
+    return found._replace(notes=(*unread, *told, *found.notes))
 
 
 def join_plain(parts: Sequence[Part], place: str, tree: Tree, trust: bool) -> Joined:
@@ -150,7 +147,7 @@ def _with_beside(
         for it in meetings(named, prefixing())
     )
     told = (f"{file}: {what}" for file, what in moveit.notes)
-    notes = (*_relative(made), *made.notes, *semantics.notes, *files.notes, *told, *rviz.notes)
+    notes = (*made.notes, *semantics.notes, *files.notes, *told, *rviz.notes)
     notes, names = (*notes, *met), tuple(it.part.name for it in made.parts)
     return Joined(
         made.data, semantics.data, files.data, names, notes, made.findings, moveit.files, rviz.data
@@ -172,7 +169,7 @@ def _relative(made: JoinedText) -> Iterator[str]:
         root, file = it.part.inventory.document.root, it.part.file
         names = (one.get("filename", "") for one in root.iter("mesh", "texture"))
         found = [name for name in names if name and "://" not in name and name[0] != "/"]
-        if found and not it.references.output:
+        if found:
             what = f"{file}: {found[0]!r} is looked up from the folder of the file"
             more = f", and {len(found) - 1} more" if len(found) > 1 else ""
             yield f"{what}{more}; write package://NAME/..."

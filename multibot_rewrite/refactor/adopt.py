@@ -16,7 +16,7 @@ from contextlib import redirect_stderr
 from io import StringIO
 from itertools import chain
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.model import InputError
@@ -40,7 +40,7 @@ from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.description.steps.renames import make_renames, respeller
 from multibot_rewrite.refactor.declaring import NAMES, SPACES, declared, free_name
-from multibot_rewrite.refactor.handing_on import MARK, Compared, Place, Sources, Words, compared
+from multibot_rewrite.refactor.handing_on import MARK, Place, Sources, Words, compared
 from multibot_rewrite.refactor.launch_argument import Space
 from multibot_rewrite.refactor.launches import Trial, fillable, with_launches
 from multibot_rewrite.refactor.named_elsewhere import named_elsewhere, root_sections
@@ -81,12 +81,12 @@ class Adopted(NamedTuple):
     """A package with its new argument. ``before`` and ``after`` are the bytes of the files that change,
     by path, empty for a new one; ``verified`` are the descriptions that take it, ``left`` is what could
     not be changed, ``unread`` are descriptions that could not be read, with the reason. ``already`` are
-    those that have such an argument, with its name: they stay. ``launches`` are the launch files that
+    those that have such an argument, with its name: they stay but for the verified ones, in which it
+    reaches all names now. ``launches`` are the launch files that
     are verified to hand it on, ``configurations`` those that were verified besides the default one, as
     ``robot.urdf.xacro gripper:=true``. ``namespace`` is the argument for a namespace, empty where
     nothing needs one, ``spaced`` the descriptions that take it. ``bare`` are names that stay without
-    the prefix, by description; ``completed`` are verified ones whose own argument reaches all names
-    now, with that."""
+    the prefix, by description."""
 
     argument: str
     before: Mapping[str, bytes]
@@ -100,7 +100,6 @@ class Adopted(NamedTuple):
     namespace: str = ""
     spaced: tuple[str, ...] = ()
     bare: Mapping[str, tuple[str, ...]] = MappingProxyType({})
-    completed: Mapping[str, str] = MappingProxyType({})
 
 
 @checked
@@ -141,18 +140,17 @@ def _adopted(job: _Job) -> Adopted:
     }
     own = {path: _space_of(its) for path, its in arguments.items()}
     made = Adopted("", {}, {}, (), (), {})
-    for own_name in dict.fromkeys(begun.values()):
-        some = [it for it in descriptions if begun.get(it.path) == own_name and lacks[it.path]]
-        made = _with_more(made, some, own_name, own, job) if some else made
-    others = (it for it in descriptions if it.path not in lacks)
-    found = list(_configured(list(_as_xacros(others, job)), job))
+    found: list[Description] = []
+    for argument in (*dict.fromkeys(begun.values()), ""):
+        some = (it for it in descriptions if begun.get(it.path, "") == argument)
+        lacking = (it for it in some if (lacks.get(it.path) and argument) or it.path not in lacks)
+        found = list(_configured(list(_as_xacros(lacking, job)), job))
+        made = _with_more(made, found, argument, own, job) if found else made
     if not found and not lacks:
         nothing = f"{job.folder}: there is no description of a robot in it"
         raise InputError(next(iter(job.unread.values()), nothing))
-    made = _with_more(made, found, "", own, job) if found else made
-    stay = {path: name for path, name in (already | begun).items() if path not in made.verified}
-    bare = {path: lacks[path] for path in stay if lacks.get(path)}
-    return made._replace(unread=job.unread, already=stay, bare={**bare, **made.bare})
+    bare = {it: lacks[it] for it in lacks if lacks[it] and it not in made.verified}
+    return made._replace(unread=job.unread, already=already | begun, bare={**bare, **made.bare})
 
 
 def _with_more(
@@ -166,20 +164,18 @@ def _with_more(
             found = [_again(it, texts, {}, job) for it in found]
         more = _with_files_beside(_best(found, argument, own, job), found, job)
     except InputError as error:
-        if argument or made.argument:
-            left = Left(found[0].path, f"its names are not verified: {error}")
-            return made._replace(left=(*made.left, left))
-        raise
-    return more._replace(
-        argument=more.argument or made.argument,
-        before={**more.before, **made.before},
-        after={**made.after, **more.after},
-        verified=(*made.verified, *more.verified),
-        left=tuple(dict.fromkeys((*made.left, *more.left))),
-        launches=tuple(dict.fromkeys((*made.launches, *more.launches))),
-        bare={**made.bare, **more.bare},
-        completed={**made.completed, **dict.fromkeys(more.verified * bool(argument), argument)},
-    )
+        if not argument and not made.argument:
+            raise
+        left = Left(found[0].path, f"its names are not verified: {error}")
+        return made._replace(left=(*made.left, left))
+    return Adopted(*(_both(*pair) for pair in zip(made, more, strict=True)))
+
+
+def _both(one: Any, two: Any) -> Any:
+    """Two values of one field as one."""
+    if isinstance(one, Mapping):
+        return {**one, **two}
+    return tuple(dict.fromkeys((*one, *two))) if isinstance(one, tuple) else two or one
 
 
 class _Job(NamedTuple):
@@ -244,8 +240,8 @@ def _best(
     to calls that take one, or put before names alone."""
     texts = texts_of(found)
     sources = Sources(texts, {os.path.realpath(it.path) for it in found})
-    places = list(sources.places())
-    names = [argument or free_name(found, NAMES, {it.carrier[1] for it in places})]
+    places = [it for it in sources.places if it.may_be_prefix]
+    names = [argument or free_name(found, NAMES, {it.name for it in places if not it.macro})]
     names += [] if argument else [free_name(found)]
     tries = dict.fromkeys((*((it, bool(places)) for it in names), (names[-1], False)))
     made: list[Adopted] = []
@@ -253,7 +249,7 @@ def _best(
     for name, in_calls in tries:
         try:
             words = Words(name, not argument, sources, sources.carriers(name))
-            begun = _begun_with(found, texts, words, job)
+            begun = _lacking(words, texts, found, job)
             begun = _with_calls(begun, places, job) if in_calls else begun
             made.append(_with_namespace(begun, own, job))
         except InputError as error:
@@ -265,18 +261,18 @@ def _best(
     return max(made, key=lambda it: (len(it.verified), -sum(map(len, it.bare.values()))))
 
 
-def _begun_with(
-    found: Sequence[Description], texts: Mapping[str, bytes], words: Words, job: _Job
+def _lacking(
+    words: Words, texts: Mapping[str, bytes], bases: Sequence[Description], job: _Job
 ) -> _Begun:
-    """What the descriptions lack with the argument that they have; all where it is new."""
-    asked = [list(_changes(it)) for it in found]
-    if not words.is_new:
-        given = {words.argument: TRIED}
-        others = [_again(it, {}, given, job) for it in found]
-        every = zip(found, asked, others, strict=True)
-        asked = [list(_compared(*it, _TRIED).lacks) for it in every]
-        return _Begun(words, texts, found, others, asked)
-    return _Begun(words, texts, found, found, asked)
+    """What descriptions lack with the argument. Raises InputError if a new one is in other values."""
+    found = [_again(it, texts, {words.argument: TRIED}, job) for it in bases]
+    every = [
+        compared(it.document, _changes(it), other.document, _TRIED)
+        for it, other in zip(bases, found, strict=True)
+    ]
+    if words.is_new and any(it.astray for it in every):
+        raise InputError(f"{job.folder}: {words.argument} would be elsewhere, too")
+    return _Begun(words, texts, bases, found, [it.lacks for it in every])
 
 
 def _with_calls(begun: _Begun, places: Sequence[Place], job: _Job) -> _Begun:
@@ -287,14 +283,13 @@ def _with_calls(begun: _Begun, places: Sequence[Place], job: _Job) -> _Begun:
     outside = sorted(places, key=lambda it: bool(sources.macro_at(it.spot)))
     marks = {f"qz{at:03}z": it for at, it in enumerate(outside[:_PLACES])}
     texts = edited(begun.texts, [it.edit(mark) for mark, it in marks.items()])
-    plain = [it for it in zip(begun.found, begun.asked, strict=True) if not it[0].arguments]
-    given = {} if is_new else {argument: TRIED}
     seen: set[str] = set()
     astray: set[str] = set()
-    for it, asked in plain:
-        other = _again(it, texts, given, job)
-        seen |= set(MARK.findall(other.inventory.document.source.decode()))
-        astray |= _compared(it, asked, other, MARK).astray
+    for it, asked in zip(begun.found, begun.asked, strict=True):
+        if not it.arguments:
+            other = _again(it, texts, {argument: TRIED}, job).document
+            seen |= set(MARK.findall(other.source.decode()))
+            astray |= compared(it.document, asked, other, MARK).astray
     chosen = [it for mark, it in marks.items() if mark in seen - astray]
     if "" in astray or not chosen:
         raise InputError(f"{job.folder}: no call takes the argument alone")
@@ -302,23 +297,11 @@ def _with_calls(begun: _Begun, places: Sequence[Place], job: _Job) -> _Begun:
     carriers = Sources({**begun.texts, **files}, sources.tops).carriers(argument)
     words = Words(argument, is_new, sources, {it for it in carriers if it[0]})
     edits = [it.edit(word.decode()) for it in chosen if (word := words.at(it.spot, True))]
-    edits += declared(begun.bases, begun.texts, words.using(edits), argument, edits)
+    edits += declared(begun.bases, begun.texts, words.using(edits), argument)
     texts = {**begun.texts, **edited(begun.texts, edits)}
     words = Words(argument, is_new, Sources(texts, sources.tops), carriers)
-    reads = [_again(it, texts, {}, job).read for it in begun.bases]
-    bases = [it._replace(read=read) for it, read in zip(begun.bases, reads, strict=True)]
-    others = [_again(it, texts, {argument: TRIED}, job) for it in begun.bases]
-    every = zip(begun.bases, map(_changes, begun.bases), others, strict=True)
-    found = [_compared(it, changes, other, _TRIED) for it, changes, other in every]
-    if is_new and any(it.astray for it in found):
-        raise InputError(f"{job.folder}: {argument} would be elsewhere, too")
-    return _Begun(words, texts, bases, others, [it.lacks for it in found])
-
-
-def _compared(
-    it: Description, asked: Iterable[ValueEdit], other: Description, word: re.Pattern[str]
-) -> Compared:
-    return compared(it.inventory.document, asked, other.inventory.document, word)
+    bases = [it._replace(read=_again(it, texts, {}, job).read) for it in begun.bases]
+    return _lacking(words, texts, bases, job)
 
 
 def _again(
@@ -339,37 +322,32 @@ def _made(
     words, texts, bases, found, asked = begun
     argument = words.argument
     made = placed(found, asked, lambda spot, _: words.at(spot))
-    edits = {
-        *made.edits,
-        *declared(bases, texts, words.using(made.edits), argument, made.edits),
-        *more,
-    }
+    edits = {*made.edits, *declared(bases, texts, words.using(made.edits), argument), *more}
     after = {**texts, **edited(texts, edits)}
-    every = zip(bases, found, made.changes, strict=True)
-    wrong = {at: _fault(*it, after, argument, job.how) for at, it in enumerate(every)}
-    wrong = {at: why for at, why in wrong.items() if why}
-    lacking = {
-        at: tuple(dict.fromkeys(it.value.strip() for it in its if it not in made.changes[at]))
-        for at, its in enumerate(asked)
-        if len(its) > len(made.changes[at])
+    every = [*zip(bases, found, made.changes, strict=True)]
+    wrong = {it[0].words: _fault(*it, after, argument, job.how) for it in every}
+    wrong = {name: why for name, why in wrong.items() if why}
+    bare = {
+        it.words: tuple(dict.fromkeys(one.value.strip() for one in its if one not in own))
+        for (it, _, own), its in zip(every, asked, strict=True)
+        if len(its) > len(own)
     }
     # Verified is a description none of whose configurations is wrong or lacks a prefix.
     paths = dict.fromkeys(it.path for it in bases)
-    if len({bases[at].path for at in wrong}) == len(paths):
-        at, why = next(iter(wrong.items()))
-        raise InputError(f"{bases[at].words}: {_ALONE}; {why}")
-    bare = {bases[at].words: names for at, names in lacking.items()}
-    unmade = {bases[at].path for at in (*wrong, *lacking)}
+    if len({it.path for it in bases if it.words in wrong}) == len(paths):
+        name, why = next(iter(wrong.items()))
+        raise InputError(f"{name}: {_ALONE}; {why}")
+    unmade = {it.path for it in bases if it.words in wrong or it.words in bare}
     verified = tuple(path for path in paths if path not in unmade)
     left = (
         *made.left,
         *chain.from_iterable(map(_not_written, bases)),
-        *(Left(bases[at].words, f"its names are not verified: {it}") for at, it in wrong.items()),
+        *(Left(name, f"its names are not verified: {why}") for name, why in wrong.items()),
     )
     there = {path: read_file(path) if os.path.exists(path) else b"" for path in after}
     named = as_named({path: data for path, data in after.items() if data != there[path]}, bases)
     before = {path: data for path, data in as_named(there, bases).items() if path in named}
-    others = tuple(it.words for at, it in enumerate(bases) if it.arguments and at not in wrong)
+    others = tuple(it.words for it in bases if it.arguments and it.words not in wrong)
     return Adopted(
         argument, before, named, verified, left, {}, configurations=others, bare=bare
     ), after
@@ -459,7 +437,7 @@ def _lacks(it: Description, arguments: Iterable[Argument], name: str, job: _Job)
         return ()
     reach, given = job.how
     other = read_document(expand(it.path, {**given, name: MARKS[0]}, reach=reach), it.path)
-    lacks = compared(it.inventory.document, _changes(it), other, re.compile(MARKS[0])).lacks
+    lacks = compared(it.document, _changes(it), other, re.compile(MARKS[0])).lacks
     return tuple(dict.fromkeys(one.value.strip() for one in lacks))
 
 

@@ -46,41 +46,27 @@ def declared(
     texts: Mapping[str, bytes],
     using: Collection[str],
     argument: str,
-    edits: Iterable[SourceEdit] = (),
 ) -> Iterator[SourceEdit]:
-    """The argument in the descriptions' own files, before the ``edits`` that use it. Where a file is
-    ``using`` its property, that too: with the argument's value in those, otherwise empty. ``texts``
-    are the bytes by real path."""
-    argued = f'<xacro:arg name="{argument}" default=""/>'
+    """The argument in the descriptions' own files. Where a file is ``using`` its property, that too:
+    with the argument's value in those, otherwise empty. ``texts`` are the bytes by real path."""
     value = f'<xacro:property name="{argument}" value="$(arg {argument})"/>'
-    own: set[str] = set()
-    starts = sorted((it.file, it.start) for it in edits)
+    lines: dict[str, list[str]] = {}
     for it in tops:
-        path = os.path.realpath(it.path)
-        first = next((start for file, start in starts if file == path), len(texts[path]))
-        texts_of_it = ((os.path.realpath(name), data) for name, data in it.sources.items())
-        word = b'arg name="%s"' % argument.encode()
-        known = any(word in (data[:first] if at == path else data) for at, data in texts_of_it)
-        lines = [argued] * bool(using or not known) + [value] * bool(using)
-        yield from _first(path, texts[path], lines, argument, first) if path not in own else ()
-        own.add(path)
-    for path in {*using} - own:
-        if b"<robot" in texts[path]:
-            line = f'<xacro:property name="{argument}" default=""/>'
-            yield from _first(path, texts[path], [line], argument, len(texts[path]))
+        known = any(b'arg name="%s"' % argument.encode() in data for data in it.sources.values())
+        argued = [f'<xacro:arg name="{argument}" default=""/>'] * bool(using or not known)
+        lines[os.path.realpath(it.path)] = argued + [value] * bool(using)
+    for path in using:
+        lines.setdefault(path, [f'<xacro:property name="{argument}" default=""/>'])
+    for path, own in lines.items():
+        yield from _first(path, texts[path], own, argument) if b"<robot" in texts[path] else ()
 
 
-def _first(
-    path: str, source: bytes, lines: Iterable[str], argument: str, before: int
-) -> Iterator[SourceEdit]:
-    """The lines that are not there ``before`` a place, first in the root element or behind the
-    argument."""
+def _first(path: str, source: bytes, lines: Iterable[str], argument: str) -> Iterator[SourceEdit]:
+    """The lines that are not there, first in the root element or behind the argument."""
     document = read_document(source, path)
     start = document.starts[0]
-    there: dict[str, int] = {}
-    for element, at in zip(document.elements, document.starts, strict=True):
-        if element.get("name") == argument and at < before:
-            there.setdefault(str(element.tag).rpartition("}")[2], at)
+    every = zip(document.elements, document.starts, strict=True)
+    there = {str(it.tag).rpartition("}")[2]: at for it, at in every if it.get("name") == argument}
     text = "".join(f"\n  {it}" for it in lines if it[7:].split()[0] not in there)
     if b"xmlns:xacro" not in source[start : tag_end(source, start)]:
         at = start + len(b"<robot")

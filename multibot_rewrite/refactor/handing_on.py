@@ -25,93 +25,91 @@ from multibot_rewrite.description.steps.document import (
 from multibot_rewrite.refactor.placing import Spot, values_of
 from multibot_rewrite.refactor.source_edits import SourceEdit, ValueEdit
 
-_PARAMETER = re.compile(r"([\w.]+)(?:\s*:?=\s*('[^']*'|\S*))?")
-_NAMED = re.compile(r"\$(?:\(arg ([\w.-]+)\)|\{\s*(\w+)\s*\})")
+_PARAMETER = re.compile(r"([\w.]+)(?:\s*:?=\s*(?:'([^']*)'|(\S*)))?")
+_NAMED = re.compile(r"\s*\$(?:\(arg ([\w.-]+)\)|\{\s*(\w+)\s*\})\s*")
 _LIKE = re.compile("prefix", re.IGNORECASE)
 MARK = re.compile(r"qz\d{3}z")
-# A parameter or property that has the argument's value, with the macro that it is a parameter of.
-Carrier = tuple[str, str]
 
 
 class Place(NamedTuple):
-    """Where a prefix can be handed to a parameter or property: the offset, what goes around it, and
-    what the value is without it."""
+    """A parameter of a macro, or a property (of no macro), that is given a value by ``element``: where
+    a word goes before that, with what is around it."""
 
+    macro: str
+    name: str
+    value: str
+    element: _Element
     spot: Spot
     before: str
     after: str
-    value: str
-    carrier: Carrier
+
+    @property
+    def may_be_prefix(self) -> bool:
+        """Is it called so, and is its value known, or outside of macros?"""
+        is_known = "$" not in self.value and "^" not in self.value
+        return bool(_LIKE.search(self.name)) and (is_known or not _macro_of(self.element))
 
     def edit(self, word: str) -> SourceEdit:
         """Return the edit that puts a word there."""
-        file, at = self.spot
-        return SourceEdit(file, at, at, f"{self.before}{word}{self.after}".encode())
+        return SourceEdit(*self.spot, self.spot[1], f"{self.before}{word}{self.after}".encode())
+
+    def is_argument(self, argument: str, carriers: Collection[tuple[str, str]]) -> bool:
+        """Is the value the argument, as it is or by the name of something that carries it?"""
+        found = _NAMED.fullmatch(self.value)
+        names = [(_macro_of(self.element), found[2]), ("", found[2])] if found else []
+        return bool(found) and (found[1] == argument or not {*names}.isdisjoint(carriers))
 
 
 class Sources:
-    """The xacro files of descriptions, read once; ``tops`` are those of the descriptions themselves."""
+    """The xacro files of descriptions; ``tops`` are those of the descriptions themselves."""
 
     def __init__(self, texts: Mapping[str, bytes], tops: Collection[str]) -> None:
         self.tops = tops
         own = {file: data for file, data in texts.items() if b"<robot" in data}
         self.documents = {file: read_document(data, file) for file, data in own.items()}
-        found = (it for one in self.documents.values() for it in one.root.iter("{*}macro"))
-        self.macros = {_name(it): dict(_parameters(it.get("params", ""))) for it in found}
+        macros = (it for one in self.documents.values() for it in one.root.iter("{*}macro"))
+        every = ((_name(it), _PARAMETER.findall(it.get("params", ""))) for it in macros)
+        self.macros = {name: {it: a or b for it, a, b in found} for name, found in every}
+        self.places = [it for file in self.documents for it in self._places(file)]
 
     def macro_at(self, spot: Spot) -> str:
         """Return the macro that a place is in; empty if it is in none."""
         document = self.documents[spot[0]]
-        element = document.elements[bisect_right(document.starts, spot[1]) - 1]
-        return _macro_of(element)
+        return _macro_of(document.elements[bisect_right(document.starts, spot[1]) - 1])
 
-    def places(self) -> Iterator[Place]:
-        """Yield the places where calls and properties take a literal prefix, or none."""
-        for file, document in self.documents.items():
-            starts = dict(zip(document.elements, document.starts, strict=True))
-            for carrier, value, element, attribute in self._given(document):
-                start = starts[element]
-                slot = attribute_slots(document.source, start).get(attribute.encode())
-                is_computed = "$" in value or "^" in value
-                if not _LIKE.search(carrier[1]) or (
-                    is_computed and (not slot or _macro_of(element))
-                ):
-                    continue
-                if slot:
-                    yield Place((file, slot[0]), "", "", value, carrier)
-                elif attribute == carrier[1]:
-                    tag = document.source[start : tag_end(document.source, start)]
-                    end = start + len(tag.rstrip(b"/>").rstrip())
-                    yield Place((file, end), f' {attribute}="', f'{value}"', value, carrier)
-
-    def carriers(self, argument: str) -> set[Carrier]:
-        """Return the parameters and properties whose value is always that of the argument."""
-        given = lists_by_key(
-            (carrier, (value, element))
-            for one in self.documents.values()
-            for carrier, value, element, _ in self._given(one)
-        )
-        found: set[Carrier] = {*given}
-        while wrong := {
-            it
-            for it in found
-            if not all(_is_argument(*one, argument, found - {it}) for one in given[it])
-        }:
+    def carriers(self, argument: str) -> set[tuple[str, str]]:
+        """Return the parameters, with their macros, and properties that always are the argument."""
+        found = {(it.macro, it.name) for it in self.places}
+        while (
+            wrong := {
+                (it.macro, it.name)
+                for it in self.places
+                if not it.is_argument(argument, found - {(it.macro, it.name)})
+            }
+            & found
+        ):
             found -= wrong
         return found
 
-    def _given(self, document: Document) -> Iterator[tuple[Carrier, str, _Element, str]]:
-        """Yield parameters of calls, and properties: with the value, the element and the attribute."""
-        for element in document.root.iter("{*}*"):
-            uri, _, tag = str(element.tag)[1:].partition("}")
+    def _places(self, file: str) -> Iterator[Place]:
+        document = self.documents[file]
+        for element, start in zip(document.elements, document.starts, strict=True):
+            uri, _, tag = str(element.tag).partition("}")
             if not uri.endswith("xacro"):
                 continue
             macro = tag.rpartition(".")[2]
-            found = [(macro, *it, it[0]) for it in self.macros.get(macro, {}).items()]
+            given = [(macro, *it, it[0]) for it in self.macros.get(macro, {}).items()]
             if tag == "property" and "value" in element.attrib and not _macro_of(element):
-                found.append(("", _name(element), "", "value"))
-            for of, name, default, attribute in found:
-                yield (of, name), element.get(attribute, default), element, attribute
+                given = [("", _name(element), "", "value")]
+            slots = attribute_slots(document.source, start) if given else {}
+            end = start + len(
+                document.source[start : tag_end(document.source, start)].rstrip(b" />")
+            )
+            for of, name, default, attribute in given:
+                value = element.get(attribute, default)
+                at = slots.get(attribute.encode(), (end, end))[0]
+                around = ("", "") if at != end else (f' {attribute}="', f'{value}"')
+                yield Place(of, name, value, element, (file, at), *around)
 
 
 def _name(element: _Element) -> str:
@@ -122,58 +120,36 @@ def _macro_of(element: _Element) -> str:
     return next((_name(it) for it in element.iterancestors("{*}macro")), "")
 
 
-def _parameters(text: str) -> Iterator[tuple[str, str]]:
-    for name, default in _PARAMETER.findall(text):
-        yield name, default.strip("'")
-
-
-def _is_argument(
-    value: str, element: _Element, argument: str, carriers: Collection[Carrier]
-) -> bool:
-    """Is a value the argument, as it is or by the name of a carrier?"""
-    found = _NAMED.fullmatch(value.strip())
-    if found is None or found[1]:
-        return found is not None and found[1] == argument
-    return bool({(_macro_of(element), found[2]), ("", found[2])}.intersection(carriers))
-
-
 class Words(NamedTuple):
     """What is written for the argument, place by place; is it a new one?"""
 
     argument: str
     is_new: bool
     sources: Sources
-    carriers: Collection[Carrier]
+    carriers: Collection[tuple[str, str]]
 
     def at(self, spot: Spot, in_call: bool = False) -> bytes | None:
         """Return an expression that has the argument's value at a place; None if none has."""
-        file = spot[0]
-        is_own = file in self.sources.tops or b'arg name="%s"' % self.argument.encode() in (
-            self.sources.documents[file].source
-        )
-        name = self._carrier(spot)
-        hidden = self.argument in self.sources.macros.get(self.sources.macro_at(spot), ())
-        if not name and is_own and (in_call or hidden or not self.is_new):
+        macro, source = self.sources.macro_at(spot), self.sources.documents[spot[0]].source
+        own = b'arg name="%s"' % self.argument.encode() in source or spot[0] in self.sources.tops
+        is_hidden = self.argument in self.sources.macros.get(macro, ())
+        if name := self._carrier(spot):
+            return b"${%s}" % name.encode()
+        if own and (in_call or is_hidden or not self.is_new):
             return b"$(arg %s)" % self.argument.encode()
-        if hidden and not name:
-            return None
-        return b"${%s}" % (name or self.argument).encode()
+        return None if is_hidden else b"${%s}" % self.argument.encode()
 
     def _carrier(self, spot: Spot) -> str:
         """Return a parameter or property that has the value there; empty if none has."""
         macro, source = self.sources.macro_at(spot), self.sources.documents[spot[0]].source
         own = [name for of, name in self.carriers if of and of == macro]
-        own = own or [
-            name for of, name in self.carriers if not of and b"${%s}" % name.encode() in source
-        ]
+        own = own or [it for of, it in self.carriers if not of and b"${%s}" % it.encode() in source]
         return self.argument if self.argument in own else min(own, default="")
 
     def using(self, edits: Iterable[SourceEdit]) -> set[str]:
         """Return the files whose edits use the property of the argument, which has to be declared."""
         word = b"${%s}" % self.argument.encode()
-        return {
-            it.file for it in edits if word in it.new and not self._carrier((it.file, it.start))
-        }
+        return {it.file for it in edits if word in it.new and not self._carrier(it[:2])}
 
 
 class Compared(NamedTuple):
@@ -189,32 +165,25 @@ def compared(
 ) -> Compared:
     """Compare a description with itself after something put words before its names."""
     changes = lists_by_key(((it.element, it.attribute), it) for it in wanted)
-    pairs = zip_longest(base.elements, other.elements)
     lacks: list[ValueEdit] = []
     astray: set[str] = set()
-    for number, (one, two) in enumerate(pairs):
+    for number, (one, two) in enumerate(zip_longest(base.elements, other.elements)):
         if one is None or two is None or one.tag != two.tag or one.keys() != two.keys():
             return Compared((), frozenset(("",)))
-        others = dict(values_of(two))
-        for attribute, value in values_of(one):
+        for (attribute, value), (_, text) in zip(values_of(one), values_of(two), strict=True):
             own = changes.get((number, attribute), [])
-            text = others.get(attribute, "")
             found = _words(value, text, word)
             if found is None:
                 astray.add("")
                 continue
-            astray |= {it for at, it in found if at not in {one.start for one in own}}
-            starts = [at for at, _ in found]
             # Of several at one place the first that was given is enough.
-            astray |= {
-                it for at, it in found if it != min(own for place, own in found if place == at)
-            }
+            first = {at: min(it for place, it in found if place == at) for at, _ in found}
+            wrong = first.keys() - {it.start for it in own}
+            astray |= {it for at, it in found if at in wrong or it != first[at]}
             for it in own:
-                if it.start not in starts:
-                    at = it.start + sum(
-                        len(it_word) for place, it_word in found if place < it.start
-                    )
-                    lacks.append(it._replace(value=text, start=at, end=at))
+                at = it.start + sum(len(that) for place, that in found if place < it.start)
+                lack = it._replace(value=text, start=at, end=at)
+                lacks += [] if it.start in first else [lack]
     return Compared(tuple(lacks), frozenset(astray))
 
 
@@ -226,8 +195,8 @@ def _words(value: str, text: str, word: re.Pattern[str]) -> list[tuple[int, str]
         if it := word.match(text, at):
             found.append((place, it[0]))
             at = it.end()
-        elif value[place : place + 1] == text[at]:
-            at, place = at + 1, place + 1
-        else:
+        elif value[place : place + 1] != text[at]:
             return None
+        else:
+            at, place = at + 1, place + 1
     return found if place == len(value) else None

@@ -26,7 +26,7 @@ from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.expand import Expansion, expand_traced
 from multibot_rewrite.description.sources.read import is_xacro, read_file
 from multibot_rewrite.description.steps.collect import SRDF as SRDF_SECTION, Inventory, collect
-from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.description.steps.document import Document, read_document
 from multibot_rewrite.fleet.proposal.searching import Found, search
 from multibot_rewrite.lint.files.subjects import NO_URDF
 
@@ -46,6 +46,11 @@ class Description(NamedTuple):
     inventory: Inventory
     read: Expansion | None = None
     arguments: Mapping[str, str] = MappingProxyType({})
+
+    @property
+    def document(self) -> Document:
+        """Its text, read."""
+        return self.inventory.document
 
     @property
     def words(self) -> str:

@@ -277,7 +277,7 @@ def test_an_argument_of_its_own_reaches_all_names(case: str, tmp_path: Path) -> 
     assert {it: data.decode() for it, data in made.after.items()} == {
         str(path): robot(f"{own}{wanted}")
     }
-    assert (dict(made.completed), made.verified) == ({str(path): "prefix"}, (str(path),))
+    assert (dict(made.already), made.verified) == ({str(path): "prefix"}, (str(path),))
 
 
 def test_a_robot_that_another_one_includes_takes_the_argument_too(tmp_path: Path) -> None:

@@ -3,7 +3,7 @@
 
 A part stands in front of ``</robot>`` of the first one, between two comments:
 
-    <!-- multibot part gripper prefix=left_ materials=grey HEAD -->
+    <!-- multibot part gripper prefix=left_ materials=grey folder=../hand/ HEAD -->
     <!-- multibot end gripper TAIL -->
 
 ``HEAD`` is what its file has up to the end of its root's start tag, ``TAIL`` what it has from the end
@@ -11,57 +11,55 @@ tag on. What was left out or changed is kept where it was, before the 0 or 1 ele
 
     <!-- multibot was 1 OLD -->
 
-A path that was changed is kept before its element, outside of what is kept whole:
-
-    <!-- multibot from meshes/hand.stl -->
-
 A comment holds no ``--``, and no colon before a blank: launch files pass a description as YAML.
 """
 
 from __future__ import annotations
 
 import re
-from bisect import bisect_left
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 from urllib.parse import quote, unquote
 
 from lxml.etree import _Element
 
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.base.model import Edit, InputError
+from multibot_rewrite.description.joining.referring import Referring
 from multibot_rewrite.description.steps.apply import cut
-from multibot_rewrite.description.steps.document import read_document, silenced, value_slot
+from multibot_rewrite.description.steps.document import read_document, silenced
 from multibot_rewrite.description.steps.spans import Spans
 
-_BASE = lazy_compile(rb"  <!-- multibot base (\w+)(?: prefix=(\w+))? -->\n")
+_PATHS = rb"(?: folder=(\S+))?(?: files=(\S+))?"
+_BASE = lazy_compile(rb"  <!-- multibot base (\w+)(?: prefix=(\w+))?" + _PATHS + rb" -->\n")
 # No comment holds two dashes.
 _INSIDE = rb"(?:[^-]|-(?!-))*?"
 _PART = lazy_compile(
-    rb"  <!-- multibot part (\w+)(?: prefix=(\w+))?(?: materials=(\S+))? (" + _INSIDE + rb") -->"
+    rb"  <!-- multibot part (\w+)(?: prefix=(\w+))?(?: materials=(\S+))?"
+    + _PATHS
+    + rb" ("
+    + _INSIDE
+    + rb") -->"
 )
 _LAST = b"<!-- multibot end "
 _END = _LAST + b"%s "
 _WAS = lazy_compile(rb"<!-- multibot was ([01]) (" + _INSIDE + rb") -->")
-_ADDED = b"<!-- multibot was 1  -->"
-_FROM = lazy_compile(rb"<!-- multibot from (" + _INSIDE + rb") -->")
-_OURS = lazy_compile(rb"<!-- multibot (?:base|part|end|was|from) ")
+_OURS = lazy_compile(rb"<!-- multibot (?:base|part|end|was) ")
 _MARKS = lazy_compile(
-    rb"  <!-- multibot (?:base %b-->\n|part %b-->)|<!-- multibot (?:(?:was|from) %b-->|end %b-->\n)"
+    rb"  <!-- multibot (?:base %b-->\n|part %b-->)|<!-- multibot (?:was %b-->|end %b-->\n)"
     % ((_INSIDE,) * 4)
 )
 _ESCAPED = lazy_compile(rb"%|-(?=-|\Z)|(?<=:) ")
 
 
 class KeptText(NamedTuple):
-    """A part as a joined text holds it: its ``text`` has its prefix still, and prefixed names of
-    ``materials``."""
+    """A part as a joined text holds it: what ``referring`` has is with its prefix still, and prefixed
+    names of ``materials``."""
 
     name: str
     prefix: str
     materials: tuple[str, ...]
-    text: bytes
+    referring: Referring
 
 
 def is_joined(text: bytes) -> bool:
@@ -72,11 +70,6 @@ def is_joined(text: bytes) -> bool:
 def is_joined_whole(text: bytes) -> bool:
     """Is it the result of a join?"""
     return _BASE.search(text) is not None
-
-
-def part_starts(text: bytes) -> list[int]:
-    """Return where the parts behind the first one start in a joined text."""
-    return [it.start() for it in _PART.finditer(text)]
 
 
 def without_marks(text: bytes) -> bytes:
@@ -90,56 +83,39 @@ def was(start: int, end: int, old: bytes, new: bytes = b"") -> Edit:
     return Edit(start, end, kept + new, None)
 
 
-# What refers to a file, in this attribute or, where it is empty, in its text.
-REFERRING = {"mesh": "filename", "texture": "filename", "parameters": ""}
-
-
-def moved_path(spans: Spans, element: _Element, path: str, new: str) -> Iterator[Edit]:
-    """Yield the edits that change a path in an element, and keep it in a comment."""
-    start = spans.start_of(element)
-    slot = value_slot(spans.document.source, start, REFERRING[str(element.tag)], path)
-    if slot is not None:
-        old = spans.document.source[slice(*slot)]
-        yield Edit(start, start, b"<!-- multibot from %s -->" % _hidden(old), None)
-        yield Edit(*slot, new.translate(ESCAPES).encode(), None)
-
-
-def path_in(element: _Element) -> str:
-    """Return the path in an element that refers to a file."""
-    name = REFERRING[str(element.tag)]
-    return (element.get(name) if name else element.text or "") or ""
-
-
 def left_out(spans: Spans, element: _Element) -> Edit:
-    """Return the edit that removes an element and keeps it in a comment, if it is not one that was
-    added."""
-    before = spans.document.source[: spans.start_of(element)].rstrip()
-    if before.endswith(_ADDED):
-        return Edit(len(before) - len(_ADDED), spans.end_of(element), b"", None)
+    """Return the edit that removes an element and keeps it in a comment."""
     return was(spans.start_of(element), spans.end_of(element), spans.text_of(element))
 
 
 def section(it: KeptText, start: int, end: int) -> bytes:
     """Return a part for a joined text; ``start`` and ``end`` delimit the content of its root."""
-    names = ",".join(quote(name, safe="") for name in it.materials).replace("--", "-%2D")
-    words = _words(it.name, prefix=it.prefix, materials=names)
-    first = b"  <!-- multibot part %s %s -->" % (words, _hidden(it.text[:start]))
-    last = _END % it.name.encode() + _hidden(it.text[end:]) + b" -->\n"
-    return first + it.text[start:end] + last
+    text = it.referring.text
+    words = _words(it)
+    first = b"  <!-- multibot part %s %s -->" % (words, _hidden(text[:start]))
+    last = _END % it.name.encode() + _hidden(text[end:]) + b" -->\n"
+    return first + text[start:end] + last
 
 
-def _words(name: str, **more: str) -> bytes:
-    return " ".join([name, *(f"{key}={text}" for key, text in more.items() if text)]).encode()
+def _words(it: KeptText) -> bytes:
+    _, folder, files = it.referring
+    more = {"prefix": it.prefix, "materials": _listed(it.materials)}
+    more |= {"folder": _listed([folder]), "files": _listed(files)}
+    return " ".join([it.name, *(f"{key}={text}" for key, text in more.items() if text)]).encode()
 
 
-def placed(text: bytes, name: str, prefix: str, more: bytes) -> bytes:
+def _listed(words: Iterable[str]) -> str:
+    return ",".join(quote(it, safe="./") for it in words).replace("--", "-%2D")
+
+
+def placed(text: bytes, first: KeptText, more: bytes) -> bytes:
     """Return the text of the first part, or of parts joined so far, with one more section."""
     last = text.rfind(_LAST) if is_joined_whole(text) else -1
     if last >= 0:
         at = text.index(b" -->\n", last) + len(b" -->\n")
         return text[:at] + more + text[at:]
     at = silenced(text).rindex(b"</")
-    mark = b"  <!-- multibot base %s -->\n" % _words(name, prefix=prefix)
+    mark = b"  <!-- multibot base %s -->\n" % _words(first)
     return text[:at] + mark + more + text[at:]
 
 
@@ -150,18 +126,13 @@ def sections(text: bytes, file: str) -> list[KeptText]:
     edits = [
         Edit(it.start(), _end(spans, it, file), _shown(it[2]), None) for it in _WAS.finditer(text)
     ]
-    ends = [it.end for it in edits]
-    for it in _FROM.finditer(text):
-        at = bisect_left(ends, it.end())
-        if at == len(ends) or it.start() < edits[at].start:
-            edits += _path_back(spans, it, file)
-    before = b"".join(cut(text, sorted(edits, key=lambda it: it.start)))
+    before = b"".join(cut(text, edits))
     mark = _BASE.search(before)
     if mark is None:
         raise InputError(f"{file}: it was not made by multibot join: its parts are not known")
     found, last = [], mark.end()
     while part := _PART.match(before, last):
-        name, prefix, materials, head = (word or b"" for word in part.groups())
+        name, prefix, materials, *paths, head = (word or b"" for word in part.groups())
         end = _END % name
         close = before.find(end, part.end())
         stop = before.find(b" -->\n", close + len(end))
@@ -170,12 +141,20 @@ def sections(text: bytes, file: str) -> list[KeptText]:
             raise InputError(f"{file}: {what}")
         tail = before[close + len(end) : stop]
         whole = _shown(head) + before[part.end() : close] + _shown(tail)
-        names = tuple(unquote(it) for it in materials.decode().split(",") if it)
-        found.append(KeptText(name.decode(), prefix.decode(), names, whole))
+        names = tuple(it for it in _unlisted(materials) if it)
+        found.append(KeptText(name.decode(), prefix.decode(), names, _referring(whole, *paths)))
         last = stop + len(b" -->\n")
     base = before[: mark.start()] + before[last:]
-    first, prefix = (word or b"" for word in mark.groups())
-    return [KeptText(first.decode(), prefix.decode(), (), base), *found]
+    first, prefix, *paths = (word or b"" for word in mark.groups())
+    return [KeptText(first.decode(), prefix.decode(), (), _referring(base, *paths)), *found]
+
+
+def _referring(text: bytes, folder: bytes, files: bytes) -> Referring:
+    return Referring(text, _unlisted(folder)[0], _unlisted(files) if files else ())
+
+
+def _unlisted(words: bytes) -> tuple[str, ...]:
+    return tuple(map(unquote, words.decode().split(",")))
 
 
 def _end(spans: Spans, found: re.Match[bytes], file: str) -> int:
@@ -185,16 +164,6 @@ def _end(spans: Spans, found: re.Match[bytes], file: str) -> int:
     if element is None:
         raise InputError(f"{file}: what stood behind a comment 'multibot was' was edited by hand")
     return spans.end_of(element)
-
-
-def _path_back(spans: Spans, found: re.Match[bytes], file: str) -> Iterator[Edit]:
-    element, source = spans.first_from(found.end()), spans.document.source
-    if element is None or element.tag not in REFERRING:
-        raise InputError(f"{file}: what stood behind a comment 'multibot from' was edited by hand")
-    start, name = spans.start_of(element), REFERRING[str(element.tag)]
-    slot = value_slot(source, start, name, path_in(element).strip())
-    yield Edit(found.start(), found.end(), b"", None)
-    yield Edit(*(slot or (start, start)), _shown(found[1]), None)
 
 
 _SHOWN: Mapping[bytes, bytes] = {b"%25": b"%", b"%2D": b"-", b"%20": b" "}

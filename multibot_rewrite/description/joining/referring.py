@@ -1,75 +1,91 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a joined description refers to in files: meshes and textures by paths from its own folder, and
-the one file of all controllers.
+"""What a part refers to, as the folder of the joined description needs it: a path from the part's
+folder gets that folder in front, and its files of controllers are the one file of all.
 
 Source: gz_ros2_control_plugin.cpp (``<parameters>`` is a path)."""
 
 from __future__ import annotations
 
 import os
-from bisect import bisect_right
-from collections.abc import Sequence
+from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
-from lxml.etree import _Element
-
+from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.base.model import Edit
-from multibot_rewrite.description.joining import kept
 from multibot_rewrite.description.steps.apply import cut
-from multibot_rewrite.description.steps.document import read_document
-from multibot_rewrite.description.steps.spans import Spans
+from multibot_rewrite.description.steps.document import read_document, value_slot
 
 _FILES = "parameters"
 
 
-class References(NamedTuple):
-    """Where a part's file is, that of the joined description, and its files of controllers with the one
-    that they become; all empty where nobody says where the description goes."""
+class Output(NamedTuple):
+    """The file that a joined description goes to, and that of all controllers; empty if unknown."""
 
-    file: str = ""
-    output: str = ""
-    old: Sequence[str] = ()
-    new: str = ""
+    path: str = ""
+    controllers: str = ""
 
-    def renewed(self, tag: str, value: str) -> str:
-        """Return what a reference becomes."""
-        if tag == _FILES:
-            names = map(os.path.basename, self.old)
-            return self.new if os.path.basename(value) in names else value
-        is_relative = value and "://" not in value and not os.path.isabs(value)
-        if not self.output or not is_relative or self.file.startswith("<"):
-            return value
-        path = os.path.join(os.path.dirname(self.file), value)
-        return os.path.relpath(path, os.path.dirname(self.output) or os.curdir)
-
-    def apply(self, root: _Element) -> None:
-        """Renew all references in a tree."""
-        for it in root.iter(*kept.REFERRING):
-            new = self.renewed(str(it.tag), kept.path_in(it).strip())
-            if name := kept.REFERRING[str(it.tag)]:
-                it.set(name, new)
-            else:
-                it.text = new
+    def folder_of(self, file: str) -> str:
+        """Return how the folder of a part's file is called from that of the output."""
+        if not self.path or file.startswith("<"):
+            return ""
+        above = os.path.dirname(os.path.abspath(self.path))
+        path = os.path.relpath(os.path.dirname(os.path.abspath(file)), above)
+        return "" if path == os.curdir else f"{path}/"
 
 
-def referring(data: bytes, parts: Sequence[References], file: str, before: int) -> bytes:
-    """Return a joined text with the references of all parts renewed; the first part has ``before``
-    joined ones itself."""
-    spans = Spans(read_document(data, file))
-    starts = kept.part_starts(data)[before:]
+NOWHERE = Output()
+
+
+class Referring(NamedTuple):
+    """A text, the folder before its relative paths, and what each of its ``<parameters>`` was; these
+    are empty where nothing changed."""
+
+    text: bytes
+    folder: str = ""
+    files: tuple[str, ...] = ()
+
+
+def referring(text: bytes, file: str, own: Collection[str], output: Output) -> Referring:
+    """Return a part's text for another folder; ``own`` are its files of controllers."""
+    folder, names = output.folder_of(file), {os.path.basename(it) for it in own}
     edits: list[Edit] = []
-    seen: set[tuple[object, str]] = set()
-    for it in spans.document.root.iter(*kept.REFERRING):
-        own = parts[bisect_right(starts, spans.start_of(it))]
-        # A part's file may be in the plugin of an earlier one.
-        every = (own, *parts) if it.tag == _FILES else (own,)
-        path = kept.path_in(it).strip()
-        news = (one.renewed(str(it.tag), path) for one in every)
-        new = next((one for one in news if one != path), path)
-        key = it.getparent(), new
-        if it.tag == _FILES and key in seen:
-            edits.append(kept.left_out(spans, it))
-        else:
-            edits += kept.moved_path(spans, it, path, new) if new != path else ()
-        seen.add(key)
-    return b"".join(cut(data, sorted(edits, key=lambda it: it.start)))
+    files: list[str] = []
+    for tag, start, end, value in _references(text, file):
+        if tag != _FILES:
+            is_relative = value and "://" not in value and not os.path.isabs(value)
+            edits += [_edit(start, start, folder)] * bool(folder and is_relative)
+            continue
+        is_own = bool(output.controllers) and os.path.basename(value) in names
+        files.append(text[start:end].decode() if is_own else "")
+        edits += [_edit(start, end, output.controllers)] * is_own
+    made = b"".join(cut(text, edits))
+    return Referring(made, folder, tuple(files) if any(files) else ())
+
+
+def before_referring(it: Referring, file: str) -> bytes:
+    """Return the text as it was in its own folder."""
+    edits: list[Edit] = []
+    files = iter(it.files)
+    for tag, start, end, value in _references(it.text, file) if it[1:] != ("", ()) else ():
+        if tag != _FILES:
+            size = len(it.folder.translate(ESCAPES).encode()) * value.startswith(it.folder)
+            edits.append(Edit(start, start + size, b"", None))
+        elif old := next(files, ""):
+            edits.append(Edit(start, end, old.encode(), None))
+    return b"".join(cut(it.text, edits))
+
+
+def _edit(start: int, end: int, path: str) -> Edit:
+    return Edit(start, end, path.translate(ESCAPES).encode(), None)
+
+
+def _references(text: bytes, file: str) -> Iterator[tuple[str, int, int, str]]:
+    """Yield what refers to a file: its tag, where the path is, and the path."""
+    document = read_document(text, file)
+    for element, start in zip(document.elements, document.starts, strict=True):
+        if element.tag in ("mesh", "texture", _FILES):
+            name = "" if element.tag == _FILES else "filename"
+            value = ((element.get(name) if name else element.text) or "").strip()
+            slot = value_slot(text, start, name, value)
+            if slot is not None:
+                yield str(element.tag), *slot, value
