@@ -133,24 +133,26 @@ def _adopted(job: _Job) -> Adopted:
     fixed = {already[it.path] for it in descriptions if it.path in already.keys() - begun.keys()}
     srdfs = [it.path for it in descriptions if _is_srdf(it)]
     begun = {path: name for path, name in begun.items() if path not in srdfs or name not in fixed}
-    lacks = {
-        it.path: _lacks(it, arguments[it.path], name, job)
-        for it in descriptions
-        if (name := begun.get(it.path) or already.get(it.path))
-    }
+    names = already | begun
+    every = [it for it in descriptions if it.path in names]
+    lacks = {it.path: _lacks(it, arguments[it.path], names[it.path], job) for it in every}
     own = {path: _space_of(its) for path, its in arguments.items()}
     made = Adopted("", {}, {}, (), (), {})
     found: list[Description] = []
     for argument in (*dict.fromkeys(begun.values()), ""):
         some = (it for it in descriptions if begun.get(it.path, "") == argument)
-        lacking = (it for it in some if (lacks.get(it.path) and argument) or it.path not in lacks)
-        found = list(_configured(list(_as_xacros(lacking, job)), job))
+        some = (it for it in some if argument or it.path not in lacks)
+        found = list(_configured(list(_as_xacros(some, job)), job))
+        if argument:
+            # What another configuration has may lack it, too.
+            wanting = {it.path for it in found if lacks[it.path] or _lacks(it, (), argument, job)}
+            found = [it for it in found if it.path in wanting]
         made = _with_more(made, found, argument, own, job) if found else made
     if not found and not lacks:
         nothing = f"{job.folder}: there is no description of a robot in it"
         raise InputError(next(iter(job.unread.values()), nothing))
     bare = {it: lacks[it] for it in lacks if lacks[it] and it not in made.verified}
-    return made._replace(unread=job.unread, already=already | begun, bare={**bare, **made.bare})
+    return made._replace(unread=job.unread, already=names, bare={**bare, **made.bare})
 
 
 def _with_more(
@@ -167,7 +169,8 @@ def _with_more(
         if not argument and not made.argument:
             raise
         left = Left(found[0].path, f"its names are not verified: {error}")
-        return made._replace(left=(*made.left, left))
+        names = {it.path: tuple(dict.fromkeys(one.value for one in _changes(it))) for it in found}
+        return made._replace(left=(*made.left, left), bare={**names, **made.bare})
     return Adopted(*(_both(*pair) for pair in zip(made, more, strict=True)))
 
 
@@ -309,7 +312,11 @@ def _again(
 ) -> Description:
     """A description expanded from other texts, or with more arguments."""
     given = Expanding(job.how.reach, {**job.how.arguments, **it.arguments, **more})
-    data, read = read_text(it.path, given, texts)
+    own = {path: texts.get(path, data) for path, data in texts_of([it]).items()}
+    # What is as on the disk is expanded once.
+    there = {path: os.path.exists(path) and read_file(path) for path in own}
+    changed = {path: data for path, data in own.items() if data != there[path]}
+    data, read = read_text(it.path, given, changed)
     inventory = it.inventory._replace(document=read_document(data, it.path))
     return it._replace(inventory=inventory, read=read)
 
@@ -431,12 +438,12 @@ def _begun(arguments: Iterable[Argument]) -> str:
 
 def _lacks(it: Description, arguments: Iterable[Argument], name: str, job: _Job) -> tuple[str, ...]:
     """The links and joints that an argument of a description does not reach."""
-    own = next(one for one in arguments if one.name == name)
-    parts = [use for use in own.uses if use.kind in _PARTS]
-    if parts and not own.missed and all(use.names == use.total for use in own.uses):
+    own = next((one for one in arguments if one.name == name), None)
+    parts = [use for use in own.uses if use.kind in _PARTS] if own else ()
+    if own and parts and not own.missed and all(use.names == use.total for use in own.uses):
         return ()
-    reach, given = job.how
-    other = read_document(expand(it.path, {**given, name: MARKS[0]}, reach=reach), it.path)
+    given = {**job.how.arguments, **it.arguments, name: MARKS[0]}
+    other = read_document(expand(it.path, given, reach=job.how.reach), it.path)
     lacks = compared(it.document, _changes(it), other, re.compile(MARKS[0])).lacks
     return tuple(dict.fromkeys(one.value.strip() for one in lacks))
 

@@ -56,8 +56,9 @@ class Place(NamedTuple):
     def is_argument(self, argument: str, carriers: Collection[tuple[str, str]]) -> bool:
         """Is the value the argument, as it is or by the name of something that carries it?"""
         found = _NAMED.fullmatch(self.value)
-        names = [(_macro_of(self.element), found[2]), ("", found[2])] if found else []
-        return bool(found) and (found[1] == argument or not {*names}.isdisjoint(carriers))
+        if found is None or found[1]:
+            return found is not None and found[1] == argument
+        return (_macro_of(self.element), found[2]) in carriers or ("", found[2]) in carriers
 
 
 class Sources:

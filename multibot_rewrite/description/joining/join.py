@@ -168,11 +168,11 @@ def join_texts(given: Sequence[GivenPart], tree: Tree, output: Output = NOWHERE)
     known: dict[tuple[str, str], str] = {}
     with_names(known, parts[0])
     is_whole = kept.is_joined_whole(parts[0].data)
-    it, own = parts[0], given[0].part.controllers
-    referred = referring(it.text, it.file, own, NOWHERE if is_whole else output)
-    inventory = collect(read_document(referred.text, it.file), tree)
-    parts[0] = it._replace(text=referred.text, inventory=inventory)
-    first = kept.KeptText(it.name, it.prefix, (), referred)
+    one, own = parts[0], given[0].part.controllers
+    referred = referring(one.text, one.file, own, NOWHERE if is_whole else output)
+    inventory = collect(read_document(referred.text, one.file), tree)
+    parts[0] = one._replace(text=referred.text, inventory=inventory)
+    first = kept.KeptText(one.name, one.prefix, (), referred)
     mounted = [Mounted(parts[0], "", ZERO, "", parts[0].text)]
     data = parts[0].text
     notes: list[str] = []

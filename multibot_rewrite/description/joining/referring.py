@@ -50,16 +50,17 @@ def referring(text: bytes, file: str, own: Collection[str], output: Output) -> R
     folder, names = output.folder_of(file), {os.path.basename(it) for it in own}
     edits: list[Edit] = []
     files: list[str] = []
+    moved = ""
     for tag, start, end, value in _references(text, file):
         if tag != _FILES:
-            is_relative = value and "://" not in value and not os.path.isabs(value)
-            edits += [_edit(start, start, folder)] * bool(folder and is_relative)
+            if folder and value and "://" not in value and not os.path.isabs(value):
+                edits.append(_edit(start, start, moved := folder))
             continue
         is_own = bool(output.controllers) and os.path.basename(value) in names
         files.append(text[start:end].decode() if is_own else "")
         edits += [_edit(start, end, output.controllers)] * is_own
     made = b"".join(cut(text, edits))
-    return Referring(made, folder, tuple(files) if any(files) else ())
+    return Referring(made, moved, tuple(files) if any(files) else ())
 
 
 def before_referring(it: Referring, file: str) -> bytes:
