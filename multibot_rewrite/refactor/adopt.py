@@ -123,8 +123,8 @@ def adopt(
 
 
 def _adopted(job: _Job) -> Adopted:
-    """The package with the arguments that some descriptions have and that reach all names then, and a
-    new one for the others."""
+    """Return the package with the arguments that some descriptions have, which reach all names then,
+    and a new one for the others."""
     descriptions = job.package.descriptions
     arguments = {it.path: _arguments(it, job) for it in descriptions}
     begun = {path: name for path, its in arguments.items() if (name := _begun(its))}
@@ -239,8 +239,8 @@ class _Begun(NamedTuple):
 def _best(
     found: Sequence[Description], argument: str, own: Mapping[str, str], job: _Job
 ) -> Adopted:
-    """The best that can be made of descriptions with the argument that they have, or a new one: handed
-    to calls that take one, or put before names alone."""
+    """Return the best that can be made of descriptions with their own argument, or a new one: handed to
+    calls that take one, or put before names alone."""
     texts = texts_of(found)
     sources = Sources(texts, {os.path.realpath(it.path) for it in found})
     places = [it for it in sources.places if it.may_be_prefix]
@@ -267,7 +267,7 @@ def _best(
 def _lacking(
     words: Words, texts: Mapping[str, bytes], bases: Sequence[Description], job: _Job
 ) -> _Begun:
-    """What descriptions lack with the argument. Raises InputError if a new one is in other values."""
+    """Return what descriptions lack with the argument. Raises InputError if a new one is in other values."""
     found = [_again(it, texts, {words.argument: TRIED}, job) for it in bases]
     every = [
         compared(it.document, _changes(it), other.document, _TRIED)
@@ -310,7 +310,7 @@ def _with_calls(begun: _Begun, places: Sequence[Place], job: _Job) -> _Begun:
 def _again(
     it: Description, texts: Mapping[str, bytes], more: Mapping[str, str], job: _Job
 ) -> Description:
-    """A description expanded from other texts, or with more arguments."""
+    """Return a description expanded from other texts, or with more arguments."""
     given = Expanding(job.how.reach, {**job.how.arguments, **it.arguments, **more})
     own = {path: texts.get(path, data) for path, data in texts_of([it]).items()}
     # What is as on the disk is expanded once.
@@ -324,7 +324,7 @@ def _again(
 def _made(
     begun: _Begun, job: _Job, more: Collection[SourceEdit] = ()
 ) -> tuple[Adopted, Mapping[str, bytes]]:
-    """The descriptions with the argument and what was verified of them, beside ``more`` edits; and the
+    """Return the descriptions with the argument, verified together with ``more`` edits; and the
     files that change, by their real paths."""
     words, texts, bases, found, asked = begun
     argument = words.argument
@@ -392,7 +392,7 @@ def _is_srdf(it: Description) -> bool:
 
 
 def _arguments(it: Description, job: _Job) -> Sequence[Argument]:
-    """The arguments of a xacro that are called as those for a robot's names."""
+    """Return the arguments of a xacro that are named as those for a robot's names."""
     if it.read is None:
         return ()
     # What xacro warns about is not said here.
@@ -405,14 +405,14 @@ def _arguments(it: Description, job: _Job) -> Sequence[Argument]:
 
 
 def _space_of(arguments: Iterable[Argument]) -> str:
-    """The argument that is a namespace of plugins, or in one; empty if there is none."""
+    """Return the argument that is a namespace of plugins, or in one; empty if there is none."""
     return next(
         (it.name for it in arguments if any(one.kind == "namespace" for one in it.uses)), ""
     )
 
 
 def _prefix_of(arguments: Iterable[Argument]) -> str:
-    """The argument that is before links, for each robot another word; empty if there is none. ``world``
+    """Return the argument that is before links, other for each robot; empty if there is none. ``world``
     and, where it is empty, some that were forgotten may lack it."""
     for it in arguments:
         links = [use for use in it.uses if (use.kind, use.how) == ("link", PREFIX)]
@@ -425,8 +425,8 @@ def _prefix_of(arguments: Iterable[Argument]) -> str:
 
 
 def _begun(arguments: Iterable[Argument]) -> str:
-    """The argument that is empty by default and before some links and joints, or before nothing yet; ""
-    if there is none."""
+    """Return the argument that is empty by default and before some links and joints, or before nothing
+    yet; empty if there is none."""
     every = [it for it in arguments if not it.default and not it.fault]
     for it in every:
         parts = [use for use in it.uses if use.kind in _PARTS]
@@ -437,7 +437,7 @@ def _begun(arguments: Iterable[Argument]) -> str:
 
 
 def _lacks(it: Description, arguments: Iterable[Argument], name: str, job: _Job) -> tuple[str, ...]:
-    """The links and joints that an argument of a description does not reach."""
+    """Return the names that an argument of a description does not reach."""
     own = next((one for one in arguments if one.name == name), None)
     parts = [use for use in own.uses if use.kind in _PARTS] if own else ()
     if own and parts and not own.missed and all(use.names == use.total for use in own.uses):
@@ -468,7 +468,7 @@ def _as_xacros(descriptions: Iterable[Description], job: _Job) -> Iterator[Descr
 
 
 def _as_xacro(it: Description, tree: Tree, how: Expanding) -> Description:
-    """A plain description as the xacro that it becomes."""
+    """Return a plain description as the xacro that it becomes."""
     path = f"{it.path}.xacro"
     data, read = read_text(path, how, {os.path.realpath(path): it.inventory.document.source})
     return Description(path, inventory_of(data, path, tree), read)
@@ -496,8 +496,8 @@ def _changes(it: Description) -> Iterator[ValueEdit]:
 
 
 def _not_written(it: Description) -> Iterator[Left]:
-    """What a plugin takes where nothing is written, such as the name of its sensor: to stay, or to
-    have the prefix, it needs an element of its own."""
+    """Yield what a plugin takes by default, such as the name of its sensor: to stay, or to have the
+    prefix, it needs an element of its own."""
     document, _, _, declared, *_ = it.inventory
     for one in insertions(it.inventory.served, declared, prefixing()):
         if it.read:
@@ -514,8 +514,8 @@ def _fault(
     argument: str,
     how: Expanding,
 ) -> str:
-    """What is wrong with a description with a prefix: the names alone may change. Raises InputError for
-    one that is another without."""
+    """Return what is wrong with a description with a prefix: only the names may change. Raises
+    InputError for one that differs without a prefix."""
     with_prefix = expected(found.inventory.document, changes)
     for prefix, wanted in (("", it.inventory.document.source), (TRIED, with_prefix)):
         more = {argument: prefix} if prefix else {}

@@ -24,8 +24,8 @@ def free_name(
     names: Sequence[str] = NAMES,
     known: Collection[str] | None = None,
 ) -> str:
-    """A name that no argument, property or parameter of a macro has; where properties are ``known`` to
-    take the argument, those may have it, and parameters."""
+    """Return a name that no argument, property or parameter of a macro has; where properties are
+    ``known`` to take the argument, those may have it, and parameters."""
     taken: set[str] = set()
     sources = {file: data for it in found for file, data in it.sources.items()}
     # YAML that an expression loads is among them.
@@ -47,8 +47,8 @@ def declared(
     using: Collection[str],
     argument: str,
 ) -> Iterator[SourceEdit]:
-    """The argument in the descriptions' own files. Where a file is ``using`` its property, that too:
-    with the argument's value in those, otherwise empty. ``texts`` are the bytes by real path."""
+    """Yield the argument in the descriptions' own files. Where a file is ``using`` its property, that
+    too: with the argument's value in those, otherwise empty. ``texts`` are the bytes by real path."""
     value = f'<xacro:property name="{argument}" value="$(arg {argument})"/>'
     lines: dict[str, list[str]] = {}
     for it in tops:
@@ -62,7 +62,7 @@ def declared(
 
 
 def _first(path: str, source: bytes, lines: Iterable[str], argument: str) -> Iterator[SourceEdit]:
-    """The lines that are not there, first in the root element or behind the argument."""
+    """Yield the edits for missing lines, first in the root element or behind the argument."""
     document = read_document(source, path)
     start = document.starts[0]
     every = zip(document.elements, document.starts, strict=True)

@@ -58,8 +58,9 @@ def placed(
     changes: Sequence[Sequence[ValueEdit]],
     written: Callable[[Spot, ValueEdit], bytes | None],
 ) -> PlacedNames:
-    """The edits of the sources for the changes of each description. They have sources in common: what
-    one of them needs at a place, the others get. ``written`` is what a change is in the source."""
+    """Return the edits of the sources for the changes of each description. They share sources: what
+    one of them needs at a place, the others get. ``written`` returns a change's text in the
+    source."""
     both = enumerate(zip(found, changes, strict=True))
     names = [name for of, (it, own) in both for name in _names(of, it, own)]
     closed = {it.used for it in names if it.used and it.change and not written(it.used, it.change)}
@@ -107,7 +108,7 @@ def _at(spot: Spot | None, real: Mapping[str, str]) -> Spot | None:
 
 
 def values_of(element: etree._Element) -> Iterator[tuple[str, str]]:
-    """The attributes of an element, and its text under the name "" if it has no elements."""
+    """Yield the attributes of an element, and its text under the name "" if it has no elements."""
     yield from ((str(name), str(value)) for name, value in element.attrib.items())
     if not len(element):
         yield "", element.text or ""
@@ -156,8 +157,8 @@ def _made(
 
 
 def _made_elsewhere(names: Sequence[_Name], closed: Collection[Spot]) -> set[Spot | None]:
-    """The spots of use at which no prefix can go, the ``closed`` among them: it comes from where the
-    names are made."""
+    """Return the spots of use at which no prefix can go, the ``closed`` among them: it comes from
+    where the names are made."""
     groups = lists_by_key((it.used, it) for it in names)
     deep = {*closed} | {
         it for it, group in groups.items() if len({name.change is None for name in group}) > 1

@@ -2,7 +2,7 @@
 """What the view draws of a robot: links with shapes, joints, meshes, and how a URDF says them. The only
 import of trimesh.
 
-Meshes are looked for as ROS does: package://, file://, and paths beside the description.
+Meshes are looked for as ROS does: package://, file://, and paths next to the description.
 
 Source of a URDF: urdfdom urdf_parser: a material without a colour is that of its name in the robot; an
 axis is x, a mimic's factor 1 where none is written. What is no number counts as missing: the lint
