@@ -267,7 +267,8 @@ def _best(
 def _lacking(
     words: Words, texts: Mapping[str, bytes], bases: Sequence[Description], job: _Job
 ) -> _Begun:
-    """Return what descriptions lack with the argument. Raises InputError if a new one is in other values."""
+    """Return what descriptions lack with the argument. Raises InputError for a new one that is in
+    other values."""
     found = [_again(it, texts, {words.argument: TRIED}, job) for it in bases]
     every = [
         compared(it.document, _changes(it), other.document, _TRIED)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -349,3 +350,46 @@ def test_what_refers_to_files_refers_to_the_new_ones(tmp_path: Path) -> None:
         str(tmp_path / "arm/c.yaml"),
         str(tmp_path / "hand/c.yaml"),
     ]
+
+
+def test_both_parts_move_by_what_the_joined_controllers_command(tmp_path: Path) -> None:
+    """Each joint of the one controllers' file is driven by a system of the description, and turns."""
+    mujoco = pytest.importorskip("mujoco")
+    inertia = (
+        '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
+    )
+    parts = []
+    for name, text, joint in (("arm", ARM, "turn"), ("hand", GRIPPER, "grip")):
+        path = tmp_path / f"{name}.yaml"
+        path.write_text(f"{name}:\n  ros__parameters: {{joints: [{joint}]}}\n")
+        solid = re.sub(r'(<link name="\w+")(?:/>|>)', rf"\1>{inertia}</inertial>@", text)
+        solid = solid.replace("@" + SHAPE, SHAPE).replace("@", "</link>")
+        whole = solid.replace("</robot>", SYSTEM.format(joint, path))
+        parts.append(
+            Part(whole, "arm_tool" * (name == "hand"), prefix=f"{name}_", controllers=[str(path)])
+        )
+    made = join(parts, output=str(tmp_path / "robot.urdf"))
+    sections = yaml.safe_load(made.controllers)
+    commanded = {it for one in sections.values() for it in one["ros__parameters"].get("joints", ())}
+    root = etree.fromstring(made.data)
+    assert commanded == {it.get("name") for it in root.iterfind("ros2_control/joint")}
+    assert [it.text for it in root.iter("parameters")] == [str(tmp_path / "robot_controllers.yaml")]
+    for it in (*root.findall("gazebo"), *root.findall("ros2_control")):
+        root.remove(it)
+    model = mujoco.MjModel.from_xml_string(etree.tostring(root).decode())
+    state = mujoco.MjData(model)
+    joints = [state.joint(it) for it in sorted(commanded)]
+    for it in joints:
+        it.qfrc_applied[:] = 1.0
+    for _ in range(20):
+        mujoco.mj_step(model, state)
+    print(
+        model.nq,
+        model.njnt,
+        commanded,
+        [it.qpos for it in joints],
+        state.qpos,
+        state.qfrc_applied,
+        model.body_mass,
+    )
+    assert all(abs(it.qpos[0]) > 1e-6 for it in joints)
