@@ -379,8 +379,8 @@ def test_both_parts_move_by_what_the_joined_controllers_command(tmp_path: Path) 
     model = mujoco.MjModel.from_xml_string(etree.tostring(root).decode())
     state = mujoco.MjData(model)
     joints = [state.joint(it) for it in sorted(commanded)]
-    for it in joints:
-        it.qfrc_applied[:] = 1.0
+    for it, torque in zip(joints, (2.0, 1.0), strict=True):
+        it.qfrc_applied[:] = torque
     for _ in range(20):
         mujoco.mj_step(model, state)
     assert all(abs(it.qpos[0]) > 1e-6 for it in joints)
