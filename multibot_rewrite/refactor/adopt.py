@@ -39,8 +39,17 @@ from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.description.steps.renames import make_renames, respeller
-from multibot_rewrite.refactor.declaring import NAMES, SPACES, declared, free_name
-from multibot_rewrite.refactor.handing_on import MARK, Place, Sources, Words, compared
+from multibot_rewrite.refactor.handing_on import (
+    MARK,
+    NAMES,
+    SPACES,
+    Place,
+    Sources,
+    Words,
+    compared,
+    declared,
+    free_name,
+)
 from multibot_rewrite.refactor.launch_argument import Space
 from multibot_rewrite.refactor.launches import Trial, fillable, with_launches
 from multibot_rewrite.refactor.named_elsewhere import named_elsewhere, root_sections
@@ -135,7 +144,7 @@ def _adopted(job: _Job) -> Adopted:
     begun = {path: name for path, name in begun.items() if path not in srdfs or name not in fixed}
     names = already | begun
     every = [it for it in descriptions if it.path in names]
-    lacks = {it.path: _lacks(it, arguments[it.path], names[it.path], job) for it in every}
+    lacks = {it.path: _lacks(it, names[it.path], job) for it in every}
     own = {path: _space_of(its) for path, its in arguments.items()}
     made = Adopted("", {}, {}, (), (), {})
     found: list[Description] = []
@@ -145,7 +154,7 @@ def _adopted(job: _Job) -> Adopted:
         found = list(_configured(list(_as_xacros(some, job)), job))
         if argument:
             # What another configuration has may lack it, too.
-            wanting = {it.path for it in found if lacks[it.path] or _lacks(it, (), argument, job)}
+            wanting = {it.path for it in found if lacks[it.path] or _lacks(it, argument, job)}
             found = [it for it in found if it.path in wanting]
         made = _with_more(made, found, argument, own, job) if found else made
     if not found and not lacks:
@@ -437,12 +446,8 @@ def _begun(arguments: Iterable[Argument]) -> str:
     return next((name for name in unused if "prefix" in name), "")
 
 
-def _lacks(it: Description, arguments: Iterable[Argument], name: str, job: _Job) -> tuple[str, ...]:
+def _lacks(it: Description, name: str, job: _Job) -> tuple[str, ...]:
     """Return the names that an argument of a description does not reach."""
-    own = next((one for one in arguments if one.name == name), None)
-    parts = [use for use in own.uses if use.kind in _PARTS] if own else ()
-    if own and parts and not own.missed and all(use.names == use.total for use in own.uses):
-        return ()
     given = {**job.how.arguments, **it.arguments, name: MARKS[0]}
     other = read_document(expand(it.path, given, reach=job.how.reach), it.path)
     lacks = compared(it.document, _changes(it), other, re.compile(MARKS[0])).lacks

@@ -12,12 +12,12 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import suppress
 from itertools import chain
 
-from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.left_out import source_folders
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.wording import plural
-from multibot_rewrite.companions.params.sections import MANAGER
+from multibot_rewrite.companions.params.sections import controller_types, raw_sections
+from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.refactor.launch_argument import OF_ROBOT
 from multibot_rewrite.refactor.placing import Left
@@ -99,13 +99,8 @@ def root_sections(paths: Collection[str]) -> Iterator[Left]:
 
 def _controllers(data: bytes) -> Iterator[str]:
     """Yield the controllers that a parameter file gives its manager."""
-    with suppress(InputError, UnicodeDecodeError):
-        sections = load_yaml(data.decode(), "")
-        manager = sections.get(MANAGER) if isinstance(sections, dict) else None
-        given = manager.get("ros__parameters") if isinstance(manager, dict) else None
-        for name, value in given.items() if isinstance(given, dict) else ():
-            if isinstance(value, dict) and "type" in value:
-                yield str(name)
+    with suppress(InputError):
+        yield from controller_types(raw_sections(read_yaml(data, "")))
 
 
 def files_below(folder: str, endings: tuple[str, ...]) -> Iterator[str]:

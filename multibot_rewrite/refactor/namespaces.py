@@ -26,7 +26,7 @@ from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.steps.apply import Template
 from multibot_rewrite.description.steps.document import tag_end
 from multibot_rewrite.description.steps.inserted import elements_of, lead_of
-from multibot_rewrite.refactor.declaring import SPACES, declared, free_name
+from multibot_rewrite.refactor.handing_on import SPACES, declared, free_name
 from multibot_rewrite.refactor.package import Description, Expanding, read_text
 from multibot_rewrite.refactor.placing import Left, Spot, placed
 from multibot_rewrite.refactor.source_edits import SourceEdit, ValueEdit, change_of, place
