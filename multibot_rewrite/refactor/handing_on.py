@@ -88,16 +88,14 @@ class Sources:
 
     def carriers(self, argument: str) -> set[tuple[str, str]]:
         """Return the parameters, with their macros, and properties that always are the argument."""
-        found = {(it.macro, it.name) for it in self.places}
-        while (
-            wrong := {
-                (it.macro, it.name)
-                for it in self.places
-                if not it.is_argument(argument, found - {(it.macro, it.name)})
-            }
-            & found
-        ):
-            found -= wrong
+        given = lists_by_key(((it.macro, it.name), it) for it in self.places)
+        found: set[tuple[str, str]] = set()
+        while more := {
+            key
+            for key, its in given.items()
+            if key not in found and all(it.is_argument(argument, found) for it in its)
+        }:
+            found |= more
         return found
 
     def _places(self, file: str) -> Iterator[Place]:

@@ -93,6 +93,8 @@ def _names(of: int, it: Description, changes: Iterable[ValueEdit]) -> Iterator[_
     for number, element in enumerate(it.inventory.document.elements):
         for attribute, value in values_of(element):
             mine = wanted.get((number, attribute), {})
+            if not value and not mine:
+                continue
             own = read.pieces.of(number, attribute, value)
             # Each with the offset in the value at which it ends.
             pieces = [*zip(accumulate(len(it.text) for it in own), own, strict=True)]
@@ -164,7 +166,7 @@ def _made_elsewhere(names: Sequence[_Name], closed: Collection[Spot]) -> set[Spo
         it for it, group in groups.items() if len({name.change is None for name in group}) > 1
     }
     while True:
-        made = {it.made for it in names if it.change and it.used in deep}
+        made = {it.made for it in names if it.change and it.made and it.used in deep}
         more = {
             it.used for it in names if it.change and it.made in made and it.made != it.used
         } - deep
