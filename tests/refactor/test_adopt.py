@@ -224,13 +224,6 @@ HANDED = {
         '<link name="${prefix}b"/>',
         "prefix",
     ),
-    "a macro that takes a word for its names": (
-        '<xacro:macro name="m" params="prefix"><link name="${prefix}_a"/><link name="b_${prefix}"/>'
-        '</xacro:macro><xacro:m prefix="left"/>',
-        '<xacro:macro name="m" params="prefix"><link name="$(arg prefix)${prefix}_a"/>'
-        '<link name="$(arg prefix)b_${prefix}"/></xacro:macro><xacro:m prefix="left"/>',
-        "prefix",
-    ),
 }
 
 
@@ -243,6 +236,19 @@ def test_what_takes_a_prefix_already_gets_the_argument(case: str, tmp_path: Path
     declared = ARGUMENT.splitlines()[1]
     assert made.after[str(path)].decode() == robot(wanted, f"\n{declared}")
     assert (made.argument, made.verified, dict(made.bare)) == (argument, (str(path),), {})
+
+
+def test_a_taken_name_is_not_used_for_the_argument(tmp_path: Path) -> None:
+    """The parameter is in the middle of a name, so nothing can be handed to it."""
+    inside = (
+        '<xacro:macro name="m" params="prefix"><link name="${prefix}_a"/><link name="b_${prefix}"/>'
+        '</xacro:macro><xacro:m prefix="left"/>'
+    )
+    (tmp_path / "r.urdf.xacro").write_text(robot(inside))
+    made = adopt(str(tmp_path))
+    assert made.argument == "robot_prefix"
+    names = b'<link name="${robot_prefix}${prefix}_a"/><link name="${robot_prefix}b_${prefix}"/>'
+    assert names in next(iter(made.after.values()))
 
 
 # What an argument reaches in part -> what it becomes.
