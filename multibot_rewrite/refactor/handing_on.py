@@ -175,7 +175,7 @@ def compared(
     lacks: list[ValueEdit] = []
     astray: set[str] = set()
     for number, (one, two) in enumerate(zip_longest(base.elements, other.elements)):
-        if one is None or two is None or one.tag != two.tag or one.keys() != two.keys():
+        if one is None or two is None or _shape(one) != _shape(two):
             return Compared((), frozenset(("",)))
         for (attribute, value), (_, text) in zip(values_of(one), values_of(two), strict=True):
             own = changes.get((number, attribute), [])
@@ -192,6 +192,10 @@ def compared(
                 lack = it._replace(value=text, start=at, end=at)
                 lacks += [] if it.start in first else [lack]
     return Compared(tuple(lacks), frozenset(astray))
+
+
+def _shape(element: _Element) -> tuple[object, ...]:
+    return element.tag, element.keys(), len(element)
 
 
 def _words(value: str, text: str, word: re.Pattern[str]) -> list[tuple[int, str]] | None:

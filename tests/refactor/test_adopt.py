@@ -227,6 +227,16 @@ HANDED = {
 }
 
 
+def test_a_prefix_that_changes_more_than_names_is_handed_to_nobody(tmp_path: Path) -> None:
+    inside = (
+        '<xacro:property name="prefix" value=""/><link name="${prefix}a"/>'
+        '<xacro:if value="${prefix == \'\'}"><link name="b"/></xacro:if>'
+    )
+    (tmp_path / "r.urdf.xacro").write_text(robot(inside))
+    made = adopt(str(tmp_path))
+    assert (made.argument, len(made.verified)) == ("robot_prefix", 1)
+
+
 @pytest.mark.parametrize("case", HANDED)
 def test_what_takes_a_prefix_already_gets_the_argument(case: str, tmp_path: Path) -> None:
     inside, wanted, argument = HANDED[case]
