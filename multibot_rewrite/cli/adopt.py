@@ -49,7 +49,7 @@ def _tell(options: argparse.Namespace, made: Adopted) -> None:
         given = made.namespace and f"{made.namespace}:=".encode() in made.after[it]
         what = f"{made.argument} and {made.namespace}" if given else made.argument
         note(options, f"{it}: it hands {what} on; verified")
-    for path in made.already.keys() - set(made.verified):
+    for path in (it for it in made.already if it not in made.verified):
         note(options, f"{path}: it has such an argument already: {made.already[path]}")
     for path, names in made.bare.items():
         what = f"error: {shorten(map(repr, names), _SHOWN)} stay without the prefix"
