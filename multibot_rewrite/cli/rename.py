@@ -6,7 +6,7 @@ from __future__ import annotations
 import argparse
 
 from multibot_rewrite.base.config import configured_vocabulary
-from multibot_rewrite.base.wording import plural
+from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.cli.output import deliver_changed, detail, note, note_unread, verified_words
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.usage import arguments_alone
@@ -38,6 +38,8 @@ def _tell(options: argparse.Namespace, made: Renaming) -> None:
     )
     note_unread(options, made.unread)
     if left := made.left:
-        note(options, f"left as they are: {plural(len(left), 'line')} with {options.old!r}")
+        lines = f"{plural(len(left), 'line')} with {options.old!r}"
+        shown = shorten((it.place for it in left), SEVERAL)
+        note(options, f"left as they are: {lines}: {shown}")
         for one in left[:MOST_MENTIONS]:
             detail(options, f"  {one.place}: {one.why}")
