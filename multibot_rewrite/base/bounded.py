@@ -14,9 +14,11 @@ import os
 import re
 import stat
 from collections.abc import Callable, Mapping
+from contextvars import ContextVar
 from functools import cache, partial
 from itertools import accumulate
 from math import radians
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from multibot_rewrite.base.model import InputError
@@ -58,11 +60,22 @@ _INDENTED = rf"[ \t\-?:]{{{MAX_DEPTH // 2}}}"
 _STEPS = {ord("["): 1, ord("{"): 1, ord("]"): -1, ord("}"): -1}
 _NO_BRACKETS = bytes(set(range(256)) - _STEPS.keys() - {ord('"')})
 
+# The texts of files that an editor has open, by their real paths: they are read in place of the disk's.
+OPEN_TEXTS: ContextVar[Mapping[str, bytes]] = ContextVar("open", default=MappingProxyType({}))
+
+
+def open_text(path: str) -> bytes | None:
+    """Return the text of a file as an editor has it open; None where none has."""
+    texts = OPEN_TEXTS.get()
+    return texts.get(os.path.realpath(path)) if texts else None
+
 
 @outside
 def read_bytes(path: str, limit: int = MAX_BYTES) -> bytes:
     """Return the bytes of a file, which may be a device without an end. Raises OSError, also for a file
     that is too large or a pipe in a folder, and ValueError for a path that no system takes."""
+    if (text := open_text(path)) is not None:
+        return text
     _refuse_pipe(path)
     with open(path, "rb") as file:
         # Not the limit at once: the memory for it takes longer to get than most files to read.

@@ -61,18 +61,18 @@ _PLAIN = ("urdf", "baseline", "fail_on", "trust")
 
 def run(options: argparse.Namespace) -> int:
     """Lint or fix; returns the exit code."""
+    if options.lsp:
+        from multibot_rewrite.cli import lsp  # pygls is an extra
+
+        return lsp.run(options)
     check_use(options)
     config = configured(".", options.config)
-    asked = options.distro or config.distro
-    if doubt := release_doubt(asked):
+    if doubt := release_doubt(options.distro or config.distro):
         note(options, f"warning: {doubt}")
     alone = config
     config = with_options(config, **given(options))
     paths, unreadable = _files(options, config)
-    told = release_told(asked)
-    said = release_of_all(told, (it for it in paths if it.endswith(_TELLING)))
-    settings = config.settings._replace(distro=said.release, ros=ROS_2 if told else "")
-    config = config._replace(settings=settings)
+    config, why = of_release(options, config, paths)
     _check_selecting(options, paths)
     # Before the work: nothing that is linted is written over.
     for option in ("--output", "--write-baseline"):
@@ -90,7 +90,18 @@ def run(options: argparse.Namespace) -> int:
         write_files(options, [(options.write_baseline, text)])
         note(options, f"{options.write_baseline}: {_count(findings)} are known from now on")
         return DONE
-    return _conclude(options, config, paths, findings, said.why or why_here(asked))
+    return _conclude(options, config, paths, findings, why)
+
+
+def of_release(
+    options: argparse.Namespace, config: Configured, paths: Sequence[str]
+) -> tuple[Configured, str]:
+    """Return the configuration for the release that the files are for, and why it is that one."""
+    asked = options.distro or config.distro
+    told = release_told(asked)
+    said = release_of_all(told, (it for it in paths if it.endswith(_TELLING)))
+    settings = config.settings._replace(distro=said.release, ros=ROS_2 if told else "")
+    return config._replace(settings=settings), said.why or why_here(asked)
 
 
 def _files(options: argparse.Namespace, config: Configured) -> tuple[list[str], list[Finding]]:

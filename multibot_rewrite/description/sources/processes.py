@@ -135,6 +135,11 @@ def _started(theirs: socket.socket) -> tuple[Server, int]:
     raise InputError(f"xacro: no process can be started: {sys.executable} does not run {_MODULE}")
 
 
+def start_server() -> None:
+    """Start what the first xacro would wait for; returns before it has loaded."""
+    _server(os.getpid())
+
+
 @lru_cache(maxsize=1)
 def _server(pid: int) -> Server:
     """Return the server of this process; a fork of it gets its own."""

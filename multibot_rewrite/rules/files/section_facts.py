@@ -92,9 +92,13 @@ def _given_by(file: NamedFile, documents: Iterable[YamlText]) -> tuple[Run, ...]
 
 
 def _in_folder(file: NamedFile) -> Iterator[YamlText]:
-    folder = os.path.dirname(os.path.abspath(file.file))
+    own = os.path.abspath(file.file)
+    folder = os.path.dirname(own)
     for name in sorted(entries(folder)):
         path = os.path.join(folder, name)
+        if path == own and file.document:
+            yield file.document
+            continue
         data = read_file(path) if is_beside(name) else b""
         if kind_of(data) == PARAMS:
             yield read_yaml(data, path)

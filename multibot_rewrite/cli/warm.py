@@ -1,0 +1,15 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Imported by the process of which those of ``urdf-lint --lsp`` are forked: it has loaded what most of
+them need."""
+
+from argparse import Namespace
+
+from multibot_rewrite.cli import answers
+from multibot_rewrite.lint.check import lint_data
+from multibot_rewrite.rules.settings import Settings
+
+_ROBOT = b"""<robot name="warm"><link name="a"/><link name="b"/>
+<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>
+<gazebo><plugin filename="libgazebo_ros_diff_drive.so" name="p"/></gazebo></robot>"""
+lint_data("warm.urdf", _ROBOT, Settings())
+answers.explain(Namespace(vocabulary=[], distro=""), "-", "link", ())
