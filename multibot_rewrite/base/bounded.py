@@ -14,11 +14,9 @@ import os
 import re
 import stat
 from collections.abc import Callable, Mapping
-from contextvars import ContextVar
 from functools import cache, partial
 from itertools import accumulate
 from math import radians
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from multibot_rewrite.base.model import InputError
@@ -61,13 +59,13 @@ _STEPS = {ord("["): 1, ord("{"): 1, ord("]"): -1, ord("}"): -1}
 _NO_BRACKETS = bytes(set(range(256)) - _STEPS.keys() - {ord('"')})
 
 # The texts of files that an editor has open, by their real paths: they are read in place of the disk's.
-OPEN_TEXTS: ContextVar[Mapping[str, bytes]] = ContextVar("open", default=MappingProxyType({}))
+# Filled by processes that answer one question of an editor, and by no others.
+OPEN_TEXTS: dict[str, bytes] = {}
 
 
 def open_text(path: str) -> bytes | None:
     """Return the text of a file as an editor has it open; None where none has."""
-    texts = OPEN_TEXTS.get()
-    return texts.get(os.path.realpath(path)) if texts else None
+    return OPEN_TEXTS.get(os.path.realpath(path)) if OPEN_TEXTS else None
 
 
 @outside

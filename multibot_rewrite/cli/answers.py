@@ -24,10 +24,13 @@ from multibot_rewrite.description.rewriters.lookup import look_up
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.rewriters.vocabulary import TYPES, load_vocabulary
 from multibot_rewrite.description.sources.packages import package_of
-from multibot_rewrite.description.sources.processes import start_server
+from multibot_rewrite.description.sources.processes import server
 from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.fleet.checks.closed_plan import closed_plan
+from multibot_rewrite.fleet.file.fleet_file import read_fleet
+from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.lint.catalogue import rules
-from multibot_rewrite.lint.check import lint_data
+from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.configured import (
     Configured,
     configured,
@@ -49,12 +52,11 @@ _ENDS = (".urdf", ".xacro", ".srdf", ".sdf")
 def answer(connection: Connection) -> None:
     """Answer one question: with what a function returns, or an error that is meant for a person. It
     comes with the texts that the editor has open, by the real paths of the files."""
-    # The server's output is for the editor alone.
-    os.dup2(2, 1)
-    start_server()
+    os.dup2(2, 1)  # the server's output is for the editor alone
+    server(os.getpid())  # the first xacro would wait for it
     with suppress(EOFError):  # the editor is gone
         texts, function, *given = connection.recv()
-        OPEN_TEXTS.set(texts)
+        OPEN_TEXTS.update(texts)
         try:
             connection.send(function(*given))
         except MultibotError as error:
@@ -63,41 +65,27 @@ def answer(connection: Connection) -> None:
 
 def diagnose(options: argparse.Namespace, path: str) -> Sequence[Finding]:
     """Return the findings of a file; none for a file of a kind that is not linted."""
-    data = read_file(path)
-    kind = recognised(data)
+    kind = recognised(read_file(path))
     try:
         config = _configured(options, path)
         if is_excluded(path, config):
             return ()
         if kind == FLEET:
-            return _of_fleet(path, options.distro or config.distro)
-        if kind in _LINTED or path.endswith(_ENDS):
-            return lint_data(path, data, set_among([path], config.settings))
+            fleet = closed_plan(plan_fleet(read_fleet(path, config.settings.distro, os.environ)))
+            found = (*fleet.table.problems, *fleet.gaps)
+            return [it if it.file else it._replace(file=path) for it in found]
+        is_linted = kind in _LINTED or path.endswith(_ENDS)
+        return lint_file(path, set_among([path], config.settings)) if is_linted else ()
     except RewriteRefused as error:
         return error.findings
     except MultibotError as error:
         own = error if isinstance(error, InputError) else InputError(f"{path}: {error}")
         return [failure(path, own, Settings())]
-    return ()
 
 
 def _configured(options: argparse.Namespace, path: str) -> Configured:
     config = with_options(configured(path, options.config), **given(options))
     return of_release(options, config, [path])[0]
-
-
-def _of_fleet(path: str, distro: str) -> Sequence[Finding]:
-    """Return what ``multibot plan`` finds in a fleet file."""
-    from multibot_rewrite.fleet.checks.closed_plan import (
-        closed_plan,  # a description needs none of it
-    )
-    from multibot_rewrite.fleet.file.fleet_file import read_fleet
-    from multibot_rewrite.fleet.fleet_plan import plan_fleet
-
-    fleet = closed_plan(plan_fleet(read_fleet(path, distro, os.environ)))
-    return [
-        it if it.file else it._replace(file=path) for it in (*fleet.table.problems, *fleet.gaps)
-    ]
 
 
 def fixed(options: argparse.Namespace, path: str, only: Finding | None) -> bytes:
@@ -108,12 +96,10 @@ def fixed(options: argparse.Namespace, path: str, only: Finding | None) -> bytes
 
 def explain(options: argparse.Namespace, path: str, word: str, codes: Sequence[str]) -> str:
     """Return what ``multibot inspect`` says of a name or code, and of the codes of findings there."""
-    vocabulary = load_vocabulary(_vocabulary(options, path), options.distro or "")
+    vocabulary, known = load_vocabulary(_vocabulary(options, path), options.distro or ""), rules()
     found = look_up(vocabulary, word, TYPES)
-    known = rules()
-    parts = [render(details(found))] if found else []
-    codes = [it for it in dict.fromkeys((word, *codes)) if it in known]
-    return "\n".join((*parts, *(explained(known[it]) for it in codes)))
+    its = [explained(known[it]) for it in dict.fromkeys((word, *codes)) if it in known]
+    return "\n".join([render(details(found)), *its] if found else its)
 
 
 def places(options: argparse.Namespace, path: str, at: tuple[int, int]) -> list[Place]:

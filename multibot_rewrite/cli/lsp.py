@@ -19,52 +19,40 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import Any
 
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.model import MultibotError, Unusable
+from multibot_rewrite.cli import answers
+from multibot_rewrite.cli.process import DONE
+from multibot_rewrite.refactor.symbols import Place
+from multibot_rewrite.version import __version__
+
 try:
     from lsprotocol import types as lsp
     from pygls.lsp.server import LanguageServer
     from pygls.uris import from_fs_path
     from pygls.workspace import TextDocument
 except ImportError as error:
-    from multibot_rewrite.base.model import Unusable
-
     hint = "pip install 'multibot_rewrite[lsp]'"
     raise Unusable(f"an editor cannot be served: {error}; {hint}") from None
-
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.base.model import MultibotError
-from multibot_rewrite.cli import answers
-from multibot_rewrite.cli.process import DONE
-from multibot_rewrite.refactor.symbols import Place
-from multibot_rewrite.version import __version__
 
 # Seconds: without a change before a file is linted, and after which an answer is given up.
 PAUSE, MOST = 0.05, 60.0
 _FIX, _FIX_ALL = lsp.CodeActionKind.QuickFix, lsp.CodeActionKind.SourceFixAll
-_WARM = "multibot_rewrite.cli.warm"
 _SEVERITIES = {ERROR: lsp.DiagnosticSeverity.Error, WARNING: lsp.DiagnosticSeverity.Warning}
 # A name, a tag with its bracket or an attribute with its value.
 _MARKED = re.compile(r"</?[\w:.-]+|[\w:.-]+\s*=\s*(?:\"[^\"]*\"?|'[^']*'?)|[^\s<>]+")
 _WORD = re.compile(r"[^\s\"'<>=,(){}\[\]]+")
 
 
-def run(options: argparse.Namespace) -> int:
-    """Serve an editor until it says exit; returns the exit code."""
-    gc.enable()
-    server = Server(options)
-    for name, (function, about) in _FEATURES.items():
-        server.feature(name, about)(function)
-    server.start_io()
-    return DONE
-
-
 class Server(LanguageServer):
     """The open files of an editor, and what was found in them."""
 
-    def __init__(self, options: argparse.Namespace) -> None:
+    options: argparse.Namespace
+
+    def __init__(self) -> None:
         super().__init__("urdf-lint", __version__)
-        self.options = options
         self.context = get_context("forkserver")
-        self.context.set_forkserver_preload([_WARM])
+        self.context.set_forkserver_preload(["multibot_rewrite.cli.warm"])
         self.found: dict[str, Sequence[Finding]] = {}
         self.running: dict[str, asyncio.Task[None]] = {}
         self.spares: list[asyncio.Future[tuple[BaseProcess, Connection]]] = []
@@ -79,16 +67,16 @@ class Server(LanguageServer):
         child, connection = await self.spares.pop()
         try:
             connection.send((texts, function, self.options, path, *given))
-            made = await asyncio.wait_for(asyncio.to_thread(connection.recv), MOST)
+            answer = await asyncio.wait_for(asyncio.to_thread(connection.recv), MOST)
         except (EOFError, OSError, asyncio.TimeoutError):
-            made = None
+            return None
         finally:
             child.kill()
             self.spare()
-        if isinstance(made, MultibotError):
-            self.window_show_message(lsp.ShowMessageParams(lsp.MessageType.Warning, str(made)))
-            return None
-        return made
+        if not isinstance(answer, MultibotError):
+            return answer
+        self.window_show_message(lsp.ShowMessageParams(lsp.MessageType.Warning, str(answer)))
+        return None
 
     def spare(self) -> None:
         """Have a process that only waits for a question."""
@@ -119,15 +107,13 @@ class Server(LanguageServer):
     def publish(self, uri: str, found: Sequence[Finding]) -> None:
         """Show what was found in an open file, in the files that it is about."""
         old, self.found[uri] = self.found.get(uri, ()), found
+        every = [(self.uri_of(it.file), it) for its in self.found.values() for it in its]
         for each in {uri, *(self.uri_of(it.file) for it in (*old, *found))}:
-            its = {
-                it: 0 for own in self.found.values() for it in own if self.uri_of(it.file) == each
-            }
             document = self.workspace.get_text_document(each)
+            its = dict.fromkeys(it for file, it in every if file == each)
             shown = [_diagnostic(document, it) for it in its]
-            self.text_document_publish_diagnostics(
-                lsp.PublishDiagnosticsParams(each, shown, document.version)
-            )
+            params = lsp.PublishDiagnosticsParams(each, shown, document.version)
+            self.text_document_publish_diagnostics(params)
 
     def uri_of(self, path: str) -> str:
         """Return what the editor calls a file."""
@@ -137,8 +123,10 @@ class Server(LanguageServer):
 
     def changes(self, files: Mapping[str, bytes]) -> lsp.WorkspaceEdit:
         """Return the edits that make these texts of files."""
-        documents = {it: self.workspace.get_text_document(self.uri_of(it)) for it in files}
-        edits = {it.uri: list(_edits(it.lines, files[path])) for path, it in documents.items()}
+        edits = {}
+        for path, text in files.items():
+            document = self.workspace.get_text_document(self.uri_of(path))
+            edits[document.uri] = list(_edits(document.lines, text))
         return lsp.WorkspaceEdit(changes={uri: it for uri, it in edits.items() if it})
 
     def location(self, it: Place) -> lsp.Location:
@@ -149,19 +137,18 @@ class Server(LanguageServer):
 
 def _range(document: TextDocument, line: int, column: int, end: int, last: int) -> lsp.Range:
     """Return a range as the editor counts: from 0, in its units."""
-    ends = lsp.Position(line - 1, column - 1), lsp.Position(end - 1, last - 1)
-    return lsp.Range(
-        *(document.position_codec.position_to_client_units(document.lines, it) for it in ends)
-    )
+    start, stop = lsp.Position(line - 1, column - 1), lsp.Position(end - 1, last - 1)
+    units = document.position_codec.position_to_client_units
+    return lsp.Range(units(document.lines, start), units(document.lines, stop))
 
 
 def _diagnostic(document: TextDocument, it: Finding) -> lsp.Diagnostic:
     line, column = max(it.line, 1), max(it.column, 1)
-    text = document.lines[line - 1] if line <= len(document.lines) else ""
+    text = next(iter(document.lines[line - 1 :]), "")
     marked = _MARKED.match(text, column - 1)
     where = _range(document, line, column, line, (marked.end() if marked else column) + 1)
-    about = ": ".join(filter(None, (it.robot, it.node, it.message)))
-    words = f"{about}; {it.hint}" if it.hint else about
+    message = ": ".join(filter(None, (it.robot, it.node, it.message)))
+    words = "; ".join(filter(None, (message, it.hint)))
     severity = _SEVERITIES.get(it.level, lsp.DiagnosticSeverity.Information)
     return lsp.Diagnostic(where, words, severity, it.code, source="urdf-lint")
 
@@ -175,83 +162,87 @@ def _edits(old: Sequence[str], new: bytes) -> Iterator[lsp.TextEdit]:
             yield lsp.TextEdit(where, "".join(lines[first:last]))
 
 
-def _initialized(ls: Server, _: lsp.InitializedParams) -> None:
-    ls.spare()
+server = Server()
 
 
-def _changed(ls: Server, params: Any) -> None:
-    ls.diagnose(params.text_document.uri)
+def run(options: argparse.Namespace) -> int:
+    """Serve an editor until it says exit; returns the exit code."""
+    gc.enable()
+    server.options = options
+    server.start_io()
+    return DONE
 
 
-def _saved(ls: Server, _: lsp.DidSaveTextDocumentParams) -> None:
-    ls.diagnose(*ls.workspace.text_documents)  # one may include it
+@server.feature(lsp.INITIALIZED)
+def _initialized(_: lsp.InitializedParams) -> None:
+    server.spare()
 
 
-def _cursor(ls: Server, params: Any) -> tuple[str, int, int]:
-    """Return the uri of a file, and line and column, from 0, of the cursor in it."""
-    document = ls.workspace.get_text_document(params.text_document.uri)
+@server.feature(lsp.TEXT_DOCUMENT_DID_OPEN)
+@server.feature(lsp.TEXT_DOCUMENT_DID_CHANGE)
+@server.feature(lsp.TEXT_DOCUMENT_DID_CLOSE)
+def _changed(params: Any) -> None:
+    server.diagnose(params.text_document.uri)
+
+
+@server.feature(lsp.TEXT_DOCUMENT_DID_SAVE)
+def _saved(_: lsp.DidSaveTextDocumentParams) -> None:
+    server.diagnose(*server.workspace.text_documents)  # one may include it
+
+
+@server.feature(lsp.TEXT_DOCUMENT_HOVER)
+async def _hover(params: lsp.HoverParams) -> lsp.Hover | None:
+    document = server.workspace.get_text_document(params.text_document.uri)
     at = document.position_from_client_units(params.position)
-    return document.uri, at.line, at.character
+    text = next(iter(document.lines[at.line :]), "")
+    around = (it[0] for it in _WORD.finditer(text) if it.start() <= at.character <= it.end())
+    codes = [it.code for it in server.found.get(document.uri, ()) if it.line == at.line + 1]
+    word = next(around, "").strip("/:?!")
+    explained = await server.ask(answers.explain, document.uri, word, codes)
+    content = lsp.MarkupContent(lsp.MarkupKind.Markdown, f"```text\n{explained}\n```")
+    return lsp.Hover(content) if explained else None
 
 
-async def _hover(ls: Server, params: lsp.HoverParams) -> lsp.Hover | None:
-    uri, line, column = _cursor(ls, params)
-    text = next(iter(ls.workspace.get_text_document(uri).lines[line:]), "")
-    around = (it[0] for it in _WORD.finditer(text) if it.start() <= column <= it.end())
-    codes = [it.code for it in ls.found.get(uri, ()) if it.line == line + 1]
-    said = await ls.ask(answers.explain, uri, next(around, "").strip("/:?!"), codes)
-    content = lsp.MarkupContent(lsp.MarkupKind.Markdown, f"```text\n{said}\n```")
-    return lsp.Hover(content) if said else None
-
-
-async def _actions(ls: Server, params: lsp.CodeActionParams) -> list[lsp.CodeAction]:
+@server.feature(lsp.TEXT_DOCUMENT_CODE_ACTION, lsp.CodeActionOptions([_FIX, _FIX_ALL]))
+async def _actions(params: lsp.CodeActionParams) -> list[lsp.CodeAction]:
     uri, where, only = params.text_document.uri, params.range, params.context.only or ()
-    path = ls.workspace.get_text_document(uri).path
-    mended = [it for it in ls.found.get(uri, ()) if it.edits and it.file == path]
-    here = [it for it in mended if where.start.line < it.line <= where.end.line + 1]
+    path = server.workspace.get_text_document(uri).path
+    fixable = [it for it in server.found.get(uri, ()) if it.edits and it.file == path]
+    here = [it for it in fixable if where.start.line < it.line <= where.end.line + 1]
     asked: list[tuple[str, str, Finding | None]] = [
-        (f"Fix {it.code}: {it.message}", _FIX, it) for it in here
+        *((f"Fix {it.code}: {it.message}", _FIX, it) for it in here),
+        *[("Fix all that urdf-lint can", _FIX_ALL, None)] * bool(fixable),
     ]
-    asked += [("Fix all that urdf-lint can", _FIX_ALL, None)] if mended else []
     actions = []
     for title, kind, finding in asked:
         if only and not any((kind + ".").startswith(it + ".") for it in only):
             continue
-        if (text := await ls.ask(answers.fixed, uri, finding)) is not None:
-            actions.append(lsp.CodeAction(title, kind, edit=ls.changes({path: text})))
+        if (text := await server.ask(answers.fixed, uri, finding)) is not None:
+            actions.append(lsp.CodeAction(title, kind, edit=server.changes({path: text})))
     return actions
 
 
-async def _places(ls: Server, params: Any) -> list[Place]:
-    uri, line, column = _cursor(ls, params)
-    return await ls.ask(answers.places, uri, (line + 1, column + 1)) or []
+async def _places(params: Any) -> list[Place]:
+    document = server.workspace.get_text_document(params.text_document.uri)
+    at = document.position_from_client_units(params.position)
+    cursor = at.line + 1, at.character + 1
+    return await server.ask(answers.places, document.uri, cursor) or []
 
 
-async def _definition(ls: Server, params: lsp.DefinitionParams) -> list[lsp.Location]:
-    return [ls.location(it) for it in await _places(ls, params) if it.declares]
+@server.feature(lsp.TEXT_DOCUMENT_DEFINITION)
+async def _definition(params: lsp.DefinitionParams) -> list[lsp.Location]:
+    return [server.location(it) for it in await _places(params) if it.declares]
 
 
-async def _references(ls: Server, params: lsp.ReferenceParams) -> list[lsp.Location]:
-    own = params.context.include_declaration
-    return [ls.location(it) for it in await _places(ls, params) if own or not it.declares]
+@server.feature(lsp.TEXT_DOCUMENT_REFERENCES)
+async def _references(params: lsp.ReferenceParams) -> list[lsp.Location]:
+    every = params.context.include_declaration
+    return [server.location(it) for it in await _places(params) if every or not it.declares]
 
 
-async def _rename(ls: Server, params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
-    for place in (await _places(ls, params))[:1]:
-        made = await ls.ask(answers.renamed, params.text_document.uri, place, params.new_name)
-        return ls.changes(made or {})
+@server.feature(lsp.TEXT_DOCUMENT_RENAME)
+async def _rename(params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
+    for place in (await _places(params))[:1]:
+        uri, new = params.text_document.uri, params.new_name
+        return server.changes(await server.ask(answers.renamed, uri, place, new) or {})
     return None
-
-
-_FEATURES: Mapping[str, tuple[Callable[..., Any], Any]] = {
-    lsp.INITIALIZED: (_initialized, None),
-    lsp.TEXT_DOCUMENT_DID_OPEN: (_changed, None),
-    lsp.TEXT_DOCUMENT_DID_CHANGE: (_changed, None),
-    lsp.TEXT_DOCUMENT_DID_SAVE: (_saved, None),
-    lsp.TEXT_DOCUMENT_DID_CLOSE: (_changed, None),
-    lsp.TEXT_DOCUMENT_HOVER: (_hover, None),
-    lsp.TEXT_DOCUMENT_CODE_ACTION: (_actions, lsp.CodeActionOptions([_FIX, _FIX_ALL])),
-    lsp.TEXT_DOCUMENT_DEFINITION: (_definition, None),
-    lsp.TEXT_DOCUMENT_REFERENCES: (_references, None),
-    lsp.TEXT_DOCUMENT_RENAME: (_rename, None),
-}

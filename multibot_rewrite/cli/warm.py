@@ -12,4 +12,5 @@ _ROBOT = b"""<robot name="warm"><link name="a"/><link name="b"/>
 <joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>
 <gazebo><plugin filename="libgazebo_ros_diff_drive.so" name="p"/></gazebo></robot>"""
 lint_data("warm.urdf", _ROBOT, Settings())
+lint_data("warm.yaml", b"amcl:\n  ros__parameters:\n    base_frame_id: a\n", Settings())
 answers.explain(Namespace(vocabulary=[], distro=""), "-", "link", ())

@@ -94,14 +94,10 @@ def _given_by(file: NamedFile, documents: Iterable[YamlText]) -> tuple[Run, ...]
 def _in_folder(file: NamedFile) -> Iterator[YamlText]:
     own = os.path.abspath(file.file)
     folder = os.path.dirname(own)
-    for name in sorted(entries(folder)):
-        path = os.path.join(folder, name)
-        if path == own and file.document:
-            yield file.document
-            continue
-        data = read_file(path) if is_beside(name) else b""
+    for path in (os.path.join(folder, it) for it in sorted(entries(folder))):
+        data = read_file(path) if is_beside(path) else b""
         if kind_of(data) == PARAMS:
-            yield read_yaml(data, path)
+            yield file.document if file.document and path == own else read_yaml(data, path)
 
 
 ASKED = "asked"
