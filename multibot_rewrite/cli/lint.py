@@ -7,6 +7,7 @@ import argparse
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.base.findings.finding import Finding
@@ -61,10 +62,8 @@ _PLAIN = ("urdf", "baseline", "fail_on", "trust")
 
 def run(options: argparse.Namespace) -> int:
     """Lint or fix; returns the exit code."""
-    if options.lsp:
-        from multibot_rewrite.cli import lsp  # pygls is an extra
-
-        return lsp.run(options)
+    if options.lsp:  # a command of its own, as far as the code goes; pygls is an extra
+        return int(import_module("multibot_rewrite.cli.lsp").run(options))
     check_use(options)
     config = configured(".", options.config)
     if doubt := release_doubt(options.distro or config.distro):
