@@ -128,7 +128,8 @@ def lint_subject(subject: Subject, wanted: Callable[[Rule], bool] = bool) -> lis
 def _limited(seconds: float) -> Iterator[None]:
     """Raise _TooLongError after that time; only a process's main thread can be stopped like that."""
     before: Any = None
-    with suppress(ValueError):  # raised in other threads; to ask threading is slow to import
+    # Raised in other threads, to ask threading is slow to import; and on Windows.
+    with suppress(ValueError, AttributeError):
         before = signal.signal(signal.SIGALRM, _stop)
     if before is None:
         yield

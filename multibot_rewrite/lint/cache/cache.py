@@ -210,7 +210,8 @@ _HERE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__
 
 def identity(settings: Settings) -> str:
     """A digest of the program, the vocabulary and the settings; raises VocabularyError, OSError."""
-    where = (os.getcwd(), sys.version, os.uname().release, str(os.geteuid()))
+    own = (os.uname().release, str(os.geteuid())) if hasattr(os, "uname") else ()
+    where = (os.getcwd(), sys.version, *own)
     specs = filter(None, map(find_spec, LIBRARIES))
     folders = filter(None, (_HERE, *(os.path.dirname(it.origin or "") for it in specs)))
     programs = sorted(it for folder in folders for it in _states(folder))
