@@ -208,15 +208,13 @@ def first(size: Size, plan: str, domain: int, known: bool) -> float:
     )  # fmt: skip
     seen: list[float] = []
     verdict = threading.Event()
-    everything = f"{size.robots * size.nodes}/{size.robots * size.nodes} nodes, "
-    names = 2 * size.robots * size.nodes * size.topics
     began = threading.Event()
 
     def read() -> None:
         assert process.stdout is not None
         for line in process.stdout:
             began.set()
-            if f"{everything}{names}/{names} names" in line:
+            if ", all seen; " in line:
                 seen.append(time.monotonic())
                 if "0 findings: as planned" in line:
                     verdict.set()

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The house in figures: rooms, lines, functions, and what runs for a command.
+"""The package in figures: its packages, lines, functions, and what runs for a command.
 
 python benchmarks/house.py                  this checkout
 python benchmarks/house.py CHECKOUT         another one
 python benchmarks/house.py --write          put them into the pages that state them
 python benchmarks/house.py --write --loop   and the CPU seconds of the fast tests: it runs them
 
-A room is a file or folder right below the package; its floor is the longest chain of imports below it.
+A package here is a file or folder right below it; its layer is the longest chain of imports below it.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ SHAPES = {
     "a finding": ("Problem", "Fault", "Remark", "LaunchNote", "Caveat", "Finding"),
 }
 NAMESAKES = ("lint/catalogue.py", "producers/launch/stand_in/ros.py")
-# A test that imports so many modules besides commands and public names knows how the house is built.
+# A test that imports so many modules besides commands and public names knows how the package is built.
 SEVERAL = 3
 # What a user asks for.
 COMMANDS = {
@@ -56,7 +56,7 @@ COMMANDS = {
     "plan": ("multibot", "plan", "examples/two_robots_nav2/fleet.yaml", "-o", "{}/plan.yaml"),
     "build": ("multibot", "build", "examples/two_robots_nav2/fleet.yaml", "-o", "{}/fleet"),
 }
-BESIDE = "the public names (`__init__.py`), the version"
+OTHERS = "the public names (`__init__.py`), the version"
 FAST = ("-q", "-m", "not live and not slow")
 
 
@@ -129,7 +129,7 @@ def _is_data(value: ast.AST | None) -> bool:
 
 
 def arrows(every: list[Module]) -> Counter[tuple[str, str]]:
-    """From room to room, and how many modules import along them."""
+    """Return the pairs of packages with imports, and how many modules import so."""
     files = {it.file: it.room for it in every}
     pairs = ((it.room, files[other]) for it in every for other in imported(it.tree, files))
     return Counter((one, other) for one, other in pairs if one != other)
@@ -151,7 +151,7 @@ def imported(tree: ast.Module, files: Iterable[str]) -> set[str]:
 
 
 def floors(between: Iterable[tuple[str, str]]) -> int:
-    """The longest chain of imports from room to room."""
+    """Return the longest chain of imports from package to package."""
     below: dict[str, set[str]] = defaultdict(set)
     for one, other in between:
         below[one].add(other)
@@ -244,7 +244,7 @@ def _knows(count: int) -> str:
 
 
 def figures(every: list[Module]) -> dict[str, str]:
-    """The figures of the house, without those of its rooms and of what runs."""
+    """Return the figures, without those of the packages and of what runs."""
     nodes = [node for it in every for node in ast.walk(it.tree)]
     functions = [it for it in nodes if isinstance(it, ast.FunctionDef)]
     lengths = sorted((it.end_lineno or it.lineno) - it.lineno + 1 for it in functions)
@@ -256,15 +256,15 @@ def figures(every: list[Module]) -> dict[str, str]:
         "modules": f"{len(every):,}",
         f"modules under {SMALL} lines": f"{sum(len(it.lines) < SMALL for it in every):,}",
         f"modules over {LONG} lines": f"{sum(len(it.lines) > LONG for it in every):,}",
-        "rooms": f"{len({it.room for it in every}):,}",
-        "floors": f"{floors(between):,}",
-        "arrows between rooms": f"{len(between):,}",
+        "packages": f"{len({it.room for it in every}):,}",
+        "layers": f"{floors(between):,}",
+        "arrows between packages": f"{len(between):,}",
         "functions": f"{len(functions):,}",
         "lines of a function: median": f"{_share(lengths, 50)}",
         "lines of a function: nine of ten have at most": f"{_share(lengths, 90)}",
         "lines of a function: the longest": f"{lengths[-1]}",
         "functions that one place refers to": f"{referred_once(every, functions):,}",
-        "names of classes that stand twice": f"{sum(it > 1 for it in classes.values()):,}",
+        "names of classes that are there twice": f"{sum(it > 1 for it in classes.values()):,}",
         f"pairs of {EQUAL} equal lines": f"{equal_pairs(every):,}",
         "codes of findings": f"{len(codes):,}",
         **{f"shapes of {what}": f"{len(it)}" for what, it in shapes(every).items()},
@@ -277,10 +277,10 @@ def _share(values: list[int], percent: int) -> int:
 
 
 def room_rows(every: list[Module]) -> Iterator[tuple[str, Counter[str]]]:
-    """Each folder of the package with its lines; what stands beside them is one row."""
+    """Yield each folder of the package with its lines; other modules are one row."""
     found: dict[str, Counter[str]] = defaultdict(Counter)
     for it in every:
-        found[f"{it.room}/" if "/" in it.file else "beside them"] += kinds(it)
+        found[f"{it.room}/" if "/" in it.file else "others"] += kinds(it)
     yield from sorted(found.items())
     yield "all", sum(found.values(), Counter())
 
@@ -342,20 +342,20 @@ def table(head: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
 
 
 def kinds_table(every: list[Module]) -> str:
-    """The lines of each room, by kind."""
+    """Return the lines of each package, by kind."""
     rows = room_rows(every)
     cells = ([name, it.total(), *(it[kind] for kind in KINDS)] for name, it in rows)
     return table(("lines in", "all", *KINDS), cells)
 
 
 def rooms_table(checkout: Path, every: list[Module]) -> str:
-    """What each room is for, as it says itself, and its lines."""
+    """Return what each package is for, as it says itself, and its lines."""
     package = checkout / PACKAGE
     about = {f"{it.name}/": _about(it / "__init__.py") for it in package.iterdir() if it.is_dir()}
-    about["beside them"] = BESIDE
+    about["others"] = OTHERS
     rows = [(name, it) for name, it in room_rows(every) if name != "all"]
     cells = ((f"`{name}` {about[name]}", f"{it.total():,}", f"{it['code']:,}") for name, it in rows)
-    return table(("room", "lines", "code"), cells)
+    return table(("package", "lines", "code"), cells)
 
 
 def _about(path: Path) -> str:
@@ -364,7 +364,7 @@ def _about(path: Path) -> str:
 
 
 def figures_table(checkout: Path, every: list[Module]) -> str:
-    """The house, its lines by kind, and what runs for a command."""
+    """Return the figures, the lines by kind, and what runs for a command."""
     found = sum((kinds(it) for it in every), Counter())
     said = ", ".join(f"{kind} {found[kind] * 100 / found.total():.0f}" for kind in KINDS)
     rows = {**figures(every), **functions_run(checkout), "lines by kind, of a hundred": said}
@@ -389,7 +389,7 @@ def main(words: list[str]) -> None:
     options = parser.parse_args(words)
     every = modules(options.checkout)
     rooms = rooms_table(options.checkout, every)
-    made = {"rooms": rooms, "figures": figures_table(options.checkout, every)}
+    made = {"packages": rooms, "figures": figures_table(options.checkout, every)}
     tests = table(
         ("test files that import", "files", "lines"), importing_rows(options.checkout, every)
     )

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Do the tests notice? Plants bugs in a copy of the repository, one at a time, and runs the fast tests.
 
-python benchmarks/planted_bugs.py                     6 bugs in each room, and the table
+python benchmarks/planted_bugs.py                     6 bugs in each package, and the table
 python benchmarks/planted_bugs.py --write             and put it into docs/contributing/measurements.md
-python benchmarks/planted_bugs.py steps remap -n 20   more of them in some rooms
+python benchmarks/planted_bugs.py steps remap -n 20   more of them in some packages
 python benchmarks/planted_bugs.py --seed 2            other ones
 python benchmarks/planted_bugs.py producers --tests tests/producers    do these tests alone notice?
 
 A bug survives if no test fails. ``fixtures/harmless_bugs.tsv`` lists those that change nothing anybody
-could see, with the reason. Bugs are made by ``bugs.py`` beside this file.
+could see, with the reason. Bugs are made by ``bugs.py`` next to this file.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from one_page import write_section
 ROOT = Path(__file__).parents[1]
 HARMLESS = ROOT / "fixtures" / "harmless_bugs.tsv"
 PACKAGE = "multibot_rewrite"
-# "." are the modules that are in no room.
+# "." are the modules that are in no folder.
 ROOMS = (*sorted(it.parent.name for it in (ROOT / PACKAGE).glob("*/__init__.py")), ".")
 # A bug in a file with one of these could reach beyond the copy: it ends processes or deletes folders.
 UNSAFE = re.compile(r"\b(?:os\.kill|killpg|os\.fork|os\._exit|rmtree|subprocess|signal)\b")
@@ -93,11 +93,11 @@ def main(arguments: Sequence[str]) -> int:
 
 def _options(arguments: Sequence[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("rooms", nargs="*", metavar="ROOM", help=f"of {', '.join(ROOMS)}")
-    parser.add_argument("-n", type=int, default=6, help="bugs in each room")
+    parser.add_argument("rooms", nargs="*", metavar="PACKAGE", help=f"of {', '.join(ROOMS)}")
+    parser.add_argument("-n", type=int, default=6, help="bugs in each package")
     parser.add_argument("--seed", type=int, default=1, help="which ones")
     parser.add_argument("--seconds", type=int, default=600, help="for the tests of one bug")
-    parser.add_argument("--jobs", type=int, default=1, help="rooms at once, each in a copy")
+    parser.add_argument("--jobs", type=int, default=1, help="packages at once, each in a copy")
     parser.add_argument("--notes", type=Path, help="file that keeps which test calls what")
     parser.add_argument("--whole", action="store_true", help="ask all about those that survive")
     parser.add_argument("--tests", nargs="+", default=["tests"], help="those that are asked")
@@ -272,7 +272,7 @@ def _page(outcomes: list[Outcome], options: argparse.Namespace) -> Iterator[str]
     yield f"For each bug the tests that call its function are run, {MOST_TESTS} at most"
     yield f"{_asked(options)}."
     yield "Bugs that change nothing anybody could see are judged by hand: `fixtures/harmless_bugs.tsv`."
-    yield "\n| room | planted | noticed | harmless | survived |\n|---|--:|--:|--:|--:|"
+    yield "\n| package | planted | noticed | harmless | survived |\n|---|--:|--:|--:|--:|"
     for room in [*options.rooms, "all"]:
         mine = [it for it in outcomes if room in ("all", it.room)]
         left = [it for it in alive if it in mine]
@@ -292,7 +292,7 @@ def _asked(options: argparse.Namespace) -> str:
 
 
 def _named(room: str) -> str:
-    return {"all": "**all**", ".": "the modules beside them"}.get(room, f"`{room}`")
+    return {"all": "**all**", ".": "the other modules"}.get(room, f"`{room}`")
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page of vendors' robots, docs/contributing/robots.md.
 
-    python benchmarks/vendor_pages.py [ROBOT ...]      print the sections of some robots
-    python benchmarks/vendor_pages.py --write          write the page
+    python benchmarks/vendor_pages.py [ROBOT ...]    print some robots, with all that differs
+    python benchmarks/vendor_pages.py --write        write the page
 
 MULTIBOT_SOURCES as in ``vendor_systems.py``. Needs launch, launch_ros and rclpy.
 """
@@ -35,9 +35,9 @@ Each robot is built from its vendor's own files, in the vendor's
 layout and one other, with two robots and with three. Its first two are compared with what the vendor's
 own launch files and generators make of two robots: descriptions, parameters, names of nodes, where
 topics, services and actions lead, bridges, static transforms, and RViz by displays and tools, with
-topics as they are called in the graph. *Better* is a difference that the section of the robot gives a
-reason for, *wrong* any other. *False* are warnings and errors of the build that are not true of the
-vendor's files. Which nodes are known is in [vendors](vendors.md).
+topics as they are called in the graph. *Better* is a difference that has a reason, *wrong* any other:
+`python benchmarks/vendor_pages.py ROBOT` prints them. *False* are warnings and errors of the build that
+are not true of the vendor's files. Which nodes are known is in [vendors](vendors.md).
 
 In a workspace that has the vendor's packages, with the fleet file of a robot:
 
@@ -46,46 +46,34 @@ In a workspace that has the vendor's packages, with the fleet file of a robot:
     multibot check fleet/plan.yaml
 
 *Before* is what was false in the vendor's layout before the package knew these robots.
+Every build is written; where not, the layout says so, for two robots and for three.
 
-| robot | before | vendor's layout | 2 | 3 | other layout | 2 | 3 | equal | better | wrong |
-|---|---|---|---|---|---|---|---|--:|--:|--:|\
+| robot | before | vendor's layout | other layout | equal | better | wrong |
+|---|---|---|---|--:|--:|--:|\
 """
 SAID = """
 ## What is said
 
 Warnings and errors of `build`, of `rehearse`, which starts a stand-in for every node on a real graph,
-and of `check` of that graph against the plan that was built: of two robots and of three, each once for
-all robots. The section of a robot says why they are true; *false* is how many are not.
+and of `check` of that graph against the plan that was built, each once for all robots: of two robots,
+and of three where that differs. *False* counts those that are not true.
 What is equal of [arms](arms.md) is on their page.
 
-| robot | layout | build 2 | 3 | rehearse 2 | 3 | check 2 | 3 | false |
-|---|---|--:|--:|--:|--:|--:|--:|--:|\
+| robot | layout | build | rehearse | check | false |
+|---|---|--:|--:|--:|--:|\
 """
 
 
-def section(found: Outcome, revisions: Mapping[str, str], uses: list[str]) -> str:
-    """The section of a robot."""
+def section(found: Outcome, revisions: Mapping[str, str], uses: list[str], whole: bool) -> str:
+    """Return the section of a robot: its fleet file, ``whole`` with the differences and findings."""
     it = found.recipe
-    lines = [
-        "",
-        f"## {it.title}",
-        "",
-        it.about.strip(),
-        "",
-        "```yaml",
-        plain_paths(found.text).rstrip(),
-        "```",
-        "",
-    ]
-    lines += [sources(it, [revisions[use] for use in uses]), "", verdict(found), ""]
-    lines += [*_reasons(found), *_findings(found)]
+    lines = ["", f"## {it.title}", "", it.about.strip(), ""]
+    lines += ["```yaml", plain_paths(found.text).rstrip(), "```", ""]
+    lines += [f"Build it with `shape: {it.shape}`.", ""] if it.shape else []
+    if whole:
+        lines += [f"Sources: {', '.join(revisions[use] for use in uses)}.", "", verdict(found), ""]
+        lines += [*_reasons(found), *_findings(found)]
     return "\n".join(lines).rstrip() + "\n"
-
-
-def sources(it: Recipe, revisions: Sequence[str]) -> str:
-    """What it was built from, and the shape of the outputs if the vendor has one."""
-    option = f" Build it with `shape: {it.shape}`." if it.shape else ""
-    return f"Sources: {', '.join(revisions)}.{option}"
 
 
 def plain_paths(text: str) -> str:
@@ -147,11 +135,16 @@ def told_of(found: Outcome) -> list[Told]:
 
 
 def said_rows(title: str, every: Sequence[Told]) -> Iterator[str]:
-    """A row a layout: what build, rehearsal and check say of two robots and of three."""
+    """Yield a row a layout: what build, rehearsal and check say of two robots and of three."""
     for two, three in zip(every[::2], every[1::2], strict=True):
-        both = [it for pair in zip(two.numbers, three.numbers, strict=True) for it in pair]
+        both = [_both(*pair) for pair in zip(two.numbers, three.numbers, strict=True)]
         false = two.false + three.false
         yield f"| {' | '.join(map(str, (title, two.layout, *both, false)))} |"
+
+
+def _both(two: object, three: object) -> str:
+    """Return what two robots have, and what three have if that differs."""
+    return f"{two}" if two == three else f"{two}, {three}"
 
 
 def _anchor(title: str) -> str:
@@ -162,15 +155,14 @@ def _row(it: Outcome) -> str:
     better = sum(bool(row.reason) for row in it.compared.differences)
     wrong = len(it.compared.differences) - better
     builds = [_built(it.recipe, one) for one in it.built]
-    vendor, other = it.recipe.layouts
+    layouts = [
+        layout + ("" if (own := _both(*pair)) == "yes" else f": {own}")
+        for layout, *pair in zip(it.recipe.layouts, builds[::2], builds[1::2], strict=True)
+    ]
     cells = [
         f"[{it.recipe.title}](#{_anchor(it.recipe.title)})",
         it.recipe.before,
-        vendor,
-        builds[0],
-        builds[1],
-        other,
-        *builds[2:],
+        *layouts,
     ]
     return f"| {' | '.join(map(str, [*cells, it.compared.equal, better, wrong]))} |"
 
@@ -194,7 +186,8 @@ def main(words: list[str]) -> int:
     whole = len(found) == len(recipes)
     text = tables(found, told_of_arms(folder)) if whole else ""
     for it in found.values():
-        text += section(it, vendors.sources, vendors.systems[it.recipe.system]["uses"])
+        uses = vendors.systems[it.recipe.system]["uses"]
+        text += section(it, vendors.sources, uses, whole=not whole)
     if whole and "--write" in words:
         PAGE.write_text(text)
     else:

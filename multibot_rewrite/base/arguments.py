@@ -21,11 +21,9 @@ Reader = Callable[[str, Any], Any]
 
 
 def checked(call: Callable[P, R]) -> Callable[P, R]:
-    """``call`` with its arguments checked first; names in any iterable reach it as a tuple.
-
+    """Return ``call`` with its arguments checked first; names in any iterable reach it as a tuple.
     The result raises UsageError for a wrong argument: it names the call, the argument and what to
-    write. An annotation that is not in ``READERS`` is a KeyError where ``checked`` is used.
-    """
+    write. An annotation that is not in ``READERS`` is a KeyError where ``checked`` is used."""
     takes, title = signature(call), f"{call.__qualname__}()"
     readers: dict[str, Reader] = {}
     for it in takes.parameters.values():

@@ -120,7 +120,7 @@ def own_text(module: str, name: str) -> str:
 
 
 def own_rows(module: str, name: str) -> list[list[str]]:
-    """Return the rows of a table of this package, beside ``module``; ``|`` is between columns."""
+    """Return the rows of a table of this package, next to ``module``; ``|`` is between columns."""
     lines = own_text(module, name).splitlines()
     rows = (it.split("|") for it in lines if it and not it.startswith("#"))
     return [[column.strip() for column in row] for row in rows]
@@ -212,7 +212,7 @@ def _digits(number: str) -> str:
 
 
 def _json_depth(data: bytes) -> int:
-    """How deeply brackets are nested, those in strings aside."""
+    """Return how deeply brackets are nested, those in strings aside."""
     plain = re.sub(rb"\\.", b"", data, flags=re.DOTALL) if b"\\" in data else data
     # Without what is between two quotes, whether they are of one string or of two: what is left of
     # many megabytes is little, and a bracket is inside a string or outside as before.

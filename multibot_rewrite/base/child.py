@@ -54,7 +54,7 @@ def isolated(module: str) -> list[str]:
 
 
 def search_path() -> list[str]:
-    """Where this process finds modules, without the current folder."""
+    """Return where this process finds modules, without the current folder."""
     return start.safe_path(sys.path, os.getcwd())
 
 

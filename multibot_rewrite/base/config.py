@@ -45,7 +45,7 @@ def configured_vocabulary(near: str) -> tuple[str, ...]:
 
 
 def folders_above(near: str) -> Iterator[str]:
-    """``near`` and the folders above it, the closest first; ``-`` is the working directory."""
+    """Yield ``near`` and the folders above it, the closest first; ``-`` is the working directory."""
     folder = os.path.abspath("." if near == "-" else near)
     above = ""
     while folder != above:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is everybody's, by convention: topics, frames, tools, words, each with its source; and tables
-of words that several rooms say.
+"""What is everybody's, by convention: topics, frames, tools, words, each with its source; and
+tables of words that several packages use.
 
 Rows are in ``conventions.txt``, lines of words and no YAML: the start of every command reads them, and
 none pays for a parser.
@@ -89,8 +89,8 @@ USUAL_FRAMES = tuple(it.name for it in FRAMES if it.expected)
 
 
 class ToolNode(NamedTuple):
-    """Nodes beside any fleet, by a pattern of the name without its namespace. ``looks``: it only looks,
-    or passes on what a person asks for, so it is no sender of its own."""
+    """Nodes in addition to any fleet, by a pattern of the name without its namespace. ``looks``: it
+    only looks, or passes on what a person asks for, so it is no sender of its own."""
 
     pattern: str
     looks: bool
@@ -131,7 +131,7 @@ def tool_patterns() -> tuple[str, ...]:
 # A fleet has a handful of such words, each in many nodes.
 @lru_cache(maxsize=4096)
 def is_tool_word(word: str) -> bool:
-    """Is a node called so a tool, in whatever namespace?"""
+    """Return whether a node of this name is a tool, in whatever namespace."""
     return _any_of(tuple(it.pattern for it in TOOLS)).fullmatch(word) is not None
 
 
@@ -187,7 +187,7 @@ _OUTSIDE = frozenset(word for words in FROM_OUTSIDE.values() for word in words)
 
 
 def is_from_outside(name: str) -> bool:
-    """Is the topic or service one that no node of a robot need send?"""
+    """Return whether it is a topic or service that no node of a robot needs to send."""
     return name.rpartition("/")[2] in _OUTSIDE
 
 

@@ -34,8 +34,8 @@ def schema_text(schema: str) -> bytes:
 
 
 def may_be_written(schema: str, path: str) -> bool:
-    """Is the path free for a schema of this package: nothing is there, or the same schema of another
-    version?"""
+    """Return whether a schema may be written there: nothing, or this schema in another version,
+    exists."""
     if not os.path.lexists(path):
         return True
     own = _name_in(os.path.join(_PACKAGE, schema))

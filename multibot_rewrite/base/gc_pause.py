@@ -10,8 +10,8 @@ from contextlib import contextmanager
 
 @contextmanager
 def gc_paused() -> Iterator[None]:
-    """No passes of the garbage collector in the block: of a million fresh records none is garbage,
-    and looking at them again and again takes twice as long as making them."""
+    """Stop the garbage collector in the block: of a million fresh records none is garbage, and
+    checking them again and again takes twice as long as making them."""
     on = gc.isenabled()
     gc.disable()
     try:

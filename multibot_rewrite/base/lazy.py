@@ -29,7 +29,7 @@ class _Later:
 
 
 def lazy_compile(text: AnyStr, flags: int = 0) -> re.Pattern[AnyStr]:
-    """As ``re.compile``, but a mistake in ``text`` is raised at the first use."""
+    """Return a pattern as ``re.compile``, but a mistake in ``text`` is raised at the first use."""
     return cast("re.Pattern[AnyStr]", _Later(text, flags))
 
 

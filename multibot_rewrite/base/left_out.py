@@ -16,12 +16,12 @@ _NONE = 1
 
 
 def is_hidden(name: str) -> bool:
-    """Is a folder hidden, as .git is?"""
+    """Return whether a folder is hidden, as .git is."""
     return name.startswith(".")
 
 
 def is_left_out(folder: str) -> bool:
-    """Is a folder called as builds call theirs, or marked to be ignored?"""
+    """Return whether a folder has a name that builds give theirs, or is marked to be ignored."""
     return os.path.basename(folder) in MADE or any(
         os.path.exists(os.path.join(folder, marker)) for marker in MARKERS
     )

@@ -87,7 +87,7 @@ def well_formed(source: bytes) -> Mended:
 
 
 def slips(source: bytes) -> Iterator[Slip]:
-    """Each comment, declaration and default namespace that a complete parser takes otherwise."""
+    """Yield comments, declarations and default namespaces that a complete parser reads otherwise."""
     first = _before_all(source)
     for it in _PART.finditer(source):
         new, what = _mended(it, first)
@@ -101,7 +101,7 @@ def is_loose(source: bytes) -> bool:
 
 
 def _before_all(source: bytes) -> int:
-    """Up to where there are blanks and declarations alone."""
+    """Return the offset up to which there are only blanks and declarations."""
     found = _BEFORE_ALL.match(source)
     return found.end() if found else 0
 

@@ -86,7 +86,7 @@ class Affix(NamedTuple):
     after: str
 
     def spell(self, text: str, robot: str) -> str:
-        """``text`` with the name of ``robot`` in it."""
+        """Return ``text`` with the name of ``robot`` in it."""
         return f"{text[: self.at]}{self.before}{robot}{self.after}{text[self.at :]}"
 
 
@@ -116,8 +116,8 @@ class Naming(NamedTuple):
 
 
 def leaves(world_systems: str | None, robots: Sequence[str]) -> bool:
-    """Are they left to the world? Where nothing is said, those of several robots are: each would be
-    loaded twice. Raises UsageError for a word that is not known."""
+    """Return whether world systems are left to the world. By default those of several robots are:
+    each would be loaded twice. Raises UsageError for an unknown word."""
     if world_systems is None:
         return len(robots) > 1
     _one_of("world_systems", world_systems, WORLD_SYSTEMS)
@@ -204,10 +204,8 @@ def _active(layout: Layout, topics: str, separators: dict[str, str]) -> dict[str
 
 
 def affix(naming: Naming, kind: str, text: str, namespaced: bool = False) -> Affix | None:
-    """Where the robot's name goes in ``text``, a name of ``kind``; None where it is not renamed.
-
-    ``namespaced`` is true where a ROS namespace reaches the value.
-    """
+    """Return where the robot's name goes in ``text``, a name of ``kind``; None where it is not
+    renamed. ``namespaced`` is true where a ROS namespace reaches the value."""
     if naming.own and (kind, text) in naming.own:
         return naming.own[kind, text]
     separator = naming.separators.get(kind)
@@ -247,10 +245,9 @@ def spelled(naming: Naming, robot: str, kind: str, text: str, namespaced: bool =
 
 
 def is_of_world(topic: str) -> bool:
-    """Is it a topic or service of the world, as ``/world/w/set_pose``, and not of a model in it?
-
-    Source: gazebosim/gz-sim src/SimulationRunner.cc, systems/user_commands/UserCommands.cc,
-    systems/scene_broadcaster/SceneBroadcaster.cc."""
+    """Return whether it is a topic or service of the world, as ``/world/w/set_pose``, and not of a
+    model in it. Source: gazebosim/gz-sim src/SimulationRunner.cc,
+    systems/user_commands/UserCommands.cc, systems/scene_broadcaster/SceneBroadcaster.cc."""
     parts = topic.split("/")
     return parts[:2] == ["", "world"] and len(parts) > 3 and parts[3] != "model"
 
@@ -316,7 +313,7 @@ def removal(
 
 
 def _affix_places(side: str, separator: str, robot: str, text: str) -> Iterator[tuple[int, int]]:
-    """Where in ``text`` an affix may be, the likely place first."""
+    """Yield where in ``text`` an affix may be, the likely place first."""
     end = separator + robot
     if side == POSTFIX and text.endswith(end):
         yield len(text) - len(end), len(text)
@@ -327,11 +324,9 @@ def _affix_places(side: str, separator: str, robot: str, text: str) -> Iterator[
 
 
 def overlap(naming: Naming, robots: Iterable[str]) -> list[tuple[str, str, str]]:
-    """Pairs of robots one of whose names ends (begins) like the other's affix, with that separator.
-
-    Only for such pairs can two different old names become one: with a postfix, ``arm`` of
-    ``left_b`` and ``arm_left`` of ``b`` are both ``arm_left_b``.
-    """
+    """Return pairs of robots one of whose names ends (begins) like the other's affix, with that
+    separator. Only for such pairs can two different old names become one: with a postfix, ``arm``
+    of ``left_b`` and ``arm_left`` of ``b`` are both ``arm_left_b``."""
     names = set(robots)
     pairs = set()
     sides = {naming.affix, POSTFIX if naming.topics == POSTFIX else PREFIX}

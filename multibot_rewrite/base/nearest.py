@@ -38,7 +38,7 @@ def slip_of(name: str, known: Iterable[str]) -> str:
 
 
 def differ_in_numbers(name: str, other: str) -> bool:
-    """Are two names the same but for their digits? They are of two things then: robot1, robot2."""
+    """Return whether two names differ in digits alone. Then they are two things: robot1, robot2."""
     bare, rest = ("".join(c for c in it if not c.isdigit()) for it in (name, other))
     return bare == rest
 
@@ -54,19 +54,19 @@ class Guesses:
         self._made: dict[str, str] = {}
 
     def nearest(self, name: str, known: Iterable[str], alike: float = ALIKE) -> str:
-        """As ``nearest``, or "" where it has been asked for many others; ``known`` is the same for
-        the same name."""
+        """Return the ``nearest`` name, or "" where it has been asked for many others; ``known`` is
+        the same for the same name."""
         if name not in self._made and len(self._made) < HINTED:
             self._made[name] = nearest(name, islice(known, COMPARED), alike)
         return self._made.get(name, "")
 
     def hint(self, name: str, known: Iterable[str], alike: float = ALIKE) -> str:
-        """As ``did_you_mean``, with the same bound."""
+        """Return the text of ``did_you_mean``, with the same limit."""
         return _hint(self.nearest(name, known, alike))
 
 
 def nearest_few(name: str, known: Iterable[str], most: int, alike: float = ALIKE) -> list[str]:
-    """Up to ``most`` known names that are like ``name``, the most similar first."""
+    """Return up to ``most`` known names that are like ``name``, the most similar first."""
     from difflib import get_close_matches  # only a message needs it
 
     names = list(dict.fromkeys(known))

@@ -128,19 +128,19 @@ def _noting(notes: Asked | None) -> Iterator[None]:
 
 @outside
 def is_file(path: str) -> bool:
-    """Is it a file, or a link to one?"""
+    """Return whether it is a file, or a link to one."""
     return os.path.isfile(path)
 
 
 @outside
 def is_folder(path: str) -> bool:
-    """Is it a folder, or a link to one?"""
+    """Return whether it is a folder, or a link to one."""
     return os.path.isdir(path)
 
 
 @outside
 def is_there(path: str) -> bool:
-    """Is anything there, behind a link as well?"""
+    """Return whether anything exists at a path, behind a link as well."""
     return os.path.exists(path)
 
 

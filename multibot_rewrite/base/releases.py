@@ -62,8 +62,8 @@ def chosen_release(given: str, environment: Mapping[str, str]) -> str:
 
 
 def told_release(given: str, environment: Mapping[str, str]) -> str:
-    """As ``chosen_release``, for what one description needs: the release that is asked for, else that
-    of ROS_DISTRO, else of the ROS that is sourced; empty where none of them is known."""
+    """Return the release for one description: the one asked for, otherwise that of ROS_DISTRO,
+    otherwise of the sourced ROS; empty where none of them is known."""
     if given:
         return chosen_release(given, environment)
     found = environment.get(VARIABLE, "") or _sourced(environment)
@@ -125,22 +125,22 @@ def lacks_classic(release: str, text: bytes) -> bool:
 
 
 def release_here(given: str | None = None) -> str:
-    """``chosen_release`` with this process's environment: for commands and public calls alone."""
+    """Return ``chosen_release`` with this process's environment: for commands and public calls."""
     return chosen_release(given or "", os.environ)
 
 
 def release_told(given: str | None = None) -> str:
-    """``told_release`` with this process's environment: for commands and calls about a description."""
+    """Return ``told_release`` with this process's environment: for commands and public calls."""
     return told_release(given or "", os.environ)
 
 
 def why_here(given: str | None = None) -> str:
-    """``why_told`` with this process's environment."""
+    """Return ``why_told`` with this process's environment."""
     return why_told(given or "", os.environ)
 
 
 def release_doubt(given: str | None = None) -> str:
-    """``unusual_release`` with this process's environment."""
+    """Return ``unusual_release`` with this process's environment."""
     return unusual_release(given or "", os.environ)
 
 
@@ -161,7 +161,7 @@ def releases_with(words: str) -> tuple[str, ...]:
 
 
 def share_release(words: str, others: str) -> bool:
-    """Is there a release in which both facts hold?"""
+    """Return whether there is a release in which both facts hold."""
     return any(has_release(words, it) and has_release(others, it) for it in RELEASES)
 
 
@@ -172,7 +172,7 @@ def since_version(words: str, release: str) -> str:
 
 
 def is_release_words(words: str) -> bool:
-    """Are these release words? See above."""
+    """Return whether these are release words, as above."""
     try:
         found = list(_terms(words))
     except UsageError:

@@ -29,7 +29,7 @@ def and_then(words: Sequence[str]) -> str:
 
 
 def unique(names: Iterable[str]) -> tuple[str, ...]:
-    """Each name once, in their order."""
+    """Return each name once, in their order."""
     return tuple(dict.fromkeys(names))
 
 

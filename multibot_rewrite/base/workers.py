@@ -156,8 +156,8 @@ class WorkerPool(Generic[_Item, _Made]):
 
 
 def processors() -> int:
-    """How many processors this process may use: those of its affinity (``taskset``), and of them as
-    much as the quota of its container."""
+    """Return how many processors this process may use: those of its affinity (``taskset``), and of
+    them as much as the quota of its container."""
     if not hasattr(os, "sched_getaffinity"):  # not on Linux
         return os.cpu_count() or 1
     try:
@@ -176,7 +176,7 @@ def worker_pool(
     lost: Callable[[_Item, int], _Made],
     jobs: int,
 ) -> Iterator[WorkerPool[_Item, _Made]]:
-    """Workers, for as long as the ``with`` block lasts."""
+    """Yield workers, for as long as the ``with`` block lasts."""
     result = WorkerPool(work, items, lost)
     try:
         result.start(min(jobs, len(items)))

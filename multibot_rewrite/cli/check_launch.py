@@ -79,7 +79,7 @@ def _with_remedies(
 
 
 def _is_open(it: Finding) -> bool:
-    """Is no controller manager there at all?"""
+    """Return whether no controller manager exists at all."""
     return it.code == no_manager.code and it.level == ERROR and len(it.names) == 1
 
 

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """A folder of results that changes as a whole: whoever looks sees the old files or the new ones.
 
-The new folder is made beside the old one, of links to what stays, and one call of the kernel swaps
+The new folder is made next to the old one, of links to what stays, and one call of the kernel swaps
 the two. Where that cannot be (a mount point, the working directory, no right to write next to it),
 files are replaced one by one, all or none, and a note of what they are to be tells the next build
-what a killed one has left.
-"""
+what a killed one has left."""
 
 from __future__ import annotations
 
@@ -33,7 +32,7 @@ class _CannotSwapError(Exception):
 
 @contextmanager
 def locked(folder: str) -> Iterator[None]:
-    """Alone with a folder: another build into it, or next to it, waits until this one is done."""
+    """Lock a folder: another build into it, or next to it, waits until this one is done."""
     import fcntl
 
     above = os.path.dirname(os.path.realpath(folder))
@@ -94,7 +93,7 @@ def _removed_unless_done(made: list[str]) -> Iterator[None]:
 
 
 def clear_leftovers(folder: str) -> None:
-    """Remove what builds that were killed have left, beside the folder and in it."""
+    """Remove what builds that were killed have left, next to the folder and in it."""
     real = os.path.realpath(folder)
     above, name = os.path.split(real)
     with suppress(OSError):
@@ -129,7 +128,7 @@ def _swap(folder: str, write: Mapping[str, bytes], remove: Collection[str], note
 
 
 def _link_all(folder: str, stage: str, but: Collection[str]) -> None:
-    """All of a folder, folders anew and files as links, but for the given paths."""
+    """Make all of a folder again, files as links, except the given paths."""
     _be_like(stage, folder)
     for path, entry in _walk(folder):
         target = os.path.join(stage, path)
@@ -144,7 +143,7 @@ def _link_all(folder: str, stage: str, but: Collection[str]) -> None:
 
 
 def _be_like(folder: str, other: str) -> None:
-    """Mode, times and, where we may, owner."""
+    """Set mode, times and, where permitted, owner like those of another folder."""
     shutil.copystat(other, folder)
     there = os.stat(other)
     with suppress(OSError):
@@ -152,7 +151,7 @@ def _be_like(folder: str, other: str) -> None:
 
 
 def _walk(folder: str, below: str = "") -> Iterator[tuple[str, os.DirEntry[str]]]:
-    """Everything in a folder, by its path below it; a folder before what it holds."""
+    """Yield everything in a folder, by its path below it; a folder before what it holds."""
     for entry in os.scandir(os.path.join(folder, below)):
         path = os.path.join(below, entry.name)
         yield path, entry
@@ -161,7 +160,7 @@ def _walk(folder: str, below: str = "") -> Iterator[tuple[str, os.DirEntry[str]]
 
 
 def _write_all(folder: str, stage: str, write: Mapping[str, bytes]) -> None:
-    """All files, and then all of them onto the disk: it has to finish only once."""
+    """Write all files, and then wait once until all of them are on the disk."""
     for path, data in write.items():
         with explained(os.path.join(folder, path)):
             os.makedirs(os.path.dirname(os.path.join(stage, path)), exist_ok=True)
@@ -225,7 +224,7 @@ def _one_by_one(
 
 @contextmanager
 def _put_back(path: str) -> Iterator[None]:
-    """After a failure the file is what it was: there was no build that it could tell of."""
+    """Restore the file after a failure: there was no build that it could describe."""
     # Named as what a build clears away that comes after one that was killed.
     before = os.path.join(os.path.dirname(path), f".urdf-postfix.{os.getpid()}.00.tmp.old")
     with suppress(OSError):

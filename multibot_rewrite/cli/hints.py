@@ -58,8 +58,8 @@ def _by_letters(wrong: str, known: Collection[str]) -> Iterator[str]:
 
 
 def _nearest(word: str, known: Iterable[str]) -> str:
-    """Return the known option that is a part of the word (output-format: format), or is spelled like it
-    and begins with the same letter; "" if none does."""
+    """Return the known option that is a part of the word (output-format: format), or is written
+    like it and begins with the same letter; "" if none does."""
     # Dashes are in all of them: compared with these, every short word is like every other.
     full = {name.lstrip("-"): name for name in known if name.startswith("--")}
     parts = (it for it in reversed(word.split("-")) if it in full)

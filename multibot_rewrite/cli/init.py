@@ -241,8 +241,8 @@ def _with_files_asked_for(
 def _of_these(
     shown: Sequence[str], question: str, default: str, or_none: bool = True
 ) -> int | None:
-    """Which of these it is, by its number, None for the word ``none``: numbers are easier to type than
-    paths."""
+    """Return which of these was chosen, by its number, None for the word ``none``: numbers are
+    easier to type than paths."""
     for at, it in enumerate(shown, 1):
         say(f"  {at}: {it}", PROGRAM)
     numbers = [str(at) for at in range(1, len(shown) + 1)]
@@ -308,7 +308,7 @@ def _left_out(made: Proposal) -> list[str]:
 
 
 def _apart(made: Proposal) -> float:
-    """Metres from robot to robot; 0 where they differ already, or there is one robot."""
+    """Return metres from robot to robot; 0 where they differ already, or there is one robot."""
     places = [it["y"] for it in made.poses.values()]
     steps = {round(after - before, 3) for before, after in pairwise(places)}
     if len(steps) != 1:

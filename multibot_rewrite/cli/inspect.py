@@ -121,7 +121,7 @@ def _unknown(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> UsageEr
 
 
 def _list(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
-    """One line a section."""
+    """Yield a table with one line a section."""
     rows = [
         (it.type, it.names[0], it.ros, shorten(it.names[1:], 1), str(len(it.sites)), it.source)
         for it in sections
@@ -130,7 +130,7 @@ def _list(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
 
 
 def details(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
-    """Everything known, a block of lines a section."""
+    """Yield everything known, a block of lines a section."""
     for number, section in enumerate(sections):
         yield from [""] * (number > 0)
         yield f"{section.name}  {section.file}:{section.line}"
@@ -158,7 +158,7 @@ def _row(site: SiteRow, section: VocabularySection) -> tuple[str, ...]:
 
 
 def as_json(section: VocabularySection) -> dict[str, object]:
-    """Return a section as ``--form json`` writes it; docs/stacks.md describes it."""
+    """Return a section as ``--form json`` writes it; docs/node sets.md describes it."""
     return {
         "type": section.type,
         "names": section.names,
@@ -194,7 +194,8 @@ def _row_json(site: SiteRow, section: VocabularySection) -> dict[str, object]:
 
 
 def draft(options: argparse.Namespace) -> int:
-    """Write a vocabulary for what a description loads and nothing knows; returns the exit code."""
+    """Write plugin definitions for what a description loads and nothing knows; returns the exit
+    code."""
     if plain_words(options) or options.form == JSON:
         raise UsageError("--suggest goes with --vocabulary only: leave out NAME and --form")
     check_xacro(options, [options.suggest])
@@ -222,12 +223,12 @@ _CODE = re.compile(r"M[A-Z](\d\w*)?", re.IGNORECASE)
 
 
 def are_codes(words: Sequence[str]) -> bool:
-    """Is a code among these words, or are they the name of a rule?"""
+    """Return whether a code is among these words, or they are the name of a rule."""
     return any(map(_CODE.fullmatch, _split(words)))
 
 
 def is_name(word: str) -> bool:
-    """Has a rule this name?"""
+    """Return whether a rule has this name."""
     return any(it.name == word for it in rules().values())
 
 
@@ -257,7 +258,7 @@ def rule_grid(found: Iterable[Rule] | None = None) -> Grid:
 
 
 def rules_json(found: Iterable[Rule] | None = None) -> list[dict[str, object]]:
-    """Rules (all by default) as ``--form json`` writes them; docs/stacks.md describes it."""
+    """Return rules (by default all) as ``--form json`` writes them; docs/node sets.md describes it."""
     fields = ("code", "name", "level", "what", "why", "fix")
     return [
         {**{name: getattr(it, name) for name in fields}, "examples": dict(examples(it))}

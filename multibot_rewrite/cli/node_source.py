@@ -24,7 +24,7 @@ from multibot_rewrite.producers.sources.facts import NodeSource, node_of_program
 
 
 def is_program(word: str) -> bool:
-    """Is it a program of a package that is here, or a class of one?"""
+    """Return whether it is a program of an installed package, or a class of one."""
     folder, name = os.path.split(word)
     named = bool(folder and name) and not os.path.lexists(word)
     return named and os.path.isfile(os.path.join(folder, MANIFEST))
@@ -94,12 +94,12 @@ def _details(found: NodeSource, folder: str) -> Iterator[str | Grid]:
 
 
 def _types(end: Endpoint) -> str:
-    """Its type, and those that it has on a condition."""
+    """Return the type of an end, and its other types with their conditions."""
     return "; ".join((end.type, *(f"{type_} if {said(it)}" for it, type_ in end.types)))
 
 
 def _source(it: Endpoint | Param, folder: str = "") -> str:
-    """Where it can be read, else the releases that have it."""
+    """Return where a fact can be read, otherwise the releases that have it."""
     return _near(it.source[0], folder) if it.source else it.releases
 
 

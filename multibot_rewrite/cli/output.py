@@ -41,7 +41,7 @@ _CLEARED = "\r\033[K"
 
 
 def is_coloured(when: str, stream: TextIO | None) -> bool:
-    """``--color``, else NO_COLOR, else FORCE_COLOR, else whether a terminal reads the stream."""
+    """Return whether output is coloured: by ``--color``, NO_COLOR, FORCE_COLOR, or for a terminal."""
     if when != AUTO:
         return when == ALWAYS
     if os.environ.get("NO_COLOR"):
@@ -63,7 +63,8 @@ def deliver(options: argparse.Namespace, data: bytes, schema: str = "") -> None:
 
 def with_schema(path: str, data: bytes, schema: str) -> list[tuple[str, bytes]]:
     """Return the files to write for a YAML file: its own with a comment for editors, and the schema
-    that the comment names. A device has none, nor a file beside another one of the schema's name."""
+    that the comment names. A device has none, nor a file next to another one of the schema's
+    name."""
     beside = os.path.join(os.path.dirname(path), editors.schema_name(schema))
     is_file = os.path.isfile(path) or not os.path.exists(path)
     if not (schema and is_file and editors.may_be_written(schema, beside)):
@@ -149,7 +150,7 @@ def watched(items: Iterable[_T], total: int, doing: str) -> Iterable[_T]:
 
 
 def is_screen(stream: TextIO | None) -> TypeGuard[TextIO]:
-    """Can a line on it be replaced by another?"""
+    """Return whether a line on the stream can be replaced by another."""
     return stream is not None and stream.isatty() and os.environ.get("TERM") != "dumb"
 
 
@@ -171,7 +172,7 @@ def status() -> Callable[[str], None]:
 
 @contextmanager
 def shown(text: str) -> Iterator[Callable[[str], None]]:
-    """``status`` with a line as long as the block runs, which may show another one."""
+    """Show ``status`` with a line as long as the block runs, which may show another one."""
     show = status()
     show(text)
     try:
@@ -204,7 +205,7 @@ def print_lines(lines: Iterable[object]) -> None:
 
 
 def prints_colour(options: argparse.Namespace) -> bool:
-    """Is what goes to standard output coloured?"""
+    """Return whether standard output is coloured."""
     return not goes_to_file(options) and is_coloured(options.color, sys.stdout)
 
 

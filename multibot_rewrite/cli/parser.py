@@ -126,7 +126,7 @@ def declare(parser: Parser, command: Command) -> None:
 
 
 def short_help(command: Command, prog: str) -> str:
-    """How a command is called, what it does, examples as far as there is room, names of its options."""
+    """Return usage, purpose, examples as far as they fit on a screen, and names of the options."""
     head = [f"usage: {command.usage.replace('%(prog)s', prog)}", "", command.about, ""]
     names = [it for group in command.groups for it in _names(group)]
     end = ["", *names, "", f"{prog} --help explains them."]
@@ -233,7 +233,7 @@ def _first_unknown_option(words: Sequence[str], known: Collection[str]) -> str:
 
 
 def _colour_asked(words: Sequence[str]) -> str:
-    """``--color``, which ``--help`` may come before."""
+    """Return the value of ``--color``, which ``--help`` may come before."""
     asked = [it for name, it in pairwise(words) if name == "--color"]
     asked += [it.partition("=")[2] for it in words if it.startswith("--color=")]
     return asked[-1] if asked else AUTO

@@ -77,10 +77,8 @@ def conclude(
 
 
 def snippets(places: Iterable[str]) -> dict[str, list[str]]:
-    """By ``file:line``: that line of the file with those around it, each with its number.
-
-    A file that is not there any more, or is no text, has none.
-    """
+    """Return by ``file:line`` that line of the file with those around it, each with its number. A
+    file that does not exist any more, or is no text, has none."""
     found = {}
     for place in dict.fromkeys(places):
         file, _, number = place.rpartition(":")

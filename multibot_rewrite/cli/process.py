@@ -103,7 +103,7 @@ def guarded(program: str, run: Callable[[], int], own_process: bool) -> int:
 
 
 def _not_lost(unraisable: sys.UnraisableHookArgs) -> None:
-    """Ctrl-C inside a callback, as imports have, would be printed and forgotten: it comes again."""
+    """Raise Ctrl-C again that a callback, as imports have, would print and forget."""
     if unraisable.exc_type is not KeyboardInterrupt:
         sys.__unraisablehook__(unraisable)
         return

@@ -24,6 +24,7 @@ from multibot_rewrite.live.rehearsal import (
     stub_nodes,
     with_own_types,
     with_substitutes,
+    without_doubles,
 )
 from multibot_rewrite.rules.check import check, check_domains
 from multibot_rewrite.spelling.transforms import with_odometry
@@ -52,7 +53,7 @@ def run(options: argparse.Namespace) -> int:
         edges, own = with_odometry(edges, robot, made.naming)
         added += [f"{own} of {robot}"] if own else []
     ways = WAYS if "all" in options.without_rules else list(options.without_rules)
-    nodes = [*stub_nodes(made.table, edges, ways)]
+    nodes = [*without_doubles(stub_nodes(made.table, edges, ways), plan)]
     seen, replaced = _played(options, plan, nodes)
     for it in added:
         note(options, f"note: {it} comes from a driver or simulator; the rehearsal sends it")
@@ -95,7 +96,7 @@ def _played(
 
 
 def _without_places(graph: System) -> System:
-    """Stubs send which frame hangs on which, not where, and all with one quality of service."""
+    """Return the graph without places and QoS: stubs send which frame is below which, and one QoS."""
     ends = tuple(it._replace(qos=None) for it in graph.ends)
     return graph._replace(ends=ends, edges=tuple(it._replace(transform=()) for it in graph.edges))
 

@@ -39,7 +39,7 @@ class About(NamedTuple):
 
 
 def counted_findings(findings: Sequence[Finding]) -> str:
-    """How many there are; notes are called so, since with them nothing is wrong."""
+    """Return the number of findings with a noun; only notes are called notes."""
     only_notes = findings and all(it.level == NOTE for it in findings)
     return plural(len(findings), "note" if only_notes else "finding")
 
@@ -50,7 +50,7 @@ def with_coverage(held: Coverage | None, text: str) -> str:
 
 
 def by_themselves(robots: Iterable[str]) -> dict[str, str]:
-    """Robots whose names are the only words for them."""
+    """Return robots, each as its own label."""
     return {it: it for it in robots}
 
 
@@ -91,7 +91,7 @@ def report_first(
 
 
 def report_beside(options: argparse.Namespace, findings: Sequence[Finding], about: About) -> bool:
-    """Write the findings beside the result: as text to standard error, else to standard output."""
+    """Write the findings in addition to the result: as text to standard error or standard output."""
     if options.format == TEXT and not findings:
         return False
     if options.format == TEXT:

@@ -64,7 +64,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _is_beside(source: Source) -> bool:
-    """As ``is_beside``, which need not be asked of what is called as descriptions are."""
+    """Return ``is_beside``; a source named as a description is not asked."""
     if isinstance(source, str) and source.endswith((".urdf", ".sdf", ".xacro")):
         return False
     from multibot_rewrite.companions.named_file import is_beside

@@ -67,7 +67,7 @@ def check_use(options: argparse.Namespace, names: list[str]) -> None:
 
 
 def _check_together(options: argparse.Namespace) -> None:
-    """Options of which one would silently do nothing beside the other."""
+    """Raise UsageError for options of which one would silently have no effect with the other."""
     if options.output is not None and options.in_place:
         raise UsageError("--output and --in-place exclude each other")
     if options.diff and (options.output is not None or options.in_place):
@@ -84,7 +84,7 @@ def _check_together(options: argparse.Namespace) -> None:
 
 
 def _check_targets(options: argparse.Namespace, targets: list[str]) -> None:
-    """No result may land on the input, nor on a file that is read for it."""
+    """Raise UsageError for a result that would overwrite the input, or a file that is read for it."""
     for path in targets:
         if os.path.isfile(path) and _same_file(path, options.input):
             raise UsageError(f"{path} is the input file; choose another name, or --in-place")

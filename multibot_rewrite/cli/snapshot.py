@@ -154,7 +154,7 @@ NODES, NODL = "nodes", "nodl"
 
 
 def is_asked(options: argparse.Namespace) -> bool:
-    """Are nodes to be described, not a snapshot to be written? Raises UsageError."""
+    """Return whether nodes are to be described, not a snapshot written. Raises UsageError."""
     if options.form in (NODES, NODL) or is_nodl(options):
         return True
     given = [f"--{it}" for it in ("node", "namespace", "stack", "distro") if getattr(options, it)]
@@ -191,7 +191,7 @@ def write_nodes(options: argparse.Namespace, graph: System) -> int:
 
 
 def is_nodl(options: argparse.Namespace) -> bool:
-    """Is the result NoDL, by --form or by the name of the file? Raises UsageError."""
+    """Return whether the result is NoDL, by --form or by the name of the file. Raises UsageError."""
     named = (options.output or "").endswith(SUFFIXES)
     if named and options.form not in (None, NODL):
         form = f"--form {options.form}"

@@ -115,7 +115,7 @@ def _row(row: Sequence[str], grid: Grid, widths: Sequence[int]) -> Iterator[str]
 
 
 def json_bytes(value: object) -> bytes:
-    """``value`` as JSON; a path that is not UTF-8 keeps its bytes as escapes."""
+    """Return ``value`` as JSON; a path that is not UTF-8 keeps its bytes as escapes."""
     import json
 
     text = in_json(json.dumps(value, indent=1, ensure_ascii=False))

@@ -83,7 +83,7 @@ def _check_folders(options: argparse.Namespace, domains: Collection[int]) -> Non
 
 
 def _folders(options: argparse.Namespace, domains: Collection[int]) -> list[str]:
-    """Where the files of a suggestion go: those of several domains each into a folder of its own."""
+    """Return the folders for a suggestion's files: one for each of several domains."""
     apart = [os.path.join(options.suggest, f"domain{it}") for it in domains]
     return apart if len(apart) > 1 else [options.suggest]
 

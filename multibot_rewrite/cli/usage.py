@@ -46,7 +46,7 @@ def rewriting(options: argparse.Namespace) -> dict[str, Any]:
 
 
 def separators(options: argparse.Namespace) -> dict[str, str]:
-    """``--separator`` as kind -> mark; one with a kind counts more than one without."""
+    """Return ``--separator`` as kind -> mark; one with a kind overrides one without."""
     pairs = [it.partition("=") for it in options.separator]
     word = next((it for it, equals, _ in pairs if not equals and it.isalnum()), None)
     if word is not None:
@@ -110,5 +110,5 @@ def check_xacro(options: argparse.Namespace, paths: Sequence[str]) -> None:
 
 
 def given_options(options: argparse.Namespace, names: Mapping[str, str]) -> list[str]:
-    """Those of the options (destination -> how it is written) that are given."""
+    """Return those of the options (destination -> how it is written) that are given."""
     return [written for name, written in names.items() if getattr(options, name)]

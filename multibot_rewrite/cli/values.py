@@ -23,7 +23,7 @@ _WORD = lazy_compile(r"[A-Za-z0-9_.-]+")
 
 
 def names(text: str) -> list[str]:
-    """``a,b`` as two names; an empty text is none."""
+    """Return ``a,b`` as two names; an empty text is none."""
     found = [part.strip() for part in text.split(",")] if text else []
     if "" in found:
         raise argparse.ArgumentTypeError(f"{text!r} has an empty part, write A,B")
@@ -31,7 +31,7 @@ def names(text: str) -> list[str]:
 
 
 def full_names(text: str) -> list[str]:
-    """``/a,/b`` as two names of nodes or topics."""
+    """Return ``/a,/b`` as two names of nodes or topics."""
     return [full_name(it) for it in names(text)]
 
 
@@ -50,7 +50,7 @@ def path(text: str) -> str:
 
 
 def folders(text: str) -> list[str]:
-    """``a,b`` as two folders that are there."""
+    """Return ``a,b`` as two folders that exist."""
     found = names(text)
     if gone := next((it for it in found if not os.path.isdir(it)), ""):
         raise argparse.ArgumentTypeError(f"{gone!r} is no folder")
@@ -72,7 +72,7 @@ def zenoh_router(text: str) -> str:
 
 
 def zenoh_endpoint(text: str) -> str:
-    """Where a Zenoh router listens."""
+    """Return the endpoint of a Zenoh router, checked."""
     if not _ENDPOINT.fullmatch(text):
         hint = "write PROTOCOL/HOST:PORT, such as tcp/localhost:7447"
         raise argparse.ArgumentTypeError(f"{text!r} is no Zenoh router; {hint}")
@@ -80,7 +80,7 @@ def zenoh_endpoint(text: str) -> str:
 
 
 def one_of(known: Collection[str]) -> Callable[[str], str]:
-    """One of the words that are known; another one is refused with the nearest of them."""
+    """Return a reader for one of the known words; it refuses another one with the nearest of them."""
 
     def read(text: str) -> str:
         if text in known:
@@ -101,7 +101,7 @@ def some_of(known: Collection[str]) -> Callable[[str], list[str]]:
 
 
 def word(text: str) -> str:
-    """One word, as the name of a node set is."""
+    """Return one word, as the name of a node set is."""
     if not _WORD.fullmatch(text):
         raise argparse.ArgumentTypeError(f"{text!r} is not a name of a node set, give one word")
     return text
@@ -128,7 +128,7 @@ def domain(text: str) -> int:
 
 
 def domains(text: str) -> list[int]:
-    """``1,2`` as two domains."""
+    """Return ``1,2`` as two domains."""
     return [domain(it) for it in names(text)]
 
 

@@ -60,7 +60,7 @@ def _graph(options: argparse.Namespace) -> System | None:
 
 
 def _notes(robots: Sequence[ViewedRobot], meshes: Meshes) -> Iterator[str]:
-    """Meshes that are not there or cannot be read, robots without a shape, what tf has elsewhere."""
+    """Yield notes: meshes that are missing or unreadable, robots without a shape, differing tf."""
     shapes = (it for one in robots for its in one.model.links.values() for it in its)
     unread = (why for why in meshes.values() if isinstance(why, str))
     for missing in sorted({*(it.missing for it in shapes if it.missing), *unread}):

@@ -111,7 +111,7 @@ def _below(
 
 
 def standard_input() -> bytes:
-    """All of standard input; raises InputError."""
+    """Return all of standard input; raises InputError."""
     if sys.stdin is None:
         raise InputError("<stdin>: standard input is closed; name a file instead of -")
     try:

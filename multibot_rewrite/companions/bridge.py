@@ -214,10 +214,13 @@ def gz_topic(context: Context, name: str, gz_type: str = "") -> str:
     bare = name.strip("/")
     if bare in WORLD or bare.startswith("world/"):
         return name
-    # gz-sim puts a lidar's or depth camera's points below the topic that the description names.
-    is_below = context.topics.naming.topics == POSTFIX and "PointCloud" in gz_type
-    base = name.removesuffix("/points") if is_below else name
-    base = base or name
+    # gz-sim puts a camera's images and a lidar's points below the topic that the description names.
+    is_behind = context.topics.naming.topics == POSTFIX
+    base = name if is_behind else ""
+    while base and base.lstrip("/") not in context.names.given:
+        base = base.rpartition("/")[0]
+    is_cloud = is_behind and "PointCloud" in gz_type
+    base = base or (name.removesuffix("/points") if is_cloud else name) or name
     return spell(context.topics, "topic", base, namespaced=False) + name[len(base) :]
 
 

@@ -69,7 +69,7 @@ def text_in(row: Row, key: str) -> str:
 
 
 def faults(node: yaml.Node) -> Iterator[RowFault]:
-    """Why the bridge does not load an entry; nothing if it does."""
+    """Yield why the bridge does not load an entry; nothing if it does."""
     row = row_of(node)
     if not row:
         yield RowFault(node, f"the row is not a map of keys and values: {_OUT}", "")
@@ -96,7 +96,7 @@ def below(name: str, above: str) -> str:
 
 
 def models(document: YamlText) -> Iterator[tuple[yaml.Node, str]]:
-    """Each entry that is for a model, with the model."""
+    """Yield each entry that is for a model, with the model."""
     for node in items(document.root):
         for key in (BOTH, GZ):
             found = GZ_MODEL.fullmatch(text_in(row_of(node), key))

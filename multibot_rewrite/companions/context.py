@@ -96,14 +96,15 @@ def make_context(
     distro: str,
     own: Mapping[tuple[str, str], str] = NO_OWN,
     words: Stems = NO_WORDS,
+    given: frozenset[str] = frozenset(),
 ) -> Context:
-    """Return the context of a description (not rewritten) and the nodes of its robots; ``own`` and
-    ``words`` are those of ``CompanionNames``."""
+    """Return the context of a description (not rewritten) and the nodes of its robots; ``own``,
+    ``words`` and ``given`` are those of ``CompanionNames``."""
     nodes = {
         it.name: f"/{it.name}" if it.shared else full_name(it.name, naming, it.apart)
         for it in facts
     }
-    names = CompanionNames(declared, naming, TAG_SLOT, own, words)
+    names = CompanionNames(declared, naming, TAG_SLOT, own, words, given)
     return Context(names, names._replace(robot=NAMESPACE_SLOT), nodes, distro)
 
 

@@ -42,7 +42,7 @@ def spell_site(context: Context, facts: Facts, site: Site) -> TopicText:
 
 
 def _controller_topic(context: Context, facts: Facts, site: Site) -> TopicText:
-    """``/arm_controller/joint_trajectory``: a topic below a node is renamed with the node."""
+    """Return ``/arm_controller/joint_trajectory``: a topic below a node is renamed with the node."""
     head, slash, rest = site.text.rpartition("/")
     if not is_plain(site.text) or not head or head.startswith("~"):
         return spell_site(context, facts, site._replace(kind="topic"))

@@ -142,7 +142,7 @@ def _of(context: Context, robot: str) -> Context:
 
 
 def _kept(before: NamedFile, after: NamedFile, robot: str) -> int:
-    """How many names that the description declares are not those of the robot in the result."""
+    """Return how many names declared by the description are not the robot's in the result."""
     names = before.context.names._replace(robot=robot)
     wanted = Counter(
         spell(names, it.kind, it.text)

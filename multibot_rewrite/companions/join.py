@@ -117,7 +117,7 @@ def join_plain(parts: Sequence[Part], place: str, tree: Tree, trust: bool) -> Jo
 def _with_beside(
     given: Sequence[Part], made: JoinedText, tree: Tree, trust: bool, samples: int = 0
 ) -> Joined:
-    """With the related files of the parts."""
+    """Return the joined description with the related files of the parts."""
     has_srdf = any(it.srdf for it in given)
     srdfs, controllers, configs = [], [], []
     for it, part in zip(given, (it.part for it in made.parts), strict=True):
@@ -157,7 +157,7 @@ def split(source: Source, *, vocabulary: Iterable[str] = (), distro: str = "") -
 
 
 def _relative(made: JoinedText) -> Iterator[str]:
-    """Meshes and pictures that are looked up from the folder of a part's file."""
+    """Yield notes on meshes and pictures that are looked up from the folder of a part's file."""
     for it in made.parts:
         root, file = it.part.inventory.document.root, it.part.file
         names = (one.get("filename", "") for one in root.iter("mesh", "texture"))

@@ -138,7 +138,7 @@ def _shared(sections: Sequence[RawSection]) -> Iterator[str]:
 
 
 def joined_files(files: Sequence[PartFile]) -> JoinedFile:
-    """All files as one; raises InputError for a controller that two of them have."""
+    """Return all files as one; raises InputError for a controller that two of them have."""
     sections: dict[str, RawSection] = {}
     notes: list[str] = []
     known: dict[str, str] = {}
@@ -221,7 +221,7 @@ def part_moveit(data: bytes, file: str, part: Inventory, said: Declared, prefix:
 
 
 def joined_moveit(files: Iterable[PartMoveit]) -> JoinedMoveit:
-    """One file of each kind, and of each pipeline."""
+    """Return one file of each kind, and of each pipeline."""
     every: dict[str, list[tuple[str, yaml.MappingNode]]] = {}
     notes: list[tuple[str, str]] = []
     for it in files:
@@ -282,7 +282,7 @@ def part_rviz(data: bytes, file: str, part: Inventory, name: str, prefix: str) -
 
 
 def joined_rviz(parts: Sequence[PartRviz]) -> JoinedFile:
-    """All configs as one."""
+    """Return all configs as one."""
     first, *others = parts
     config, document = first.config, first.config.document
     known = {_shows(it) for it in leaves(config.displays)}

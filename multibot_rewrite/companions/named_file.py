@@ -27,7 +27,7 @@ _IS_TREE = dict(BESIDE)[TREE]
 
 
 def is_named_beside(path: str) -> bool:
-    """Is a file called as only related files are?"""
+    """Return whether a file has a name that only related files have."""
     return path.lower().endswith(SUFFIXES) and not path.lower().endswith(_XML)
 
 
@@ -43,7 +43,7 @@ def is_beside(source: object) -> bool:
 
 
 def is_linted(path: str) -> bool:
-    """Is a file that was found in a folder one to lint? Most YAML and XML files are not; one that
+    """Return whether a file found in a folder is linted. Most YAML and XML files are not; one that
     cannot be read is reported."""
     if path.lower().endswith(_XML):
         return is_beside(path)

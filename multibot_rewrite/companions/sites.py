@@ -43,14 +43,13 @@ AS_IS, XML, UNCLEAR = "as it is", "xml", "unclear"
 
 
 class Site(NamedTuple):
-    """A text in a file: its kind (empty where its use is not known), the name as it is for one robot,
-    what it stands at, and its slot, of whose value it is the ``size`` characters from ``at``.
+    """A text in a file: its kind (empty where its use is not known), the name as it is for one
+    robot, what it is at, and its slot, of whose value it is the ``size`` characters from ``at``.
 
     ``is_sure`` is false for a kind that is only guessed; ``in_key`` is true for a name in a key.
     ``together`` is the same for names of one list. ``bare`` says that the reader takes a slash in
-    front off. ``node`` is the node that reads it, as the stacks call it, ``reach`` where that resolves
-    a relative name, ``param`` what is known of the parameter.
-    """
+    front off. ``node`` is the node that reads it, as the node sets call it, ``reach`` where that
+    resolves a relative name, ``param`` what is known of the parameter."""
 
     kind: str
     text: str
@@ -83,7 +82,7 @@ class Site(NamedTuple):
 
 
 def slot_of(node: yaml.Node) -> Slot:
-    """Where a node of YAML is written, with its anchor and tag."""
+    """Return where a node of YAML is written, with its anchor and tag."""
     start, end = node.start_mark, node.end_mark
     style = getattr(node, "style", None) or ""
     return Slot(start.line + 1, start.column + 1, start.index, end.index, str(node.value), style)

@@ -61,7 +61,7 @@ def read_yaml(data: bytes, file: str) -> YamlText:
 
 
 def anchors(document: YamlText) -> Iterator[tuple[int, str]]:
-    """Line and text of anchors and aliases, which rcl's parser rejects (rcl_yaml_param_parser)."""
+    """Yield line and text of anchors and aliases, which rcl_yaml_param_parser rejects."""
     if not _ANCHOR.search(document.text):
         return
     for token in yaml.scan(document.text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader)):
@@ -83,7 +83,7 @@ def refused(document: YamlText, node: yaml.Node, what: str, cause: str = "") -> 
 
 
 def pairs(node: yaml.Node | None) -> list[tuple[yaml.ScalarNode, yaml.Node]]:
-    """Keys and values of a mapping, repeated keys included; nothing for any other node."""
+    """Return keys and values of a mapping, repeated keys included; empty for any other node."""
     if not isinstance(node, yaml.MappingNode):
         return []
     return [(key, value) for key, value in node.value if isinstance(key, yaml.ScalarNode)]
@@ -177,18 +177,18 @@ class Block(NamedTuple):
 
 
 def is_block(node: yaml.Node | None) -> bool:
-    """Is it a list or map in block style, without brackets or braces?"""
+    """Return whether it is a list or map in block style, without brackets or braces."""
     return isinstance(node, yaml.CollectionNode) and not node.flow_style
 
 
 def newline(document: YamlText) -> str:
-    """How the lines of a text end."""
+    """Return how the lines of a text end."""
     found = _END.search(document.text)
     return found[0] if found else "\n"
 
 
 def inserted(document: YamlText, at: int, text: str) -> Splice:
-    """Lines inserted at the start of a line, or after a last line without a line end."""
+    """Return lines inserted at the start of a line, or after a last line without a line end."""
     unended = at == len(document.text) and not document.text.endswith(_ENDS)
     return Splice(at, at, (newline(document) if unended and text else "") + text)
 
@@ -209,7 +209,7 @@ def blocks(document: YamlText, node: yaml.Node) -> list[Block]:
 
 
 def end_of(node: yaml.Node) -> int:
-    """Where a node ends: PyYAML's own end mark of a block is at the start of what follows."""
+    """Return where a node ends: PyYAML's end mark of a block is at the start of what follows."""
     while is_block(node) and node.value:
         last = node.value[-1]
         node = last[1] if isinstance(last, tuple) else last
@@ -220,14 +220,14 @@ def end_of(node: yaml.Node) -> int:
 
 
 def line_start(document: YamlText, at: int) -> int:
-    """Where the line of a character starts."""
+    """Return where the line of a character starts."""
     start = document.text.rfind("\n", 0, at) + 1
     others = (it.end() for it in _END.finditer(document.text, start, at))
     return max(others, default=start)
 
 
 def line_end(document: YamlText, at: int) -> int:
-    """Where the next line starts."""
+    """Return where the next line starts."""
     found = _END.search(document.text, at)
     return found.end() if found else len(document.text)
 
@@ -250,7 +250,7 @@ def lines_of(text: str) -> list[str]:
 
 
 def moved(text: str, by: int) -> str:
-    """Lines indented by ``by`` more columns; fewer if it is negative."""
+    """Return lines indented by ``by`` more columns; fewer if it is negative."""
     lines = lines_of(text)
     for at, line in enumerate(lines):
         if line.strip():

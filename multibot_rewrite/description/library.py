@@ -175,20 +175,19 @@ def rewrite_all(
 ) -> Iterator[Rewrite]:
     """Rewrite one description for several robots: one parse, then about a copy of the text each.
 
-    ``layout`` is a name of ``multibot_rewrite.base.naming.LAYOUTS``, such as tf-per-robot or postfix;
-    ``affix`` is postfix or prefix, ``topics`` is postfix, prefix or namespace (default: what the
-    layout implies); ``separators`` maps kinds to separators; ``groups`` is keep or rename: what
-    becomes of an SRDF's groups and end effectors; ``urdf`` is the description an SRDF belongs to;
-    ``xacro_args`` are the arguments of a xacro, ``{robot}`` in them is the robot's name: what they
-    name after the robot stays as it is, and each robot is an expansion of its own; ``vocabulary``
-    are definition files beside the built-in one; ``again`` allows a second rewrite; ``file`` is the
-    name used in messages; ``trust`` lets xacro files do anything: without it they only compute, and
-    read what is near them (SECURITY.md); ``distro`` is the ROS 2 release that the robots run (default:
-    ROS_DISTRO, else what is sourced, else what the description loads, else the newest LTS);
-    ``world_systems`` is keep or leave: leave makes comments of the systems that the world has to load
-    once, as Sensors (default: keep for one robot, leave for several, and a note says what to load).
-    Raises as ``rewrite`` does, before the first result.
-    """
+    ``layout`` is a name of ``multibot_rewrite.base.naming.LAYOUTS``, such as tf-per-robot or
+    postfix; ``affix`` is postfix or prefix, ``topics`` is postfix, prefix or namespace (default:
+    what the layout implies); ``separators`` maps kinds to separators; ``groups`` is keep or rename:
+    what becomes of an SRDF's groups and end effectors; ``urdf`` is the description an SRDF belongs
+    to; ``xacro_args`` are the arguments of a xacro, ``{robot}`` in them is the robot's name: what
+    they name after the robot stays as it is, and each robot is an expansion of its own;
+    ``vocabulary`` are definition files in addition to the built-in one; ``again`` allows a second
+    rewrite; ``file`` is the name used in messages; ``trust`` lets xacro files do anything: without
+    it they only compute, and read what is near them (SECURITY.md); ``distro`` is the ROS 2 release
+    that the robots run (default: ROS_DISTRO, else what is sourced, else what the description loads,
+    else the newest LTS); ``world_systems`` is keep or leave: leave makes comments of the systems
+    that the world has to load once, as Sensors (default: keep for one robot, leave for several, and
+    a note says what to load). Raises as ``rewrite`` does, before the first result."""
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     names = check_robot_names(robots)
     given = (urdf, xacro_args, vocabulary, file, trust, release_told(distro))
@@ -197,7 +196,7 @@ def rewrite_all(
 
 
 def _with_own_ports(made: Iterator[Rewrite]) -> Iterator[Rewrite]:
-    """Of several robots each has ports of its own, where it is known what they are for."""
+    """Yield rewrites in which each of several robots has its own ports, if their use is known."""
     first = next(made, None)
     served = first.template.inventory.served if first else ()
     words = (word for _, section in served for word in section.opens)

@@ -105,7 +105,7 @@ def numbered(robots: Mapping[str, tuple[bytes, Sequence[Port]]]) -> Numbered:
 
 
 def said_of_numbers(name: str, given: Iterable[tuple[str, int]]) -> tuple[str, str]:
-    """Which number each robot got for a port, and what to do; raises nothing."""
+    """Return which number each robot got for a port, and what to do; raises nothing."""
     words = [f"{robot} {number}" for robot, number in given]
     more = f" and {len(words) - _NAMED} more" if words[_NAMED:] else ""
     message = f"{name} is numbered: {', '.join(words[:_NAMED])}{more}"

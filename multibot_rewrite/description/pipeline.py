@@ -37,11 +37,9 @@ def prepare(
     urdf_declarations: Declared = NOTHING,
     own: OwnSource = OF_ALL,
 ) -> Template:
-    """Everything that does not depend on a robot's name; raises InputError and RewriteRefused.
-
+    """Return everything that does not depend on a robot's name; raises InputError, RewriteRefused.
     ``urdf_declarations`` is what the URDF of an SRDF declares. ``own`` says more of a source that
-    is one robot's own.
-    """
+    is one robot's own."""
     inventory = collect(read_document(source, file), tree, urdf_declarations, naming.read_as)
     check_urdf(inventory, urdf_declarations)
     plan = make_plan(inventory, naming)
@@ -142,9 +140,8 @@ def strip(
 ) -> bytes:
     """Undo a rewrite for ``robot``; the result is verified by rewriting it again.
 
-    ``urdf_declarations`` is what the rewritten URDF beside a rewritten SRDF declares. ``before`` is
-    what the robot's own xacro arguments make, where the naming has names of these.
-    """
+    ``urdf_declarations`` is what the rewritten URDF of a rewritten SRDF declares. ``before`` is
+    what the robot's own xacro arguments make, where the naming has names of these."""
     if b" numbered from " in source:
         from multibot_rewrite.description.own_ports import without_numbers
 

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A fleet file -> everything its robots need: rewritten descriptions, tables, companion files."""
+"""A fleet file -> everything its robots need: rewritten descriptions, tables, related files."""

@@ -79,11 +79,9 @@ class Outputs(NamedTuple):
 
 
 def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
-    """Every file of a fleet. ``folder`` is where they will be, if they are written at all.
-
+    """Return every file of a fleet. ``folder`` is where they will be, if they are written at all.
     Raises InputError for a companion that cannot be read or rewritten, UsageError where two files
-    would have the same path, and for parameter files in a style that does not serve the layout.
-    """
+    would have the same path, and for parameter files in a style that does not serve the layout."""
     check_style(plan.file)
     with gc_paused():
         fleet, each = with_start_pose_nodes(plan), list(split_per_robot(plan))
@@ -154,7 +152,7 @@ def _descriptions(plan: FleetPlan, folder: str) -> FilesAndFindings:
 
 
 def _portable_plan(plan: FleetPlan, fleet: Fleet) -> System:
-    """The plan with its places relative to the fleet file: the same from every working directory."""
+    """Return the plan with its places relative to the fleet file: equal for every working directory."""
     folder = os.path.dirname(os.path.abspath(plan.file.file))
     made = expected(fleet)
     nodes = (
@@ -182,13 +180,14 @@ def _tables(plan: FleetPlan, fleet: Fleet, planned: System) -> Iterator[OutputFi
 
 
 def _from(folder: str, place: Place) -> Place:
-    """Return the place as seen from a folder; files without a line and bare names as they are."""
+    """Return the place as seen from a folder; files without a line and names without a folder as
+    they are."""
     is_moved = place.line and os.path.dirname(place.file)
     return place._replace(file=os.path.relpath(place.file, folder)) if is_moved else place
 
 
 def _portable(plan: FleetPlan, folder: str, gap: Finding) -> Finding:
-    """A finding with its files as seen from a folder."""
+    """Return a finding with its files relative to a folder."""
     message, hint = gap.message, gap.hint
     for path in input_files(plan.file):
         own = os.path.relpath(path, folder)
@@ -198,8 +197,8 @@ def _portable(plan: FleetPlan, folder: str, gap: Finding) -> Finding:
 
 
 def _remappings(table: Table) -> str:
-    """The rules of every node, in the shape of ``multibot plan --form json``; the names that result
-    are in the plan. Written as text: PyYAML takes longer than all the rest."""
+    """Return the remap rules of every node as in ``multibot plan --form json``; the names that
+    result are in the plan. It is written as text, since PyYAML takes longer than all the rest."""
     scalar = cache(quoted)
     robots: dict[str, list[str]] = {}
     for robot, given in standing_by_robot(table):

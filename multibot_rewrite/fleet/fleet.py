@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A description, its robots and their stacks -> the remap table and the expected graph."""
+"""A description, its robots and their node sets -> the remap table and the expected graph."""
 
 from __future__ import annotations
 
@@ -62,10 +62,10 @@ FRAME_PREFIX = "frame_prefix"
 
 class Fleet(NamedTuple):
     """A fleet's remap table, what each robot's rewritten description holds, and the transforms that
-    each robot's nodes publish. ``facts`` are the nodes of the stacks, ``tags`` the robots whose
-    prefix or postfix differs from their namespace, with it. ``read`` are the files that were read for
-    descriptions, ``gaps`` what is open in the robots, ``bridged`` what a ros_gz_bridge has to bridge;
-    ``maybe_real`` are robots of which nothing says that they are simulated, ``clocks`` the
+    each robot's nodes publish. ``facts`` are the nodes of the node sets, ``tags`` the robots whose
+    prefix or postfix differs from their namespace, with it. ``read`` are the files that were read
+    for descriptions, ``gaps`` what is open in the robots, ``bridged`` what a ros_gz_bridge has to
+    bridge; ``maybe_real`` are robots of which nothing says that they are simulated, ``clocks`` the
     ``use_sim_time`` of robots for which the fleet file says it, ``described`` the descriptions of
     robots whose simulator gets another file, ``apart`` the domains of robots that are not in one,
     ``models`` what each robot's model is spawned as, if not as the robot is called, ``placed`` the
@@ -111,10 +111,10 @@ def make_fleet(
     """Rewrite a description for every robot and return the fleet with its table, by the facts of the
     release that the rewrite is for: ``release``, or where it is empty what ``rewrite_all`` takes.
 
-    ``nodes`` is a file with more nodes and stacks, ``nodl`` are NoDL files, see ``find_interfaces``;
-    ``trust`` lets a xacro file do anything; ``launch`` are the launch files that start each robot's
-    nodes. Raises as ``rewrite_all``, and UsageError for an unknown stack.
-    """
+    ``nodes`` is a file with more nodes and node sets, ``nodl`` are NoDL files, see
+    ``find_interfaces``; ``trust`` lets a xacro file do anything; ``launch`` are the launch files
+    that start each robot's nodes. Raises as ``rewrite_all``, and UsageError for an unknown node
+    set."""
     how: dict[str, Any] = {
         "vocabulary": vocabulary,
         "xacro_args": xacro_args,
@@ -142,7 +142,7 @@ def _with_bridge_and_findings(
     vocabulary: tuple[str, ...],
     findings: Iterable[Finding],
 ) -> Fleet:
-    """The fleet with where its robots meet, findings about their nodes, and what has to be bridged."""
+    """Return the fleet with its robots' collisions, findings about their nodes, and bridged topics."""
     table = fleet.table
     met = dict.fromkeys(robots_meet(table, members, fleet.naming))
     simulated = filter(is_for_simulator, members)
@@ -159,13 +159,10 @@ def _with_bridge_and_findings(
 def facts_of(
     stacks: Sequence[str], nodes: str | None, release: str, nodl: Sequence[str] = ()
 ) -> tuple[NodeFacts, ...]:
-    """The nodes that a robot with these stacks runs in a release, each once.
-
-    Raises UsageError for an unknown stack, and for one that the release lacks.
-
-    Every robot runs robot_state_publisher: one of its stacks has it, or it is added. It is left out
-    for the stack ``no_robot_state_publisher``.
-    """
+    """Return the nodes that a robot with these node sets runs in a release, each once. Raises
+    UsageError for an unknown node set, and for one that the release lacks. Every robot runs
+    robot_state_publisher: one of its node sets has it, or it is added. It is left out for the node
+    set ``no_robot_state_publisher``."""
     known = known_nodes(nodes, release, nodl)
     library = known.library
     runs = {name: list(nodes_of(known, name)) for name in stacks}
@@ -186,7 +183,7 @@ def facts_of(
 
 
 def known_nodes(nodes: str | None, release: str, nodl: Sequence[str]) -> NodeKnowledge:
-    """What is known of nodes in a release: built in, by NoDL, in the user's file ``nodes``."""
+    """Return what is known of nodes in a release: built in, by NoDL, in the user's file ``nodes``."""
     built = built_in(release)
     library = user_stack(nodes, release) if nodes else built
     own = (name for name, node in library.nodes.items() if node != built.nodes.get(name))
@@ -200,7 +197,7 @@ def assemble(
     release: str,
     given: Sequence[Run] = (),
 ) -> Fleet:
-    """The fleet of robots that run the same nodes of a release, with parameters that are ``given``."""
+    """Return the fleet of robots with the same nodes of a release and the parameters ``given``."""
     inventories = {it.robot: it.inventory for it in members}
     plugins = {it.robot: _plugins(it) for it in members}
     edges: dict[tuple[str, str], list[Edge]] = {}
@@ -224,7 +221,7 @@ def assemble(
 
 
 def _plugins(member: Member) -> list[Run]:
-    """The plugins' nodes, placed in the source: inserted text moves the lines of the result."""
+    """Return the plugins' nodes, placed in the source: inserted text moves the lines of the result."""
     runs, source = plugin_nodes(member.reading, member.robot), member.source
     lines = (line_of(source, "plugin", it.number) for it in member.reading.nodes)
     each = zip(runs, lines, strict=True)
@@ -232,7 +229,7 @@ def _plugins(member: Member) -> list[Run]:
 
 
 def merge(fleets: Sequence[Fleet]) -> Fleet:
-    """Robots of different descriptions as one fleet; their names may not collide either."""
+    """Return robots of different descriptions as one fleet; checks that no names collide."""
     first, *others = fleets
     for other in others:
         first = Fleet(
@@ -249,7 +246,7 @@ def merge(fleets: Sequence[Fleet]) -> Fleet:
 
 
 def expected(fleet: Fleet) -> System:
-    """The graph that the fleet should have; UsageError where any graph would be as planned."""
+    """Return the graph that the fleet should have; raises UsageError if any graph would fit."""
     plan = planned(fleet)
     nothing = vacuous(plan)
     if nothing:
@@ -259,7 +256,7 @@ def expected(fleet: Fleet) -> System:
 
 
 def planned(fleet: Fleet) -> System:
-    """The graph that the fleet should have, be it one that any graph is like."""
+    """Return the graph that the fleet should have, even one that any graph fits."""
     sent: dict[str, list[Edge]] = {robot: [] for robot in fleet.inventories}
     for (robot, _), edges in fleet.edges.items():
         sent[robot] += edges
@@ -291,8 +288,8 @@ def planned(fleet: Fleet) -> System:
 
 
 def _parameters(fleet: Fleet) -> Iterator[Parameter]:
-    """The clock of each node of a robot, where one in a plugin has that of the simulator, and what
-    puts the robot's name before the frames of its description."""
+    """Yield the clock of each node of a robot, if one in a plugin has that of the simulator, and
+    the prefix that adds the robot's name to the frames of its description."""
     clocks = dict(fleet.clocks)
     for it in merged(fleet.table.runs):
         given: dict[str, object] = {}
@@ -305,7 +302,7 @@ def _parameters(fleet: Fleet) -> Iterator[Parameter]:
 
 
 def possible(fleet: Fleet) -> tuple[End, ...]:
-    """Every endpoint that its nodes may have, by parameter too."""
+    """Return every endpoint that the nodes may have, also by parameter."""
     return tuple(
         End(end.kind, end.role, name, end.type, node=run.full_name, code_name=end.name)
         for run, end, name in fleet.table.ends

@@ -63,7 +63,7 @@ class FleetPlan(NamedTuple):
     evidence: Mapping[NodeSources, RobotEvidence]
 
     def evidence_of(self, robot: RewrittenRobot) -> RobotEvidence:
-        """What one robot's own files say; raises nothing."""
+        """Return what one robot's own files say of its nodes."""
         return self.evidence[node_sources(robot.spec)]
 
     @property
@@ -106,8 +106,8 @@ def plan_fleet(
     The parameter files that launch files and descriptions name are rewritten, too.
 
     ``jobs`` are the descriptions if they have been read already; ``trust`` lets xacro files do
-    anything, and launch files run. Raises as ``rewrite_all``, and UsageError for an unknown stack.
-    """
+    anything, and launch files run. Raises as ``rewrite_all``, and UsageError for an unknown node
+    set."""
     file, joined = with_joined(file, trust)
     file, notes = with_launched_files(_trusted(with_shape(file)) if trust else with_shape(file))
     file = with_launched_world(with_one_map(with_bridge_namespaces(file)))
@@ -139,8 +139,8 @@ def plan_fleet(
 def _evidence(
     file: FleetFile, robots: Sequence[RewrittenRobot], notes: Mapping[str, Sequence[Finding]]
 ) -> tuple[dict[NodeSources, RobotEvidence], frozenset[str]]:
-    """What the files say of the nodes of each kind of robot, and the namespaces of those robots that
-    may be real ones, which is said once."""
+    """Return what the files say of the nodes of each kind of robot, and the namespaces of robots
+    that may be real, which is reported once."""
     specs = {node_sources(it): it for it in reversed(file.robots)}
     first = {node_sources(it.spec): it for it in reversed(robots)}
     found = {

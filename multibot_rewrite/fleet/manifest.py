@@ -32,14 +32,14 @@ class OutputChanges(NamedTuple):
 
 
 def hash_of(data: bytes) -> str:
-    """The hash that manifests hold."""
+    """Return the hash that manifests hold."""
     return sha256(data).hexdigest()
 
 
 def manifest(
     files: Iterable[OutputFile], inputs: Mapping[str, bytes], folder: str, plan: FleetPlan
 ) -> OutputFile:
-    """The manifest of a build into ``folder``; ``inputs`` are the files that were read, by path."""
+    """Return the manifest of a build into ``folder``; ``inputs`` are the files read, by path."""
     data = {
         "format": BUILD,
         "distro": plan.file.distro,
@@ -51,13 +51,13 @@ def manifest(
 
 
 def inputs_of(folder: str) -> Mapping[str, str]:
-    """The hashes of what a build into ``folder`` read, by path; none without its manifest."""
+    """Return the hashes of what a build into ``folder`` read, by path; none without its manifest."""
     found = _section(folder, "inputs").items()
     return {os.path.normpath(os.path.join(folder, path)): hash_ for path, hash_ in found}
 
 
 def folders_of(folder: str) -> Mapping[str, str]:
-    """The folder that a build wrote for each robot, by the robot's name in its plan."""
+    """Return the folder that a build wrote for each robot, by the robot's name in its plan."""
     return _section(folder, "robots")
 
 
@@ -71,7 +71,7 @@ def _section(folder: str, name: str) -> Mapping[str, str]:
 
 
 def read_manifest(data: bytes, file: str) -> Mapping[str, str]:
-    """The hashes of what a build wrote, by path; InputError for a file that is not a manifest."""
+    """Return the hashes of what a build wrote, by path; raises InputError for no manifest."""
     try:
         found = load_json(data)
         if found["format"] != BUILD:
@@ -89,8 +89,8 @@ def read_manifest(data: bytes, file: str) -> Mapping[str, str]:
 def output_changes(
     files: Iterable[OutputFile], known: Mapping[str, str], there: Mapping[str, str]
 ) -> OutputChanges:
-    """What a build must change; ``known`` are the hashes of the last build, ``there`` those of the
-    files on disk."""
+    """Return what a build must change; ``known`` are the hashes of the last build, ``there`` those
+    of the files on disk."""
     wanted = {it.path: hash_of(it.data) for it in files}
     write = [path for path, hash_ in wanted.items() if there.get(path) != hash_]
     remove = [path for path in known if path not in wanted and path in there]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A file beside a description, rewritten for robots without a fleet file: parameters, RViz, MoveIt, a
-bridge, a behavior tree, Lua."""
+"""A related file of a description, rewritten for robots without a fleet file: parameters, RViz,
+MoveIt, a bridge, a behavior tree, Lua."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.companions.formats import kind_alone, read_named, rewrite_alone
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.rename_map import KINDS, NO_OWN, companion_names
-from multibot_rewrite.description.rewriters.made_topics import words_of
+from multibot_rewrite.description.rewriters.made_topics import given_topics, words_of
 from multibot_rewrite.description.sources.job import Job, read_jobs
 from multibot_rewrite.description.sources.read import Source
 from multibot_rewrite.description.sources.whole import read_whole
@@ -69,8 +69,8 @@ def rewrite_file(
     trust: bool = False,
     distro: str = "",
 ) -> RewrittenFile:
-    """Rewrite a file beside a description for ``robot``: parameters, RViz, MoveIt, ros_gz_bridge, a
-    behavior tree of Nav2, Cartographer's Lua, told by what is in it.
+    """Rewrite a related file of a description for ``robot``: parameters, RViz, MoveIt,
+    ros_gz_bridge, a behavior tree of Nav2, Cartographer's Lua, told by what is in it.
 
     ``urdf`` is the robot's description, not rewritten; the other options are those of ``rewrite``.
     Raises InputError (cannot be read), UsageError (a wrong argument, or a description is needed).
@@ -99,15 +99,16 @@ def rewrite_files(
     trust: bool = False,
     distro: str = "",
 ) -> Iterator[RewrittenFile]:
-    """The same for several robots, in their order. What a bridge carries for all of them, such as the
-    clock, is in the file of the first. Raises as ``rewrite_file``, before the first result."""
+    """Yield the file rewritten for several robots, in their order. What a bridge carries for all,
+    such as the clock, is in the file of the first. Raises as ``rewrite_file``, before the first
+    result."""
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     given = (urdf, xacro_args, vocabulary, file, trust, release_here(distro))
     return _rewritten(source, tuple(robots), naming, *given)
 
 
 def names_in_file(data: bytes, file: str, urdf: bytes) -> NamedFile:
-    """The names in a file beside the description ``urdf``. Raises what ``rewrite_file`` does."""
+    """Return the names in a related file of the description ``urdf``; raises as ``rewrite_file``."""
     naming, release = make_naming(), release_here("")
     job = read_jobs(["r"], urdf, naming, None, None, (), "", False, release)["r"]
     return read_named(kind_alone(data, file), data, file, _context(job, naming, release))
@@ -154,9 +155,10 @@ def _context(job: Job | None, naming: Naming, release: str) -> Context:
     if job is None:
         return make_context({kind: {} for kind in _DECLARED}, naming, (), release)
     described, own = job.inventories[0], job.own.plain or NO_OWN
-    declared, words = described.declared, words_of(described.claims)
-    names = companion_names(declared, job.naming, "", own, words, described.topics_in_full)
-    return make_context(names.declared, job.naming, (), release, names.own, words)
+    made = words_of(described.claims), given_topics(described.claims)
+    in_full = described.topics_in_full
+    names = companion_names(described.declared, job.naming, "", own, in_full=in_full)
+    return make_context(names.declared, job.naming, (), release, names.own, *made)
 
 
 def _for_robot(

@@ -60,7 +60,7 @@ class LoadedFleet:
 
     @checked
     def robot(self, name: str) -> LoadedRobot:
-        """The robot of this name; raises UsageError for another."""
+        """Return the robot of this name; raises UsageError for another."""
         found = {it.name: it for it in self.robots}
         if name not in found:
             raise UsageError(f"{self.file}: {unknown('robot', name, found)}")
@@ -115,21 +115,21 @@ class LoadedFleet:
 
     @checked
     def text(self, path: str) -> str:
-        """The text of one of these files; raises UsageError for an unknown path, else as ``made``."""
+        """Return the text of one of these files; raises UsageError for an unknown path, as ``made``."""
         if path not in self.files:
             hint = "list it under companions: in the fleet file"
             raise UsageError(f"{self.file}: {unknown('file', path, self.files)}; {hint}")
         return self.files[path].data.decode()
 
     def node_text(self, path: str) -> str:
-        """As ``LoadedRobot.node_text``, by path; raises as ``text``."""
+        """Return the text as ``LoadedRobot.node_text``, by path; raises as ``text``."""
         self.text(path)
         return self._with_full_names[path].data.decode()
 
     @checked
     def parameters(self, path: str) -> YamlText:
-        """One of these files as a parameter file. Raises as ``text``, and InputError with the line of
-        the source for values that rcl rejects."""
+        """Return one of these files as a parameter file. Raises as ``text``, and InputError with
+        the line of the source for values that rcl rejects."""
         if path not in self._parameters:
             text = self.node_text(path)
             made = {it for one in self.plan.file.robots for it, _ in one.filled}
@@ -170,7 +170,7 @@ def load_fleet(
 
 
 def _planned(file: FleetFile, jobs: Mapping[Sources, Jobs]) -> LoadedFleet:
-    """The fleet of a pickle: rewritten again from the descriptions that it includes."""
+    """Return the fleet of a pickle, rewritten again from the descriptions that it includes."""
     return LoadedFleet(plan_fleet(file, jobs=jobs))
 
 

@@ -47,24 +47,24 @@ class Condition(NamedTuple):
 
 @lru_cache(maxsize=2048)
 def parse_condition(text: str) -> tuple[tuple[Condition, ...], ...]:
-    """The alternatives, each with the terms that must all hold; raises UsageError for a text that is
-    none. Of an empty text there are none."""
+    """Return the alternatives, each with the terms that must all hold; none for an empty text.
+    Raises UsageError for a text that is no condition."""
     return tuple(tuple(map(_one, it.split(AND))) for it in text.split(OR)) if text else ()
 
 
 def joined(text: str, other: str) -> str:
-    """Both conditions as one."""
+    """Return both conditions as one."""
     return OR.join(f"{it}{AND}{other}" for it in text.split(OR)) if text else other
 
 
 def said(text: str) -> str:
-    """The condition as people read it."""
+    """Return the condition as people read it."""
     return OR.join(AND.join(map(_said, it.split(AND))) for it in text.split(OR))
 
 
 @lru_cache(maxsize=4096)  # so many facts, so few conditions
 def of_release(text: str, release: str) -> str | None:
-    """The condition without what it says of releases; None where it never holds in this one."""
+    """Return the condition without its releases; None if it never holds in this one."""
 
     def decide(it: Condition) -> bool | None:
         return has_release(by_version(it.values[0]), release) if it.parameter == RELEASE else None
@@ -73,8 +73,8 @@ def of_release(text: str, release: str) -> str | None:
 
 
 def settled(text: str, decide: Callable[[Condition], bool | None]) -> str | None:
-    """The condition without the terms that ``decide`` knows; None where it never holds. Where one
-    alternative holds, nothing is left to ask."""
+    """Return the condition without the terms that ``decide`` knows; None if it never holds. If one
+    alternative holds, it is empty."""
     left = []
     for terms in (it.split(AND) for it in text.split(OR)) if text else ():
         known = {it: decide(_one(it)) for it in terms}
@@ -84,7 +84,7 @@ def settled(text: str, decide: Callable[[Condition], bool | None]) -> str | None
 
 
 def words_in(text: str, kind: str) -> Iterator[str]:
-    """The words of all terms of a kind."""
+    """Yield the words of all terms of a kind."""
     for terms in parse_condition(text):
         yield from (
             word for it in terms if (it.how, it.parameter) == (":", kind) for word in it.values
@@ -92,7 +92,7 @@ def words_in(text: str, kind: str) -> Iterator[str]:
 
 
 def _said(term: str) -> str:
-    """A reason of its own, such as the file that has a node's parameters, is said as it is."""
+    """Return a term as people read it; another reason, such as a file of parameters, as it is."""
     if _TERM.fullmatch(term) is None and term.partition(": ")[0] not in KINDS:
         return term
     it = _one(term)
@@ -129,17 +129,17 @@ def _words(text: str) -> tuple[str, ...]:
 
 
 def holds(text: str, value_of: Values) -> bool:
-    """Is it surely true of these parameters? ``value_of`` gives None for one that is not set."""
+    """Return whether a condition surely holds; ``value_of`` gives None for an unset parameter."""
     return not text or verdict(text, value_of) is True
 
 
 def chosen_type(types: Iterable[tuple[str, str]], value_of: Values) -> str:
-    """The type that the parameters choose among those of an endpoint; empty where they choose none."""
+    """Return the endpoint type that the parameters choose; empty if they choose none."""
     return next((type_ for it, type_ in types if holds(it, value_of)), "")
 
 
 def verdict(text: str, value_of: Values) -> bool | None:
-    """Is it true of these parameters? None where they do not say it."""
+    """Return whether a condition holds with these parameters; None if they do not tell."""
     found = []
     for terms in parse_condition(text):
         each = [_is_true(it, value_of) for it in terms]
@@ -174,7 +174,7 @@ def _is_true(it: Condition, value_of: Values) -> bool | None:
 
 
 def _spellings(given: object) -> set[str]:
-    """The words a value may be written with; none for a parameter that is not set."""
+    """Return the words a value may be written with; none for a parameter that is not set."""
     if given is None:
         return set()
     word = word_of(given)
@@ -182,5 +182,5 @@ def _spellings(given: object) -> set[str]:
 
 
 def word_of(value: object) -> str:
-    """A value as a YAML file has it."""
+    """Return a value as a YAML file has it."""
     return str(value).lower() if isinstance(value, bool) else str(value)

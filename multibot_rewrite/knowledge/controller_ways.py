@@ -41,11 +41,12 @@ CONTROLLER_WAYS = (
 
 
 def controller_way(release: str) -> ControllerWay:
-    """How controllers get rules in a release."""
+    """Return how controllers get rules in a release."""
     return next(it for it in CONTROLLER_WAYS if has_release(it.releases, release))
 
 
 def names_its_process(kind: str, release: str) -> bool:
-    """Is a name that is given to this node that of every node in its process? A rule __node holds for
-    the process, and the controllers of these releases take its rules (ros2_control#1684)."""
+    """Return whether a name given to this node becomes that of every node in its process. A rule
+    __node holds for the process, and the controllers of these releases take its rules
+    (ros2_control#1684)."""
     return kind == MANAGER and controller_way(release).process_wide

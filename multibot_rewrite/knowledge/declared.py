@@ -41,7 +41,7 @@ class Declared(NamedTuple):
     source: str
 
     def has_name(self, name: str) -> bool:
-        """Is it a name of the path, something in place of each word in brackets?"""
+        """Return whether it is a name of the path, something in place of each word in brackets."""
         if "<" not in self.path:
             return name == self.path
         # A pattern takes longer to compile than most paths to refuse.
@@ -55,7 +55,7 @@ class Declared(NamedTuple):
 
 
 def checks_in(bounds: str) -> tuple[tuple[str, str], ...]:
-    """Each check in a text with its arguments."""
+    """Return each check in a text with its arguments."""
     if ")" not in bounds:
         return ()
     checks = (it.partition("(") for it in _BETWEEN_CHECKS.split(bounds) if it.endswith(")"))
@@ -68,14 +68,14 @@ def _pieces(path: str) -> list[str]:
 
 
 def _may_be(path: str, name: str) -> bool:
-    """Does a name begin and end as a path with words in brackets?"""
+    """Return whether a name begins and ends as a path with words in brackets."""
     pieces = _pieces(path)
     head, tail = pieces[0], pieces[-1]
     return name.startswith(head) and name.endswith(tail) and len(head) + len(tail) < len(name)
 
 
 def _fillings(path: str, name: str) -> list[str] | None:
-    """Return what stands in a name for each word in brackets of a path, the first as long as it can be;
+    """Return what is in a name for each word in brackets of a path, the first as long as it can be;
     None for a name that is not of the path."""
     if not _may_be(path, name):
         return None
@@ -93,7 +93,7 @@ def _fillings(path: str, name: str) -> list[str] | None:
 
 @lru_cache(maxsize=512)
 def declared_by(owner: str) -> tuple[Declared, ...]:
-    """What a package or the class of a plugin declares and demands; nothing for an unknown one."""
+    """Return what a package or the class of a plugin declares and demands; empty for an unknown one."""
     every = _rows(_sections("declared.schema").get(owner, ""))
     declared = [it for it in every if says_something(it.path)]
     demanded = _rows(_sections("demanded.schema").get(owner, ""))
@@ -101,23 +101,23 @@ def declared_by(owner: str) -> tuple[Declared, ...]:
 
 
 def is_known(owner: str) -> bool:
-    """Is there a section of that name?"""
+    """Return whether there is a section of that name."""
     return owner in _sections("declared.schema")
 
 
 def stands_for(path: str, name: str) -> dict[str, str]:
-    """What the words in brackets of a path are in a name of that path: ``<id>`` -> ``odom0``."""
+    """Return what the words in brackets of a path are in a name of that path: ``<id>`` -> ``odom0``."""
     return dict(zip(_WILD.findall(path), _fillings(path, name) or (), strict=False))
 
 
 def says_something(path: str) -> bool:
-    """Has a path a word of its own?"""
+    """Return whether a path has a word of its own."""
     return _EVERY.fullmatch(path) is None
 
 
 @lru_cache
 def _sections(name: str) -> Mapping[str, str]:
-    """The text of every section by its name; nothing is read of it yet."""
+    """Return the unparsed text of every section by its name."""
     _, *parts = own_text(__file__, name).split("\n[")
     return {part[: part.index("]")]: part for part in parts}
 
@@ -161,7 +161,7 @@ class Base(NamedTuple):
 
 @cache
 def plugin_bases() -> Mapping[str, Base]:
-    """Every base by its name."""
+    """Return every base by its name."""
     _, *parts = own_text(__file__, "plugin_classes.schema").split("\n[")
     return {part[: part.index("]")]: _base(part) for part in parts}
 
@@ -179,11 +179,11 @@ def _releases(word: str) -> str:
 
 @cache
 def packages() -> frozenset[str]:
-    """The packages of which all classes are known."""
+    """Return the packages of which all classes are known."""
     known = (it for base in plugin_bases().values() for it in base.classes)
     return frozenset(canonical(it).partition("::")[0] for it in known)
 
 
 def canonical(name: str) -> str:
-    """A class with its scopes written alike: older plugin descriptions have a slash."""
+    """Return a class with its scopes written alike: older plugin descriptions have a slash."""
     return name.strip().replace("/", "::")

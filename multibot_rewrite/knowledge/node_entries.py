@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Entries of nodes -> what is known of their endpoints, frames, transforms and claims. Names and types
-are checked where they stand."""
+"""Entries of nodes -> what is known of their endpoints, frames, transforms and claims. Names and
+types are checked where they are written."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def read_node(
     parts: Mapping[str, tuple[Endpoint, ...]],
     params: Iterable[Param],
 ) -> NodeFacts:
-    """The facts of an entry; raises UsageError with file and line."""
+    """Return the facts of an entry; raises UsageError with file and line."""
     check_name(item, name)
     frames = tuple(_frames(keys, params))
     sends = tuple(_sends(keys, frames))
@@ -89,8 +89,8 @@ def read_node(
 
 
 def _frames(keys: Mapping[str, YamlItem], params: Iterable[Param]) -> Iterator[FrameParameter]:
-    """The parameters that hold frames, with their defaults: those under ``params``, where ``frames``
-    says nothing else of them."""
+    """Yield the parameters that hold frames, with their defaults: those under ``params``, unless
+    ``frames`` has others."""
     said = table_of(keys, "frames")
     own = (it for it in params if it.kind == "frame" and it.path not in said and has_default(it))
     yield from (FrameParameter(it.path, it.default, it.releases, it.source) for it in own)
@@ -107,8 +107,8 @@ def _frames(keys: Mapping[str, YamlItem], params: Iterable[Param]) -> Iterator[F
 def _sends(
     keys: Mapping[str, YamlItem], frames: Iterable[FrameParameter]
 ) -> Iterator[SentTransform]:
-    """The transforms that a node publishes, as the parameters that hold their frames, or what its code
-    makes of parameters."""
+    """Yield the transforms that a node publishes, as the parameters that hold their frames, or what
+    its code makes of parameters."""
     known = {frame.parameter: frame.parameter for frame in frames}
     each = (
         (parent, it) for parent, item in table_of(keys, "sends").items() for it in variants(item)
@@ -129,7 +129,7 @@ def _sends(
 
 
 def read_claims(keys: Mapping[str, YamlItem]) -> Iterator[Claim]:
-    """The interfaces under ``claims``: ``{command: TEMPLATE}`` or ``{state: TEMPLATE}``."""
+    """Yield the interfaces under ``claims``: ``{command: TEMPLATE}`` or ``{state: TEMPLATE}``."""
     for item in entries_of(keys, "claims"):
         claim = table(item, "a claim", (*CLAIM_KINDS, "if", "releases"))
         kinds = [it for it in CLAIM_KINDS if it in claim]
@@ -142,8 +142,8 @@ def read_claims(keys: Mapping[str, YamlItem]) -> Iterator[Claim]:
 def taken_over(
     keys: Mapping[str, YamlItem], parts: Mapping[str, tuple[Endpoint, ...]]
 ) -> Iterator[Endpoint]:
-    """The endpoints of the parts that an entry names under ``with``, and those of the life cycle in
-    the releases of ``unmanaged``."""
+    """Yield the endpoints of the parts that an entry names under ``with``, and those of the life
+    cycle in the releases of ``unmanaged``."""
     for entry in entries_of(keys, "with"):
         yield from known_word(entry, "part", parts)
     if "unmanaged" in keys:
@@ -169,7 +169,7 @@ _GIVES = {"msg": "a topic", "srv": "a service", "action": "an action"}
 
 
 def endpoints_of(keys: Mapping[str, YamlItem]) -> Iterator[Endpoint]:
-    """The endpoints of a node or part; raises UsageError at the first mistake."""
+    """Yield the endpoints of a node or part; raises UsageError at the first mistake."""
     for role in ROLES:
         for name, item in table_of(keys, role).items():
             found = [_endpoint(role, name, it) for it in variants(item)]
@@ -212,7 +212,7 @@ def _kind(role: str, type_: str) -> str:
 
 
 def checked_endpoint(item: YamlItem, endpoint: Endpoint) -> Endpoint:
-    """The endpoint, if its name and types are valid; no rule reaches a name made at run time."""
+    """Return the endpoint if its name and types are valid; no rule renames one made at run time."""
     for name in filter(None, (endpoint.name, endpoint.remapped)):
         text = _MADE.sub("x", name) if "<" in name else name
         fault = check_name_in_code(text)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files of nodes and stacks -> records; errors name file and line."""
+"""Files of nodes and node sets -> records; errors name file and line."""
 
 from __future__ import annotations
 
@@ -57,13 +57,12 @@ NO_GUESSES: Mapping[str, tuple[str, ...]] = {}
 
 
 class Stack(NamedTuple):
-    """Nodes that are started together; ``include`` are stacks that it contains, ``releases`` the
+    """Nodes that are started together; ``include`` are node sets that it contains, ``releases`` the
     words for the releases that have it.
 
     ``container`` is the node among them that all others are loaded into as components, if any.
-    ``remaps`` are a node of it or of an included stack, a name of the node, and what that is remapped
-    to here.
-    """
+    ``remaps`` are a node of it or of an included node set, a name of the node, and what that is
+    remapped to here."""
 
     about: str
     include: tuple[str, ...]
@@ -74,13 +73,12 @@ class Stack(NamedTuple):
 
 
 class NodeLibrary(NamedTuple):
-    """Known parts (endpoints that many nodes have), nodes and stacks.
+    """Known parts (endpoints that many nodes have), nodes and node sets.
 
     It is of one release, or of all of them, with ``release`` empty. ``elsewhere`` says of nodes and
-    stacks that this release lacks which releases have them. ``parameters`` are those of nodes, by the
-    last name of each, in all releases; ``guesses`` the last words of other parameters by the kind that
-    they suggest, ``sent`` frames that nodes send.
-    """
+    node sets that this release lacks which releases have them. ``parameters`` are those of nodes,
+    by the last name of each, in all releases; ``guesses`` the last words of other parameters by the
+    kind that they suggest, ``sent`` frames that nodes send."""
 
     parts: Mapping[str, tuple[Endpoint, ...]]
     nodes: Mapping[str, NodeFacts]
@@ -93,11 +91,9 @@ class NodeLibrary(NamedTuple):
 
 
 def stack_of(library: NodeLibrary, name: str) -> tuple[NodeFacts, ...]:
-    """The nodes of a stack, each once; nodes of included stacks come first.
-
-    The name of a node is a stack of that node alone. Raises UsageError for other names, and for
-    what the library's release lacks.
-    """
+    """Return the nodes of a node set, each once; nodes of included node sets come first. The name
+    of a node is a node set of that node alone. Raises UsageError for other names, and for what the
+    library's release lacks."""
     if name in library.elsewhere:
         hint = "name one of these releases, or leave the node set out"
         has = f"it is in {library.elsewhere[name]}"
@@ -118,7 +114,7 @@ def stack_of(library: NodeLibrary, name: str) -> tuple[NodeFacts, ...]:
 
 
 def with_included(library: NodeLibrary, name: str) -> Iterator[str]:
-    """The names of a stack and of all stacks that it includes; a node is no stack."""
+    """Yield the names of a node set and of all that it includes; a node is no node set."""
     yield name
     for other in library.stacks[name].include if name in library.stacks else ():
         yield from with_included(library, other)
@@ -134,7 +130,7 @@ def _gathered(library: NodeLibrary, name: str, above: tuple[str, ...]) -> Iterat
 
 
 def _in_stack(node: NodeFacts, stack: Stack) -> NodeFacts:
-    """The node under the rules of the stack, as a component if the stack has a container for it."""
+    """Return the node under a node set's rules, as a component if the node set has a container."""
     rules = {given: target for name, given, target in stack.remaps if name == node.name}
     ends = (it._replace(remapped=rules.get(it.name, it.remapped)) for it in node.endpoints)
     node = node._replace(endpoints=tuple(ends)) if rules else node
@@ -143,11 +139,9 @@ def _in_stack(node: NodeFacts, stack: Stack) -> NodeFacts:
 
 
 def extend(library: NodeLibrary, text: str, file: str, own: bool = False) -> NodeLibrary:
-    """``library`` with what a YAML text adds or changes.
-
-    What an entry says of a known node's endpoints replaces what was known, what it says of its
-    parameters is added. ``own`` says that the text is of this package.
-    """
+    """Return ``library`` with what a YAML text adds or changes. An entry replaces what was known of
+    a node's endpoints, and adds to its parameters. ``own`` means that the text is of this
+    package."""
     top = table(read_yaml_with_lines(text, file, own), "the file", FILE_KEYS)
     new = {key: table(top[key], key) for key in ("parts", "nodes", "stacks") if key in top}
     given_parts = {
@@ -222,7 +216,7 @@ def _stack(item: YamlItem, library: NodeLibrary, stacks: Iterable[str]) -> Stack
 
 
 def _placed(item: YamlItem, library: NodeLibrary) -> NodeFacts:
-    """A node with the changes that a stack makes to it."""
+    """Return a node with the changes that a node set makes to it."""
     if isinstance(item.value, str):
         return known_word(item, "node", library.nodes)
     keys = table(item, "an entry", ENTRY_KEYS)
@@ -249,7 +243,7 @@ def _placed(item: YamlItem, library: NodeLibrary) -> NodeFacts:
 
 
 def _usual(values: Mapping[str, YamlItem]) -> Iterator[tuple[str, str | float]]:
-    """The parameters that the stack's own file gives a node."""
+    """Yield the parameters that the node set's own file gives a node."""
     for name, item in values.items():
         if not isinstance(item.value, str | float | int):
             wrong(item, f"parameter {name} is no word or number")
@@ -262,7 +256,7 @@ def _usual(values: Mapping[str, YamlItem]) -> Iterator[tuple[str, str | float]]:
 
 
 def _named(endpoints: tuple[Endpoint, ...], keys: Mapping[str, YamlItem]) -> tuple[Endpoint, ...]:
-    """The endpoints with the names that parameters set."""
+    """Return the endpoints with the names that parameters set."""
     for given, item in table_of(keys, "names").items():
         if not any(_has(endpoint, given) for endpoint in endpoints):
             wrong(item, unknown("name", given, {endpoint.name for endpoint in endpoints}))
@@ -282,14 +276,14 @@ def _named(endpoints: tuple[Endpoint, ...], keys: Mapping[str, YamlItem]) -> tup
 
 
 def _has(endpoint: Endpoint, given: str) -> bool:
-    """Is this its name, or a run-time part of its name?"""
+    """Return whether this is its name, or a run-time part of its name."""
     return given in endpoint.name if given.startswith("<") else given == endpoint.name
 
 
 def _remapped(
     endpoints: tuple[Endpoint, ...], keys: Mapping[str, YamlItem]
 ) -> tuple[Endpoint, ...]:
-    """The endpoints with the remap rules of the usual launch file."""
+    """Return the endpoints with the remap rules of the usual launch file."""
     for given, item in table_of(keys, "remaps").items():
         _check_rule(item, given, endpoints)
         target = word(item, f"remaps {given}")

@@ -34,7 +34,7 @@ class Package(NamedTuple):
 
 @cache
 def packages() -> Mapping[str, Package]:
-    """Every package of the table."""
+    """Return every package of the table."""
     found: dict[str, Package] = {}
     rows: dict[str, Versions] = {}
     for line in own_text(__file__, "packages.schema").splitlines():
@@ -49,14 +49,14 @@ def packages() -> Mapping[str, Package]:
 
 
 def number(version: str) -> tuple[int, ...]:
-    """A version as it is compared."""
+    """Return a version in a form that can be compared."""
     return tuple(int(it) for it in version.split(".") if it.isdecimal())
 
 
 @lru_cache(maxsize=1024)  # so many facts, so few words
 def by_version(words: str) -> str:
-    """Release words in which ``PACKAGE VERSION+`` stands for the releases that have this version, on
-    condition of it where they came with an earlier one."""
+    """Return release words where ``PACKAGE VERSION+`` stands for the releases with this version,
+    with it as a condition where they came with an earlier one."""
     return ", ".join(it for term in words.split(",") for it in _terms(term.strip()))
 
 
@@ -82,5 +82,5 @@ def older(name: str, release: str) -> str:
 
 
 def versions_of(name: str) -> Mapping[str, Versions]:
-    """The versions of a package by release; none of one that the table lacks."""
+    """Return the versions of a package by release; empty for one that the table lacks."""
     return packages()[name].versions if name in packages() else {}

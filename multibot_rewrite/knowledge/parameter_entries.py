@@ -50,7 +50,7 @@ PARAM_KEYS = ("kind", "default", "absolute", "deprecated", "own", "instead", "no
 def read_parameters(
     name: str, keys: Mapping[str, YamlItem], old: NodeParameters | None
 ) -> NodeParameters:
-    """What an entry says of a node's parameters, added to what is known of it; raises UsageError."""
+    """Return an entry's parameters, added to what is known of the node; raises UsageError."""
     if old is None:
         old = NodeParameters(name.rpartition("/")[2], "")
     absolute = releases_of(keys, "absolute")
@@ -84,7 +84,7 @@ def read_parameters(
 
 
 def has_default(param: Param) -> bool:
-    """Does the parameter have a default, and a path without placeholders?"""
+    """Return whether the parameter has a default, and a path without placeholders."""
     return bool(param.default or param.kind in PREFIX_KINDS) and "<" not in param.path
 
 
@@ -111,7 +111,7 @@ def _param(path: str, item: YamlItem, absolute: str) -> Param:
 
 
 def read_guesses(keys: Mapping[str, YamlItem]) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """Kinds with the last words of paths that suggest them."""
+    """Yield kinds with the last words of paths that suggest them."""
     given = table_of(keys, "guesses")
     for kind, item in given.items():
         yield one_of(item, "kind", kind, KINDS), words_of(given, kind)

@@ -38,30 +38,28 @@ class KnownNodes(NamedTuple):
 
 @lru_cache
 def built_in_nodes(release: str) -> KnownNodes:
-    """The nodes that this package knows, with the defaults of a release."""
+    """Return the nodes that this package knows, with the defaults of a release."""
     return _known(every_release(), release)
 
 
 def load_known_nodes(path: str, release: str) -> KnownNodes:
-    """The built-in nodes, and those that a user's file of nodes adds or changes.
-
-    Raises UsageError, with file and line, for whatever is wrong in it.
-    """
+    """Return the built-in nodes, and those that a user's file of nodes adds or changes. Raises
+    UsageError, with file and line, for whatever is wrong in it."""
     return _known(with_file(path), release) if path else built_in_nodes(release)
 
 
 def is_absolute(param: Param, release: str) -> bool:
-    """Is a relative topic in it outside of the robot's namespace in this release?"""
+    """Return whether a relative topic in it is outside the robot's namespace in this release."""
     return bool(param.absolute) and has_release(param.absolute, release)
 
 
 def is_below_costmap(plugin: str) -> bool:
-    """Is it the one filter that resolves its topics below the costmap in every release?"""
+    """Return whether it is the one filter with topics below the costmap in every release."""
     return "BinaryFilter" in plugin
 
 
 def is_called(param: Param, name: str) -> bool:
-    """May a parameter of this dotted name be the known one?"""
+    """Return whether a parameter of this dotted name may be the known one."""
     own, words = param.path.split("."), name.split(".")
     return len(own) == len(words) and all(
         a in (b, "*") or a.startswith("<") for a, b in zip(own, words, strict=True)
@@ -69,7 +67,7 @@ def is_called(param: Param, name: str) -> bool:
 
 
 def guess(known: KnownNodes, path: str) -> str:
-    """The kind that the last word of a path suggests; empty for none."""
+    """Return the kind that the last word of a path suggests; empty for none."""
     found = known.guessing.fullmatch(path, path.rfind(".") + 1)
     return (found.lastgroup or "") if found else ""
 
@@ -94,8 +92,8 @@ def _known(library: NodeLibrary, release: str) -> KnownNodes:
 
 
 def _node(facts: NodeParameters, release: str) -> NodeParameters:
-    """A node in a release. What this lacks is known as the last had it that did: where a file sets it,
-    it is for a release that has it."""
+    """Return a node in a release. What this lacks is kept as the last release with it had it: a
+    file that sets it is for such a release."""
     params: dict[str, Param] = {}
     for it in facts.forms:
         if it.path not in params or not has_release(params[it.path].releases, release):
@@ -107,8 +105,8 @@ def _node(facts: NodeParameters, release: str) -> NodeParameters:
 
 
 def _anywhere(nodes: Iterable[NodeParameters], guessing: re.Pattern[str]) -> Iterator[Param]:
-    """Parameters that likely mean the same in an unknown node: several nodes have them with one
-    meaning, or their name suggests it."""
+    """Yield parameters that likely mean the same in an unknown node: several nodes have them with
+    one meaning, or their name suggests it."""
     every = (param for node in nodes for param in node.params.values())
     plain = (it for it in every if "*" not in it.path and "<" not in it.path.replace(_INDEX, ""))
     found = lists_by_key((it.path, it) for it in plain)

@@ -34,8 +34,8 @@ class Program(NamedTuple):
 
 
 def program_of(node: NodeFacts, release: str) -> Program | None:
-    """The program of a node in a release; None where no package is known, and for one that is only a
-    component."""
+    """Return the program of a node in a release; None if no package is known, and for one that is
+    only a component."""
     known = node.kind
     if known == CONTAINER:
         return container_of(release)
@@ -45,7 +45,7 @@ def program_of(node: NodeFacts, release: str) -> Program | None:
 
 
 def started_as(node: NodeFacts, release: str) -> Program | None:
-    """The same, and the class of one that is only a component: its executable is empty."""
+    """Return the program, or the class of what is only a component, with an empty executable."""
     alone = program_of(node, release)
     if alone is None and node.package and node.component:
         return Program(node.package, "", node.component)
@@ -53,14 +53,14 @@ def started_as(node: NodeFacts, release: str) -> Program | None:
 
 
 def known_program(name: str, release: str) -> Program:
-    """The program of a node of ``NAV2`` that the release has."""
+    """Return the program of a node of ``NAV2`` that the release has."""
     program = program_of(built_in(release).nodes[name], release)
     assert program is not None
     return program
 
 
 def runs(node: NodeFacts, program: str) -> bool:
-    """Is the node what ``package/executable`` or ``package/class`` runs?"""
+    """Return whether the node is what ``package/executable`` or ``package/class`` runs."""
     own = (*node.programs, node.component) if node.component else node.programs
     if not own:
         return False
@@ -68,7 +68,7 @@ def runs(node: NodeFacts, program: str) -> bool:
 
 
 def container_of(release: str) -> Program:
-    """The program of a container in a release."""
+    """Return the program of a container in a release."""
     if has_release("lyrical+", release):
         words = ("--isolated", "--executor-type", "single-threaded")
         return Program("rclcpp_components", CONTAINER, words=words)
@@ -76,5 +76,5 @@ def container_of(release: str) -> Program:
 
 
 def is_unmanaged(node: NodeFacts, release: str) -> bool:
-    """Has it a life cycle that no lifecycle manager of Nav2 takes care of?"""
+    """Return whether it has a life cycle that no lifecycle manager of Nav2 takes care of."""
     return bool(node.unmanaged) and has_release(node.unmanaged, release)

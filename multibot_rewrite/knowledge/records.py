@@ -19,11 +19,10 @@ class Endpoint(NamedTuple):
     """A topic, service or action in a node's code, before any remap rule: what its entry says of it
     (``README.md``), the ``if`` as ``condition``.
 
-    ``name`` is relative, absolute or private (``~/x``). ``remapped``: the table's rule must lead there,
-    since only the first match counts. ``named_from`` is what its entry calls it, if a stack gives it
-    another name. ``own`` is true where an argument of the robot's description makes the name: it is the
-    robot's already.
-    """
+    ``name`` is relative, absolute or private (``~/x``). ``remapped``: the table's rule must lead
+    there, since only the first match counts. ``named_from`` is what its entry calls it, if a node
+    set gives it another name. ``own`` is true where an argument of the robot's description makes
+    the name: it is the robot's already."""
 
     kind: str
     role: str
@@ -170,15 +169,15 @@ class NodeFacts(NamedTuple):
 
     A name with slashes is a node in its own namespace below the robot's, such as a costmap. No rule
     reaches ``frames`` and ``fixed``. ``known`` is its name in its entry if it has another one.
-    ``origin`` is where a robot's own files name it, or its stack. ``interface`` is the NoDL file
+    ``origin`` is where a robot's own files name it, or its node set. ``interface`` is the NoDL file
     that its endpoints are from, empty for the library. ``container`` is the node whose process it
     is loaded into as a component. ``of_hardware`` is true for a node that a hardware plugin makes
     in the process of the controller manager. ``unmanaged`` are the releases in which it has a life
-    cycle and no manager of Nav2 knows it. ``usual`` are the parameters of the stack's own file, for
-    a robot none of whose files has any. ``prefix_switch`` is a parameter: unless it is false, the
-    node puts its namespace before its frames. ``is_known`` is false for a node that nobody knows:
-    its ends are those that its remap rules name. ``untold`` is what its source does not tell.
-    """
+    cycle and no manager of Nav2 knows it. ``usual`` are the parameters of the node set's own file,
+    for a robot none of whose files has any. ``prefix_switch`` is a parameter: unless it is false,
+    the node puts its namespace before its frames. ``is_known`` is false for a node that nobody
+    knows: its ends are those that its remap rules name. ``untold`` is what its source does not
+    tell."""
 
     name: str
     package: str

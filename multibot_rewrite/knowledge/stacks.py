@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Known nodes and stacks of nodes of a release, from ``nodes/*.yaml``, ``stacks.yaml`` and files of
+"""Known nodes and node sets of a release, from ``nodes/*.yaml``, ``stacks.yaml`` and files of
 users: what a release lacks is left out, what came late is conditional."""
 
 from __future__ import annotations
@@ -23,36 +23,32 @@ PARTS, STACKS = "parts.yaml", "stacks.yaml"
 
 
 def load_nodes(release: str) -> dict[str, NodeFacts]:
-    """Every built-in node of a release by name."""
+    """Return every built-in node of a release by name."""
     return dict(built_in(release).nodes)
 
 
 @lru_cache
 def load_stack(name: str, release: str) -> tuple[NodeFacts, ...]:
-    """The nodes of a built-in stack, or a built-in node.
-
-    Raises UsageError for an unknown name, and for a stack that the release lacks.
-    """
+    """Return the nodes of a built-in node set, or a built-in node. Raises UsageError for an unknown
+    name, and for a node set that the release lacks."""
     return stack_of(built_in(release), name)
 
 
 @lru_cache
 def built_in(release: str) -> NodeLibrary:
-    """The nodes and stacks of a release that this package knows."""
+    """Return the nodes and node sets of a release that this package knows."""
     return in_release(every_release(), release)
 
 
 def user_stack(path: str, release: str) -> NodeLibrary:
-    """The built-in nodes and stacks and those of a file; ``stack_of`` selects a stack.
-
-    A built-in node that the file changes is changed in the file's own stacks only. Raises UsageError
-    with file and line for errors in the file.
-    """
+    """Return the built-in nodes and node sets and those of a file; ``stack_of`` selects one. A
+    built-in node that the file changes is changed in the file's own node sets only. Raises
+    UsageError with file and line for errors in the file."""
     return _extended_in_release(_text_of(path), path, release)
 
 
 def with_file(path: str) -> NodeLibrary:
-    """The built-in nodes and stacks of all releases and those of a file; raises as ``user_stack``."""
+    """Return the built-in library of all releases with that of a file; raises as ``user_stack``."""
     return _extended(_text_of(path), path)
 
 
@@ -78,10 +74,8 @@ def _text_of(path: str) -> str:
 
 
 def is_apart(node: str, release: str) -> bool:
-    """Does this node keep its name in every layout (``NodeFacts.apart``), as far as built-in nodes say?
-
-    What is in the namespace of such a node, as the helpers of costmaps, goes with it.
-    """
+    """Return whether a node keeps its name in every layout (``NodeFacts.apart``), by the built-in
+    nodes. What is in the namespace of such a node, as the helpers of costmaps, goes with it."""
     above = node.rpartition("/")[0]
     known = apart_nodes(release)
     return any(_ends(node, it) or _ends(above, it.rpartition("/")[0]) for it in known)
@@ -93,13 +87,13 @@ def _ends(node: str, with_: str) -> bool:
 
 @lru_cache
 def apart_nodes(release: str) -> frozenset[str]:
-    """The built-in nodes that keep their names in every layout."""
+    """Return the built-in nodes that keep their names in every layout."""
     return frozenset(it.name for it in built_in(release).nodes.values() if it.apart)
 
 
 @lru_cache
 def every_release() -> NodeLibrary:
-    """The nodes and stacks that this package knows, of all releases."""
+    """Return the nodes and node sets that this package knows, of all releases."""
     library = NodeLibrary({}, {}, {}, sent=frozenset(SENT_FRAMES))
     folder = os.path.join(HERE, "nodes")
     names = sorted(os.listdir(folder), key=lambda it: (it != PARTS, it))
@@ -118,11 +112,8 @@ def older_node(name: str, release: str, type_: str = "") -> str:
 
 
 def in_release(library: NodeLibrary, release: str) -> NodeLibrary:
-    """What of ``library`` is in ``release``.
-
-    What came into the release with a later version of its package has that as its condition, so an
-    installed older version lacks nothing.
-    """
+    """Return what of ``library`` is in ``release``. What came into the release with a later version
+    of its package has that as its condition, so an installed older version lacks nothing."""
     # Nodes and stacks that the release lacks, and the releases that have them.
     elsewhere = {
         name: ", ".join(releases_with(node.releases))
@@ -147,7 +138,7 @@ def in_release(library: NodeLibrary, release: str) -> NodeLibrary:
 
 
 def _has_stack(library: NodeLibrary, name: str, release: str) -> bool:
-    """Is a node of the stack in the release? A stack may have none in any."""
+    """Return whether a node of the node set is in the release. A node set may have none in any."""
     stack = library.stacks[name]
     if not has_release(stack.releases, release):
         return False
@@ -193,7 +184,7 @@ def _endpoint(it: Endpoint, package: str, release: str) -> Endpoint:
 
 
 def _condition(when: str, words: str, package: str, release: str) -> str:
-    """The condition of a fact, with the version that it came with in this release."""
+    """Return the condition of a fact, with the version that it came with in this release."""
     version = since_version(words, release) if words else ""
     newer = f"{VERSION}: {package or 'its package'} {version}"
     return joined(when, newer) if version else when

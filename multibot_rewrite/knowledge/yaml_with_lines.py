@@ -31,10 +31,8 @@ class YamlItem(NamedTuple):
 
 
 def read_yaml_with_lines(text: str, file: str, own: bool = False) -> YamlItem:
-    """The one document of a YAML text; raises UsageError naming ``file`` and the line.
-
-    ``own`` says that it is of this package, so that it needs no bounds.
-    """
+    """Return the one document of a YAML text; raises UsageError naming ``file`` and the line.
+    ``own`` says that it is of this package, so that it needs no limits."""
     try:
         node = compose_own_yaml(text) if own else compose_yaml(text, file)
         return YamlItem(f"{file}:1", None) if node is None else _item(node, f"{file}:1", file)
@@ -73,7 +71,7 @@ def _mapping(node: yaml.Node, file: str) -> dict[str, YamlItem]:
 
 
 def table(item: YamlItem, what: str, allowed: Sequence[str] = ()) -> Mapping[str, YamlItem]:
-    """The keys of a mapping, or an empty one without a value; keys not ``allowed`` are an error."""
+    """Return the keys of a mapping, empty without a value; keys not ``allowed`` are an error."""
     if item.value is None:
         return {}
     if not isinstance(item.value, Mapping):
@@ -85,24 +83,24 @@ def table(item: YamlItem, what: str, allowed: Sequence[str] = ()) -> Mapping[str
 
 
 def word(item: YamlItem, what: str) -> str:
-    """A text; it may be empty."""
+    """Return a text; it may be empty."""
     if not isinstance(item.value, str):
         wrong(item, f"{what} is {_shape(item)}; write a text, in quotes if needed")
     return item.value
 
 
 def table_of(keys: Mapping[str, YamlItem], key: str) -> Mapping[str, YamlItem]:
-    """The mapping of a key, empty if it is missing."""
+    """Return the mapping of a key, empty if it is missing."""
     return table(keys[key], key) if key in keys else {}
 
 
 def entries_of(keys: Mapping[str, YamlItem], key: str) -> tuple[YamlItem, ...]:
-    """The list of a key, empty if it is missing; a single word is a list of one."""
+    """Return the list of a key, empty if it is missing; a single word is a list of one."""
     return entries(keys[key], key) if key in keys else ()
 
 
 def entries(item: YamlItem, what: str) -> tuple[YamlItem, ...]:
-    """The entries of a list; a single word is a list of one."""
+    """Return the entries of a list; a single word is a list of one."""
     if isinstance(item.value, str):
         return (item,)
     if not isinstance(item.value, tuple):
@@ -111,17 +109,17 @@ def entries(item: YamlItem, what: str) -> tuple[YamlItem, ...]:
 
 
 def words_of(keys: Mapping[str, YamlItem], key: str) -> tuple[str, ...]:
-    """The words listed by a key, empty if it is missing."""
+    """Return the words listed by a key, empty if it is missing."""
     return tuple(word(entry, key) for entry in entries_of(keys, key)) if key in keys else ()
 
 
 def word_of(keys: Mapping[str, YamlItem], key: str, otherwise: str = "") -> str:
-    """The text of a key, ``otherwise`` if it is missing."""
+    """Return the text of a key, ``otherwise`` if it is missing."""
     return word(keys[key], key) if key in keys else otherwise
 
 
 def flag_of(keys: Mapping[str, YamlItem], key: str, otherwise: bool = False) -> bool:
-    """True or false as a key says, ``otherwise`` if it is missing."""
+    """Return True or False as a key has it, ``otherwise`` if it is missing."""
     if key not in keys:
         return otherwise
     value = keys[key].value
@@ -131,7 +129,7 @@ def flag_of(keys: Mapping[str, YamlItem], key: str, otherwise: bool = False) -> 
 
 
 def known_word(item: YamlItem, what: str, known: Mapping[str, Known]) -> Known:
-    """What a word stands for; one that is not known is an error."""
+    """Return what a word stands for; an unknown one is an error."""
     name = word(item, what)
     if name not in known:
         wrong(item, unknown(what, name, known))
@@ -139,7 +137,7 @@ def known_word(item: YamlItem, what: str, known: Mapping[str, Known]) -> Known:
 
 
 def one_of(item: YamlItem, what: str, value: str, allowed: Sequence[str]) -> str:
-    """The value, which has to be one of those."""
+    """Return the value, which has to be one of those allowed."""
     if value not in allowed:
         wrong(item, unknown(what, value, allowed))
     return value
@@ -151,7 +149,7 @@ def wrong(item: YamlItem, message: str) -> NoReturn:
 
 
 def unknown(what: str, name: str, known: Iterable[str], more: Iterable[str] = ()) -> str:
-    """That ``name`` is not known, with the nearest of all and the list of ``known``."""
+    """Return the message that ``name`` is unknown, with the nearest and the list of ``known``."""
     known = sorted(known)
     near = did_you_mean_one_of(name, [*known, *more])
     return f"{what} {name!r} is not known; {near}{near and ' '}known: {', '.join(known) or 'none'}"
@@ -175,7 +173,7 @@ _SOURCE = lazy_compile(r"[\w.-]+/[\w.-]+@[\w./+-]+ [^\s:]+(?::[0-9]+)?")
 
 
 def releases_of(keys: Mapping[str, YamlItem], key: str = RELEASES_KEY) -> str:
-    """The release words of a key, empty for all releases."""
+    """Return the release words of a key, empty for all releases."""
     words = by_version(word_of(keys, key))
     if words and not is_release_words(words):
         for name in _WORD.findall(words):
@@ -189,7 +187,7 @@ def releases_of(keys: Mapping[str, YamlItem], key: str = RELEASES_KEY) -> str:
 
 
 def source_of(keys: Mapping[str, YamlItem]) -> tuple[str, ...]:
-    """The places where a fact can be read: ``OWNER/NAME@TAG PATH[:LINE]``, one or a list."""
+    """Return the places where a fact can be read: ``OWNER/NAME@TAG PATH[:LINE]``, one or a list."""
     found = words_of(keys, SOURCE_KEY)
     for text in found:
         if not _SOURCE.fullmatch(text):
@@ -199,12 +197,12 @@ def source_of(keys: Mapping[str, YamlItem]) -> tuple[str, ...]:
 
 
 def variants(item: YamlItem) -> tuple[YamlItem, ...]:
-    """A fact, or a list of what it is in one release and another."""
+    """Return a fact, or a list of what it is in one release and another, as a list."""
     return item.value if isinstance(item.value, tuple) else (item,)
 
 
 def check_apart(item: YamlItem, what: str, words: Sequence[str]) -> None:
-    """A fact has a variant, and no two of them hold in one release."""
+    """Check that a fact has a variant, and no two of them hold in one release."""
     if not words:
         wrong(item, f"{what} is an empty list; write what it is")
     for release in RELEASES if len(words) > 1 else ():
@@ -213,7 +211,7 @@ def check_apart(item: YamlItem, what: str, words: Sequence[str]) -> None:
 
 
 def text_and_words(item: YamlItem, what: str, key: str) -> Mapping[str, YamlItem]:
-    """The keys of a value that is a text alone, which is its ``key``, or a mapping with it."""
+    """Return the keys of a mapping, or of a text alone, which is its ``key``."""
     if not isinstance(item.value, Mapping):
         return {key: item._replace(value=word(item, what))}
     found = table(item, what, (key, *FACT_KEYS))
@@ -223,12 +221,12 @@ def text_and_words(item: YamlItem, what: str, key: str) -> Mapping[str, YamlItem
 
 
 def condition_of(keys: Mapping[str, YamlItem], key: str = "if") -> str:
-    """What ``if`` or ``when`` says; a text that is no condition is an error at its line."""
+    """Return the condition under ``if`` or ``when``; another text is an error at its line."""
     return checked_condition(keys[key], word_of(keys, key)) if key in keys else ""
 
 
 def checked_condition(item: YamlItem, text: str) -> str:
-    """The text, if it is a condition; else an error at the line of the item."""
+    """Return the text, if it is a condition; otherwise raise an error at the line of the item."""
     try:
         parse_condition(text)
     except UsageError as error:

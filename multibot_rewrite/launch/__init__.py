@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Launch files with a fleet file: substitutions, and actions for each robot.
 
-``load_fleet`` is enough for plain launch scripts and does not need launch. This room is for values that
-are known only while a launch file runs, such as a LaunchConfiguration; ``launch.frontend`` offers it to
-XML and YAML. launch and launch_ros come through ``launch.door``, when needed. A robot or fleet that is
-not given is that of the enclosing group (``each_robot``). Files for nodes are in a folder that is
-removed at the end of the launch. Source: launch, launch_ros jazzy.
-"""
+``load_fleet`` is enough for plain launch scripts and does not need launch. This package is for
+values that are known only while a launch file runs, such as a LaunchConfiguration;
+``launch.frontend`` offers it to XML and YAML. launch and launch_ros come through ``launch.door``,
+when needed. A robot or fleet that is not given is that of the enclosing group (``each_robot``).
+Files for nodes are in a folder that is removed at the end of the launch. Source: launch, launch_ros
+jazzy."""
 
 from __future__ import annotations
 

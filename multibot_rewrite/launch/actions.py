@@ -44,8 +44,8 @@ FROM_THE_FLEET = ("name", "namespace")
 
 
 def each_robot(fleet: Text, make: Make, robots: Text = "", **action: Any) -> Action:
-    """An action that runs what ``make`` returns for every robot, each robot in its own group: actions,
-    or one.
+    """Return an action that runs what ``make`` returns (an action or several) for every robot, each
+    robot in its own group.
 
     ``robots`` are some robots' names, with commas, or robots in place of those of the file with their
     poses, as Nav2 writes them (``robot1={x: 1.0}; robot2={}``); ``action`` are options such as a
@@ -66,36 +66,32 @@ def each_robot(fleet: Text, make: Make, robots: Text = "", **action: Any) -> Act
 
 
 def node(of_stack: Text = "", **options: Any) -> Action:
-    """A node of a robot's stacks: launch_ros's Node with its program, names, remappings and
+    """Return a node of a robot's node sets: launch_ros's Node with its program, names, remappings and
     parameters.
 
     For a controller it is that of its spawner, with its parameter files as ``-p``; a component is
-    loaded into its container.
-    ``of_stack`` is its name in the stack; ``files`` are parameter files of the fleet, with commas or as
-    a list; ``describe`` adds ``robot_description``; ``robot`` and ``fleet`` say whose it is,
-    ``use_sim_time`` which clock it has. All others are Node's own, and override. Raises
-    UsageError for a name or a namespace, which the fleet has.
-    """
+    loaded into its container. ``of_stack`` is its name in the node set; ``files`` are parameter
+    files of the fleet, with commas or as a list; ``describe`` adds ``robot_description``; ``robot``
+    and ``fleet`` say whose it is, ``use_sim_time`` which clock it has. All others are Node's own,
+    and override. Raises UsageError for a name or a namespace, which the fleet has."""
     return _node("node", node_class(), of_stack, options)
 
 
 def lifecycle_node(of_stack: Text = "", **options: Any) -> Action:
-    """The same as launch_ros's LifecycleNode, for events that change its state."""
+    """Return a node of a robot's node sets as a LifecycleNode, for events that change its state."""
     return _node("lifecycle_node", of_launch_ros("actions").LifecycleNode, of_stack, options)
 
 
 def container(of_stack: Text = "", **options: Any) -> Action:
-    """The same as launch_ros's ComposableNodeContainer.
-
-    It takes the rules and parameter files of all nodes in its process, also of those that its
-    components make, such as costmaps: give it the files of its components, too.
-    """
+    """Return a container of a robot's node sets as launch_ros's ComposableNodeContainer. It takes
+    the rules and parameter files of all nodes in its process, also of those that its components
+    make, such as costmaps: give it the files of its components, too."""
     base = of_launch_ros("actions").ComposableNodeContainer
     return _node("container", base, of_stack, options)
 
 
 def composable_node(of_stack: Text = "", **options: Any) -> Any:
-    """A component: launch_ros's ComposableNode, for containers and LoadComposableNodes."""
+    """Return a component: launch_ros's ComposableNode, for containers and LoadComposableNodes."""
     own, first = _taken("composable_node", of_stack, options)
 
     def made(context: Context) -> dict[str, Any]:
@@ -108,7 +104,7 @@ def composable_node(of_stack: Text = "", **options: Any) -> Any:
 
 
 def spawn(simulator: Text, robot: Text = None, fleet: Text = None, **options: Any) -> Action:
-    """A robot's spawner: ``gz`` for ros_gz_sim, ``classic`` for gazebo_ros; ``options`` of Node."""
+    """Return a robot's spawner: ``gz`` (ros_gz_sim), ``classic`` (gazebo_ros); ``options`` of Node."""
 
     of = RobotRef(robot, fleet)
 
@@ -123,7 +119,7 @@ def spawn(simulator: Text, robot: Text = None, fleet: Text = None, **options: An
 
 
 def place(robot: Text = None, fleet: Text = None, **options: Any) -> Action:
-    """The static transform of a robot's start pose, if one is needed; ``options`` of Node."""
+    """Return the static transform of a robot's start pose, if one is needed; ``options`` of Node."""
     _check_options("place", options)
     of = RobotRef(robot, fleet)
 
@@ -134,12 +130,12 @@ def place(robot: Text = None, fleet: Text = None, **options: Any) -> Action:
 
 
 def node_class() -> Any:
-    """launch_ros's Node."""
+    """Return the class Node of launch_ros."""
     return of_launch_ros("actions").Node
 
 
 def _node(word: str, base: Any, of_stack: Text, options: Mapping[str, Any]) -> Action:
-    """An action of the class ``base`` for a node of a stack."""
+    """Return an action of the class ``base`` for a node of a node set."""
     own, first = _taken(word, of_stack, options)
 
     def made(context: Context) -> later.Made:
@@ -159,7 +155,7 @@ def _node(word: str, base: Any, of_stack: Text, options: Mapping[str, Any]) -> A
 def _taken(
     word: str, of_stack: Text, options: Mapping[str, Any]
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """The options that are ours, and launch_ros's."""
+    """Return the options that are ours, and launch_ros's."""
     _check_options(word, options)
     if not of_stack:
         raise UsageError(f'{word}: which node? Write its name in the node set: {word}("amcl")')
@@ -170,7 +166,7 @@ def _taken(
 
 
 def _check_options(word: str, options: Mapping[str, Any]) -> None:
-    """Raises UsageError for options that the fleet decides."""
+    """Raise UsageError for options that the fleet decides."""
     for it in FROM_THE_FLEET:
         if it in options:
             first = (
@@ -182,11 +178,9 @@ def _check_options(word: str, options: Mapping[str, Any]) -> None:
 def _made(
     context: Context, name: str, own: Mapping[str, Any], options: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """The options with those of the node, or of a controller's spawner, in this launch.
-
+    """Return the options with those of the node, or of a controller's spawner, in this launch.
     Given remappings come first and given parameters last, since rcl applies the first rule that
-    matches and the last value.
-    """
+    matches and the last value."""
     its = robot_of(context, own["of"])
     paths = [node_file_of(context, it, own["of"]) for it in listed(context, own["files"] or "")]
     clock = sim_time(context, its, own[SIM_TIME])
@@ -208,8 +202,8 @@ def _made(
 def _with_program(
     robot: LoadedRobot, name: str, options: Mapping[str, Any], component: bool = False
 ) -> dict[str, Any]:
-    """The options, with the program that the node's stack says where they say none; raises UsageError
-    where neither does. ``component``: it is loaded into a container."""
+    """Return the options, with the program from the node's node set if they name none; raises
+    UsageError without either. ``component``: it is loaded into a container."""
     word = "plugin" if component else "executable"
     if word in options:
         return dict(options)
@@ -222,12 +216,12 @@ def _with_program(
 
 
 def _option_list(options: Mapping[str, Any], word: str) -> list[Any]:
-    """An option that is a list; empty where it is not given."""
+    """Return an option that is a list; empty where it is not given."""
     return [*(options.get(word) or ())]
 
 
 def _loaded(box: str, options: Mapping[str, Any], given: Mapping[str, Any]) -> list[Action]:
-    """A component, loaded into the container that the robot runs; raises UsageError for a program."""
+    """Return a component, loaded into the container that the robot runs; UsageError for a program."""
     if "executable" in given:
         name, stays = options["name"], "or take a node set in which it has a process of its own"
         raise UsageError(f"{name} is a component of {box}: write plugin= for executable=, {stays}")
@@ -241,7 +235,7 @@ def _program(
     of: RobotRef,
     options: Mapping[str, Any],
 ) -> Action:
-    """A program with its arguments; without arguments nothing is started."""
+    """Return a program with its arguments; without arguments nothing is started."""
     given = {key: it for key, it in options.items() if key != SIM_TIME}
 
     def made(context: Context) -> later.Made:
@@ -265,8 +259,8 @@ def own_file(
     values: Mapping[str, Mapping[str, Any]],
     clock: bool | None,
 ) -> list[str]:
-    """The path of a file with what no file of the fleet says of a node, by its full name, and with the
-    clock, if it needs one."""
+    """Return the path of a file with what no file of the fleet sets for a node, by its full name,
+    and with the clock, if it needs one."""
     # Nodes that others make in their process have no values but those for all of it.
     clocks = {} if clock is None else {"/**": {SIM_TIME: clock}}
     sections = clocks | {name: dict(own) for name, own in values.items() if own}
@@ -275,7 +269,7 @@ def own_file(
 
 
 def _group(context: Context, fleet: LoadedFleet, robot: LoadedRobot, make: Make) -> Action:
-    """What a robot runs; launch_ros gives the clock to nodes that are not ours."""
+    """Return what a robot runs; launch_ros gives the clock to nodes that are not ours."""
     actions, before = of_launch("actions"), here(context)
 
     def entering(group: Here) -> Action:

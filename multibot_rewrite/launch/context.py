@@ -52,21 +52,20 @@ Here = tuple[LoadedFleet | None, str | None]
 
 
 def entered(context: Context, group: Here) -> None:
-    """From here on the fleet and the robot are these, also for what events and timers start that are
-    set up now; None for none."""
+    """Set the fleet and the robot from here on, also for events and timers set up now; None for
+    none."""
     _carry(context)
     context.extend_locals(dict(zip((FLEET, ROBOT), group, strict=True)))
 
 
 def here(context: Context) -> Here:
-    """Fleet and robot of the enclosing group."""
+    """Return fleet and robot of the enclosing group."""
     known = context.get_locals_as_dict()
     return known.get(FLEET), known.get(ROBOT)
 
 
 def _carry(context: Context) -> None:
-    """Event handlers that are registered from now on start what they start for the robot that is
-    here."""
+    """Let event handlers that are registered from now on start their actions for the current robot."""
     if _CARRIED in context.get_locals_as_dict():
         return
     context.extend_globals({_CARRIED: True})
@@ -91,18 +90,16 @@ def _handled(handle: Callable[..., Any], group: Here) -> Callable[..., Any]:
 
 
 def _is_of_timers(handler: Any) -> bool:
-    """Is it the one handler that a launch has for all of its timers, which keep locals themselves?"""
+    """Return whether it is the one handler for all timers of a launch, which keep locals."""
     event = of_launch("events").TimerEvent(timer_action=None)
     return type(handler).__name__ == "EventHandler" and bool(handler.matches(event))
 
 
 def fleet_of(context: Context, fleet: Text = None) -> LoadedFleet:
-    """The fleet of a file, for a function of OpaqueFunction; a launch loads each file once.
-
+    """Return the fleet of a file, for a function of OpaqueFunction; a launch loads each file once.
     ``fleet`` may hold substitutions. The launch configurations ``multibot_trust:=true`` and
     ``multibot_distro``, ``multibot_robots`` and ``multibot_count`` are options of ``load_fleet``.
-    Findings go to launch's log. Raises as that.
-    """
+    Findings go to launch's log. Raises as that."""
     enclosing, _ = here(context)
     if fleet is None and enclosing:
         return enclosing
@@ -120,14 +117,14 @@ def fleet_of(context: Context, fleet: Text = None) -> LoadedFleet:
 
 
 def number_of(count: str) -> int:
-    """The number of robots that a launch argument says, 0 for none; raises UsageError."""
+    """Return the number of robots in a launch argument, 0 for none; raises UsageError."""
     if count and not count.isdecimal():
         raise UsageError(f"{COUNT}: {count!r} is no number of robots; write {COUNT}:=20")
     return int(count or 0)
 
 
 def robot_of(context: Context, of: RobotRef = HERE) -> LoadedRobot:
-    """A robot; raises as ``fleet_of``, and UsageError for an unknown robot."""
+    """Return a robot; raises as ``fleet_of``, and UsageError for an unknown robot."""
     _, enclosing = here(context)
     if of.robot is None:
         name = enclosing or _said(context, ROBOT, "robot")
@@ -150,8 +147,8 @@ def file_of(context: Context, file: str, of: RobotRef = HERE) -> str:
 
 
 def node_file_of(context: Context, file: str, of: RobotRef = HERE) -> str:
-    """The same of a robot's parameter file for nodes that are started here: with their full names,
-    and its substitutions, such as ``$(find-pkg-share ...)``, performed."""
+    """Return the path of a robot's parameter file for nodes that are started here: with full node
+    names, and its substitutions, such as ``$(find-pkg-share ...)``, performed."""
     robot = robot_of(context, of)
     text = robot.node_text(file)
     if "$(" in text:
@@ -161,7 +158,7 @@ def node_file_of(context: Context, file: str, of: RobotRef = HERE) -> str:
 
 
 def perform(context: Context, text: Text) -> str:
-    """The value of a text with substitutions in this context."""
+    """Return the value of a text with substitutions in this context."""
     utilities = of_launch("utilities")
     text = os.fspath(text) if isinstance(text, os.PathLike) else text
     parts = utilities.normalize_to_list_of_substitutions(text)
@@ -169,10 +166,8 @@ def perform(context: Context, text: Text) -> str:
 
 
 def sim_time(context: Context, robot: LoadedRobot, told: Text) -> bool | None:
-    """Does a robot's node use the time of the simulator? None if nothing says.
-
-    What is told counts, else the launch argument ``use_sim_time``, else the fleet file.
-    """
+    """Return whether a robot's node uses the time of the simulator, None if nothing tells. What is
+    ``told`` counts first, then the launch argument ``use_sim_time``, then the fleet file."""
     if isinstance(told, bool):
         return told
     text = context.launch_configurations.get(SIM_TIME) if told is None else perform(context, told)
@@ -185,8 +180,8 @@ def sim_time(context: Context, robot: LoadedRobot, told: Text) -> bool | None:
 
 
 def listed(context: Context, names: Text) -> list[str]:
-    """Names or paths separated by commas, or a list; launch joins a list with substitutions into one
-    text."""
+    """Return names or paths from a list or a text with commas; launch joins a list with
+    substitutions into one text."""
     several = not isinstance(names, str) and isinstance(names, Sequence)
     if several and all(isinstance(it, str | os.PathLike) for it in names):
         return [os.fspath(it) for it in names]
@@ -201,7 +196,7 @@ def _said(context: Context, key: str, what: str) -> str:
 
 
 def _of_launch(context: Context, key: str, make: Callable[[], Any]) -> Any:
-    """The value that a launch keeps under ``key`` while it runs."""
+    """Return the value that a launch keeps under ``key`` while it runs."""
     known = context.get_locals_as_dict()
     if key not in known:
         context.extend_globals({key: make()})
@@ -218,7 +213,7 @@ def written(context: Context, robot: LoadedRobot | None, file: str, text: str) -
 
 
 def _folder(context: Context) -> TemporaryDirectory[str]:
-    """A folder that is removed when the launch shuts down, or at the latest with its context."""
+    """Return a folder that is removed when the launch shuts down, at the latest with its context."""
     folder = TemporaryDirectory(prefix="multibot_launch_")
     gone = of_launch("event_handlers").OnShutdown(
         on_shutdown=lambda event, context: folder.cleanup()

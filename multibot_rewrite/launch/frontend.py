@@ -24,7 +24,7 @@ Parsed = tuple[Any, dict[str, Any]]
 
 
 def words(data: Sequence[Text]) -> Parsed:
-    """``$(multibot WORD [NAME] [robot:=ROBOT] [fleet:=FILE])``, see ``launch.value``."""
+    """Parse ``$(multibot WORD [NAME] [robot:=ROBOT] [fleet:=FILE])``, see ``launch.value``."""
     if not data:
         raise ValueError(f"$(multibot) needs one of: {', '.join((*WORDS, FILE))}")
     return substitution_class(), {"words": data, "of": HERE}
@@ -42,19 +42,19 @@ def robots(entity: Any, parser: Any) -> Parsed:
 
 
 def node(entity: Any, parser: Any) -> Parsed:
-    """``multibot_node node= [files=] [describe=] [use_sim_time=] [robot=] [fleet=]`` and what ``node``
-    takes, see ``launch.node``."""
+    """Parse ``multibot_node node= [files=] [describe=] [use_sim_time=] [robot=] [fleet=]`` and what
+    ``node`` takes, see ``launch.node``."""
     return actions.node, _node("multibot_node", actions.node_class(), entity, parser)
 
 
 def lifecycle_node(entity: Any, parser: Any) -> Parsed:
-    """``multibot_lifecycle_node``: as ``multibot_node``, see ``launch.lifecycle_node``."""
+    """Parse ``multibot_lifecycle_node``: as ``multibot_node``, see ``launch.lifecycle_node``."""
     made = _node("multibot_lifecycle_node", actions.node_class(), entity, parser)
     return actions.lifecycle_node, made
 
 
 def container(entity: Any, parser: Any) -> Parsed:
-    """``multibot_container``: as ``multibot_node``, with components in it, see ``launch.container``."""
+    """Parse ``multibot_container``: as ``multibot_node``, with components, see ``launch.container``."""
     base = of_launch_ros("actions").ComposableNodeContainer
     given = _node("multibot_container", base, entity, parser)
     inside = _nested(entity, COMPONENT)
@@ -67,24 +67,24 @@ def container(entity: Any, parser: Any) -> Parsed:
 
 
 def composable_node(entity: Any, parser: Any) -> Parsed:
-    """``multibot_composable_node node= pkg= plugin=``: loaded into its container, see
+    """Parse ``multibot_composable_node node= pkg= plugin=``: loaded into its container, see
     ``launch.node``."""
     return actions.node, {**action_options(entity, parser), **_component(entity, parser)}
 
 
 def spawn(entity: Any, parser: Any) -> Parsed:
-    """``multibot_spawn simulator= [robot=] [fleet=]``, see ``launch.spawn``."""
+    """Parse ``multibot_spawn simulator= [robot=] [fleet=]``, see ``launch.spawn``."""
     simulator = parser.parse_substitution(entity.get_attr("simulator"))
     return actions.spawn, {"simulator": simulator, **_program(entity, parser)}
 
 
 def place(entity: Any, parser: Any) -> Parsed:
-    """``multibot_place [robot=] [fleet=]``, see ``launch.place``."""
+    """Parse ``multibot_place [robot=] [fleet=]``, see ``launch.place``."""
     return actions.place, _program(entity, parser)
 
 
 def action_options(entity: Any, parser: Any) -> dict[str, Any]:
-    """The options of every action in an XML or YAML launch file, such as its condition."""
+    """Return the options of every action in an XML or YAML launch file, such as its condition."""
     options: dict[str, Any] = of_launch().Action.parse(entity, parser)[1]
     return options
 
@@ -101,7 +101,7 @@ def expose(
 
 
 def _node(word: str, base: Any, entity: Any, parser: Any) -> dict[str, Any]:
-    """The options of a node that its class ``base`` reads, and ours."""
+    """Return the options of a node that its class ``base`` reads, and ours."""
     _, given = base.parse(_Programless(entity), parser)
     if entity.get_attr("exec", optional=True) is None:
         given.pop("executable", None)
@@ -112,7 +112,7 @@ def _node(word: str, base: Any, entity: Any, parser: Any) -> dict[str, Any]:
 
 
 class _Programless:
-    """An element whose program need not be said, since the node's stack has it."""
+    """An element whose program need not be said, since the node's node set has it."""
 
     def __init__(self, entity: Any) -> None:
         self._entity = entity
@@ -121,7 +121,7 @@ class _Programless:
         return getattr(self._entity, name)
 
     def get_attr(self, name: str, **options: Any) -> Any:
-        """As that of the element."""
+        """Return an attribute of the element."""
         if name != "exec":
             return self._entity.get_attr(name, **options)
         return self._entity.get_attr(name, **{**options, "optional": True}) or "later"
@@ -135,7 +135,7 @@ def _ours(entity: Any, parser: Any) -> dict[str, Any]:
 
 
 def _component(entity: Any, parser: Any) -> dict[str, Any]:
-    """The options of a component: launch_ros reads them only where its name is given."""
+    """Return the options of a component: launch_ros reads them only where its name is given."""
     given: dict[str, Any] = {
         option: parser.parse_substitution(text)
         for option, word in (("package", "pkg"), ("plugin", "plugin"))
@@ -149,7 +149,7 @@ def _component(entity: Any, parser: Any) -> dict[str, Any]:
 
 
 def _nested(entity: Any, word: str) -> list[Any]:
-    """The elements of this name in an element."""
+    """Return the elements of this name in an element."""
     several = _SEVERAL[of_launch("frontend").Entity]
     return entity.get_attr(word, data_type=several, optional=True) or []
 
@@ -161,7 +161,7 @@ def _rule(entity: Any, parser: Any) -> tuple[Any, Any]:
 
 
 def _parameters(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Parameters whose value is one of ours, with its type."""
+    """Return parameters; a value of this package's substitutions with its type."""
     found = [
         {key: as_value(value) for key, value in it.items()} if isinstance(it, dict) else it
         for it in given.get("parameters", ())
@@ -175,7 +175,7 @@ def _program(entity: Any, parser: Any) -> dict[str, Any]:
 
 
 def _texts(entity: Any, parser: Any, *names: str) -> dict[str, Any]:
-    """The attributes that are set, with their substitutions."""
+    """Return the attributes that are set, with their substitutions."""
     found = {name: entity.get_attr(name, optional=True) for name in names}
     return {name: parser.parse_substitution(it) for name, it in found.items() if it is not None}
 

@@ -20,12 +20,12 @@ Made = Options | list[Action]
 
 
 def action(base: Any, make: Callable[[Context], Made], first: Mapping[str, Any]) -> Action:
-    """An action of the class ``base``: with the options ``first``, then with those of ``make``."""
+    """Return an action of the class ``base``: with options ``first``, then with those of ``make``."""
     return _action(base)(make, first)
 
 
 def component(base: Any, make: Callable[[Context], Options], first: Mapping[str, Any]) -> Any:
-    """The same for launch_ros's ComposableNode."""
+    """Return a ComposableNode: with options ``first``, then with those of ``make``."""
     return _component(base)(make, first)
 
 

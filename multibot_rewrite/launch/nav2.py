@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Nav2 for all robots of a fleet: what ``ros2 launch multibot_rewrite nav2.launch.py`` starts.
 
-The fleet file decides what that is: the nodes of Nav2 and slam_toolbox that its stacks have, composed
-or not, in any layout, with the names, rules and parameter files of each robot.
-Sources: nav2_bringup launch/ of humble (1.1.20) to rolling (a3a97043e), slam_toolbox
+The fleet file decides what that is: the nodes of Nav2 and slam_toolbox that its node sets have,
+composed or not, in any layout, with the names, rules and parameter files of each robot. Sources:
+nav2_bringup launch/ of humble (1.1.20) to rolling (a3a97043e), slam_toolbox
 launch/online_sync_launch.py; nav2_lifecycle_manager lifecycle_manager.cpp and nav2_util
-lifecycle_node.cpp: a manager and its node meet by the node's name without namespace (bond);
-lifecycle_msgs msg/Transition.msg.
-"""
+lifecycle_node.cpp: a manager and its node find each other by the node's name without namespace
+(bond); lifecycle_msgs msg/Transition.msg."""
 
 from __future__ import annotations
 
@@ -61,7 +60,7 @@ ARGUMENTS = (
 
 
 def generate_launch_description() -> Any:
-    """The launch description of ``nav2.launch.py``."""
+    """Return the launch description of ``nav2.launch.py``."""
     actions, opaque = of_launch("actions"), of_launch("actions").OpaqueFunction
     declared = [
         actions.DeclareLaunchArgument(name, default_value=default, description=about)
@@ -103,7 +102,7 @@ def _started(robot: LoadedRobot, context: Context) -> list[Action]:
 
 
 def _process(context: Context, robot: LoadedRobot, it: Start) -> list[Action]:
-    """A process with its components; slam_toolbox is brought up here, as by its own launch file."""
+    """Return a process with its components; slam_toolbox is activated as by its own launch file."""
     actions, words = of_launch_ros("actions"), ["--ros-args", "--log-level", _said("log_level")]
     given = {**_given(context, robot, it), "output": "screen", "arguments": [*it.arguments, *words]}
     if it.components:
@@ -116,8 +115,8 @@ def _process(context: Context, robot: LoadedRobot, it: Start) -> list[Action]:
 
 
 def _given(context: Context, robot: LoadedRobot, it: Start) -> dict[str, Any]:
-    """The keywords of a process or component alone: paths of the files of this launch, one of them with
-    what no file of the fleet says of it, such as the nodes that it manages, and its map."""
+    """Return the keywords of a process or component alone: paths of the files of this launch, one
+    of them with what no file of the fleet sets, such as the nodes that it manages, and its map."""
     of, shared = RobotRef(robot.name, _said("fleet")), fleet_of(context, _said("fleet")).table
     files = [node_file_of(context, one.path, of) for one in it.parameters if isinstance(one, File)]
     rows = [one for one in it.parameters if not isinstance(one, File)]
@@ -138,7 +137,7 @@ def _given(context: Context, robot: LoadedRobot, it: Start) -> dict[str, Any]:
 
 
 def _activated(made: Action) -> Iterator[Action]:
-    """Configure a node, and activate it when that is done."""
+    """Yield actions that configure a node, and activate it afterwards."""
     known, events = of_launch("actions"), of_launch_ros("events.lifecycle")
     ids = of_launch("events").matches_action(made)
 
@@ -158,15 +157,15 @@ def _activated(made: Action) -> Iterator[Action]:
 
 
 def _shared(context: Context) -> list[Action]:
-    """The nodes that all robots share, with a lifecycle manager of their own: they have their sections
-    in the files of every robot, and these are alike."""
+    """Return the nodes that all robots share, with a lifecycle manager of their own: they have
+    their sections in the files of every robot, and these are alike."""
     fleet = fleet_of(context, _said("fleet"))
     shared = (it for it in fleet.starts.shared if kind_of(it.name) in NAV2)
     return [one for it in shared for one in _process(context, fleet.robots[0], it)]
 
 
 def _rviz(context: Context) -> list[Action]:
-    """The windows that are asked for."""
+    """Return the windows that are asked for."""
     word = str(context.launch_configurations.get("rviz", NONE)).strip().lower()
     if word not in (NONE, ONE, EACH):
         raise UsageError(f"rviz:={word}: {unknown('way', word, (NONE, ONE, EACH))}")
@@ -195,7 +194,7 @@ def _window(context: Context, file: str, window: RvizText) -> Action:
 
 
 def kind_of(name: str) -> str:
-    """Return the name in ``NAV2`` of a node of a stack; its own where that has it not."""
+    """Return the name in ``NAV2`` of a node of a node set; its own where that has it not."""
     return MANAGER if name.startswith(MANAGER) else _KINDS.get(name, name)
 
 

@@ -54,38 +54,36 @@ WORDS: Mapping[str, Callable[[LoadedRobot, str], str]] = MappingProxyType(
 
 
 def description(robot: Text = None, fleet: Text = None) -> Substitution:
-    """A robot's rewritten description: ``parameters=[{"robot_description": description()}]``."""
+    """Return a robot's description: ``parameters=[{"robot_description": description()}]``."""
     return value("description", robot=robot, fleet=fleet)
 
 
 def params_file(file: Text, robot: Text = None, fleet: Text = None) -> Substitution:
-    """The path of a robot's parameter file, rewritten: an item of ``parameters=[...]``."""
+    """Return the path of a robot's parameter file, rewritten: an item of ``parameters=[...]``."""
     return value(FILE, file, robot, fleet)
 
 
 def rviz_config(file: Text, robot: Text = None, fleet: Text = None) -> Substitution:
-    """The path of a robot's RViz config, or of the one that shows all."""
+    """Return the path of a robot's RViz config, or of the one that shows all."""
     return value(FILE, file, robot, fleet)
 
 
 def bridge_config(robot: Text = None, fleet: Text = None) -> Substitution:
-    """The path of a robot's ros_gz_bridge file, or of the one for all robots."""
+    """Return the path of a robot's ros_gz_bridge file, or of the one for all robots."""
     return value(FILE, BRIDGE_FILE, robot, fleet)
 
 
 def value(word: Text, name: Text = "", robot: Text = None, fleet: Text = None) -> Substitution:
-    """The substitution ``$(multibot WORD NAME)``: one of ``WORDS``, or the path of a file.
-
-    As the value of a parameter it is a string whatever is in it, and a number for ``pose``: launch_ros
-    reads other substitutions as YAML, refuses a description with ``: `` in a comment, and takes a robot
-    called ``on`` for true.
-    """
+    """Return the substitution ``$(multibot WORD NAME)``: one of ``WORDS``, or the path of a file.
+    As the value of a parameter it is a string whatever is in it, and a number for ``pose``:
+    launch_ros reads other substitutions as YAML, refuses a description with ``: `` in a comment,
+    and takes a robot called ``on`` for true."""
     return substitution_class()([word, name], RobotRef(robot, fleet))
 
 
 @cache
 def substitution_class() -> Any:
-    """The class of the substitutions of this room; each is a ParameterValue, too."""
+    """Return the class of the substitutions of this package; each is a ParameterValue, too."""
     substitution: Any = of_launch().Substitution
     parameter_value: Any = of_launch_ros("parameter_descriptions").ParameterValue
 
@@ -107,7 +105,7 @@ def substitution_class() -> Any:
 
 
 def as_value(value: Any) -> Any:
-    """A parameter's value in an XML or YAML file; one that is a substitution of this room is that."""
+    """Return a parameter's value in an XML or YAML file; a substitution of this package as it is."""
     untyped = getattr(value, "value_type", str) is None
     parts: Any = value.value if untyped else ()
     alone = isinstance(parts, list) and len(parts) == 1

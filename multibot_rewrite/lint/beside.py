@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A file beside a description, with what its package declares -> what the rules for its kind find."""
+"""A related file of a description, with what its package declares -> what the rules for its kind
+find."""
 
 from __future__ import annotations
 
@@ -34,8 +35,8 @@ _DECLARED = frozenset(KINDS)
 
 
 def robots_of(file: str, settings: Settings) -> Robots:
-    """The description that was named, else those of the file's package, else of the description
-    packages beside it, else those that are linted with it."""
+    """Return the description that was named, otherwise those of the file's package, then those of
+    description packages next to it, then those that are linted with it."""
     own = package_of(file)
     folder = own[1] if own else os.path.dirname(os.path.abspath(file))
     paths = [settings.urdf] if settings.urdf else _descriptions(folder)
@@ -60,12 +61,12 @@ def robots_of(file: str, settings: Settings) -> Robots:
 
 
 def _descriptions(folder: str) -> list[str]:
-    """The files below a folder with a robot that has a name: others are parts of these."""
+    """Return the files below a folder with a named robot: others are parts of these."""
     return [path for path in descriptions_below(folder) if robot_name(path)]
 
 
 def named_in_package(kind: str, data: bytes, path: str, settings: Settings) -> NamedFile:
-    """The file as rules ask it; raises InputError for one that its reader rejects."""
+    """Return the file as rules ask it; raises InputError for one that its reader rejects."""
     file = read_named(kind, data, path, context_of({}, settings))
     looked = file.others or any(it.kind in _DECLARED for it in file.names)
     robots = robots_of(path, settings) if looked else None
@@ -83,7 +84,7 @@ def named_in_package(kind: str, data: bytes, path: str, settings: Settings) -> N
 
 
 def context_of(declared: Declared, settings: Settings) -> Context:
-    """What a reader asks: the names that are declared, as they are written where no robot is given."""
+    """Return a reader's context: the declared names, unchanged if no robot is given."""
     every = {it: declared.get(it, {}) for kinds in KINDS.values() for it in kinds}
     naming = settings.naming if settings.robots else _AS_WRITTEN
     names = CompanionNames(every, naming, "")
@@ -91,7 +92,7 @@ def context_of(declared: Declared, settings: Settings) -> Context:
 
 
 def beside_findings(path: str, data: bytes, settings: Settings) -> Iterator[Finding]:
-    """What the active rules find in a file; raises InputError for one that is of no known kind."""
+    """Yield what the active rules find in a file; raises InputError for one of no known kind."""
     kind = kind_of(data)
     if not kind:
         refuse_others(data, f"{path}:1:1")

@@ -29,7 +29,7 @@ HOMES = {
 
 @cache
 def rules() -> Mapping[str, Rule]:
-    """All rules by code, in the order of the codes; imports every module that declares one."""
+    """Return all rules in the order of their codes; imports every module that declares one."""
     from multibot_rewrite.lint.registry import RULES
 
     # A lint has some with examples of its own.
@@ -41,8 +41,8 @@ def rules() -> Mapping[str, Rule]:
 
 @cache
 def declared() -> tuple[Rule, ...]:
-    """The rules of commands other than the lint, in the order of the codes. Of two with one code, which
-    differ in their examples, it is that of the module which declares it."""
+    """Return the rules of commands other than the lint, in the order of the codes. If two have one
+    code and other examples, it is that of the declaring module."""
     from multibot_rewrite.lint.registry import RULES
     from multibot_rewrite.rules import check
     from multibot_rewrite.rules.launch import judge

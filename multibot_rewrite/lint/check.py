@@ -42,15 +42,15 @@ class _TooLongError(BaseException):
 
 
 def lint_file(path: str, settings: Settings) -> list[Finding]:
-    """All findings of a file, in order; a file that cannot be read is a finding."""
+    """Return all findings of a file, in order; a file that cannot be read is a finding."""
     return _linted(path, partial(read_file, path), settings)
 
 
 def lint_data(
     path: str, data: bytes, settings: Settings, wanted: Callable[[Rule], bool] = bool
 ) -> list[Finding]:
-    """The same for given text; ``path`` is its name, and xacro resolves includes from there. Of a
-    description the ``wanted`` rules are asked."""
+    """Return the findings of a text; ``path`` is its name, and xacro resolves includes from there.
+    A description is checked by the ``wanted`` rules."""
     return _linted(path, lambda: data, settings, wanted)
 
 
@@ -95,8 +95,8 @@ def _look(
     found: list[Finding],
     sources: dict[str, bytes],
 ) -> None:
-    """Adds findings, and the files that were read; the subjects are let go before the garbage
-    collector is back, which would look through all of them."""
+    """Add findings, and the files that were read; the subjects are released before the garbage
+    collector is back, which would search all of them."""
     for subject in read_subjects(path, data, settings):
         if isinstance(subject, Failed):
             it = failure(path, subject.error, settings)
@@ -107,7 +107,7 @@ def _look(
 
 
 def lint_subject(subject: Subject, wanted: Callable[[Rule], bool] = bool) -> list[Finding]:
-    """What the active rules find in one document, those that are ``wanted``."""
+    """Return what the active and ``wanted`` rules find in one document."""
     found: list[tuple[Rule, list[Problem]]] = []
     crashes: list[Finding] = []
     for rule in filter(wanted, active_rules(subject.settings, subject.format)):
@@ -150,10 +150,8 @@ def _stop(*_: object) -> NoReturn:
 def unsuppressed(
     findings: Sequence[Finding], sources: Mapping[str, bytes], settings: Settings
 ) -> list[Finding]:
-    """The findings that no comment and no per-file setting suppresses, and those about comments.
-
-    The first of ``sources`` is the file that is linted, the others are those it includes.
-    """
+    """Return the findings that no comment or per-file setting suppresses, and those about comments.
+    The first of ``sources`` is the file that is linted, the others are those it includes."""
     reported = [it for it in findings if not is_silent(settings, file_of(it), it.code)]
     if not any(MARK in source for source in sources.values()):
         return reported
@@ -171,7 +169,7 @@ _ATTRIBUTE = lazy_compile(rb"\s((?:[^\s=:/>\"']+:)?([^\s=:/>\"']+))\s*=\s*(?:\"[
 
 
 def placed(subject: Subject, numbers: Numbers, problem: Problem, rule: Rule) -> Finding:
-    """The finding for a problem; ``numbers`` are those of ``numbered``."""
+    """Return the finding for a problem; ``numbers`` are those of ``numbered``."""
     number, level = numbers[problem.element], problem.level or rule.level
     sources = subject.sources
     file, source, offset, calls = _place(subject, number, problem.attribute)
@@ -194,7 +192,7 @@ def placed(subject: Subject, numbers: Numbers, problem: Problem, rule: Rule) -> 
 
 
 def numbered(subject: Subject, problems: Iterable[Problem]) -> Numbers:
-    """The elements that problems are about, and their numbers in document order."""
+    """Return the elements that problems are about, and their numbers in document order."""
     elements, asked = subject.document.elements, {it.element for it in problems}
     if len(asked) > FEW:
         return dict(zip(elements, count()))
@@ -204,7 +202,7 @@ def numbered(subject: Subject, problems: Iterable[Problem]) -> Numbers:
 def _place(
     subject: Subject, number: int, attribute: str | None
 ) -> tuple[str, bytes, int, tuple[Call, ...]]:
-    """The file and its text, a byte offset in it, and the macro calls that led there."""
+    """Return the file and its text, a byte offset in it, and the macro calls that led there."""
     origin = subject.origins.of(number) if subject.origins else None
     if origin is None:
         document = subject.document
@@ -222,7 +220,7 @@ def _is_argument(subject: Subject, number: int, attribute: str | None) -> bool:
 
 
 def _within(source: bytes, start: int, attribute: str | None) -> int:
-    """The offset of a value from the start of its tag; 0 for an attribute that is missing."""
+    """Return the offset of a value from the start of its tag; 0 for an attribute that is missing."""
     if attribute is None:
         return 0
     if not attribute:
@@ -234,7 +232,7 @@ def _within(source: bytes, start: int, attribute: str | None) -> int:
 
 @lru_cache(maxsize=64)
 def _attributes(source: bytes, start: int) -> dict[bytes, int]:
-    """The offsets of the names of a tag's attributes, with their prefixes and without."""
+    """Return the offsets of the names of a tag's attributes, with their prefixes and without."""
     found = list(_ATTRIBUTE.finditer(source, start, tag_end(source, start)))
     bare = {it[2]: it.start(2) for it in found}
     return bare | {it[1]: it.start(1) for it in found}

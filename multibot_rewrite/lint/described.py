@@ -22,12 +22,12 @@ _SHAPES = ("MB701", "MB703")
 
 
 def may_stop(rule: Rule) -> bool:
-    """Can a finding of the rule be one of these?"""
+    """Return whether a finding of the rule can be one of these."""
     return rule.level == ERROR or rule.code in (*LEFT_OUT, *_NO_EFFECT)
 
 
 def in_use(found: Iterable[Finding], document: Document, simulated: bool) -> Iterator[Finding]:
-    """The findings of a document that count for a robot which runs with it, with their level there."""
+    """Yield the findings that count for a robot with this document, with their level there."""
     for it in found:
         level = _in_simulator(it) if simulated else _only_sent(it, document)
         if level:
@@ -35,7 +35,7 @@ def in_use(found: Iterable[Finding], document: Document, simulated: bool) -> Ite
 
 
 def is_of_simulator(it: Finding, document: Document) -> bool:
-    """Is a finding no error where the description is only sent?"""
+    """Return whether a finding is no error if the description is only sent."""
     return _only_sent(it, document) != ERROR
 
 

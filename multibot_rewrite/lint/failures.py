@@ -67,7 +67,7 @@ def _level(path: str, cause: str, name: str) -> str:
 
 
 def _is_made_beside(path: str, name: str) -> bool:
-    """Does another file of the package make a macro, property or argument of that name?"""
+    """Return whether another file of the package makes a macro, property or argument of that name."""
     own = package_of(path)
     folder = own[1] if own else os.path.dirname(os.path.abspath(path))
     called = re.escape(name).encode()
@@ -77,21 +77,21 @@ def _is_made_beside(path: str, name: str) -> bool:
 
 
 def crash(rule: Rule, subject: Subject, error: Exception) -> Finding:
-    """The finding for a rule that crashed: it did not check all of the document."""
+    """Return the finding for a rule that crashed: it did not check all of the document."""
     file = subject.document.file.removesuffix(" (expanded)")
     hint = "this is a bug in urdf-lint; use --ignore to go on"
     return _crashed(file, f"{rule.code} crashed: {_words(error)}", hint)
 
 
 def breakdown(path: str, error: Exception) -> Finding:
-    """The finding for a file on which the lint itself crashed: it was not checked completely."""
+    """Return the finding for a file on which the lint crashed: it was not checked completely."""
     if isinstance(error, MemoryError):
         return _crashed(path, "there is not enough memory for it", "does a macro call itself?")
     return _crashed(path, f"the lint crashed: {_words(error)}", "this is a bug in urdf-lint")
 
 
 def lost(path: str, died_of: int) -> Finding:
-    """The finding for a file whose process was ended by a signal, or by itself for 0."""
+    """Return the finding for a file whose process was ended by a signal, or by itself for 0."""
     how = f"by {signal.Signals(died_of).name}" if died_of else "before it was done"
     hint = "too little memory may be the reason: lint fewer files at a time"
     return _crashed(path, f"the process that linted it ended {how}", hint)
@@ -107,7 +107,7 @@ def _words(error: Exception) -> str:
 
 
 def too_long(path: str, seconds: float) -> Finding:
-    """The finding for a file that took too long."""
+    """Return the finding for a file that took too long."""
     unrepeatable()
     message = f"it took more than {seconds:g} s, the rest was not checked"
     endless = "does a macro call itself?" if path.endswith(".xacro") else ""

@@ -29,10 +29,8 @@ _LINE = re.compile(r"\bline \d+")
 def fix(
     path: str, source: bytes, settings: Settings, only: Finding | None = None
 ) -> tuple[bytes, list[Finding]]:
-    """The text with every safe fix applied, or that of one finding, and the findings that are left.
-
-    Raises InputError where the file cannot be read, ProofError where the proof fails.
-    """
+    """Return the text with every safe fix applied, or that of one finding, and the findings that are
+    left. Raises InputError if the file cannot be read, ProofError if the proof fails."""
     findings = lint_data(path, source, settings)
     for _ in range(ROUNDS):
         found = {
@@ -49,7 +47,7 @@ def fix(
 
 
 def _not_overlapping(edits: Iterable[Edit]) -> Iterator[Edit]:
-    """The edits in source order, without those that overlap an earlier one."""
+    """Yield the edits in source order, without those that overlap an earlier one."""
     end = -1
     for edit in sorted(edits, key=lambda it: (it.start, it.end)):
         if edit.start >= max(end, 0) and edit.end > edit.start:
@@ -130,7 +128,7 @@ def _meaning(element: _Element) -> Meaning:
 
 
 def _half_spheres(link: _Element) -> Iterator[Meaning]:
-    """What stands for the ends of a link's capsules, after all else."""
+    """Yield the spheres that replace the ends of a link's capsules, after all else."""
     for shape, holder in capsules(link):
         pose = poses.pose_of(next(holder.iterchildren("origin"), None))
         length = number(shape.get("length"))

@@ -39,13 +39,13 @@ OF_ROBOTS = ("meeting",)
 
 
 def rules_of(group: Group, of_robots: bool = True) -> list[Rule]:
-    """The rules of a group, those that are ``of_robots`` too."""
+    """Return the rules of a group, those that are ``of_robots`` too."""
     return rules_in(group.module, *(() if of_robots else OF_ROBOTS))
 
 
 def active_rules(settings: Settings, format_: str) -> tuple[Rule, ...]:
-    """The rules that are on and check a subject of that format, by their codes; none of those that
-    find nothing without robots where none are named."""
+    """Return the rules that are on for a subject of that format, by their codes; none that find
+    nothing without robots if none are named."""
     levels = tuple(settings.levels.items())
     return _active(settings.select, settings.ignore, levels, format_, bool(settings.robots))
 

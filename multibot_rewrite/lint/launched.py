@@ -47,7 +47,7 @@ _TEXT = re.compile(r"<\?xml|<robot|<sdf")
 
 
 def named_findings(launched: Launched) -> list[Finding]:
-    """What is wrong with the files that a launch file names, each once."""
+    """Return what is wrong with the files that a launch file names, each once."""
     every = (_descriptions, _loaded_again, _parameters, _values, bridge_findings)
     return list(dict.fromkeys(it for findings in every for it in findings(launched)))
 
@@ -75,13 +75,13 @@ def _loaded_again(launched: Launched) -> Iterator[Finding]:
 
 
 def _at_launch(it: Finding, place: Place) -> Finding:
-    """A finding about a text that has no file of its own."""
+    """Return a finding about a text without a file of its own, at its place in the launch file."""
     message = f"in the description (line {it.line}): {it.message}"
     return it._replace(message=message, file=place.file, line=place.line, column=1)
 
 
 def _parameters(launched: Launched) -> Iterator[Finding]:
-    """What is an error or a warning in parameter files that are there as files."""
+    """Yield errors and warnings in parameter files that exist as files."""
     texts = {
         it.file: it.text
         for node in launched.graph.nodes
@@ -96,7 +96,7 @@ def _parameters(launched: Launched) -> Iterator[Finding]:
 
 
 def _values(launched: Launched) -> Iterator[Finding]:
-    """What is wrong with the parameters that a launch file gives a node itself, at the node."""
+    """Yield what is wrong with the parameters that a launch file gives a node itself, at the node."""
     settings = Settings(select=_OF_VALUES, distro=launched.release, ros=ROS_2)
     nodes = {(it.place, it.namespace, it.program): it for it in launched.nodes if it.has_fact}
     for it in launched.graph.nodes:
@@ -111,12 +111,12 @@ def _values(launched: Launched) -> Iterator[Finding]:
 
 
 def _beside(place: Place, name: str) -> str:
-    """A name for what stands in a launch file: descriptions of its package are beside it."""
+    """Return a name for a text in a launch file: descriptions of its package are found from it."""
     return os.path.join(os.path.dirname(place.file), name)
 
 
 def _given(it: LaunchedNode) -> dict[str, object]:
-    """The parameters that a launch file gives a node itself; a description is none to look into."""
+    """Return the parameters that a launch file gives a node itself, without descriptions."""
     found: dict[str, object] = {}
     for text in (one.text for one in it.parameters if not one.file):
         if text.startswith(_FOR_ALL) and not _TEXT.search(text):
@@ -129,7 +129,7 @@ _CLOCK = bridges.GzTopic("gz.msgs.Clock", DIRECTIONS["in"])
 
 
 class _Told(NamedTuple):
-    """The rows of a bridge: of a file, or of its arguments, which stand at a place."""
+    """The rows of a bridge: of a file, or of its arguments, which are at a place."""
 
     file: str
     text: str
@@ -138,7 +138,7 @@ class _Told(NamedTuple):
 
 
 def bridge_findings(launched: Launched) -> Iterator[Finding]:
-    """What is wrong with the rows of bridges, beside all models that the launch file spawns."""
+    """Yield what is wrong with the rows of bridges, with all models that the launch file spawns."""
     models = launched.simulated
     known = _topics(models) if models and not launched.models.lost else {}
     for told in dict.fromkeys(it for node in launched.nodes for it in _told(node)):

@@ -62,20 +62,20 @@ def _known(cache: Cache, path: str, settings: Settings) -> list[Finding] | None:
 
 
 def _group(path: str) -> str:
-    """The files of one folder are kept together."""
+    """Return the group of a file: the files of one folder are kept together."""
     return os.path.dirname(os.path.abspath(path))
 
 
 def _key(path: str, settings: Settings) -> str:
-    """What a file's findings rest on beside the run and what is read: its place among the others."""
+    """Return the key of a file's findings: its place among the others, beyond the run and its text."""
     from multibot_rewrite.lint.cache.cache import among_written
 
     return digest(repr((path, *among_written(settings, path))).encode())
 
 
 def among(paths: Sequence[str], settings: Settings, cache: Cache | None = None) -> Settings:
-    """The settings for one of several files: what the others include, the URDFs of SRDFs, and
-    the arguments that xacro files know. A xacro file alone may be included in its package."""
+    """Return the settings for one of several files: what the others include, the URDFs of SRDFs,
+    and the arguments that xacro files know. A xacro file alone may be included in its package."""
     if len(paths) == 1 and not paths[0].endswith(".xacro"):
         return settings
     from multibot_rewrite.lint.cache.cache import among_from, among_written
@@ -91,7 +91,7 @@ def among(paths: Sequence[str], settings: Settings, cache: Cache | None = None) 
 
 
 def _looked_through(paths: Sequence[str], settings: Settings) -> tuple[Settings, Asked | None]:
-    """The same, in a worker where there are xacro files: they may be made to take long."""
+    """Return the settings, made in a worker if there are xacro files: these may take long."""
     from multibot_rewrite.lint.files.included import set_among
 
     look = partial(recorded, partial(set_among, paths, settings))

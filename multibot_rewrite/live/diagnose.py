@@ -81,8 +81,8 @@ def diagnose(graph: System, messages: Mapping[str, int] = NO_COUNTS) -> Diagnosi
 
 
 def diagnose_domains(each: Mapping[int, Diagnosis]) -> Diagnosis:
-    """What is seen of several ROS domains: each by itself, and their robots held against each other.
-    The robot of a domain where none has a name is called by its number."""
+    """Return what is wrong in several ROS domains: in each by itself, and between their robots. The
+    robot of a domain without names is called by the domain's number."""
     views = {at: it.graph if it.robots else named(it.graph, at) for at, it in each.items()}
     together = diagnose(side_by_side(views))
     spaces = {at: "" if it.robots else space_of(at) for at, it in each.items()}
@@ -132,8 +132,8 @@ def _carried_across(each: Mapping[int, Diagnosis]) -> Iterator[Finding]:
 def _sent_elsewhere(
     it: Finding, together: Diagnosis, each: Mapping[int, Diagnosis], at: int | None = None
 ) -> Finding:
-    """The finding; where what is missing is a robot's by its name, and another domain has it, with that
-    as the cause."""
+    """Return the finding; if what is missing is a robot's by its name and another domain has it,
+    with that as the cause."""
     missed = [name for name in it.names if it.code in ABSENCE and together.whose.robot(name)]
     for other, seen in each.items():
         ends = (end for name in missed if other != at for end in ends_of(seen.whose, name))
@@ -145,7 +145,7 @@ def _sent_elsewhere(
 
 
 def survey(seen: Diagnosis) -> Iterator[str]:
-    """What there is, in a few lines: the robots, the layout, who is on which tf topic."""
+    """Yield the robots, the layout and the senders on each tf topic, in a few lines."""
     names = [robot.name for robot in seen.robots]
     if not (names or seen.graph.nodes or is_recorded(seen.graph)):
         return

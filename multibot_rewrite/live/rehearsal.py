@@ -35,6 +35,7 @@ from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
     PUBLISHES,
+    RUNS,
     SERVES,
     SERVICE,
     SUBSCRIBES,
@@ -72,11 +73,8 @@ def played(
 
 
 def stub_nodes(table: Table, edges: Edges, left_out: Collection[str] = ()) -> Iterator[Stub]:
-    """The stub nodes.
-
-    ``edges`` are by robot and node. Rules that stand at one of the ways ``left_out`` are not given;
-    without any a node gets only its namespace and its name.
-    """
+    """Yield the stub nodes. ``edges`` are by robot and node. Rules at one of the ways ``left_out``
+    are not given; without any a node gets only its namespace and its name."""
     types = {name: end.type for _, end, name in table.ends if end.type}
     # What a node does that nobody knows is not played.
     names = lists_by_key(
@@ -98,9 +96,20 @@ def stub_nodes(table: Table, edges: Edges, left_out: Collection[str] = ()) -> It
         yield stub, edges.get((node.robot, node.node), ())
 
 
+def without_doubles(stubs: Iterable[Stub], plan: System) -> Iterator[Stub]:
+    """Yield the stubs, without nodes that may run where what surely runs sends a topic of theirs."""
+    may = {it.name for it in plan.nodes if it.sure != RUNS}
+    sure = (it for it in plan.ends if it.role == PUBLISHES and it.sure == RUNS)
+    outputs = [it for it in sure if it.type != TF and it.name not in plan.shared_topics]
+    sent = {it.name for it in outputs if it.node not in may}
+    sent |= {it.name for it in plan.topics if PUBLISHES in it.bridge}
+    doubles = {it.node for it in outputs if it.node in may and it.name in sent}
+    yield from (it for it in stubs if it[0].full_name not in doubles)
+
+
 def bridge_stub(topics: Iterable[Topic]) -> Iterator[Stub]:
-    """The bridge to a simulator that a plan needs, if it needs one: it has what the simulator's world
-    serves, too."""
+    """Yield the bridge to a simulator that a plan needs, if it needs one, with what the simulator's
+    world serves."""
     rows = [
         Endpoint(SERVICE if role == SERVES else TOPIC, role, topic.name, topic.type)
         for topic in topics
@@ -111,7 +120,7 @@ def bridge_stub(topics: Iterable[Topic]) -> Iterator[Stub]:
 
 
 def domain_bridge_stubs(plan: System) -> Iterator[Stub]:
-    """The nodes of domain_bridge in a plan of one domain."""
+    """Yield the nodes of domain_bridge in a plan of one domain."""
     ends = lists_by_key((it.node, Endpoint(it.kind, it.role, it.name, it.type)) for it in plan.ends)
     for node in plan.nodes:
         if node.stack == DOMAIN_BRIDGE:
@@ -119,7 +128,7 @@ def domain_bridge_stubs(plan: System) -> Iterator[Stub]:
 
 
 def _rules(node: Run, names: Iterable[tuple[Endpoint, str]]) -> Rules:
-    """The rules of a node; a controller manager that stands in for its controllers has theirs."""
+    """Return the rules of a node; a controller manager that plays its controllers has theirs."""
     theirs = {end.name for end, _ in names if is_stand_in(node, end)}
     if not theirs:
         return node.rules
@@ -137,10 +146,9 @@ def _stub_endpoint(end: Endpoint, name: str, types: Mapping[str, str]) -> Endpoi
 
 
 def split_over_processes(nodes: Iterable[Stub]) -> list[list[Stub]]:
-    """The stub nodes by process: one process for each robot, but no more than PROCESSES.
-
-    A participant of DDS refuses a topic under a second type: who has it so is in another process.
-    """
+    """Return the stub nodes by process: one process for each robot, but no more than PROCESSES. A
+    participant of DDS refuses a topic under a second type: a stub with another type is in another
+    process."""
     processes: dict[int, list[Stub]] = defaultdict(list)
     process_of: dict[str, int] = {}
     types: dict[tuple[int, str, str], str] = {}
@@ -156,7 +164,7 @@ def split_over_processes(nodes: Iterable[Stub]) -> list[list[Stub]]:
 
 
 def with_substitutes(plan: System, replaced: Mapping[str, str]) -> System:
-    """The plan with the types that replace others; an action without its type becomes its parts."""
+    """Return the plan with replaced types; an action whose type is missing becomes its parts."""
     endpoints = [end for planned in plan.ends for end in _substituted(planned, replaced)]
     topics = (it._replace(type=replaced.get(it.type, it.type)) for it in plan.topics)
     return plan._replace(ends=tuple(endpoints), topics=tuple(topics))
@@ -174,8 +182,8 @@ def _substituted(planned: End, replaced: Mapping[str, str]) -> Iterator[End]:
 
 
 def with_own_types(it: System, plan: System, replaced: Mapping[str, str]) -> System:
-    """What was seen, or ``with_substitutes``, with the types of the plan: by substitutes all topics are
-    of one type. Of an end with another name than planned its node's code tells it."""
+    """Return what was seen, or ``with_substitutes``, with the types of the plan: with substitutes
+    all topics have one type. An end with another name than planned is found by its node's code."""
     types: dict[tuple[str, ...], str] = {(TOPIC, one.name): one.type for one in plan.topics}
     for end in plan.ends:
         last = end.code_name.rpartition("/")[2]
@@ -193,7 +201,7 @@ def with_own_types(it: System, plan: System, replaced: Mapping[str, str]) -> Sys
 
 
 def action_parts(action: Endpoint) -> Iterator[Endpoint]:
-    """The services and topics that make up an action, for an action without its type."""
+    """Yield the services and topics that make up an action, for an action without its type."""
     roles = {
         (SERVES, SERVICE): SERVES, (SERVES, TOPIC): PUBLISHES,
         (CALLS, SERVICE): CALLS, (CALLS, TOPIC): SUBSCRIBES,
@@ -205,7 +213,7 @@ def action_parts(action: Endpoint) -> Iterator[Endpoint]:
 
 
 def substitute_type(kind: str, type_: str) -> str:
-    """The type that is used in place of one that is not installed."""
+    """Return the type that is used in place of one that is not installed."""
     return "geometry_msgs/msg/TransformStamped" if type_ == TF else SUBSTITUTE_TYPES[kind]
 
 
@@ -247,8 +255,8 @@ class Started(NamedTuple):
 
 
 def stage(domain: int | None) -> dict[str, str]:
-    """An environment where nobody else is: this machine only, the domain that the environment names
-    where it is free, else one that is hardly used."""
+    """Return an environment where nobody else is: this machine only, the domain of the environment
+    if it is free, otherwise one that is hardly used."""
     environ = {k: v for k, v in os.environ.items() if k not in _ELSEWHERE}
     asked = settings(os.environ).domain if os.environ.get("ROS_DOMAIN_ID") else None
     free = asked is not None and participants_here(asked) == 0
@@ -272,11 +280,9 @@ def stages(domain: int | None, count: int) -> list[dict[str, str]]:
 def staged(
     nodes: Iterable[Stub], environ: Mapping[str, str], seconds: float
 ) -> tuple[System, dict[str, str]]:
-    """The graph of the stub nodes, and which types are replaced by which.
-
-    On a busy machine messages of the discovery are lost, so a look that lacks what the nodes say that
-    they have is taken again. Raises Unusable where the nodes do not start or the graph is not read.
-    """
+    """Return the graph of the stub nodes, and which types are replaced by which. On a busy machine
+    messages of the discovery are lost, so a snapshot that lacks what the nodes announce is taken
+    again. Raises Unusable where the nodes do not start or the graph is not read."""
     request = Request(seconds, substitutes=True)
     with _started(nodes, environ) as started:
         for _ in range(LOOKS):
@@ -292,7 +298,7 @@ def staged(
 
 @contextmanager
 def _started(nodes: Iterable[Stub], environ: Mapping[str, str]) -> Iterator[Started]:
-    """The stub nodes in the graph, and what they say once all are there."""
+    """Yield the stub nodes in the graph, and what they announce once all are running."""
     with ExitStack() as stack:
         children = [
             stack.enter_context(running(RUN_STUBS, to_text(to_order(own)), environ))

@@ -20,7 +20,7 @@ NAMELESS = GuessedRobot("robot1", "")
 
 
 def seen_plan(seen: Diagnosis) -> System:
-    """The plan: all nodes but tools, all names but what every node has."""
+    """Return the plan: all nodes but tools, all names but what every node has."""
     nodes = unique(node.name for node in seen.graph.nodes if not is_tool(node.name))
     robots = {_mine(it): it for it in robots_to_plan(seen)}
     names = {mine: it.name for mine, it in robots.items()}
@@ -47,7 +47,7 @@ def seen_plan(seen: Diagnosis) -> System:
 
 
 def _from_world(seen: Diagnosis) -> Iterator[Edge]:
-    """The fixed transforms by which robots hang from a frame of all, each by nodes of its robot."""
+    """Yield the fixed transforms from a shared frame to robots, each with nodes of its robot."""
     for it in seen.graph.edges:
         robot = seen.whose.frame_robot(it.child)
         nodes = tuple(one for one in it.publishers if seen.whose.robot(one) == robot)
@@ -56,7 +56,7 @@ def _from_world(seen: Diagnosis) -> Iterator[Edge]:
 
 
 def robots_to_plan(seen: Diagnosis) -> tuple[GuessedRobot, ...]:
-    """The robots that nodes belong to; one for all nodes where no node shows whose it is."""
+    """Return the robots that nodes belong to; one for all nodes where no node shows whose it is."""
     return tuple(it for it in seen.robots if not it.only_frames) or (NAMELESS,)
 
 

@@ -38,7 +38,7 @@ HEAD = """\
 
 
 def suggestion(seen: Diagnosis, library: NodeLibrary) -> dict[str, str]:
-    """The files by name."""
+    """Return the files by name."""
     robot, *_ = robots_to_plan(seen)
     # The nodes of the first robot, as far as their names show the code's: not behind a word.
     mine, above = "" if robot is NAMELESS else robot.name, f"{robot.namespace}/"
@@ -82,7 +82,7 @@ def _fleet(seen: Diagnosis, nodes: Sequence[str], learned: bool) -> Iterator[str
 
 
 def _description(seen: Diagnosis, robot: GuessedRobot) -> Iterator[str]:
-    """The frames of a robot below its base, as links and joints."""
+    """Yield the frames of a robot below its base, as links and joints."""
     whose, plain = seen.whose, seen.whose.plain_frame
     # Those with the robot's name; where frames have none, those on its topic or on all.
     named = [it for it in seen.graph.edges if whose.frame_robot(it.child) == robot.name]

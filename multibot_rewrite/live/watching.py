@@ -34,8 +34,7 @@ class Outcome(NamedTuple):
     """The verdict as a command says it: in which ``words``, and who says it (``by``).
 
     Without ``planned`` there was no plan to compare with. ``reasons`` say why it is not certain,
-    besides the caveats of the graph.
-    """
+    besides the limitations of the graph."""
 
     verdict: Verdict
     words: str
@@ -94,10 +93,8 @@ def judge(found: Iterable[Finding], graph: System) -> Verdict:
 def with_found(
     graph: System, held: Coverage, findings: Iterable[Finding], before: WatchState | None
 ) -> WatchState:
-    """The state of the graph in which these are the findings, after the state before.
-
-    What was missing while the fleet started was never announced, so it is not solved either.
-    """
+    """Return the state of the graph with these findings, after the state before. What was missing
+    while the fleet started was never reported, so it is not solved either."""
     found = tuple(findings)
     was_complete = before is not None and before.complete
     old = before.findings if before and was_complete else ()
@@ -113,13 +110,13 @@ def with_found(
 
 
 def _not_in(known: Iterable[Finding], found: Iterable[Finding]) -> tuple[Finding, ...]:
-    """What is found and not known; a finding with another cause is the same finding."""
+    """Return what is found and not known; a finding with another cause is the same finding."""
     before = {it._replace(hint="", file="", line=0) for it in known}
     return tuple(it for it in found if it._replace(hint="", file="", line=0) not in before)
 
 
 def final(state: WatchState) -> Verdict:
-    """The worst verdict; what is still missing at the end counts as well."""
+    """Return the worst verdict; what is still missing at the end counts as well."""
     return max(state.worst, state.verdict)
 
 

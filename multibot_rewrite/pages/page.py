@@ -207,7 +207,7 @@ def graphs(scene: Scene, ids: Ids, sections: Sequence[PageSection]) -> Iterator[
 
 
 def _pane(drawing: str, css_class: str = "") -> str:
-    """Room for a drawing that may be wider than the page."""
+    """Return the element for a drawing that may be wider than the page."""
     return f'<div class="frame{css_class}"><div class="pane">{drawing}</div></div>\n'
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""SVG of a group and of a tf tree, with places and states only; page.css has colours and styles. From
-left to right stand publishers and servers, names, subscribers and clients.
+"""SVG of a group and of a tf tree, with places and states only; page.css has colours and styles.
+From left to right are publishers and servers, names, subscribers and clients.
 
 Lengths are pixels. Names and nodes are ordered by barycenters: each moves towards the middle of what
 it is connected to, which leaves few crossings. Faulty names are at the top.
@@ -309,7 +309,7 @@ def _middle(values: Sequence[float]) -> float:
 def _column(
     joined: Mapping[str, Sequence[_NameKey]], at: Mapping[_NameKey, float], height: float
 ) -> dict[str, float]:
-    """Each node beside the middle of its names, moved where two would overlap."""
+    """Return each node at the middle of its names, moved where two would overlap."""
     wish = {node: _middle([at[key] for key in keys]) for node, keys in joined.items()}
     order = sorted(wish, key=lambda node: (wish[node], node))
     places: dict[str, float] = {}

@@ -103,8 +103,7 @@ def _rows(
 ) -> Iterator[FrameRow]:
     """Depth first from ``root`` through the children ``first``.
 
-    With its own stack: a tree may be deeper than Python's.
-    """
+    With its own node set: a tree may be deeper than Python's."""
     waiting = [(root, "", -1, 0)]
     at = 0
     while waiting:

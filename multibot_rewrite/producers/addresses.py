@@ -41,8 +41,8 @@ _OFF = ("", "false", "no", "off")
 def of_hardware(
     root: _Element, node: str, place: Place, vocabulary: Vocabulary, of_networks: bool = False
 ) -> Iterator[Address]:
-    """The devices of a description: what its classes are known to open, of others what parameters of
-    that name hold, with ``of_networks`` any address; none of a component whose address is nowhere."""
+    """Yield the devices of a description: what its known classes open, for others what parameters
+    of such names hold, with ``of_networks`` any address; nothing without an address."""
     for system in root.iterfind("ros2_control"):
         section = hardware_section(system, vocabulary)
         params = system.iterfind("hardware/param")
@@ -71,7 +71,7 @@ def _opened_by(system: _Element, section: VocabularySection) -> Iterator[tuple[s
 def of_parameters(
     node: str, params: Mapping[str, Param], values: Mapping[str, Given]
 ) -> Iterator[Address]:
-    """What the parameters of a node name and no other node can have, or none on that computer."""
+    """Yield what a node's parameters name that no other node can have, or none on that computer."""
     for name, given in values.items():
         text = str(given.value).strip()
         known = params.get(name)
@@ -82,7 +82,7 @@ def of_parameters(
 
 
 def of_words(node: str, words: Sequence[str], place: Place) -> Iterator[Address]:
-    """What the words of a program name: a device, or what a parameter called as the flag would hold."""
+    """Yield what a program's arguments name: a device, or what a parameter named as the flag holds."""
     for flag, word in pairwise(("", *words)):
         name, sign, value = word.partition(":=" if ":=" in word else "=")
         if not sign:
@@ -93,8 +93,8 @@ def of_words(node: str, words: Sequence[str], place: Place) -> Iterator[Address]
 
 
 def held_by(name: str, text: str) -> str:
-    """The kind of what one process has by a parameter of a node that is not known: a device in a
-    network or by its number; of a computer a device, a port, a file that it writes. Else empty."""
+    """Return the kind of what one process has by a parameter of an unknown node: a device in a
+    network or by its number; a device, port or written file of a computer; or empty."""
     word = name.rpartition(".")[2]
     if word in _data()["address"]:
         numbered = word.startswith("serial_n") and text not in NOWHERE
@@ -109,7 +109,7 @@ def _of_value(text: str) -> str:
 
 
 def is_of_network(text: str) -> bool:
-    """Is it the address of another computer, alone or with a port?"""
+    """Return whether it is the address of another computer, alone or with a port."""
     try:
         it = IPv4Address(text.partition(":")[0])
         return not (it.is_loopback or it.is_unspecified or text.startswith("255."))

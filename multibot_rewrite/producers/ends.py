@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The ends that a robot's sources name: its stacks with their parameters, plugins, bridges; the
+"""The ends that a robot's sources name: its node sets with their parameters, plugins, bridges; the
 transforms that they name, and those that they tell nodes not to send."""
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ _ROLES = {"GZ_TO_ROS": PUBLISHES, "ROS_TO_GZ": SUBSCRIBES}
 
 
 def either_way(end: End) -> Iterator[End]:
-    """The end; one of which the role is not known may be on both sides."""
+    """Yield the end; one with an unknown role may be on both sides."""
     if end.role:
         yield end
         return
@@ -56,8 +56,8 @@ def either_way(end: End) -> Iterator[End]:
 
 
 def run_alone(node: NodeFacts, section: Run | None) -> Run:
-    """A node of a robot without a name, under the rules of the usual launch files alone; ``section`` is
-    what a file sets for it."""
+    """Return a node of a robot without a name, under the rules of the usual launch files alone;
+    ``section`` is what a file sets for it."""
     above, _, name = f"/{node.name}".rpartition("/")
     rules = tuple(it for end in node.endpoints if end.remapped for it in _usual_rules(node, end))
     run = Run("", node.name, above or "/", name, rules, node)
@@ -81,13 +81,13 @@ class BridgeRow(NamedTuple):
 
 
 def bridge_ends(document: YamlText, above: str = "") -> Iterator[End]:
-    """The ROS ends of the rows of a ros_gz_bridge file."""
+    """Yield the ROS ends of the rows of a ros_gz_bridge file."""
     yield from (it.end for it in bridge_rows(document, above))
 
 
 def bridge_rows(document: YamlText, above: str = "") -> Iterator[BridgeRow]:
-    """The rows of a ros_gz_bridge file that runs in the namespace ``above``; the end of a row for both
-    ways has no role, that of a service serves it."""
+    """Yield the rows of a ros_gz_bridge file that runs in the namespace ``above``. The end of a row
+    for both directions has no role; that of a service serves it."""
     for row in items(document.root):
         values = {key.value: value for key, value in pairs(row)}
         # A row with one name has it on both sides (ros_gz_bridge bridge_config.cpp).
@@ -105,20 +105,20 @@ def bridge_rows(document: YamlText, above: str = "") -> Iterator[BridgeRow]:
 
 
 def edge(pair: Edge, node: str, place: Place = NOWHERE, topic: str = TF, sure: Sure = RUNS) -> Edge:
-    """A transform on the tf topic of its robot, or on the static one beside it."""
+    """Return a transform on the tf topic of its robot, or on the static one next to it."""
     on = "/".join("tf_static" if it == "tf" and pair.static else it for it in topic.split("/"))
     return pair._replace(topic=on, publishers=(node,), sure=sure, place=place)
 
 
 def virtual_lookups(semantics: Semantics) -> Iterator[Lookup]:
-    """The transforms that are the state of virtual joints: current_state_monitor.cpp of moveit2."""
+    """Yield the transforms of virtual joints' states: current_state_monitor.cpp of moveit2."""
     for it in semantics.virtual:
         if it.type != FIXED:
             yield Lookup(f"/{MOVE_GROUP}", it.child, it.parent, it.place)
 
 
 def edges_off(given: Iterable[Run], known: Mapping[str, NodeFacts]) -> Iterator[Edge]:
-    """What nodes would send, with the parameter that alone switches it off."""
+    """Yield what nodes would send, with the parameter that alone switches it off."""
     for it in given:
         node = known.get(it.fact.known)
         runs = filled(node, it) if node and node.sends else None

@@ -51,7 +51,7 @@ def sensor_frames(root: _Element, model: str, release: str) -> Iterator[SensorFr
 
 
 def sensor_on(topic: str, sensors: Iterable[SensorFrame]) -> SensorFrame | None:
-    """The sensor that sends on a gz topic."""
+    """Return the sensor that sends on a gz topic; None without."""
     name = _full(topic)
     found = [it for it in sensors if it.link and it.topic != "/" and _is_at(name, it.topic)]
     return max(found, key=lambda it: len(it.topic), default=None)
@@ -66,7 +66,7 @@ def _full(topic: str) -> str:
 
 
 def _place(sensor: _Element) -> tuple[str, list[str]]:
-    """The link, empty for a sensor of a joint, and the models in the model that it is in."""
+    """Return a sensor's link, empty for a sensor of a joint, and the models around it."""
     host = sensor.getparent()
     if host is None or host.tag not in (_LINK, "gazebo"):
         return "", []

@@ -22,7 +22,7 @@ _MESSAGE = lazy_compile(rb"\A(?:\xef\xbb\xbf)?(?:\s|#[^\n]*\n|---[^\S\n]*\n)*nod
 
 
 def read_snapshot(path: str) -> System:
-    """The snapshot in a file; raises InputError with file, what is wrong and what to do."""
+    """Return the snapshot in a file; raises InputError with file, what is wrong and what to do."""
     data = read_file(path, MAX_FLEET_BYTES)
     text = _text(data, path) if _MESSAGE.match(data) else ""
     value = None if text else json_value(data, path)
@@ -45,12 +45,12 @@ def read_snapshot(path: str) -> System:
 
 
 def read_snapshots(paths: Sequence[str]) -> System:
-    """What any of these files has seen; raises InputError, and UsageError for two domains."""
+    """Return what any of these files has seen; raises InputError, and UsageError for two domains."""
     return merged([Look(path, read_snapshot(path)) for path in paths])
 
 
 def read_by_domain(paths: Sequence[str]) -> dict[int, System]:
-    """The same of files of several domains, each on its own; raises as ``read_snapshots``."""
+    """Return by domain what these files have seen; raises as ``read_snapshots``."""
     looks = (Look(path, read_snapshot(path)) for path in paths)
     by_domain = lists_by_key((it.snapshot.environment.domain, it) for it in looks)
     return {it: merged(by_domain[it]) for it in sorted(by_domain)}

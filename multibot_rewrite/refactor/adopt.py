@@ -169,7 +169,7 @@ def _made(
     how: Expanding,
     more: Collection[SourceEdit] = (),
 ) -> tuple[Adopted, Mapping[str, bytes]]:
-    """The descriptions with the argument and what was verified of them, beside ``more`` edits; and the
+    """Return the descriptions with the argument, verified together with ``more`` edits; and the
     files that change, by their real paths."""
     word = b"${%s}" % argument.encode()
     asked = [list(_changes(it)) for it in found]
@@ -229,7 +229,7 @@ def _is_srdf(it: Description) -> bool:
 
 
 def _arguments(it: Description, job: _Job) -> Sequence[Argument]:
-    """The arguments of a xacro that are called as those for a robot's names."""
+    """Return the arguments of a xacro that are named as those for a robot's names."""
     if it.read is None:
         return ()
     # What xacro warns about is not said here.
@@ -240,15 +240,15 @@ def _arguments(it: Description, job: _Job) -> Sequence[Argument]:
 
 
 def _space_of(arguments: Iterable[Argument]) -> str:
-    """The argument that is a namespace of plugins, or in one; empty if there is none."""
+    """Return the argument that is a namespace of plugins, or in one; empty if there is none."""
     return next(
         (it.name for it in arguments if any(one.kind == "namespace" for one in it.uses)), ""
     )
 
 
 def _prefix_of(arguments: Iterable[Argument]) -> str:
-    """The argument that is before links, for each robot another word; empty if there is none. ``world``
-    and some that were forgotten may lack it."""
+    """Return the argument that is before links, other for each robot; empty if there is none.
+    ``world`` and some that were forgotten may lack it."""
     for it in arguments:
         links = (use for use in it.uses if (use.kind, use.how) == ("link", PREFIX))
         if it.value and any(2 * use.names >= use.total for use in links):
@@ -276,7 +276,7 @@ def _as_xacros(descriptions: Iterable[Description], job: _Job) -> Iterator[Descr
 
 
 def _as_xacro(it: Description, tree: Tree, how: Expanding) -> Description:
-    """A plain description as the xacro that it becomes."""
+    """Return a plain description as the xacro that it becomes."""
     path = f"{it.path}.xacro"
     data, read = read_text(path, how, {os.path.realpath(path): it.inventory.document.source})
     return Description(path, inventory_of(data, path, tree), read)
@@ -304,8 +304,8 @@ def _changes(it: Description) -> Iterator[ValueEdit]:
 
 
 def _not_written(it: Description) -> Iterator[Left]:
-    """What a plugin takes where nothing is written, such as the name of its sensor: to stay, or to
-    have the prefix, it needs an element of its own."""
+    """Yield what a plugin takes by default, such as the name of its sensor: to stay, or to have the
+    prefix, it needs an element of its own."""
     document, _, _, declared, *_ = it.inventory
     for one in insertions(it.inventory.served, declared, prefixing()):
         if it.read:
@@ -321,8 +321,8 @@ def _fault(
     argument: str,
     how: Expanding,
 ) -> str:
-    """What is wrong with a description with a prefix: the names alone may change. Raises InputError for
-    one that is another without."""
+    """Return what is wrong with a description with a prefix: only the names may change. Raises
+    InputError for one that differs without a prefix."""
     document = it.inventory.document
     for prefix, wanted in (("", document.source), (TRIED, expected(document, changes))):
         more = {argument: prefix} if prefix else {}

@@ -20,7 +20,7 @@ _SPACE = b' xmlns:xacro="http://www.ros.org/wiki/xacro"'
 
 
 def free_name(found: Iterable[Description], names: Sequence[str] = NAMES) -> str:
-    """A name that no argument, property or parameter of a macro has."""
+    """Return a name that no argument, property or parameter of a macro has."""
     taken: set[str] = set()
     sources = {file: data for it in found for file, data in it.sources.items()}
     # YAML that an expression loads is among them.
@@ -40,8 +40,8 @@ def declared(
     changed: Collection[str],
     argument: str,
 ) -> Iterator[SourceEdit]:
-    """The argument and its property in the descriptions' own files, and the property in other files
-    that are ``changed``; ``texts`` are the bytes of all, by real path."""
+    """Yield the argument and its property in the descriptions' own files, and the property in other
+    files that are ``changed``; ``texts`` are the bytes of all, by real path."""
     own = {os.path.realpath(it.path) for it in found}
     argued = f'\n  <xacro:arg name="{argument}" default=""/>'
     value = f'\n  <xacro:property name="{argument}" value="$(arg {argument})"/>'
@@ -54,7 +54,7 @@ def declared(
 
 
 def _first(path: str, source: bytes, text: str) -> Iterator[SourceEdit]:
-    """A text, first in the root element."""
+    """Yield the edits that put a text first in the root element."""
     start = read_document(source, path).starts[0]
     end = tag_end(source, start)
     if b"xmlns:xacro" not in source[start:end]:

@@ -68,9 +68,9 @@ def with_argument(
     parameters: Collection[str] = (),
     space: Space | None = None,
 ) -> LaunchEdit:
-    """The launch file with an argument for the descriptions (names of files) that it expands; it fills
-    in those of ``parameters`` (names of files) that it only gives to nodes, and puts what belongs to
-    the description into the namespace ``space``."""
+    """Return the launch file with an argument for the descriptions (names of files) that it
+    expands; it fills in those of ``parameters`` (names of files) that it only gives to nodes, and
+    puts what belongs to the description into the namespace ``space``."""
     if not any(name.encode() in source for name in descriptions):
         return LaunchEdit(None, ())
     if space and not space.of_xacro and not any(it.encode() in source for it in OF_ROBOT):
@@ -86,7 +86,7 @@ def with_argument(
 
 
 def _both(argument: str, space: Space | None) -> tuple[list[str], list[str]]:
-    """The arguments to declare, and those that xacro gets."""
+    """Return the arguments to declare, and those that xacro gets."""
     every = [argument, space.name] if space else [argument]
     return every, every if space and space.of_xacro else [argument]
 
@@ -169,7 +169,7 @@ def _of_python(
 
 
 def _spaced(it: _Text, space: str) -> Iterator[SourceEdit]:
-    """A namespace for each node that belongs to the description, after its package."""
+    """Yield a namespace for each node that belongs to the description, after its package."""
     for node in ast.walk(it.tree):
         if not isinstance(node, ast.Call) or _called(node) != "Node":
             continue
@@ -184,7 +184,7 @@ def _spaced(it: _Text, space: str) -> Iterator[SourceEdit]:
 
 
 def _given(tree: ast.Module, file: str) -> Iterator[ast.expr]:
-    """The items of ``parameters=[...]`` that name a file; none where it is named elsewhere, too."""
+    """Yield the items of ``parameters=[...]`` that name a file; none if it is named elsewhere, too."""
     lists = [
         it.value
         for it in ast.walk(tree)
@@ -223,7 +223,7 @@ def _is_said(node: ast.AST, file: str) -> bool:
 
 
 def _imports(it: _Text, used: Iterable[str]) -> Iterator[SourceEdit]:
-    """Imports of what the argument needs, after those that are there."""
+    """Yield imports of what the argument needs, after the existing ones."""
     froms = [one for one in ast.walk(it.tree) if isinstance(one, ast.ImportFrom)]
     known = {name.asname or name.name for one in froms for name in one.names}
     last = [one for one in it.tree.body if isinstance(one, (ast.Import, ast.ImportFrom))][-1]
@@ -233,7 +233,7 @@ def _imports(it: _Text, used: Iterable[str]) -> Iterator[SourceEdit]:
 
 
 def _lists_of(tree: ast.Module, called: str) -> Iterator[ast.List]:
-    """The literal lists that are the first argument of calls of a name."""
+    """Yield the literal lists that are the first argument of calls of a name."""
     for node in ast.walk(tree):
         if not isinstance(node, ast.Call) or not node.args:
             continue
@@ -243,7 +243,7 @@ def _lists_of(tree: ast.Module, called: str) -> Iterator[ast.List]:
 
 
 def _called(node: ast.Call) -> str:
-    """The last word of what is called."""
+    """Return the last word of what is called."""
     named = node.func.attr if isinstance(node.func, ast.Attribute) else node.func
     return named if isinstance(named, str) else getattr(named, "id", "")
 

@@ -67,9 +67,9 @@ class _Verdict(NamedTuple):
 def with_launches(
     folder: str, launches: Collection[str], after: Mapping[str, bytes], how: Trial
 ) -> Launches:
-    """The launch files that expand a description of ``after``, files by their paths. One that does not
-    hand the argument on is left as it was. Of the parameter files those are filled in that no other
-    file names and that are verified with their launch file; so is a namespace given."""
+    """Return the launch files that expand a description of ``after``, files by their paths. One
+    that does not hand the argument on is left unchanged. Parameter files are filled in if no other
+    file names them and they are verified with their launch file; so is a namespace given."""
     texts = {path: read_file(path) for path in launches}
     alone = {
         name: it
@@ -86,7 +86,7 @@ def with_launches(
 
 
 def _tried(folder: str, path: str, text: bytes, after: Mapping[str, bytes], how: Trial) -> Launches:
-    """A launch file with all that is asked for, or with less of it, as far as that is verified."""
+    """Return a launch file with all that is asked for, or with less of it, as far as verified."""
     names = {os.path.basename(it) for it in after}
     plain = how._replace(parameters={})
     one = Launches({}, (), ())
@@ -128,7 +128,7 @@ def _one(
 
 
 def _copy(home: str, root: str, files: Mapping[str, bytes]) -> None:
-    """A folder with links to all its files, but for those that are changed."""
+    """Make a folder with links to all its files, except those that are changed."""
     for at, folders, names in os.walk(home):
         folders[:] = [it for it in folders if it != ".git"]
         target = os.path.join(root, os.path.relpath(at, home))
@@ -167,7 +167,7 @@ def _verdict(order: LaunchOrder, how: Trial, filled: Sequence[Filled]) -> _Verdi
 
 
 def _space_fault(order: LaunchOrder, graph: LaunchGraph, space: Space | None) -> str:
-    """What is wrong with the nodes of the description, or with that, in a namespace."""
+    """Return what is wrong with the description's nodes, or with the description, in a namespace."""
     if space is None:
         return ""
     other = launch_graph(order._replace(arguments=((space.name, TRIED_SPACE),)))
@@ -182,7 +182,7 @@ def _space_fault(order: LaunchOrder, graph: LaunchGraph, space: Space | None) ->
 
 
 def _gets(graph: LaunchGraph, path: str, wanted: bytes) -> bool:
-    """Does some node get a parameter file with what is ``wanted``, and none another?"""
+    """Return whether some node gets a parameter file with what is ``wanted``, and none another."""
     name = os.path.basename(path)
     given = [it for node in graph.nodes for it in node.parameters]
     texts = [it.text for it in given if name == os.path.basename(it.source or it.file)]
@@ -192,7 +192,7 @@ def _gets(graph: LaunchGraph, path: str, wanted: bytes) -> bool:
 
 
 def _links(graph: LaunchGraph) -> list[str]:
-    """The links of all descriptions that nodes get, each once."""
+    """Return the links of all descriptions that nodes get, each once."""
     found: dict[str, None] = {}
     for node in graph.nodes:
         for it in node.parameters:
@@ -203,7 +203,7 @@ def _links(graph: LaunchGraph) -> list[str]:
 
 
 def _descriptions(text: str) -> Iterator[str]:
-    """The values of ``robot_description`` in a parameter file."""
+    """Yield the values of ``robot_description`` in a parameter file."""
     try:
         todo = [load_yaml(text, "")] if _DESCRIPTION in text else []
     except InputError:
@@ -227,8 +227,8 @@ class Filled(NamedTuple):
 def fillable(
     paths: Sequence[str], urdfs: Sequence[bytes], names: Collection[str], argument: str, tried: str
 ) -> Mapping[str, Filled]:
-    """The parameter files that have some of the names of the descriptions ``urdfs``, by their own
-    names; those that two have are left out."""
+    """Return the parameter files that have some of the names of the descriptions ``urdfs``, by
+    their own names; files of one name are left out."""
     own = [os.path.basename(it) for it in paths]
     found: dict[str, Filled] = {}
     for path in paths:
@@ -255,7 +255,7 @@ def starts_of(file: NamedFile, names: Collection[str], kinds: Collection[str]) -
 
 
 def respelled(file: NamedFile, data: bytes, starts: Collection[int], size: int, word: str) -> bytes:
-    """The bytes of a file with a word in place of so many characters from each start of its text."""
+    """Return the bytes of a file with a word in place of ``size`` characters from each start."""
     text = file.text
     # A byte order mark is none of the text.
     mark = data[: len(data) - len(text.encode())]

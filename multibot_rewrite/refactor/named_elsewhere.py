@@ -70,7 +70,7 @@ def root_sections(paths: Collection[str]) -> Iterator[Left]:
 
 
 def _controllers(data: bytes) -> Iterator[str]:
-    """The controllers that a parameter file gives its manager."""
+    """Yield the controllers that a parameter file gives its manager."""
     with suppress(InputError, UnicodeDecodeError):
         sections = load_yaml(data.decode(), "")
         manager = sections.get(MANAGER) if isinstance(sections, dict) else None
@@ -81,7 +81,7 @@ def _controllers(data: bytes) -> Iterator[str]:
 
 
 def files_below(folder: str, endings: tuple[str, ...]) -> Iterator[str]:
-    """The files with such endings, without those that a build made."""
+    """Yield the files with such endings, without those that a build made."""
     for at, folders, names in os.walk(folder):
         folders[:] = source_folders(at, folders)
         for name in sorted(names):

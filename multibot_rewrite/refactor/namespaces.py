@@ -60,14 +60,14 @@ class _Added(NamedTuple):
 
 
 def spacing() -> Naming:
-    """The naming below a namespace: what ROS calls things, no frame and no joint."""
+    """Return the naming below a namespace: ROS names, no frame and no joint."""
     naming = make_naming("frames-per-robot", PREFIX)
     kept = {kind: it for kind, it in naming.separators.items() if kind in ROS_KINDS}
     return naming._replace(separators=kept)
 
 
 def namespaced(found: Sequence[Description], texts: Mapping[str, bytes], tree: Tree) -> Namespaced:
-    """The edits of the sources ``texts``, by their real paths."""
+    """Return the edits of the sources ``texts``, by their real paths."""
     every, left = _every(found, tree)
     argument = free_name(found, SPACES)
     made = placed(
@@ -116,8 +116,9 @@ def space_verified(
     how: Expanding,
     tree: Tree,
 ) -> tuple[tuple[str, ...], tuple[Left, ...]]:
-    """The paths of descriptions that are with a namespace what a rewrite makes of them, also beside a
-    ``prefix``, which is ``tried`` with the default arguments; and what is wrong with others."""
+    """Return the paths of descriptions that become with a namespace what a rewrite makes of them,
+    also with a ``prefix``, which is ``tried`` with the default arguments; and what is wrong with
+    others."""
     wrong: dict[str, Left] = {}
     for it in space.every:
         why = _fault(it, after, {}, space.argument, how)
@@ -135,7 +136,7 @@ def space_verified(
 def _fault(
     it: Spaced, after: Mapping[str, bytes], given: Mapping[str, str], argument: str, how: Expanding
 ) -> str:
-    """What is wrong with a description with a namespace."""
+    """Return what is wrong with a description with a namespace."""
     arguments = {**how.arguments, **it.found.arguments, **given, argument: TRIED_SPACE}
     try:
         made, _ = read_text(it.found.path, Expanding(how.reach, arguments), after)
@@ -174,7 +175,7 @@ def _changes(template: Template) -> Iterator[ValueEdit]:
 
 
 def _written(change: ValueEdit, argument: str) -> bytes:
-    """An expression that is empty without a namespace."""
+    """Return an expression that is empty without a namespace."""
     before, after = change.new.split(TRIED_SPACE)
     words = [f"'{before}'"] * bool(before) + [argument] + [f"'{after}'"] * bool(after)
     test = f"{argument} and " if len(words) > 1 else ""
@@ -182,7 +183,7 @@ def _written(change: ValueEdit, argument: str) -> bytes:
 
 
 def _added(every: Iterable[Spaced]) -> dict[Spot, set[_Added]]:
-    """What is added where an element is written, for each element that it makes."""
+    """Return what is added where an element is written, for each element that it makes."""
     found: dict[Spot, set[_Added]] = defaultdict(set)
     for it in every:
         read, document = it.found.read, it.template.inventory.document
@@ -196,7 +197,7 @@ def _added(every: Iterable[Spaced]) -> dict[Spot, set[_Added]]:
 
 
 def _needs(template: Template) -> dict[etree._Element, _Added]:
-    """What is added to which element."""
+    """Return what is added to which element."""
     items = template.plan.insertions
     groups = lists_by_key((it.parent, it) for it in items if it.filled is None)
     texts = {it.filled: it.new for it in items if it.filled is not None}
@@ -211,7 +212,7 @@ def _needs(template: Template) -> dict[etree._Element, _Added]:
 def _edits(
     file: str, source: bytes, start: int, added: _Added, argument: str
 ) -> Iterator[SourceEdit]:
-    """What the condition guards; xacro writes ``<a/>`` where nothing is in it."""
+    """Yield the edits with what the condition guards; xacro writes ``<a/>`` where nothing is in it."""
     end = tag_end(source, start)
     is_empty = source[end - 2 : end] == b"/>"
     # White space alone would be left in an element that had none.

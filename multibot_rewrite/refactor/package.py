@@ -89,8 +89,8 @@ def read_package(folder: str, tree: Tree, how: Expanding) -> Package:
 def read_text(
     path: str, how: Expanding, texts: Mapping[str, bytes] | None = None
 ) -> tuple[bytes, Expansion | None]:
-    """The text of a description; ``texts`` are the bytes of files that are not as on the disk, by their
-    real paths. Raises InputError."""
+    """Return the text of a description; ``texts`` are the bytes of files that differ from the disk,
+    by their real paths. Raises InputError."""
     known = texts or {}
     data = known.get(os.path.realpath(path)) or read_file(path)
     if not is_xacro(path):
@@ -102,7 +102,7 @@ def read_text(
 
 
 def inventory_of(data: bytes, path: str, tree: Tree, urdfs: Iterable[Inventory] = ()) -> Inventory:
-    """What is in a description; of an SRDF with what the URDF declares whose names it has."""
+    """Return what is in a description; an SRDF is read with the URDF whose names it has."""
     document = read_document(data, path)
     alone = collect(document, tree)
     if alone.format != SRDF_SECTION:
@@ -116,7 +116,7 @@ def _lacks(pair: Inventory) -> int:
 
 
 def texts_of(descriptions: Iterable[Description]) -> dict[str, bytes]:
-    """The bytes of all files that make the descriptions, by their real paths."""
+    """Return the bytes of all files that make the descriptions, by their real paths."""
     every = (pair for it in descriptions for pair in it.sources.items())
     return {os.path.realpath(path): data for path, data in every}
 
@@ -143,8 +143,8 @@ _WORD = re.compile(r"['\"]([^'\"]*)['\"]")
 def configurations(
     it: Description, how: Expanding, tree: Tree, urdfs: Sequence[Inventory], unread: dict[str, str]
 ) -> Iterator[Description]:
-    """The other configurations of a xacro that make another text; those that do not expand are noted in
-    ``unread``."""
+    """Yield the other configurations of a xacro that make another text; those that do not expand
+    are noted in ``unread``."""
     assert it.read is not None
     known = {it.inventory.document.source}
     for name, value in islice(_values(it.read.sources, how.arguments), MOST):
@@ -183,7 +183,7 @@ def _values(sources: Mapping[str, bytes], given: Mapping[str, str]) -> Iterator[
 
 
 def _others(elements: Iterable[_Element]) -> Iterator[tuple[str, str]]:
-    """A name, and another one under which its value is known."""
+    """Yield a name, and another one under which its value is known."""
     for element in elements:
         is_property = str(element.tag).endswith("xacro}property")
         for key, value in element.items():

@@ -58,8 +58,9 @@ def placed(
     changes: Sequence[Sequence[ValueEdit]],
     written: Callable[[ValueEdit], bytes],
 ) -> PlacedNames:
-    """The edits of the sources for the changes of each description. They have sources in common: what
-    one of them needs at a place, the others get. ``written`` is what a change is in the source."""
+    """Return the edits of the sources for the changes of each description. They share sources: what
+    one of them needs at a place, the others get. ``written`` returns a change's text in the
+    source."""
     both = enumerate(zip(found, changes, strict=True))
     names = [name for of, (it, own) in both for name in _names(of, it, own)]
     deep = _made_elsewhere(names)
@@ -105,7 +106,7 @@ def _at(spot: Spot | None, real: Mapping[str, str]) -> Spot | None:
 
 
 def _values(element: etree._Element) -> Iterator[tuple[str, str]]:
-    """The attributes of an element, and its text under the name "" if it has nothing else."""
+    """Yield the attributes of an element, and its text under the name "" if it has nothing else."""
     yield from ((str(name), str(value)) for name, value in element.attrib.items())
     if element.text and not len(element):
         yield "", element.text
@@ -154,7 +155,7 @@ def _made(
 
 
 def _made_elsewhere(names: Sequence[_Name]) -> set[Spot | None]:
-    """The spots of use at which no prefix can go: it comes from where the names are made."""
+    """Return the spots of use at which no prefix can go: it comes from where the names are made."""
     groups = lists_by_key((it.used, it) for it in names)
     deep = {it for it, group in groups.items() if len({name.change is None for name in group}) > 1}
     while True:

@@ -87,7 +87,7 @@ class _Symbol(NamedTuple):
         return make_naming()._replace(separators={}, own=own)
 
     def respelled(self, kind: str, name: str) -> str:
-        """The new spelling of a name."""
+        """Return the new spelling of a name."""
         return self.new if name == self.old and kind in KINDS[self.kind] else name
 
 
@@ -125,7 +125,7 @@ def rename_symbol(
 
 
 def _renamed(symbol: _Symbol, package: Package, folder: str, how: Expanding) -> Renaming:
-    """The package with the name changed in its descriptions and the files beside."""
+    """Return the package with the name changed in its descriptions and the related files."""
     changes = {it.path: list(_changes(it, symbol)) for it in package.descriptions}
     if not any(changes.values()):
         # One that is nowhere declared is of no kind.
@@ -208,7 +208,7 @@ def _beside(
     changes: Mapping[str, Sequence[ValueEdit]],
     after: Mapping[str, bytes],
 ) -> Iterator[tuple[str, tuple[bytes, int]]]:
-    """The files beside the descriptions that change, with their bytes and in how many places."""
+    """Yield the related files that change, with their bytes and in how many places."""
     kinds = KINDS[symbol.kind]
     for path, data, file, starts in _files_with(symbol.old, kinds, package, changes):
         if os.path.realpath(path) not in after:
@@ -222,7 +222,7 @@ def _files_with(
     package: Package,
     changes: Mapping[str, Sequence[ValueEdit]],
 ) -> Iterator[tuple[str, bytes, NamedFile, set[int]]]:
-    """The files beside the descriptions that have a name of these kinds, and where in their text."""
+    """Yield the related files that have a name of these kinds, and where in their text."""
     urdf = next(path for path, found in changes.items() if found)
     described = next(it.inventory.document.source for it in package.descriptions if it.path == urdf)
     for path, data, file in files_with_names(package, described, name):

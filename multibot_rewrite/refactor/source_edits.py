@@ -31,7 +31,7 @@ class ValueEdit(NamedTuple):
 
 
 def change_of(document: Document, claim: Claim, start: int, end: int, new: str) -> ValueEdit:
-    """The change of a claimed value; a claim has a text without the white space around it."""
+    """Return the change of a claimed value; a claim has a text without the white space around it."""
     number = bisect_left(document.starts, claim.start)
     value = claim.value if claim.attribute else claim.element.text or ""
     by = value.find(claim.value)
@@ -56,7 +56,7 @@ class Composed(NamedTuple):
 
 
 def source_edit(read: Expansion, document: Document, change: ValueEdit) -> SourceEdit | Composed:
-    """The edit of a source that makes a change."""
+    """Return the edit of a source that makes a change."""
     start, end, new = _trimmed(change)
     pieces = read.pieces.of(change.element, change.attribute, change.value)
     at = 0
@@ -74,7 +74,7 @@ def source_edit(read: Expansion, document: Document, change: ValueEdit) -> Sourc
 
 
 def _trimmed(change: ValueEdit) -> tuple[int, int, str]:
-    """What of a change is different: from, to, and the new characters."""
+    """Return what of a change is different: from, to, and the new characters."""
     _, _, value, start, end, new = change
     while start < end and new and value[start] == new[0]:
         start, new = start + 1, new[1:]
@@ -108,7 +108,7 @@ def _why(touched: list[Piece]) -> str:
 
 
 def expected(document: Document, changes: Iterable[ValueEdit]) -> bytes | None:
-    """The text of a document with the changes made in it; None where escapes hide one of them."""
+    """Return the text of a document with the changes made; None where escapes hide one of them."""
     found = list(spans(document, changes))
     if None in found:
         return None
@@ -127,7 +127,7 @@ def spans(
 
 
 def edited(sources: Mapping[str, bytes], edits: Iterable[SourceEdit]) -> dict[str, bytes]:
-    """The files that change, with their new bytes; raises ValueError where two edits meet."""
+    """Return the files that change, with their new bytes; raises ValueError where two edits meet."""
     made: dict[str, bytes] = {}
     every = sorted(set(edits))
     for file in dict.fromkeys(it.file for it in every):
@@ -143,7 +143,7 @@ def edited(sources: Mapping[str, bytes], edits: Iterable[SourceEdit]) -> dict[st
 
 
 def first_difference(made: bytes, wanted: bytes | None) -> str:
-    """The first line of a text that is not the wanted one; "" where there is none."""
+    """Return the first line of a text that is not the wanted one; "" where there is none."""
     lines = zip(made.splitlines(), (wanted or b"").splitlines(), strict=False)
     line = next((one for one, other in lines if one != other), b"")
     return line.strip().decode(errors="replace")

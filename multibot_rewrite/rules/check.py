@@ -3,9 +3,8 @@
 ROS domains: a plan and what was seen in each of them.
 
 Where the view may be incomplete, a finding about something missing is *inconclusive*. Each domain
-is held against its part of the plan, or against the whole of one for robots without names: who is
-in another one is never met. Robots are held against each other wherever they are.
-"""
+is compared with its part of the plan, or against the whole of one for robots without names: who is
+in another one is never met. Robots are compared wherever they are."""
 
 from __future__ import annotations
 
@@ -44,8 +43,8 @@ ABSENCE = frozenset(it.code for it in RULES.values() if it.options["absence"])
 
 
 def judge(seen: Index) -> list[Finding]:
-    """What is wrong with a system, and other than its plan has it where there is one, the likeliest
-    cause first; empty for one that is as it should be."""
+    """Return the findings about a system and its differences from its plan, the likeliest cause
+    first. It is empty if nothing is wrong."""
     with gc_paused():
         plan = seen.expected
         if plan is None:
@@ -71,7 +70,7 @@ def _judged(seen: Index, rules: Iterable[Rule]) -> list[Finding]:
 
 
 def _found_by(rules: Iterable[Rule], seen: Index) -> Iterator[Finding]:
-    """What the rules find; what only may be there may give what is missing, and is itself no cause."""
+    """Yield the findings of these rules. Ends that only may exist are asked by rules of ``ABSENCE``."""
     for rule in rules:
         if rule.check:
             yield from rule.check(seen if rule.code in ABSENCE else seen.sure)
@@ -91,19 +90,19 @@ def _of_localizers(seen: Index, found: Sequence[Finding]) -> list[Finding]:
 
 
 def _of_readers(found: Sequence[Finding]) -> list[Finding]:
-    """A sender and a reader that miss each other are one finding: that of the reader."""
+    """Return the findings without those about a sender whose reader has one for the same names."""
     missed = {frozenset(it.names) for it in found if it.code == topic_names_miss.code}
     sender = command_to_nobody.code
     return [it for it in found if it.code != sender or frozenset(it.names) not in missed]
 
 
 def contradictions(seen: Index) -> list[Finding]:
-    """What two ends, senders or nodes do to each other: true whatever else runs."""
+    """Return the faults that ends, senders or nodes have with each other, whatever else runs."""
     return _part(seen, absent=False)
 
 
 def absences(seen: Index) -> list[Finding]:
-    """What is missing, as far as the system is known."""
+    """Return the findings about what is missing, as far as the system is known."""
     return _part(seen, absent=True)
 
 
@@ -121,9 +120,9 @@ def check(
     messages: Mapping[str, int] = NO_COUNTS,
     before: System | None = None,
 ) -> list[Finding]:
-    """What is wrong with a system, and other than planned; empty for a fleet as planned. ``messages``
-    counts those of each topic, where they were counted; ``before`` is the earlier look that the plan
-    was made of, if it was."""
+    """Return what is wrong with a system or differs from its plan; empty if nothing does.
+    ``messages`` has the counted messages of each topic; ``before`` is the snapshot that the plan
+    was made from, if any."""
     _, seen = side_by_side(plan, graph, messages, before)
     return inconclusive_where_in_doubt(judge(seen), graph)
 
@@ -134,7 +133,7 @@ def side_by_side(
     messages: Mapping[str, int] = NO_COUNTS,
     before: System | None = None,
 ) -> tuple[Index, Index]:
-    """The look-ups of a plan and a system, with the same words for what is made at run time."""
+    """Return the indexes of a plan and of a system, with run-time names written alike in both."""
     fitting, there = fitted(plan, graph)
     by_plan = index(fitting, whose_by_plan(fitting))
     edges = without_bridged(fitting, there.edges)
@@ -142,8 +141,8 @@ def side_by_side(
 
 
 def inconclusive_where_in_doubt(found: list[Finding], graph: System) -> list[Finding]:
-    """The findings; those about something missing are inconclusive in an incomplete view. What a
-    parameter says of the time of a node is known there, too."""
+    """Return the findings; in an incomplete view those about missing things become inconclusive.
+    Clocks that a node has by its parameters are known there, too."""
     if not unseen(graph):
         return found
     told, mixed = time_by_node(graph), clocks.clocks_mixed.code
@@ -158,16 +157,16 @@ def inconclusive_where_in_doubt(found: list[Finding], graph: System) -> list[Fin
 
 
 def check_view(plan: System, seen: System) -> list[Finding]:
-    """What is other than planned in one view of all nodes, each in the domain that it is planned in."""
+    """Return the differences from a plan in one view of all nodes, each in its planned domain."""
     return check_domains(plan, seen_by_domain(plan, seen)) if plan.domains else check(plan, seen)
 
 
 def check_domains(plan: System, seen: Mapping[int, System]) -> list[Finding]:
-    """What is other than planned in the domains that were looked at, and wrong there."""
+    """Return the faults in these domains and their differences from the plan."""
     parts, numbers = by_domain(plan), domain_of(plan)
     own = {one.name: numbers[one.robot] for one in plan.nodes if numbers}
     found = [
-        _told(it, number, plan, seen)
+        _with_domain(it, number, plan, seen)
         for number, view in seen.items()
         for it in check(parts.get(number, plan), view)
         # A node that is planned for another domain is told where it is missing.
@@ -195,8 +194,8 @@ def _bridges(plan: System) -> set[str]:
     return {it.name for it in plan.nodes if it.stack == DOMAIN_BRIDGE}
 
 
-def _told(it: Finding, number: int, plan: System, seen: Mapping[int, System]) -> Finding:
-    """The finding with its domain, and where what is missing runs instead."""
+def _with_domain(it: Finding, number: int, plan: System, seen: Mapping[int, System]) -> Finding:
+    """Return the finding with its domain, and a hint if the missing node runs in another domain."""
     nodes = {own.name for own in plan.nodes if own.robot == it.robot and plan.domains}
     wanted = nodes if it.code == missing_robot.code else nodes & {it.node}
     elsewhere = [
@@ -214,7 +213,7 @@ def _told(it: Finding, number: int, plan: System, seen: Mapping[int, System]) ->
 
 
 def in_domain(it: Finding, number: int) -> Finding:
-    """The finding with its domain."""
+    """Return the finding with the domain in its message."""
     return it._replace(message=f"{it.message}, in domain {number}")
 
 

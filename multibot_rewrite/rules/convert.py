@@ -36,12 +36,12 @@ class Spanned(NamedTuple):
 
 
 def text_of(document: Document) -> Spanned:
-    """The text of a document."""
+    """Return the text of a document with the places of its elements."""
     return Spanned(document, dict(zip(document.elements, document.starts, strict=True)))
 
 
 def end_of(text: Spanned, element: _Element) -> int:
-    """The offset right after an element's end tag."""
+    """Return the offset right after an element's end tag."""
     end = tag_end(text.source, text.starts[element])
     if text.source[end - 2 : end] == b"/>":
         return end
@@ -49,7 +49,7 @@ def end_of(text: Spanned, element: _Element) -> int:
 
 
 def end_tag_of(text: Spanned, element: _Element) -> int:
-    """The offset of the end tag of an element that has one."""
+    """Return the offset of the end tag of an element that has one."""
     *_, last = element.iter("*")
     start, tag = text.starts[last], f"</{element.tag}".encode()
     at = text.source.index(tag, start)
@@ -59,7 +59,7 @@ def end_tag_of(text: Spanned, element: _Element) -> int:
 
 
 def renamed(text: Spanned, element: _Element, name: str, new: str, value: str) -> Edit | None:
-    """The edit that gives an attribute another name and value; None where it is not found."""
+    """Return the edit that gives an attribute another name and value; None where it is not found."""
     if slot := _slot(text, element, name):
         quote = text.source[slot[0] - 1 : slot[0]].decode()
         begin = text.source.rindex(name.encode(), 0, slot[0])
@@ -68,7 +68,7 @@ def renamed(text: Spanned, element: _Element, name: str, new: str, value: str) -
 
 
 def removed(text: Spanned, element: _Element, name: str) -> Edit | None:
-    """The edit that takes an attribute out, with the white space before it."""
+    """Return the edit that removes an attribute with the white space before it; None without one."""
     if slot := _slot(text, element, name):
         before = len(text.source[: text.source.rindex(name.encode(), 0, slot[0])].rstrip())
         return Edit(before, slot[1] + 1, b"", None)
@@ -76,7 +76,7 @@ def removed(text: Spanned, element: _Element, name: str) -> Edit | None:
 
 
 def revalued(text: Spanned, element: _Element, name: str, value: str) -> Edit | None:
-    """The edit that gives an attribute another value, or adds it as the first one."""
+    """Return the edit that gives an attribute another value, or adds it as the first one."""
     start = text.starts[element]
     if element.get(name) is None:
         tag = text.source[start : start + 1 + len(str(element.tag))]
@@ -95,7 +95,7 @@ _OF_LINKS = ("visual", "collision", "inertial")
 
 
 def rotated_origins(root: _Element) -> Iterator[_Element]:
-    """The origins that urdfdom reads and that have a quaternion."""
+    """Yield the origins that urdfdom reads and that have a quaternion."""
     for origin in root.iter("origin"):
         holder = origin.getparent()
         if origin.get("quat_xyzw") is None or holder is None or holder.getparent() is None:
@@ -107,7 +107,7 @@ def rotated_origins(root: _Element) -> Iterator[_Element]:
 
 
 def as_rpy(text: Spanned, origin: _Element) -> tuple[Edit, ...]:
-    """The edit that writes a quaternion as roll, pitch and yaw; none where they would differ."""
+    """Return the edit that writes a quaternion as roll, pitch and yaw; none if they would differ."""
     if origin.get("rpy") is not None:
         return one_rotation(text, origin, "quat_xyzw")
     turn = poses.quaternion(origin)
@@ -121,7 +121,7 @@ def as_rpy(text: Spanned, origin: _Element) -> tuple[Edit, ...]:
 
 
 def one_rotation(text: Spanned, origin: _Element, other: str) -> tuple[Edit, ...]:
-    """The edit that takes one of two rotations out; none where they differ."""
+    """Return the edit that removes one of two rotations of an origin; none if they differ."""
     turn, matrix = poses.quaternion(origin), poses.rolled(origin)
     if turn is None or matrix is None:
         return ()
@@ -130,7 +130,7 @@ def one_rotation(text: Spanned, origin: _Element, other: str) -> tuple[Edit, ...
 
 
 def raised(text: Spanned, version: Version) -> tuple[Edit, ...]:
-    """The edit that declares a version that reads quaternions, where all of them can be read."""
+    """Return the edit that declares a version which reads quaternions; none if one is unreadable."""
     root = text.document.root
     capsule = any(capsules(link) for link in root.iterchildren("link"))
     if capsule or not all(map(_is_readable, rotated_origins(root))):
@@ -170,7 +170,7 @@ _CLOSED = lazy_compile(rb"\s*</(capsule)\s*>")
 
 
 def capsules(link: _Element) -> list[tuple[_Element, _Element]]:
-    """The capsules that are read of a link, each with its visual or collision."""
+    """Return the capsules that are read in a link, each with its visual or collision."""
     found = []
     for holder in link.iterchildren("visual", "collision"):
         geometry = next(holder.iterchildren("geometry"), None)
@@ -181,7 +181,7 @@ def capsules(link: _Element) -> list[tuple[_Element, _Element]]:
 
 
 def capsule_edits(text: Spanned, link: _Element) -> tuple[Edit, ...]:
-    """The edits for all capsules of a link; none where one of them means more than its shape."""
+    """Return the edits for all capsules of a link; none where one of them means more than its shape."""
     found = capsules(link)
     if not found or not all(_is_plain(text, link, *it) for it in found):
         return ()
@@ -200,7 +200,7 @@ def capsule_edits(text: Spanned, link: _Element) -> tuple[Edit, ...]:
 
 
 def ends_of(pose: poses.Pose, length: float) -> tuple[Vector, Vector]:
-    """The centres of the half spheres of a capsule."""
+    """Return the centres of the two half spheres of a capsule."""
     x, y, z = poses.turned(pose.matrix, (0.0, 0.0, length / 2))
     (a, b, c) = pose.at
     return (a + x, b + y, c + z), (a - x, b - y, c - z)
@@ -239,11 +239,11 @@ def _spheres(text: Spanned, shape: _Element, holder: _Element) -> Iterator[bytes
 
 
 def _margin(source: bytes, at: int) -> bytes | None:
-    """The white space before it in its line; None where there is more than that."""
+    """Return the white space before an offset in its line; None if there is anything else before it."""
     line = source[source.rfind(b"\n", 0, at) + 1 : at]
     return None if line.strip() or b"\n" not in source[:at] else line
 
 
 def written(value: float) -> str:
-    """A number as the shortest text that reads back as it."""
+    """Return a number as the shortest text that reads back as the same number."""
     return f"{value + 0.0!r}".removesuffix(".0")

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """How a rule about a system, a launch or a file is declared, on the function that finds it, and how
-it says where: at the place of a record, and of what is beside it.
-"""
+it says where: at the place of a record, and of what is next to it."""
 
 from __future__ import annotations
 
@@ -98,8 +97,8 @@ def launch_rule(
 
 
 def of_robots(find: _FileCheck) -> _FileCheck:
-    """A rule about what several robots get: asked of a file that is for a certain robot, and of one
-    alone where robots are named."""
+    """Return a rule from a check of what several robots get: it skips a file that is for no certain
+    robot if no robots are named."""
 
     @wraps(find)
     def found(file: NamedFile) -> Iterator[Finding]:
@@ -168,24 +167,24 @@ class OnLine(Protocol):
 
 
 def remark(at: OnLine, message: str, hint: str = "", level: str = "") -> Finding:
-    """A finding at the place of a name, in the file and by the rule that are asked; ``level`` is empty
-    for that of the rule."""
+    """Return a finding at a name, to which the file and the rule asked are added. An empty
+    ``level`` is that of the rule."""
     return Finding("", level, message, hint, "", at.line, at.column)
 
 
 def remark_at(node: yaml.Node, message: str, hint: str = "", level: str = "") -> Finding:
-    """The same at a node of YAML."""
+    """Return a finding at a YAML node, without file and rule as ``remark``."""
     mark = node.start_mark
     return Finding("", level, message, hint, "", mark.line + 1, mark.column + 1)
 
 
 def at(rule: Rule, place: Place, message: str, hint: str, **more: Any) -> Finding:
-    """A finding of a rule at a place."""
+    """Return a finding of a rule at a place."""
     return rule.finding(message, hint, **_place_fields(place), **more)
 
 
 def where(records: Iterable[Placed]) -> dict[str, Any]:
-    """The fields of a finding at the last record that a file has; nothing where none has any."""
+    """Return the place fields of a finding, at the last record that has a place; empty without one."""
     places = [it.place for it in records if it.place != NOWHERE]
     return _place_fields(places[-1]) if places else {}
 

@@ -31,35 +31,35 @@ def _robot(_: Index, cause: Finding, it: Finding) -> bool:
 
 
 def _served(seen: Index, cause: Finding, it: Finding) -> bool:
-    """Is what the second is about served by the node of the first?"""
+    """Return whether the node of the first finding serves what the second is about."""
     return any(end.node == cause.node for name in it.names for end in ends_of(seen, name))
 
 
 def _same_node(seen: Index, cause: Finding, it: Finding) -> bool:
-    """Is the missing node of the first the one of the second, without its robot's name?"""
+    """Return whether the first finding's missing node is the second's, robots' names aside."""
     return seen.plain(cause.node) == it.node
 
 
 def _two_robots(_: Index, cause: Finding, it: Finding) -> bool:
-    """Are the nodes of a whole robot there twice, and so what they send?"""
+    """Return whether the nodes of a whole robot run twice, and so what they send."""
     return len(cause.names) > 1 and cause.robot == it.robot
 
 
 def _sends_tf(seen: Index, cause: Finding, it: Finding) -> bool:
-    """Has the missing node to send its robot's tf, by the plan?"""
+    """Return whether the missing node has to send its robot's tf, by the plan."""
     planned = seen.expected.by_node.get(cause.node, ()) if seen.expected else ()
     tf = any((end.type, end.role) == (TF, PUBLISHES) for end in planned)
     return tf and cause.robot == it.robot
 
 
 def _lacks_tf(seen: Index, cause: Finding, it: Finding) -> bool:
-    """Is it tf that the node of the first lacks, by the plan?"""
+    """Return whether the node of the first finding lacks tf, by the plan."""
     planned = ends_of(seen.expected, cause.names[0]) if seen.expected and cause.names else ()
     return any(end.type == TF for end in planned) and cause.robot == it.robot
 
 
 def _described(seen: Index, cause: Finding, it: Finding) -> bool:
-    """Is it of the robot whose description it is, or of which it has the frames?"""
+    """Return whether it is about the robot whose description it is, or whose frames it has."""
     links = (
         link for one in seen.system.descriptions if one.topic in cause.names for link in one.links
     )
@@ -114,7 +114,7 @@ def folded(seen: Index, found: Sequence[Finding]) -> list[Finding]:
 
 
 def _with_explained(it: Finding, explained: Sequence[Finding]) -> Finding:
-    """A cause is as bad as what comes of it."""
+    """Return a cause with its consequences in the hint, at the worst of their levels."""
     if not explained:
         return it
     first, *others = explained
@@ -129,14 +129,14 @@ def _with_explained(it: Finding, explained: Sequence[Finding]) -> Finding:
 
 
 def of_one_target(rules: Iterable[Remap]) -> tuple[Remap, ...]:
-    """The rules without those that lead one name of a node to two: it serves several robots."""
+    """Return the rules, except those that lead one name of a node to two targets."""
     each = tuple(dict.fromkeys(rules))
     targets = Counter((it.node, it.old) for it in each)
     return tuple(it for it in each if targets[it.node, it.old] == 1)
 
 
 def _alike(found: Iterable[Finding]) -> Iterator[Finding]:
-    """What nodes have alike, each group at the place of its first and worst."""
+    """Yield the findings; those that several nodes share become one, at the first and worst."""
     groups: dict[tuple[object, ...], list[Finding]] = {}
     for it in found:
         key: tuple[object, ...] = (it,)
@@ -168,7 +168,7 @@ def _one_of(own: Sequence[Finding], code: str) -> Finding:
 
 
 def _without_unplanned(seen: Index, found: Iterable[Finding]) -> list[Finding]:
-    """A node that is not planned is said with the error that it makes, if there is one."""
+    """Return the findings; an unplanned node is named in the error that it causes, if there is one."""
     every = [*found]
     nodes = {it.node: at for at, it in enumerate(every) if it.code == _UNPLANNED}
     gone = set()
@@ -183,7 +183,7 @@ def _without_unplanned(seen: Index, found: Iterable[Finding]) -> list[Finding]:
 
 
 def _makers(seen: Index, it: Finding) -> Sequence[str]:
-    """The nodes that send or serve what a finding is about."""
+    """Return the nodes that send or serve what a finding is about."""
     ends = (end for name in it.names for end in ends_of(seen, name))
     sent = (end.node for end in ends if end.role in (PUBLISHES, SERVES))
     edges = (one for tree in seen.trees for one in tree.edges if one.child in it.names)
@@ -192,13 +192,13 @@ def _makers(seen: Index, it: Finding) -> Sequence[str]:
 
 
 def is_about_a_clock(seen: Index, it: Finding) -> bool:
-    """Is it about the time that nodes get?"""
+    """Return whether it is about the time that nodes get."""
     ends = (end for name in it.names for end in ends_of(seen, name))
     return any(end.type == "rosgraph_msgs/msg/Clock" for end in ends)
 
 
 def in_order(seen: Index, found: Iterable[Finding]) -> list[Finding]:
-    """The findings by their kind of cause, then by level: notes come last."""
+    """Return the findings by their kind of cause, then by level; notes come last."""
     return sorted(found, key=lambda it: (it.level == NOTE, *_place(seen, it), it.code))
 
 

@@ -79,7 +79,7 @@ class Settings(NamedTuple):
 
 
 def matches(path: str, pattern: str) -> bool:
-    """Does a pattern, as ``fnmatch`` has them, match a path as it is given or the whole of it?"""
+    """Return whether an ``fnmatch`` pattern matches a path, as given or absolute."""
     return fnmatchcase(path, pattern) or fnmatchcase(os.path.abspath(path), pattern)
 
 
@@ -91,5 +91,5 @@ def is_silent(settings: Settings, file: str, code: str) -> bool:
 
 
 def file_of(finding: Finding) -> str:
-    """The file that a finding is about, whether it was expanded or not."""
+    """Return the file that a finding is about, whether it was expanded or not."""
     return finding.file.removesuffix(" (expanded)")

@@ -44,16 +44,16 @@ class Elements:
         return _of(self._every, tags)
 
     def tops(self, *tags: str) -> Sequence[_Element]:
-        """The same, only of the root's children."""
+        """Return the root's children that have one of these tags."""
         return _of(self._tops, tags)
 
     def owners(self) -> Iterator[_Element]:
-        """What has interfaces in every <ros2_control>: joints, sensors, gpios."""
+        """Yield the joints, sensors and gpios of every <ros2_control>, which have interfaces."""
         for system in self.tops("ros2_control"):
             yield from system.iterchildren(*OWNERS)
 
     def first(self, tag: str) -> Mapping[_Element | None, _Element]:
-        """The first child of that tag, by its parent: for rules that ask every element for one."""
+        """Return the first child of a tag by its parent, for rules that ask every element for one."""
         found = self._first.get(tag)
         if found is None:
             below = self._every.get(tag, ())
@@ -72,7 +72,7 @@ def _by_tag(elements: Iterable[_Element]) -> _ByTag:
 
 
 def name_of(element: _Element) -> str:
-    """The name of an element without the white space around it."""
+    """Return the name of an element without the white space around it."""
     return element.get("name", "").strip()
 
 
@@ -84,12 +84,10 @@ class Subject(NamedTuple):
     """One document to lint.
 
     ``format`` is ``urdf``, ``srdf`` or ``xacro`` (the source as it is written). ``beside`` is the
-    robot of an SRDF's URDF, if it was found. Where the document was expanded, ``origins``
-    says where its elements were written, in document order, and ``sources`` has those files,
-    or that which includes models;
-    ``arguments`` are the ones it was expanded with, ``given`` their names.
-    ``memo`` is each subject's own, and filled while rules look at it (``facts.memo``).
-    """
+    robot of an SRDF's URDF, if it was found. Where the document was expanded, ``origins`` says
+    where its elements were written, in document order, and ``sources`` has those files, or that
+    which includes models; ``arguments`` are the ones it was expanded with, ``given`` their names.
+    ``memo`` is each subject's own, and filled while rules check it (``facts.memo``)."""
 
     format: str
     document: Document
@@ -107,7 +105,7 @@ class Subject(NamedTuple):
 
 
 def subject_of(inventory: Inventory, tree: Tree, settings: Settings) -> Subject:
-    """The subject of a URDF as it is written."""
+    """Return the subject of a URDF as it is written."""
     document = inventory.document
     elements, robot = Elements(document), read_robot(document.root)
     return Subject(URDF, document, elements, inventory, tree, robot, settings, {})

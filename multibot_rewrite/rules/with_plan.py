@@ -37,8 +37,8 @@ def one_for_a_cause(
     rules: Mapping[str, Rule],
     in_doubt: bool,
 ) -> list[Finding]:
-    """The findings about a system, and those that only its plan shows, without those of one cause.
-    ``in_doubt``: more may be there than is seen."""
+    """Return the findings about a system and those that only its plan shows, one for each cause.
+    ``in_doubt``: the system may have more than was seen."""
     left = [it for it in found if not _is_meant(plan, seen, it, rules[it.code])]
     # What is there counts before what is missing, then the first.
     places: list[dict[_About, int]] = [{}, {}]
@@ -83,12 +83,12 @@ def _abouts(it: Finding, rules: Mapping[str, Rule]) -> Iterator[_About]:
 
 
 def _is_of_an_end(it: Finding, rules: Mapping[str, Rule]) -> bool:
-    """Is it of ``missing_endpoint``, whatever it is called?"""
+    """Return whether it is of ``missing_endpoint``, whatever its name."""
     return it.code == missing_endpoint.code or not rules[it.code].options["planned"]
 
 
 def _same(seen: Index, it: Finding, rules: Mapping[str, Rule]) -> Iterator[_About]:
-    """What another finding is about that has the same cause as one by the plan."""
+    """Yield the keys of findings that have the same cause as one by the plan."""
     if it.code == unplanned_node.code:
         yield it.node, ""
     elif it.code in (sender_not_planned.code, frame_without_robot_name.code):
@@ -107,21 +107,21 @@ def _same(seen: Index, it: Finding, rules: Mapping[str, Rule]) -> Iterator[_Abou
 
 
 def _has_to_give(seen: Index, it: Finding) -> bool:
-    """Has a node to send or serve, by the plan, what others wait for?"""
+    """Return whether a node has to send or serve, by the plan, what others wait for."""
     plan = seen.expected.by_key if seen.expected else ()
     gives = ((TOPIC, PUBLISHES), (SERVICE, SERVES), (ACTION, SERVES))
     return any((it.node, *way, it.names[0]) in plan for way in gives)
 
 
 def _is_there(it: Finding) -> bool:
-    """Has the node something in place of what it lacks?"""
+    """Return whether the node has something in place of what it lacks."""
     return len(it.names) > 1 or it.code != missing_endpoint.code
 
 
 def _with_cause(
     it: Finding, by_plan: Sequence[Finding], rules: Mapping[str, Rule], in_doubt: bool
 ) -> Finding:
-    """The finding with what the plan says of it, or what it says for certain in place of it."""
+    """Return the finding with the plan's remedy, or the plan's finding if that is the certain one."""
     known = [one for one in by_plan if one.code != unplanned_node.code]
     if known and in_doubt and _is_absence(it, rules) and not _is_absence(known[0], rules):
         return known[0]
@@ -139,7 +139,7 @@ def _with_cause(
 def _hint(
     it: Finding, by_plan: Sequence[Finding], rules: Mapping[str, Rule]
 ) -> tuple[str, tuple[Remap, ...]]:
-    """What the plan says to do, and the rules that it names; those of all who are named."""
+    """Return the plan's hint with the remap rules that it names, those of all nodes named."""
     first, *others = by_plan
     if not _is_of_an_end(first, rules):
         return first.hint, first.remaps
@@ -159,7 +159,7 @@ def _hint(
 
 
 def _is_meant(plan: Index, seen: Index, it: Finding, rule: Rule) -> bool:
-    """Are all who do with its names what it is about planned to?"""
+    """Return whether all nodes with its names are planned to do what it is about."""
     key, memo = (it.code, it.names), seen.memo.setdefault(_is_meant, {})
     if key not in memo:
         roles = rule.options["meant"]

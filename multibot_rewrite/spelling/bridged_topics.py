@@ -141,7 +141,7 @@ def _fitting(topic: BridgedTopic, ends: Sequence[tuple[Endpoint, str]]) -> Bridg
 
 
 def is_bridged(inventory: Inventory) -> bool:
-    """Has a description a topic that is bridged?"""
+    """Return whether a description has a topic that is bridged."""
     found = _robot_topics(inventory, "robot", "robot", make_naming("tf-per-robot"))
     return any(isinstance(it, BridgedTopic) for it in found)
 
@@ -159,7 +159,7 @@ def model_name(inventory: Inventory) -> str:
 
 
 def is_for_classic(inventory: Inventory) -> bool:
-    """Is a description for Gazebo Classic, whose topics no bridge can reach?"""
+    """Return whether a description is for Gazebo Classic, whose topics no bridge can reach."""
     known = plugin_libraries(inventory)
     return any(CLASSIC_LIBRARY in it for it in known) and not any(
         it.startswith(GZ_LIBRARIES) for it in known

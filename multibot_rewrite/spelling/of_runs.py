@@ -58,7 +58,7 @@ def asked_alone(node: NodeFacts, end: Endpoint) -> str:
 
 
 def _sibling(other: str, name: str) -> str:
-    """Return a name with its last word beside another name."""
+    """Return a name with its last word next to another name."""
     return f"{other[: other.rfind('/') + 1]}{name.rpartition('/')[2]}"
 
 

@@ -238,7 +238,7 @@ def _contradictions(plan: System) -> Iterator[str]:
 
 
 def is_fleet(data: bytes) -> bool:
-    """Is this a fleet file? Its robots are a list, or in files that it includes."""
+    """Return whether this is a fleet file. Its robots are a list, or in files that it includes."""
     if recognised(data) == PLAN:
         return False
     found = _ROBOTS.search(data)

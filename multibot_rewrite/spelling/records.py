@@ -31,17 +31,17 @@ NOTHING: Mapping[str, Given] = {}
 
 
 class Run(NamedTuple):
-    """A node as it runs: its robot (empty for a node of all robots, or where that is not known), its
-    name in its stack or in its code, its namespace and name, its remap rules in the order in which rcl
-    takes them, and what is known of it with its parameters.
+    """A node as it runs: its robot (empty for a node of all robots, or where that is not known),
+    its name in its node set or in its code, its namespace and name, its remap rules in the order in
+    which rcl takes them, and what is known of it with its parameters.
 
-    ``written`` is true for a plugin of a description, ``process_wide`` if its rules hold for its whole
-    process. ``names`` are its ends with their names under the rules, ``host_name`` is what the node is
-    called whose process it is in. ``process`` tells the processes
-    apart; helper nodes in it have ``process_rules`` and run in ``process_namespace``, controllers that
-    no stack names have the rules that are ``handed_on``. ``values`` are its parameters, ``texts`` other
-    files that a parameter names, ``untold`` parameters whose values only a run tells. ``program`` is
-    its package and executable, started with ``arguments`` at ``place``.
+    ``written`` is true for a plugin of a description, ``process_wide`` if its rules hold for its
+    whole process. ``names`` are its ends with their names under the rules, ``host_name`` is what
+    the node is called whose process it is in. ``process`` tells the processes apart; helper nodes
+    in it have ``process_rules`` and run in ``process_namespace``, controllers that no node set
+    names have the rules that are ``handed_on``. ``values`` are its parameters, ``texts`` other
+    files that a parameter names, ``untold`` parameters whose values only a run tells. ``program``
+    is its package and executable, started with ``arguments`` at ``place``.
 
     What a robot's files set for a node is one, too: ``fact.known`` is the known node that it is (empty
     for none), ``program`` the type of a controller, ``host_name`` the manager that has it as one.

@@ -50,7 +50,7 @@ class Shown(NamedTuple):
         return next((it for it in self.read if self.is_called(it, word)), "")
 
     def is_called(self, topic: str, word: str) -> bool:
-        """Is the topic ``/robot1/WORD`` or ``/WORD/robot1``?"""
+        """Return whether the topic is ``/robot1/WORD`` or ``/WORD/robot1``."""
         own = ("", self.robot.name, self.robot.tag)
         return [it for it in topic.split("/") if it not in own] == [word]
 

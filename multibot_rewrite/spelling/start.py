@@ -52,7 +52,7 @@ class Process(NamedTuple):
     is number ``after`` in its launch, -1 for none. ``is_include`` is true for a launch file of a
     package, with launch arguments as words; ``is_extra`` for what spawns something else than the robot
     in its simulator. ``switches`` are the launch arguments that turn it off with another value, each
-    with the one with which it starts.
+    with the one with which it starts; ``off`` is that of them without which it does not start.
     """
 
     prefix: str = ""
@@ -66,6 +66,7 @@ class Process(NamedTuple):
     is_include: bool = False
     is_extra: bool = False
     switches: tuple[tuple[str, str], ...] = ()
+    off: str = ""
 
 
 AS_USUAL = Process()

@@ -95,7 +95,7 @@ def _of_managers(release: str) -> frozenset[str]:
 
 
 def _is_for(source: str, known: frozenset[str], by_file: bool) -> bool:
-    """Is it a name in the code of a known controller, or below a node that may be one?"""
+    """Return whether it is a name in a known controller's code, or below a node that may be one."""
     above, slash, _ = source.partition("/")
     below = "" if by_file or not slash or above == "~" else f"~{source[len(above) :]}"
     return source in known or below in known

@@ -155,8 +155,8 @@ def given_to(it: Delivery) -> str:
 
 
 def standing_by_robot(table: Table) -> Iterator[tuple[str, list[Delivery]]]:
-    """Where the rules of each node stand, by robot, with all rules of what takes them for others as
-    well; nodes for all robots are under a name that no robot can have."""
+    """Return where the rules of each node are written, by robot, with all rules of what takes them
+    for others as well; nodes for all robots are under a name that no robot can have."""
     given = deliveries(table)
     rules = rules_by_taker(given)
     each = {key_of(it.node): it for it in reversed(given)}

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The rules that rcl has for each node once it runs, from where they stand, and those that a node needs
-and does not get there, by release.
+"""The rules that rcl has for each node once it runs, from where they are written, and those that a
+node needs and does not get there, by release.
 
 The first match counts: a node's own arguments come before those of its process.
 """
@@ -42,8 +42,8 @@ class _Standing(NamedTuple):
 
 
 def running_nodes(table: Table, left_out: Collection[str] = ()) -> Iterator[tuple[Delivery, Run]]:
-    """Where the rules of each node are written, and the node with the rules that rcl has for it and its
-    process; those that stand at one of the ways ``left_out`` are missing."""
+    """Where the rules of each node are written, and the node with the rules that rcl has for it and
+    its process; those at one of the ways ``left_out`` are missing."""
     meant = deliveries(table)
     given = [it for it in meant if it.way not in left_out]
     standing = _Standing(
@@ -97,10 +97,9 @@ def _in_process(run: Run, rules: Rules, namespace: str, wide: Rules) -> Run:
 
 
 def is_stand_in(node: Run, endpoint: Endpoint) -> bool:
-    """Is this a topic of a controller of the plugin, and not of the controller manager itself?
-
-    Those are what the plugin is known to publish, and without a role what its rules name.
-    """
+    """Return whether this is a topic of a controller of the plugin, and not of the controller
+    manager itself. Those are what the plugin is known to publish, and without a role what its rules
+    name."""
     return node.process_wide and endpoint.role in (PUBLISHES, "")
 
 
@@ -123,9 +122,8 @@ NOT_TAKEN = declare(
 def not_taken(table: Table) -> Iterator[Finding]:
     """Names of the code or of another robot that a node has because its rule does not reach it.
 
-    One finding a node. Of what a plugin's controllers are known to publish the second reading of the
-    description says it, where no stack names them.
-    """
+    One finding a node. Of what a plugin's controllers are known to publish the second reading of
+    the description says it, where no node set names them."""
     of_manager = controller_way(table.release).of_manager
     robots = _robots_worth_a_look(table)
     some = table._replace(runs=tuple(it for it in table.runs if it.robot in robots))

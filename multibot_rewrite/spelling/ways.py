@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where the remap rules of each node stand, by release: a table -> deliveries, which all writers use,
-and what is started with them: processes, components and the spawners of controllers.
+"""Where the remap rules of each node are written, by release: a table -> deliveries, which all
+writers use, and what is started with them: processes, components and the spawners of controllers.
 
 A node takes rules from its own process, from the node whose process it is in, from the container
 that loads it, from its spawner, or from its plugin's tag. Sources: ros2_control
@@ -52,7 +52,8 @@ def key_of(run: Run) -> Key:
 
 
 def deliveries(table: Table) -> tuple[Delivery, ...]:
-    """Where the rules of every node stand; a node of several nodes' rules has them in that order."""
+    """Return where the rules of every node are written; a node of several nodes' rules has them in
+    that order."""
     nodes = merged(table.runs)
     known = {(it.robot, it.node): it for it in nodes}
     # By the full name of a node: what helper nodes of it use.

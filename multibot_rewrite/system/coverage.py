@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How much of what is there a system holds: what every verdict says beside it."""
+"""How much of what is there a system holds: which every verdict reports."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def coverage(system: System, graph: System | None = None) -> Coverage:
 
 
 def _is_launched(system: System) -> bool:
-    """Was the system read from a launch file?"""
+    """Return whether the system was read from a launch file."""
     return not system.layout and any(it.place != NOWHERE for it in system.nodes)
 
 

@@ -31,8 +31,8 @@ def domain_of(plan: System) -> dict[str, int]:
 
 
 def by_domain(plan: System) -> dict[int, System]:
-    """The plan of each domain in which a node has to run, without what is open in the plan; empty for a
-    plan of one domain."""
+    """Return the plan of each domain in which a node has to run, without what is open in the plan;
+    empty for a plan of one domain."""
     numbers = domain_of(plan)
     own = {it.name: numbers[it.robot] for it in plan.nodes} if numbers else {}
     return {it: _part(plan, numbers, own, it) for it in sorted({*own.values()})}
@@ -58,7 +58,7 @@ def seen_by_domain(plan: System, seen: System) -> dict[int, System]:
 
 
 def _of_nodes(system: System, own: Mapping[str, int], at: int) -> System:
-    """What the nodes of a domain have of a system; a transform of nodes of several is in each."""
+    """Return the part of a system that nodes of a domain have; a transform of several is in each."""
     nodes = {it for it, number in own.items() if number == at}
     ends = tuple(it for it in system.ends if it.node in nodes)
     sent = {it.name for it in ends}
@@ -93,8 +93,8 @@ def _part(plan: System, numbers: Mapping[str, int], own: Mapping[str, int], at: 
 
 
 def side_by_side(seen: Mapping[int, System]) -> System:
-    """What was seen of all domains as one view, to be shown, and to hold robots against each other;
-    what is said of a view names its domain, where there are several."""
+    """Return the views of all domains as one, to be shown or to compare robots; findings name the
+    domain if there are several."""
     views = tuple(seen.values())
     first = views[0]
     if len(views) == 1:
@@ -122,12 +122,12 @@ def side_by_side(seen: Mapping[int, System]) -> System:
 
 
 def space_of(domain: int) -> str:
-    """The namespace of a robot without a name beside those of other domains."""
+    """Return the namespace for a robot without a name in this domain."""
     return f"/{_WORD}{domain}"
 
 
 def named(view: System, domain: int) -> System:
-    """What was seen of a robot without a name, below a name for its domain."""
+    """Return the view of a robot without a name, below a name for its domain."""
     space = space_of(domain)
     ends = (it._replace(name=space + it.name, node=space + it.node) for it in view.ends)
     edges = (
@@ -146,7 +146,7 @@ def named(view: System, domain: int) -> System:
 
 
 def unnamed(it: Finding) -> Finding:
-    """A finding about such a view, in the names that run: ``/amcl of domain 11``."""
+    """Return a finding about such a view in the names that run: ``/amcl of domain 11``."""
     return it._replace(
         message=_said(it.message),
         hint=_said(it.hint),

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The environment variables for discovery, how far a look reached (which machines were seen, how to
-look from others), and whether a view of the graph is complete. Pure.
+"""The environment variables for discovery, how far a snapshot reached (which machines were seen,
+how to observe from others), and whether a view of the graph is complete. Pure.
 
 Sources: rcl ``domain_id.c``, ``discovery_options.c``; rmw_fastrtps ``participant.cpp`` (32 peers
 on a machine under LOCALHOST, else Fast DDS's own 4); the ROS 2 domain id page (0 to 232).
@@ -149,8 +149,8 @@ def view_caveats(
     expected: Iterable[str] = (),
     last: Collection[str] = (),
 ) -> Iterator[Caveat]:
-    """What to know about a view before something in it is reported as missing; ``last`` are the names
-    that came or went last."""
+    """Yield the limitations of a view, to know before something is reported as missing. ``last``
+    are the names that came or went last."""
     names = Counter(node.name for node in nodes)
     if settled == TIMEOUT:
         which = f" (last came or went {shorten(sorted(last), SEVERAL)})" if last else ""
@@ -177,7 +177,7 @@ def view_caveats(
 
 
 def _nothing(asked: DiscoverySettings) -> str:
-    """The message where no node was seen: where, and the likely reason."""
+    """Return the message if no node was seen: where, and the likely reason."""
     where = f"domain {asked.domain}, range {asked.range}"
     remedy = "do the robots use this ROS_DOMAIN_ID and discovery range?"
     if asked.discovery_server:
@@ -217,7 +217,7 @@ def _cut_off(endpoints: Iterable[End], asked: DiscoverySettings) -> Iterator[Cav
 
 
 def machine(process: str) -> str:
-    """What identifies the machine of a process; empty where it is not known."""
+    """Return what identifies the machine of a process; empty where it is unknown."""
     return process[:8] if process.startswith(_FAST_DDS) else ""
 
 
@@ -267,7 +267,7 @@ Machines = Mapping[str, Sequence[str]]
 
 
 def machines(graph: System) -> Machines:
-    """The nodes of each machine, by what Fast DDS calls it; a Zenoh router does not say which."""
+    """Return the nodes of each machine by its Fast DDS id; empty with Zenoh, which has none."""
     nodes = graph.nodes if graph.environment.rmw != ZENOH else ()
     return lists_by_key((host, it.name) for it in nodes if (host := machine(it.process)))
 
@@ -285,7 +285,7 @@ def hidden_from_here(graph: System, seen: Machines) -> bool:
 
 
 def why_not_seen(graph: System, robot: str, seen: Machines) -> str:
-    """What is known of where ``robot`` may be, and what to do, in one sentence."""
+    """Return what is known of where ``robot`` may be, and what to do, in one sentence."""
     around = graph.environment
     if around.rmw == ZENOH:
         router = around.discovery_server

@@ -47,7 +47,7 @@ class GuessedRobot(NamedTuple):
 
 
 def _of_parts(edges: Iterable[Edge]) -> set[str]:
-    """The frames that hang on a robot's base: an arm, a wheel, whatever its own base is called."""
+    """Return the frames below a robot's base: an arm, a wheel, whatever its own base is called."""
     children = lists_by_key(
         (it.parent.removeprefix("/"), it.child.removeprefix("/")) for it in edges
     )
@@ -60,7 +60,7 @@ def _of_parts(edges: Iterable[Edge]) -> set[str]:
 
 
 def guess_robots(graph: System) -> tuple[GuessedRobot, ...]:
-    """The robots of a graph, in the order of their names; empty where none has a name."""
+    """Return the robots of a graph, in the order of their names; empty where none has a name."""
     parts = _of_parts(graph.edges)
     namespaces = [it for it in _namespaces(graph) if not _is_a_part(it, parts)]
     frames = {it for edge in graph.edges for it in (edge.child, edge.parent)}
@@ -75,7 +75,7 @@ def guess_robots(graph: System) -> tuple[GuessedRobot, ...]:
 
 
 def _is_a_part(namespace: str, parts: Collection[str]) -> bool:
-    """Does its base hang on that of a robot without a name?"""
+    """Return whether a namespace's base hangs on that of a robot without a name."""
     word = namespace.rpartition("/")[2]
     return any(f"{word}{way}{base}" in parts for way in "/_" for base in BODY_FRAMES)
 
@@ -88,7 +88,7 @@ def _name(namespace: str, all_of_them: Iterable[str]) -> str:
 
 
 def _namespaces(graph: System) -> list[str]:
-    """The namespaces of robots, in order."""
+    """Return the namespaces of robots, in order."""
     nodes = {node.name for node in graph.nodes}
     parts = (end.name.rpartition("/") for end in graph.ends if end.kind == TOPIC)
     shown = ((space, word) for space, _, word in parts if space and word in OF_A_ROBOT)
@@ -112,8 +112,8 @@ def _namespaces(graph: System) -> list[str]:
 
 
 def _alike(graph: System, nodes: Iterable[str]) -> Iterator[str]:
-    """Yield namespaces beside each other with nodes of the same names, one of which has a topic of a
-    whole robot in each of them."""
+    """Yield namespaces next to each other with nodes of the same names, one of which has a topic of
+    a whole robot in each of them."""
     whole = {end.node for end in graph.ends if end.name.rpartition("/")[2] in _WHOLE}
     below: dict[str, dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
     for node in (it for it in nodes if it in whole):
@@ -162,7 +162,7 @@ def _last_words(graph: System) -> list[str]:
 
 
 def _above(frames: Iterable[str], parents: Mapping[str, Set[str]]) -> Set[str]:
-    """The frames on which these hang, and those on which those do."""
+    """Return all frames above these."""
     todo, found = [*frames], set[str]()
     for it in todo:  # grows
         new = parents.get(it, set()) - found
@@ -172,8 +172,8 @@ def _above(frames: Iterable[str], parents: Mapping[str, Set[str]]) -> Set[str]:
 
 
 def _by_frames(frames: Iterable[str], parents: Mapping[str, Set[str]]) -> Iterator[GuessedRobot]:
-    """Two or more words that are beside the usual names of frames in the same way, none of which hangs
-    on another: that would be a part of it."""
+    """Yield two or more words that are next to the usual names of frames in the same way, none of
+    which hangs on another: that would be a part of it."""
     ways: dict[tuple[str, bool], dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
     for frame in frames:
         for separator in ("/", *SEPARATORS):
@@ -192,7 +192,7 @@ def _by_frames(frames: Iterable[str], parents: Mapping[str, Set[str]]) -> Iterat
 
 
 def _not_parts(words: Mapping[str, Collection[str]], parents: Mapping[str, Set[str]]) -> set[str]:
-    """The words whose frames hang on none of another word's."""
+    """Return the words whose frames hang on none of another word's."""
     owners = {frame: word for word, frames in words.items() for frame in frames}
     above = {
         word: {owners.get(it, word) for it in _above(frames, parents)}
@@ -203,7 +203,7 @@ def _not_parts(words: Mapping[str, Collection[str]], parents: Mapping[str, Set[s
 
 def with_frames(robots: Iterable[GuessedRobot], frames: Iterable[str]) -> Iterator[GuessedRobot]:
     """Each with the way in which most frames have its name."""
-    times = Counter(way for frame in frames for way in _ways(frame))
+    times = Counter(way for frame in frames for way in _affixes(frame))
     for robot in robots:
         word = robot.namespace.rpartition("/")[2] or robot.name
         marks = ("/", *SEPARATORS)
@@ -212,8 +212,8 @@ def with_frames(robots: Iterable[GuessedRobot], frames: Iterable[str]) -> Iterat
         yield robot._replace(before=way[0], behind=way[1]) if times[way] else robot
 
 
-def _ways(frame: str) -> Iterator[tuple[str, str]]:
-    """The words that a frame begins and ends with, with what separates them from the rest."""
+def _affixes(frame: str) -> Iterator[tuple[str, str]]:
+    """Yield the beginnings and ends of a frame up to each separator, with it."""
     for at, it in enumerate(frame):
         if it == "/" or it in SEPARATORS:
             yield frame[: at + 1], ""
@@ -234,7 +234,7 @@ def whose_by_guess(robots: Iterable[GuessedRobot]) -> Whose:
 
     @cache
     def of_frame(frame: str) -> GuessedRobot | None:
-        first = min((by_way[way] for way in _ways(frame) if way in by_way), default=None)
+        first = min((by_way[way] for way in _affixes(frame) if way in by_way), default=None)
         return None if first is None else known[first]
 
     def plain_frame(frame: str) -> str:
@@ -268,7 +268,7 @@ def _whose(name: str, robots: Mapping[str, GuessedRobot]) -> GuessedRobot | None
 
 
 def _words_in(name: str) -> Iterator[str]:
-    """The last segment, and what is before and after each ``_`` of it."""
+    """Yield the last segment of a name, and what is before and after each ``_`` of it."""
     last = name.rpartition("/")[2]
     yield last
     for found in re.finditer("_", last):

@@ -97,7 +97,7 @@ NOTHING_KNOWN = Known()
 
 
 def once(make: _Look) -> _Look:
-    """A look-up that is made when it is first asked, and kept by the last index that it is asked of."""
+    """Decorate a look-up: it is made when first asked for, and kept by the last index asked."""
 
     @wraps(make)
     def found(*indices: Any) -> Any:
@@ -217,7 +217,7 @@ class Index(NamedTuple):
         }
 
     def ends_at(self, kind: str, name: str) -> Ends:
-        """The ends of a kind and name; of an unknown name there are none."""
+        """Return the ends of a kind and name; without ends for an unknown name."""
         return self.by_name.get((kind, name)) or Ends(kind, name, "", (), (), (), ())
 
     @property
@@ -259,7 +259,7 @@ class Index(NamedTuple):
         return {name for (kind, name), ends in found if kind == TOPIC and ends.publishers}
 
     def of_robot(self, robot: str, kind: str, plain: str) -> Ends | None:
-        """The ends of a robot's name, by the name without the robot's."""
+        """Return the ends of a robot's name, by the name without the robot's; None without."""
         return _by_robot(self).get((robot, kind, plain))
 
     @property
@@ -278,7 +278,7 @@ class Index(NamedTuple):
         return "no known node" if incomplete(self.system) else "no node"
 
     def is_tool(self, node: str) -> bool:
-        """Is the node none of the robots', but one that comes and goes beside any?"""
+        """Return whether the node is no robot's, but one that comes and goes with any."""
         plan = self.expected
         if plan is None:
             # /amcl_bridge of a robot called bridge is none.
@@ -309,7 +309,7 @@ class Index(NamedTuple):
 
 
 def index(system: System, whose: Whose, known: Known = NOTHING_KNOWN) -> Index:
-    """A system with its look-ups."""
+    """Return a system with its look-ups."""
     return Index(system, *whose, known, {})
 
 
@@ -319,7 +319,7 @@ def beside(
     messages: Mapping[str, int] = NO_COUNTS,
     before: System | None = None,
 ) -> Index:
-    """A system with its plan, which says whose each name is."""
+    """Return the index of a system with its plan, which says whose each name is."""
     known = Known(messages, graph.environment.seconds, before)
     return plan._replace(system=graph, known=known, memo={}, expected=plan)
 
@@ -333,7 +333,7 @@ def _by_robot(it: Index) -> Mapping[tuple[str, str, str], Ends]:
 
 @once
 def spaces(it: Index) -> Set[str]:
-    """The namespaces that have a node in them."""
+    """Return the namespaces that have a node in them."""
     found: set[str] = set()
     for space in it.nodes:
         while (space := space.rpartition("/")[0]) and space not in found:
@@ -355,26 +355,24 @@ def _without_slash(frame: Edge) -> Edge:
 
 
 def nodes_of(ends: Iterable[End]) -> tuple[str, ...]:
-    """The nodes of some endpoints, each once, in the order of their names."""
+    """Return the nodes of some ends, each once, in the order of their names."""
     return tuple(sorted({end.node for end in ends}))
 
 
 def at_work(ends: Iterable[End]) -> list[End]:
-    """The endpoints of nodes that do more than look."""
+    """Return the ends of nodes that are no viewers."""
     return [end for end in ends if not is_viewer(end.node)]
 
 
 def sent_on(it: Index, topic: str) -> tuple[str, tuple[str, ...]]:
-    """The type of a topic, and the nodes that publish it and do more than look; empty without."""
+    """Return the type of a topic, and the nodes that publish it and are no viewers; empty without."""
     ends = it.ends_at(TOPIC, topic)
     return ends.type, nodes_of(at_work(ends.publishers))
 
 
 def robots_of(it: Index, nodes: Iterable[str]) -> tuple[str, ...]:
-    """The robots that some nodes belong to, each once.
-
-    A node outside of all that is called as one of theirs is of one more robot, which has no namespace.
-    """
+    """Return the robots that some nodes belong to, each once. A node outside of all robots that is
+    called like one of theirs counts as one more robot, without a namespace."""
     known, memo = unique(nodes), it.memo.setdefault(robots_of, {})
     # All nodes that send tf are asked for with each of their frames.
     if known not in memo:

@@ -87,7 +87,7 @@ def _scalar(value: object) -> str:
 
 
 def is_json(data: bytes) -> bool:
-    """Is the file JSON? YAML begins with a comment or a key."""
+    """Return whether the file is JSON. YAML begins with a comment or a key."""
     return data.removeprefix(BOM_UTF8)[:1000].lstrip().startswith(b"{")
 
 
@@ -131,10 +131,9 @@ def json_value(data: bytes, file: str) -> object:
 
 
 def _record_or_object(value: dict[str, object]) -> object:
-    """The node or endpoint that an object of JSON is; else the object, whose reader says what is wrong.
-
-    A large fleet has hundreds of thousands, and records with shared texts need a fifth of the memory.
-    """
+    """Return the node or end for an object of JSON; otherwise the object, whose reader reports
+    faults. A large fleet has hundreds of thousands, and records with shared texts need a fifth of
+    the memory."""
     made = _FREQUENT.get(next(iter(value), ""))
     try:
         return made(**value) if made else value
@@ -173,7 +172,7 @@ _FREQUENT: Mapping[str, Callable[..., object]] = {"name": _node, "kind": _end, "
 
 @lru_cache(1000)
 def _one_of_equal(record: Qos) -> Qos:
-    """A fleet has a handful of profiles."""
+    """Return the record; the cache makes equal ones one object, as a fleet has few profiles."""
     return record
 
 

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Several looks at one system, from several machines -> one snapshot. Pure.
+"""Several snapshots of one system, from several machines -> one snapshot. Pure.
 
-A look from one machine may miss what the network hides from it, so a node is in the result once
-any look has seen it.
-"""
+A snapshot from one machine may miss what the network hides from it, so a node is in the result if
+any snapshot has it."""
 
 from __future__ import annotations
 
@@ -164,7 +163,7 @@ def _words(words: Iterable[str]) -> str:
 
 
 def _caveats(looks: Sequence[Look]) -> Iterator[Caveat]:
-    """What was said of each look, unless it is asked of all of them again."""
+    """Yield the limitations of each snapshot, without those that are checked again for all of them."""
     files = [look.file for look in looks]
     more = f" and {len(files) - _MANY} more" if len(files) > _MANY else ""
     text = f"made of {len(files)} looks: {', '.join(files[:_MANY])}{more}"

@@ -55,7 +55,7 @@ def fields_of(system: System) -> dict[str, object]:
 
 
 def has_rows(value: Any) -> bool:
-    """Is the value a list of records or rows, and not of texts or numbers?"""
+    """Return whether the value is a list of records or rows, and not of texts or numbers."""
     return type(value) in (list, tuple) and any(
         isinstance(it, list | dict | tuple) for it in value[:1]
     )

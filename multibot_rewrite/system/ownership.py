@@ -39,7 +39,7 @@ class NameOwnership(NamedTuple):
     plain_names: frozenset[str] = NO_WORDS
 
     def robot(self, name: str) -> str:
-        """The robot that a name belongs to, or an empty string."""
+        """Return the robot that a name belongs to, or an empty string."""
         known = self.exact.get(name)
         if known is not None:
             return known
@@ -62,8 +62,8 @@ class NameOwnership(NamedTuple):
         return robot if is_known or not self.plain_names else ""
 
     def robot_at_its_place(self, name: str) -> str:
-        """The robot whose tag is at the end of a name where this plan has them, or an empty string; of
-        tags of several levels the longest counts."""
+        """Return the robot whose tag is where this plan has tags, or an empty string; of tags of
+        several levels the longest counts."""
         segments = name.strip("/").split("/")
         if self.robot_is_last:
             return self.robots.get(segments[-1], "") if len(segments) > 1 else ""
@@ -72,16 +72,16 @@ class NameOwnership(NamedTuple):
         return next((self.robots[it] for it in ways_in if it in self.robots), "")
 
     def _longest(self, parts: Iterable[str]) -> str:
-        """The longest tag among the parts: ``arm_left`` rather than ``arm``."""
+        """Return the longest tag among the parts: ``arm_left`` rather than ``arm``."""
         found = (part for part in parts if part in self.robots and part not in self.ambiguous_words)
         return max(found, key=len, default="")
 
     def tag(self, robot: str) -> str:
-        """The robot's name as these names have it."""
+        """Return the robot's name as these names have it."""
         return self.tags.get(robot, robot)
 
     def without_robot(self, name: str, robot: str) -> str:
-        """The name without the robot's: ``/robot1/scan`` and ``/scan/robot1`` are ``/scan``."""
+        """Return the name without the robot's: ``/robot1/scan`` and ``/scan/robot1`` are ``/scan``."""
         tag = self.tags.get(robot, robot)
         if not tag or tag not in name:
             return name
@@ -142,7 +142,7 @@ def whose_by_plan(plan: System) -> Whose:
 
 
 def is_alone(plan: System) -> bool:
-    """Is it the plan of one robot, whose name is in no name of its nodes and ends?"""
+    """Return whether it is the plan of one robot, whose name no node or end has."""
     if len(plan.robots) != 1:
         return False
     word = plan.robots[0].name
@@ -151,7 +151,7 @@ def is_alone(plan: System) -> bool:
 
 
 def without_name(plan: System) -> System:
-    """The plan of a robot as it is without its namespace: its nodes and names in the root."""
+    """Return the plan of a robot without its namespace: its nodes and names are in the root."""
     (robot,) = plan.robots
     space = f"/{robot.name}"
 
@@ -191,7 +191,7 @@ def without_name(plan: System) -> System:
 
 
 def _ends(segment: str) -> Iterator[str]:
-    """What is before and after each separator of a segment."""
+    """Yield what is before and after each separator of a segment."""
     for at, letter in enumerate(segment):
         if letter in SEPARATORS:
             yield segment[:at]
@@ -211,7 +211,7 @@ def _without_tag(segment: str, tag: str, is_last: bool) -> str:
 
 
 def name_ownership(plan: System) -> NameOwnership:
-    """The ownership of graph names: nodes, topics, services, actions."""
+    """Return the ownership of graph names: nodes, topics, services, actions."""
     nodes = {it.name: it.robot for it in plan.nodes if it.robot}
     planned = [(w.name, nodes[w.node]) for w in plan.ends if w.node in nodes]
     robots = {robot.name: robot.name for robot in plan.robots}
@@ -231,7 +231,7 @@ def name_ownership(plan: System) -> NameOwnership:
 
 
 def _plain_words(plan: System, draft: NameOwnership, topics: Mapping[str, str]) -> set[str]:
-    """The words of nodes and names without their robot's name, as far as they may be a robot."""
+    """Return the words of nodes and names without the robot's name that may be a robot's."""
     nodes = draft.nodes
     likely = draft.robots.keys() & _words({w.code_name for w in plan.ends})
     # A node of all robots may name a robot's topic in its code, as a domain_bridge does.
@@ -247,7 +247,7 @@ def _plain_words(plan: System, draft: NameOwnership, topics: Mapping[str, str]) 
 
 
 def frame_ownership(plan: System) -> NameOwnership:
-    """The ownership of tf frames."""
+    """Return the ownership of tf frames."""
     declared = [(frame, robot.name) for robot in plan.robots for frame in robot.frames]
     others = ((frame, robot.name) for robot in plan.robots for frame in robot.other_frames)
     tags = {robot.name: robot.tag for robot in plan.robots if robot.tag}
@@ -270,13 +270,13 @@ def frame_ownership(plan: System) -> NameOwnership:
 
 
 def _is_glued(name: str, tag: str) -> bool:
-    """Does the tag begin or end the name without being a segment of it, as in robot1_base_link?"""
+    """Return whether the tag begins or ends a name without being a segment, as in robot1_base_link."""
     at_an_end = name.startswith(tag) or name.endswith(tag)
     return at_an_end and tag not in name.split("/") and _without_tag(name, tag, True) != name
 
 
 def _of_one_robot(pairs: Iterable[tuple[str, str]]) -> dict[str, str]:
-    """The names that belong to one robot only."""
+    """Return the names that belong to one robot only, with the robot."""
     found: dict[str, str] = {}
     of_several = set()
     for name, robot in pairs:

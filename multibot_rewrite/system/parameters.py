@@ -29,12 +29,12 @@ ANY_NAME = "*"
 
 
 def parameter_text(value: object) -> str:
-    """A value as JSON: ``true``, ``1``, ``1.0``, ``"base_link"``."""
+    """Return a value as JSON: ``true``, ``1``, ``1.0``, ``"base_link"``."""
     return json.dumps(value, ensure_ascii=False)
 
 
 def parameter_value(text: str) -> object:
-    """What a ``parameter_text`` was made of; the text itself where a file has something else there."""
+    """Return the value of a ``parameter_text``; the text itself if it is not JSON."""
     try:
         return json.loads(text)
     except (ValueError, RecursionError):

@@ -20,10 +20,8 @@ def fitted(plan: System, graph: System) -> tuple[System, System]:
 
 
 def with_patterns(plan: System, graph: System) -> System:
-    """The graph, with a pattern of the plan in place of each node name that it stands for.
-
-    Two nodes of one process that a pattern stands for are one node of the plan.
-    """
+    """Return the graph, with a pattern of the plan in place of each node name that fits it. Two
+    nodes of one process that a pattern fits are one node of the plan."""
     patterns = {it.name: _compiled(it.name) for it in plan.nodes if ANY in it.name}
     if not patterns:
         return graph
@@ -42,8 +40,8 @@ def with_patterns(plan: System, graph: System) -> System:
 
 
 def with_names(plan: System, graph: System) -> System:
-    """The plan, with what runs in place of each pattern of an endpoint's name; a pattern that nothing
-    fits stays, and is missing. ``graph`` has its nodes as the plan calls them."""
+    """Return the plan, with what runs in place of each pattern of an end's name; a pattern that
+    nothing fits stays, and is missing. ``graph`` has its nodes as the plan calls them."""
     if not any(ANY in it.name for it in plan.ends):
         return plan
     by_node = lists_by_key((end.node, end) for end in graph.ends)

@@ -56,12 +56,12 @@ class WrongValue(Exception):
 
 
 def unexpected(expected: str, value: object) -> WrongValue:
-    """That something else was expected."""
+    """Return the error that something else was expected."""
     return WrongValue(f"expected {expected}, not {shown(value)}")
 
 
 def read_plain(expected: type, value: object) -> object:
-    """A text, whole number or truth value."""
+    """Return a text, whole number or truth value; raises WrongValue for another type."""
     # Not isinstance: True is an int as well.
     if type(value) is not expected:
         raise unexpected(_TYPE_NAMES[expected], value)
@@ -92,14 +92,14 @@ def read_nothing(value: object) -> object:
 
 
 def read_full_name(may_be_empty: bool, value: object) -> object:
-    """A name with a slash in front."""
+    """Return a name with a slash in front; raises WrongValue without."""
     if not isinstance(value, str) or not (value.startswith("/") or (may_be_empty and not value)):
         raise unexpected("a full name that starts with /", value)
     return value
 
 
 def read_seconds(value: object) -> object:
-    """A time; null is no limit."""
+    """Return a time; null is no limit. Raises WrongValue for anything else."""
     if value is None:
         return math.inf
     if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= _LARGEST:
@@ -118,7 +118,7 @@ def read_transform(value: object) -> object:
 
 
 def read_list(reader: Reader, value: Any) -> tuple[Any, ...]:
-    """A list of what ``reader`` reads."""
+    """Return a list of what ``reader`` reads; raises WrongValue with the place of a wrong item."""
     # An empty tuple is the default of a key that is left out.
     if not isinstance(value, list) and value != ():
         raise unexpected("a list", value)
@@ -133,7 +133,7 @@ def read_list(reader: Reader, value: Any) -> tuple[Any, ...]:
 
 
 def shown(value: object) -> str:
-    """The value in a message."""
+    """Return the value as a message shows it."""
     text = json.dumps(value, ensure_ascii=False, default=str, skipkeys=True)
     return text if len(text) <= 40 else f"{text[:39]}…"
 
@@ -211,7 +211,7 @@ def _read_short(kind: type, whole: Reader, value: object) -> object:
 
 
 def needed(kind: Any, hints: Mapping[str, Any]) -> list[str]:
-    """The fields that a file must have: without a default, or with one that is no full name."""
+    """Return the fields that a file must have: without a default, or full names."""
     usual = kind._field_defaults
     return [
         name

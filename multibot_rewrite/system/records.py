@@ -54,7 +54,7 @@ NOWHERE = Place("")
 
 
 def place_of(text: str) -> Place:
-    """The place that ``file:line`` or ``file:line:column`` is; a text without a line is a file."""
+    """Return the place in ``file:line`` or ``file:line:column``; a text without a line is a file."""
     file, _, last = text.rpartition(":")
     if not (file and last.isdecimal() and len(last) < 10):
         return Place(text) if text else NOWHERE
@@ -69,7 +69,7 @@ _STACK = "stack"
 
 
 class Origin(NamedTuple):
-    """What names a node: a stack, or a place in a file; as a text, it is what a plan writes."""
+    """What names a node: a node set, or a place in a file; as a text, it is what a plan writes."""
 
     stack: str = ""
     place: Place = NOWHERE
@@ -223,7 +223,7 @@ class Edge(NamedTuple):
 
 
 def edge_of(parent: str, child: str, static: bool = False) -> Edge:
-    """A transform of which neither the topic nor the sender is told."""
+    """Return a transform of unknown topic and sender."""
     return Edge(child, parent, static=static)
 
 
@@ -395,7 +395,7 @@ class System(NamedTuple):
 
 
 def surely(system: System) -> System:
-    """The system without the ends that only may be there."""
+    """Return the system without the ends that only may exist."""
     # One object for most, which is told sooner than that all of its fields are the same.
     ends = [it for it in system.ends if it.sure is RUNS or it.sure == RUNS]
     return system if len(ends) == len(system.ends) else system._replace(ends=tuple(ends))
@@ -407,7 +407,7 @@ def incomplete(system: System) -> tuple[Caveat, ...]:
 
 
 def doubts(system: System) -> tuple[Caveat, ...]:
-    """Return the caveats that make a view incomplete.
+    """Return the limitations that make a view incomplete.
 
     That an expected node did not come is not one of them: once the graph is quiet it is missing.
     """
@@ -426,12 +426,12 @@ def clocks(system: System) -> dict[str, bool]:
 
 
 def without_clock(system: System) -> set[str]:
-    """The nodes of which only a run tells whether they go by simulated time."""
+    """Return the nodes of which only a run shows whether they use simulated time."""
     return {it.node for it in system.parameters if (it.name, it.value) == (SIM_TIME, UNTOLD)}
 
 
 def nodes_by_robot(system: System) -> dict[str, list[str]]:
-    """The names of the nodes of each robot, and of all robots (empty name), each once."""
+    """Return the node names of each robot, and under "" those of no robot, each once."""
     found: dict[str, list[str]] = {"": [], **{it.name: [] for it in system.robots}}
     for name, robot in {it.name: it.robot for it in system.nodes}.items():
         found.setdefault(robot, []).append(name)
@@ -439,7 +439,7 @@ def nodes_by_robot(system: System) -> dict[str, list[str]]:
 
 
 def alternatives(system: System) -> tuple[tuple[str, ...], ...]:
-    """The groups of nodes of each of which one runs, and not more."""
+    """Return the groups of nodes of which exactly one runs."""
     return tuple(dict.fromkeys(it.sure.instead for it in system.nodes if it.sure.instead))
 
 
@@ -449,7 +449,7 @@ def may_miss(node: Node) -> bool:
 
 
 def answering(system: System) -> frozenset[str]:
-    """The nodes of which a state, parameter or controller is known."""
+    """Return the nodes of which a state, parameter or controller is known."""
     states = (it.name for it in system.nodes if it.lifecycle)
     parameters = (it.node for it in system.parameters)
     return frozenset((*states, *parameters, *(it.manager for it in system.controllers)))

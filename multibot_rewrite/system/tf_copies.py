@@ -20,18 +20,18 @@ _TF, _GLOBAL = "/tf", ("/tf", "/tf_static")
 
 
 def tree_topic(topic: str) -> str:
-    """The topic a tree is called after: tf and tf_static of one robot are one tree, ``tf``."""
+    """Return the topic that names a tree: tf and tf_static of one robot are one tree, ``tf``."""
     return "/".join("tf" if word == "tf_static" else word for word in topic.split("/"))
 
 
 def static_topic(topic: str) -> str:
-    """The topic of static transforms that belongs to a tf topic."""
+    """Return the topic of static transforms that belongs to a tf topic."""
     return "/".join("tf_static" if word == "tf" else word for word in topic.split("/"))
 
 
 def copying_nodes(plan: System) -> Mapping[str, str]:
-    """The nodes that, by the plan, do nothing but send their robot's tf on ``/tf`` as well, or send a
-    transform beside such a node; by each its robot."""
+    """Return by node the robot of which the plan's nodes only copy the tf to ``/tf``, or send a
+    transform for such a copy."""
     home = {
         it.name: tree_topic(it.tf_topic) for it in plan.robots if tree_topic(it.tf_topic) != _TF
     }
@@ -56,8 +56,8 @@ def copying_nodes(plan: System) -> Mapping[str, str]:
 
 
 def without_bridged(plan: System, frames: Iterable[Edge]) -> tuple[Edge, ...]:
-    """The transforms without those on ``/tf`` that are a robot's own with its namespace in front of
-    both frames, and without what joins its world to that of the fleet."""
+    """Return the transforms without copies on ``/tf``, whose frames have a robot's namespace in
+    front, and without those that join its world to the fleet's."""
     seen, copied = tuple(frames), set(copying_nodes(plan).values())
     # tf_namespace_bridge src/tf_namespace_bridge.cpp
     home = {

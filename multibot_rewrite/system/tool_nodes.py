@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes that run beside any fleet and are no part of a robot: tools, and what simulators start."""
+"""Nodes that run with any fleet and are no part of a robot: tools, and what simulators start."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from multibot_rewrite.base.conventions import is_tool_word, only_looks
 
 
 def is_tool(node: str, more: tuple[str, ...] = ()) -> bool:
-    """Is the node with this full name a tool? ``more`` are patterns beside the usual ones; without a
-    slash they are of any namespace."""
+    """Return whether the node with this full name is a tool. ``more`` are patterns in addition to
+    the usual ones; without a slash they are of any namespace."""
     word = node.rpartition("/")[2]
     if is_tool_word(word):
         return True
@@ -30,27 +30,27 @@ def _patterns(more: tuple[str, ...]) -> tuple[re.Pattern[str], re.Pattern[str]]:
 
 
 def is_viewer(node: str) -> bool:
-    """Does the node only look, or pass on what a person asks for?"""
+    """Return whether a node only looks, or passes on what a person asks for."""
     return only_looks(last_word(node))
 
 
 def is_hidden(node: str) -> bool:
-    """Is it a node of the ``ros2`` command, or another that hides itself?"""
+    """Return whether it is a node of the ``ros2`` command, or another that hides itself."""
     return last_word(node).startswith("_")
 
 
 def is_spawner(node: str) -> bool:
-    """Does the node load controllers, and wait for a manager until then?"""
+    """Return whether a node loads controllers, and waits for a manager until then."""
     return last_word(node).startswith("spawner_")
 
 
 def last_word(name: str) -> str:
-    """The last segment of a name."""
+    """Return the last segment of a name."""
     return name.rpartition("/")[2]
 
 
 def in_namespaces_above(node: str, name: str) -> Iterator[str]:
-    """A name directly in a node's namespace, moved to each of the namespaces above."""
+    """Yield a name directly in a node's namespace, moved to each of the namespaces above."""
     namespace = node.rpartition("/")[0]
     while namespace and name.startswith(f"{namespace}/"):
         rest = name.removeprefix(namespace)

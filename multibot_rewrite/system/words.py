@@ -30,13 +30,13 @@ PLAYER = "rosbag2_player"
 
 
 def moves(name: str, type_: str) -> bool:
-    """Does the topic set a robot in motion?"""
+    """Return whether a topic sets a robot in motion."""
     last = name.rpartition("/")[2]
     return type_ in _ALWAYS or (type_ in _BY_NAME and any(it in last for it in _NAMED))
 
 
 def is_pose_order(plain: str, type_: str) -> bool:
-    """Does the topic (without its robot's name) send a robot somewhere, or say where it is?"""
+    """Return whether a topic (without its robot's name) sends a robot somewhere, or says its place."""
     if type_ not in _POSES:
         return False
     bare = plain.strip("/").replace("_", "")
@@ -44,17 +44,17 @@ def is_pose_order(plain: str, type_: str) -> bool:
 
 
 def is_start_pose(plain: str, type_: str) -> bool:
-    """Does the topic (without its robot's name) tell a node where the robot starts?"""
+    """Return whether a topic (without its robot's name) tells a node where the robot starts."""
     return type_ == _POSES[1] and is_pose_order(plain, type_)
 
 
 def is_order(plain: str, type_: str) -> bool:
-    """Does the topic (without its robot's name) move a robot or send it somewhere?"""
+    """Return whether a topic (without its robot's name) moves a robot or sends it somewhere."""
     return moves(plain, type_) or is_pose_order(plain, type_)
 
 
 def kind_of_data(name: str, type_: str) -> str:
-    """The kind of what a robot's driver, sensor, map server or description sends, or obeys; else ""."""
+    """Return the kind of data that a driver, sensor, map or description sends or obeys, or empty."""
     last = name.rpartition("/")[2]
     if moves(name, type_):
         # A robot has one drive, and arms with as many controllers as its makers thought of.
@@ -70,22 +70,22 @@ def kind_of_data(name: str, type_: str) -> str:
 
 
 def is_description(name: str, type_: str) -> bool:
-    """Is it the topic of a robot's description?"""
+    """Return whether it is the topic of a robot's description."""
     return type_ == _TEXT and name.endswith(("description", "urdf"))
 
 
 def is_of_a_body(type_: str) -> bool:
-    """Is it what the body of a single robot measures: its joints, its way, its scan?"""
+    """Return whether a single robot's body measures it: its joints, its way, its scan."""
     return type_ in _BODY
 
 
 def is_of_one_sensor(type_: str) -> bool:
-    """Does one device, or one filter, send it?"""
+    """Return whether one device, or one filter, sends messages of a type."""
     return type_ in _OF_ONE_SENSOR
 
 
 def is_of_one_robot(plain: str, type_: str) -> bool:
-    """Would data of two robots be mixed on the topic: sensors, odometry, maps, commands, a
-    description?"""
+    """Return whether data of two robots would be mixed on the topic: sensors, odometry, maps,
+    commands, a description."""
     sensors = type_.startswith(_OF_ONE_ROBOT)
     return sensors or moves(plain, type_) or plain.endswith(DESCRIPTION)

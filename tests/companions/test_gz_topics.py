@@ -49,6 +49,15 @@ def test_a_topic_of_the_simulator(
     assert gz_topic(setting(policy), name, gz_type) == new
 
 
+@pytest.mark.parametrize("ending", ["image", "depth_image", "camera_info", "points"])
+def test_a_sensor_sends_below_the_topic_that_the_description_gives(ending: str) -> None:
+    """gz-sensors RgbdCameraSensor.cc puts each behind the sensor's topic."""
+    context = setting(L4)
+    context = context._replace(names=context.names._replace(given=frozenset({"eye", "eye/image"})))
+    new = {"image": f"/eye/image/{SPACE}"}.get(ending, f"/eye/{SPACE}/{ending}")
+    assert gz_topic(context, f"/eye/{ending}") == new
+
+
 @pytest.mark.parametrize("topic", ["/clock", "/stats", "clock"])
 def test_topics_of_the_simulator_are_so_whatever_robots_share(topic: str) -> None:
     assert gz_topic(setting(L2, shared_topics=()), topic) == topic

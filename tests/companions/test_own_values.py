@@ -23,12 +23,14 @@ URDF = '<robot name="rover"><link name="base_link"/></robot>'
 PARAMS = fixture_text("own_values_params.yaml")
 
 
-def _built(folder: Path, robots: str, port: str = "9090") -> tuple[dict[str, str], list[Finding]]:
+def _built(
+    folder: Path, robots: str, port: str = "9090", own: str = "own_nodes: [rosbridge_websocket]\n"
+) -> tuple[dict[str, str], list[Finding]]:
     (folder / "rover.urdf").write_text(URDF)
     (folder / "params.yaml").write_text(PARAMS.format(port=port))
     (folder / "fleet.yaml").write_text(
         f"layout: both\ndistro: jazzy\ndescription: rover.urdf\nrobots:\n{robots}"
-        "companions: {params: params.yaml}\n"
+        f"companions: {{params: params.yaml}}\n{own}"
     )
     made = make_outputs(plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {})), str(folder))
     return {it.path: it.text for it in made.files}, list(made.findings)
@@ -58,6 +60,16 @@ def test_each_robot_has_a_port_and_files_of_its_own(tmp_path: Path, port: str) -
     (note,) = (it for it in said if it.code == "MF845")
     assert (note.line, note.level) == (3, NOTE)
     assert "robot1 9090, robot2 9100, robot3 9110" in note.message
+
+
+def test_a_node_that_runs_once_keeps_its_section(tmp_path: Path) -> None:
+    """foxglove_bridge and rosbridge serve all robots where the fleet file does not say otherwise."""
+    texts, said = _built(tmp_path, THREE, own="")
+    assert all("\nrosbridge_websocket:" in f"\n{texts[f'robot{at}/params.yaml']}" for at in (1, 3))
+    assert [_of(texts[f"robot{at}/params.yaml"], "rosbridge")["port"] for at in (1, 3)] == [
+        9090
+    ] * 2
+    assert "MF845" not in {it.code for it in said}
 
 
 def test_what_a_strange_node_opens_stays_and_is_said(tmp_path: Path) -> None:

@@ -490,7 +490,7 @@ def test_what_stands_for_a_package_is_no_value(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A launch file may write down what it has of a package that is not here."""
-    setup = "import acme_params, yaml; made = yaml.dump({'a': acme_params.make('x')})"
+    setup = "import moveit_configs_utils as m, yaml; made = yaml.dump({'a': m.make('x')})"
     found = actions(tmp_path, "here('n', parameters=[{'text': made, 'b': 2}]),", setup)
     assert of(found, "n")["parameters"][0] == {"b": 2}
     assert (
@@ -516,7 +516,7 @@ def test_of_what_is_not_known_only_that_is_left_out(
     """The node is started with all else; the share folder of a package is asked for when it starts."""
     (tmp_path / "acme_here").mkdir()
     (tmp_path / "acme_here/package.xml").write_text("<package><name>acme_here</name></package>")
-    setup = """import acme_params; made = acme_params.make('x')
+    setup = """import moveit_configs_utils; made = moveit_configs_utils.make('x')
     from ament_index_python.packages import get_package_prefix, get_package_share_directory
     from launch_ros.parameter_descriptions import Parameter, ParameterValue"""
     found = actions(tmp_path, UNKNOWN, setup, more="simulator: none\nlaunch_roots: [.]")
@@ -897,7 +897,7 @@ def test_what_a_condition_keeps_out_is_named_with_the_arguments_that_decide(
         "thing": "joy:=false",
         "acme late": "joy:=false",
         "acme made": "joy:=false",
-    }
+    }, "joy decides more than what it turns on"
     capsys.readouterr()
     words = ["init", str(tmp_path), "--launch", str(tmp_path / "up.launch.py"), "-o", "-", "--yes"]
     main(words)
@@ -914,7 +914,7 @@ def test_what_a_condition_keeps_out_is_named_with_the_arguments_that_decide(
 SWITCHES = """
         *[DeclareLaunchArgument(it, default_value=value) for it, value in {
             'joy': 'true', 'mock': 'False', 'both': 'true', 'mode': 'a', 'sim': 'true',
-            'rviz': 'true'}.items()],
+            'rviz': 'true', 'cam': 'false', 'two': 'False', 'log': 'false'}.items()],
         here('stick', condition=IfCondition(joy)),
         here('driver', condition=UnlessCondition(LaunchConfiguration('mock'))),
         here('fake', condition=IfCondition(PythonExpression(["'", both, "' == 'false'"]))),
@@ -925,40 +925,54 @@ SWITCHES = """
         RegisterEventHandler(OnProcessExit(target_action=first, on_exit=[here('after')])),
         GroupAction([first], condition=IfCondition(LaunchConfiguration('sim'))),
         here('map', condition=IfCondition(LaunchConfiguration('rviz'))),
+        here('camera', condition=IfCondition(LaunchConfiguration('cam'))),
+        GroupAction([ExecuteProcess(cmd=['record', 'a']), IncludeLaunchDescription([
+            FindPackageShare('gone'), '/launch/x.launch.py']),
+            here('quiet', condition=IfCondition(LaunchConfiguration('log'))),
+            TimerAction(period=1.0, actions=[]),
+        ], condition=IfCondition(LaunchConfiguration('two'))),
+        here('logger', condition=IfCondition(LaunchConfiguration('log'))),
+        RegisterEventHandler(OnProcessExit(target_action=first, on_exit=[here('logged')]),
+            condition=IfCondition(LaunchConfiguration('log'))),
 """
+# What is off by default.
+OFF = ["camera", "record", "IncludeLaunchDescription"]
 
 
 @pytest.mark.parametrize(
     ("given", "gone"),
     [
-        ({}, []),
-        ({"joy": "false"}, ["stick", "inner", "TimerAction", "late"]),
-        ({"mock": "true"}, ["driver", "inner"]),
-        ({"sim": "0"}, ["OnProcessExit of first", "after", "first"]),
-        ({"mode": "b", "both": "false", "rviz": "false"}, []),
+        ({}, OFF),
+        ({"cam": "true"}, OFF[1:]),
+        ({"two": "true", "log": "true"}, OFF[:1]),
+        ({"joy": "false"}, ["stick", "inner", "TimerAction", "late", *OFF]),
+        ({"mock": "true"}, ["driver", "inner", *OFF]),
+        ({"sim": "0"}, ["OnProcessExit of first", "after", "first", *OFF]),
+        ({"mode": "b", "both": "false", "rviz": "false"}, OFF),
     ],
 )
-def test_a_launch_argument_turns_off_what_its_condition_starts(
+def test_a_launch_argument_turns_off_or_on_what_its_condition_starts(
     given: dict[str, str], gone: list[str], tmp_path: Path
 ) -> None:
-    """One that also turns something on, has more values than two, or is one of every build, does not:
-    what it decides is decided in the fleet file."""
+    """One that does both, has more values than two, decides what waits for an event, or is one of every
+    build, does not: what it decides is decided in the fleet file."""
     setup = """from launch.conditions import UnlessCondition
     from launch.substitutions import PythonExpression
     joy, both, mode = map(LaunchConfiguration, ('joy', 'both', 'mode'))
     first = here('first')"""
     found = told(actions(tmp_path, SWITCHES, setup, given={"robots": "2", **given}))
     every = ["stick", "driver", "real", "other", "inner", "TimerAction", "late", "first", "map"]
-    every += ["OnProcessExit of first", "after"]
+    every += ["OnProcessExit of first", "after", *OFF]
     left = [it for it in every if it not in gone]
     assert {it: found.count(it) for it in every} == {it: 2 * (it in left) for it in every}
     text = (tmp_path / "out/fleet.launch.py").read_text()
     declared = text.split("def generate_launch_description")[1]
     own = {
         it: f"            '{it}',\n                default_value=" in declared
-        for it in ("joy", "mock", "sim", "both", "mode", "rviz")
+        for it in ("joy", "mock", "sim", "both", "mode", "rviz", "cam", "two", "log")
     }
-    assert own == dict.fromkeys(own, False) | dict.fromkeys(("joy", "mock", "sim"), True)
+    kept = ("joy", "mock", "sim", "cam", "two")
+    assert own == dict.fromkeys(own, False) | dict.fromkeys(kept, True)
     assert "'mock',\n                default_value='False'" in declared
 
 
@@ -1211,9 +1225,9 @@ def test_an_include_without_an_argument_that_is_known_is_named_and_not_started(
     given = "launch_arguments=[('config', {}), ('gui', 'false')]"
     body = ", ".join(
         include.format(name, given.format(value))
-        for name, value in (("one", "gone_too.dump()"), ("two", "'a'"))
+        for name, value in (("one", "moveit_configs_utils.dump()"), ("two", "'a'"))
     )
-    found = actions(tmp_path, f"{body}, here('first'),", setup="import gone_too")
+    found = actions(tmp_path, f"{body}, here('first'),", setup="import moveit_configs_utils")
     includes = [it for it in found if it.kind == "IncludeLaunchDescription"]
     assert [it.values["launch_arguments"] for it in includes] == [
         [["config", "a"], ["gui", "false"]]

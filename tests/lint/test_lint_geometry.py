@@ -133,6 +133,11 @@ PLANTED: dict[str, tuple[str, list[Change], str]] = {
         ],
         "MB622",
     ),
+    "one wheel is both": (
+        ROVER,
+        [Change("<right_joint>right_wheel_joint", "<right_joint>left_wheel_joint")],
+        "MB622",
+    ),
     "origins are swapped": (ROVER, swapped(LEFT_AT, RIGHT_AT), "MB622"),
     "axes point to the right": (ROVER, [Change(AXIS, '<axis xyz="0 -1 0"/>', 0)], "MB622"),
     "one axis points to the right": (ROVER, [Change(AXIS, '<axis xyz="0 -1 0"/>')], "MB622"),

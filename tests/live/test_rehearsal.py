@@ -38,6 +38,7 @@ from multibot_rewrite.live.rehearsal import (
     to_order,
     with_own_types,
     with_substitutes,
+    without_doubles,
 )
 from multibot_rewrite.spelling.plan import expect
 from multibot_rewrite.spelling.records import Run, Table
@@ -104,6 +105,22 @@ def test_without_rules_a_node_keeps_only_namespace_and_name() -> None:
 
 def test_an_endpoint_with_a_condition_is_left_out() -> None:
     assert "debug" not in {part.name for part in ends(drive())}
+
+
+def test_what_may_run_in_the_place_of_another_node_is_left_out() -> None:
+    """loopback_simulator beside the bridge of a simulator: its section is in Nav2's own file."""
+    nodes = (NODE, MAPPER._replace(when="its parameters are in nav.yaml"))
+    for own, left in (
+        ("scan", ["drive"]),
+        ("map", ["drive", "mapper"]),
+        ("rosout", ["drive", "mapper"]),
+    ):
+        end = Endpoint(TOPIC, PUBLISHES, own, LASER)
+        again = [it._replace(endpoints=(end,)) if it.when else it for it in nodes]
+        every = build_table(("robot1",), again, make_naming("L2"), release=NEWEST_LTS)
+        stubs = stub_nodes(every, {})
+        plan = expect(every, make_naming("L2"), {})
+        assert [it.code_name for it, _ in without_doubles(stubs, plan)] == left
 
 
 def test_an_unknown_type_is_that_of_the_other_endpoint() -> None:

@@ -57,8 +57,8 @@ def test_the_figures_are_those_of_today() -> None:
     """Else: ``python benchmarks/house.py --write``."""
     line = [sys.executable, "benchmarks/house.py"]
     made = subprocess.run(line, cwd=ROOT, capture_output=True, text=True, check=True).stdout
-    rooms, figures = made.split("\n\n")[:2]
-    assert re.findall(r"`[a-z]+/`", between("rooms")) == re.findall(r"`[a-z]+/`", rooms)
+    packages, figures = made.split("\n\n")[:2]
+    assert re.findall(r"`[a-z]+/`", between("packages")) == re.findall(r"`[a-z]+/`", packages)
     for said, now in zip(between("figures").splitlines(), figures.splitlines(), strict=True):
         for old, new in zip(numbers(said), numbers(now), strict=True):
             assert abs(old - new) <= max(FEW, SHARE * new), now

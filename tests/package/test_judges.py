@@ -14,10 +14,11 @@ from multibot_rewrite import rewrite, rewrite_all
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.base.naming import make_naming
-from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.base.releases import NEWEST_LTS, ROS_2
 from multibot_rewrite.description.readback.meeting import SHARED_CODES
 from multibot_rewrite.description.readback.reading import read
 from multibot_rewrite.description.rewriters.tree import builtin_tree
+from multibot_rewrite.description.sources.release_said import release_said
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.fleet import make_fleet
 from multibot_rewrite.lint.check import lint_file
@@ -43,12 +44,16 @@ def named(findings: Iterable[Finding]) -> set[str]:
 
 def verdicts(path: Path, layout: str, folder: Path) -> dict[str, set[str]]:
     """What each of the five says; empty where the description is refused."""
+    # A fleet is one of ROS 2: where nobody says so, the others may take plugins for those of ROS 1.
+    release = release_said("", path.read_bytes(), str(path)).release
     try:
-        first, _ = rewrite_all(path, ROBOTS, layout=layout)
-        table = make_fleet(path, ROBOTS, (), {"layout": layout}, release=NEWEST_LTS).table
+        first, _ = rewrite_all(path, ROBOTS, layout=layout, distro=release)
+        table = make_fleet(path, ROBOTS, (), {"layout": layout}, release=release).table
     except MultibotError:
         return {}
-    settings = Settings(robots=ROBOTS, naming=make_naming(layout), select=CODES)
+    settings = Settings(
+        robots=ROBOTS, naming=make_naming(layout), select=CODES, distro=release, ros=ROS_2
+    )
     file = folder / "fleet.yaml"
     robots = "\n".join(f"  - {{name: {it}}}" for it in ROBOTS)
     file.write_text(f"layout: {layout}\ndescription: {path}\nrobots:\n{robots}\n")

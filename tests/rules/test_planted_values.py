@@ -36,12 +36,46 @@ VOLUME = GZ.format(
     "BuoyancyEngine",
     "<link_name>w</link_name><min_volume>{}</min_volume><max_volume>{}</max_volume>",
 )
+WING = GZ.format(
+    "lift-drag",
+    "LiftDrag",
+    "<link_name>w</link_name><area>{}</area><forward>{}</forward>",
+)
+THRUSTER = GZ.format(
+    "thruster",
+    "Thruster",
+    "<joint_name>j</joint_name><thrust_coefficient>{}</thrust_coefficient>",
+)
+ODOMETRY = GZ.format(
+    "odometry-publisher",
+    "OdometryPublisher",
+    "<dimensions>{}</dimensions><gaussian_noise>{}</gaussian_noise>",
+)
+BATTERY = GZ.format(
+    "linearbatteryplugin",
+    "LinearBatteryPlugin",
+    "<battery_name>b</battery_name><voltage>12</voltage><capacity>2</capacity>"
+    "<initial_charge>{}</initial_charge>",
+)
+HULL = GZ.format(
+    "hydrodynamics", "Hydrodynamics", "<link_name>w</link_name><xU>{}</xU><nRabsR>{}</nRabsR>"
+)
 SENSOR = '<gazebo reference="base"><sensor name="s" type="{}">{}</sensor></gazebo>'
 CONTACT = SENSOR.format("contact", "{}<contact><collision>c</collision>{}</contact>")
 IMU = SENSOR.format(
     "imu",
     "<imu><orientation_reference_frame><localization>{}</localization>"
     "</orientation_reference_frame></imu>",
+)
+FORCES = SENSOR.format(
+    "force_torque",
+    "<force_torque><frame>{}</frame><measure_direction>{}</measure_direction></force_torque>",
+)
+NOISE = SENSOR.format(
+    "gpu_lidar", "<lidar><noise><type>gaussian</type><stddev>{}</stddev></noise></lidar>"
+)
+LOGICAL = SENSOR.format(
+    "logical_camera", "<logical_camera><near>{}</near><far>{}</far></logical_camera>"
 )
 LIDAR = SENSOR.format("{}", "<lidar><range><min>{}</min><max>10</max></range></lidar>")
 CONTROL = (
@@ -63,6 +97,18 @@ IN_SENSOR = '<sensor name="ft"><{}_interface name="force.x"/></sensor>'
         ("MB125", VOLUME, ("0", "1"), ("2", "1")),
         ("MB125", DIFF, ("-1", "-0.5"), ("1", "0.5")),
         ("MB125", MECANUM, ("0.4",), ("0",)),
+        ("MB125", WING, ("0.2", "0 0 -1"), ("-0.2", "0 0 -1")),
+        ("MB125", WING, ("0.2", "1 0 0"), ("0.2", "0 0.0 0")),
+        # A propeller that is turned round has a coefficient below 0 (Thruster.cc:579).
+        ("MB125", THRUSTER, ("-0.1",), ("0",)),
+        ("MB125", ODOMETRY, ("3", "0"), ("4", "0")),
+        ("MB125", ODOMETRY, ("2", "0.1"), ("2", "-0.1")),
+        ("MB125", BATTERY, ("2",), ("2.5",)),
+        ("MB120", HULL, ("-1", "0"), ("-1", "none")),
+        ("MB124", FORCES, ("sensor", "child_to_parent"), ("world", "child_to_parent")),
+        ("MB124", FORCES, ("child", "parent_to_child"), ("child", "parent_child")),
+        ("MB125", NOISE, ("0",), ("-0.1",)),
+        ("MB628", LOGICAL, ("0.1", "5"), ("5", "0.1")),
         ("MB124", IMU, ("ENU",), ("EUN",)),
         ("MB125", LIDAR, ("gpu_lidar", "0.1"), ("gpu_lidar", "0")),
         # The Contact system reads the topic in <contact> alone.

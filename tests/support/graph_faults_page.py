@@ -17,6 +17,7 @@ from healthy_systems import SYSTEMS, plan
 from paths import fixture_text
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.rules.check import check
@@ -91,27 +92,29 @@ def lines() -> Iterator[str]:
     yield f"{plural(len(rows), 'fault')}, {causes} found with the cause; {len(LIVE)} of them live."
     yield f"{len(SYSTEMS)} healthy systems: 0 findings each, in each source."
     yield ""
-    others = [name for name in SOURCES if name != "file"]
-    columns = ("code", "faults", "errors", "live", "with the plan", *others, "build")
-    yield f"| {' | '.join(columns)} |"
-    yield "|---" + "|--:" * (len(columns) - 1) + "|"
-    for code in dict.fromkeys(it.code for it in FAULTS):
-        own = [it for it in FAULTS if it.code == code]
-        yield f"| {' | '.join((code, *map(str, _counts(own, others))))} |"
+    each = lists_by_key((it.code, it) for it in FAULTS)
+    yield "| shown by | faults | of which codes none | of which codes some |"
+    yield "|---|--:|---|---|"
+    for name, is_shown in _ways():
+        count = {code: sum(map(is_shown, own)) for code, own in each.items()}
+        none = [code for code in each if not count[code]]
+        some = [code for code in each if 0 < count[code] < len(each[code])]
+        cells = (name, f"{sum(count.values())}", " ".join(none) or "-", " ".join(some) or "-")
+        yield f"| {' | '.join(cells)} |"
+    yield ""
+    yield f"Faults by code: {', '.join(f'{code} {len(own)}' for code, own in each.items())}."
     yield ""
     yield f"Healthy systems: {', '.join(SYSTEMS)}."
 
 
-def _counts(faults: list[Fault], others: list[str]) -> Iterator[int]:
-    """Count the faults of one code, and those that each source shows."""
-    yield len(faults)
-    yield sum(it.level == ERROR for it in faults)
-    yield sum(it.name in LIVE for it in faults)
-    planned = [planned_cell(it) for it in faults]
-    yield sum(bool(it and it.codes) for it in planned)
-    for name in others:
-        yield sum(bool(cell(it, name).codes) for it in faults)
-    yield sum(it.name in BUILT for it in faults)
+def _ways() -> Iterator[tuple[str, Callable[[Fault], bool]]]:
+    """Yield each way in which a fault may be shown, and whether a fault is."""
+    yield "an error", lambda it: it.level == ERROR
+    yield "live", lambda it: it.name in LIVE
+    yield "with the plan", lambda it: bool((found := planned_cell(it)) and found.codes)
+    for name in (name for name in SOURCES if name != "file"):
+        yield name, lambda it, name=name: bool(cell(it, name).codes)
+    yield "build", lambda it: it.name in BUILT
 
 
 if __name__ == "__main__":

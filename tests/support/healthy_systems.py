@@ -306,7 +306,7 @@ SYSTEMS: Mapping[str, Callable[[], System]] = {
     "one robot": single,
     "twist_mux": with_mux,
     "twist_mux with an idle input": idle_mux,
-    "a robot without a namespace beside another": beside_the_root,
+    "a robot without a namespace next to another": beside_the_root,
     "one map for all": one_map_for_all,
     "a follower and a convoy": follower,
 }

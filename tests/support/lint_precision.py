@@ -28,14 +28,15 @@ from multibot_rewrite.rules.settings import Settings
 PRECISION = FIXTURES / "lint_precision.tsv"
 # ROS 2 these releases: the newest ones have nothing to find.
 RELEASES = {"MB157": "humble", "MB172": "lyrical"}
-# Found in checkouts of whole packages alone, which have launch files or descriptions beside the file.
+# Found in checkouts of whole packages alone, which have launch files or descriptions next to the file.
 IN_PACKAGES = ("MB145", "MB854", "MB856")
 BESIDE = (".yaml", ".yml", ".rviz")
 _HEAD = fixture_text("lint_precision_head.txt")
+_NEVER_FOUND = """
+No public file has what these rules find. Each rests on the source that `fixtures/lint_precision.tsv`
+names, on its examples and on the defects planted in `tests/lint/`, which it finds alone: {codes}.
+"""
 _RULES = """
-No public file has what a rule with 0 finds: that rule rests on the source that is named, and on its
-examples and the defects planted in `tests/lint/`, each of which it finds alone.
-
 | rule | level | found | judged | true | by |
 |---|---|--:|--:|--:|---|
 """
@@ -86,7 +87,7 @@ def planted(module: str) -> Planted:
 
 @cache
 def _linted(tests: ModuleType, case: object) -> frozenset[str]:
-    """What all rules find, in a workspace of its own: what is beside a file counts."""
+    """What all rules find, in a workspace of its own: what is next to a file counts."""
     with TemporaryDirectory() as folder:
         package = Path(folder) / "workspace/src/package"
         package.mkdir(parents=True)
@@ -128,11 +129,13 @@ def precision_page() -> str:
         it = planted(module)
         counts = f"{it.defects} | {it.before} | {it.found} | {it.healthy}"
         parts.append(f"| {what} (`{module}.py`) | {counts} |\n")
-    parts.append(_RULES)
+    found = [it for it in precisions() if it.hits]
+    never = ", ".join(it.code for it in precisions() if not it.hits)
+    parts += [_NEVER_FOUND.format(codes=never), _RULES]
     parts += (
         f"| {it.code} {RULES[it.code].name} | {RULES[it.code].level} | {it.hits} | {it.judged} "
         f"| {it.true} | {it.referee} |\n"
-        for it in precisions()
+        for it in found
     )
     return "".join(parts)
 

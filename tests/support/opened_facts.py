@@ -73,6 +73,13 @@ def facts() -> Mapping[str, tuple[Mapping[str, Any], ...]]:
     return {name: tuple(every) for name, every in found.items()}
 
 
+@cache
+def only_in_ros_1() -> tuple[bytes, ...]:
+    """The libraries that gazebo_ros_pkgs has in its branch for ROS 1 alone."""
+    every = facts().items()
+    return tuple(it.encode() for it, own in every if all("noetic" in one["source"] for one in own))
+
+
 def bare(library: str) -> str:
     """``gz-sim-x-system`` of ``libignition-gazebo6-x-system.so`` (gz-sim SystemLoader.cc)."""
     name = Path(library.strip()).name.removesuffix(".so").removeprefix("lib")
@@ -120,7 +127,7 @@ def _of_plugin(
 ) -> Iterator[Opened]:
     paths = {it["path"]: it for it in fact["elements"]}
     node = _node(plugin, paths, words)
-    source = f"{fact['project']} {fact['source']}"
+    source = f"{fact['project']} {fact['source']}, of ROS {fact.get('ros', 2)}"
     topics = "gz topic" if "gazebosim" in fact["project"] else "topic"
     for kind, name in (*_written(plugin, paths, node, words), *_coded(plugin, fact, node, words)):
         yield Opened(topics if kind == "topic" else kind, name, source)

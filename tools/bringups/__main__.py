@@ -233,7 +233,9 @@ def main(words: Sequence[str]) -> int:
     """Judge the repositories that were asked for; returns the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
-    parser.add_argument("--half", choices=("work", "kept", "fresh", "third", "six"), default="work")
+    parser.add_argument(
+        "--half", choices=("work", "kept", "fresh", "third", "try", "fourth", "six"), default="work"
+    )
     parser.add_argument("--only", nargs="*", default=[""], help="parts of the names")
     parser.add_argument("--sources", type=Path, nargs="*", default=[])
     parser.add_argument("--keep", type=Path, required=True, help="where to write")

@@ -38,6 +38,8 @@ HEAD = """\
 # whether it takes capitals too.
 WORDS = {
     "sensor/@type": ("src/Sensor.cc", ("kSensorTypeStrs", "type"), False),
+    "forcetorque/frame": ("src/ForceTorque.cc", ("frame",), False),
+    "forcetorque/measure_direction": ("src/ForceTorque.cc", ("direction",), False),
     "camera.image/format": ("src/Camera.cc", ("kPixelFormatNames", "_format"), False),
     "joint/@type": ("src/Joint.cc", ("first",), True),
     "light/@type": ("src/Light.cc", ("typeString",), False),

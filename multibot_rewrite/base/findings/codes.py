@@ -14,7 +14,7 @@ ASKED = "multibot inspect"
 
 
 def known_beginnings(rules: Mapping[str, Rule]) -> set[str]:
-    """All that ``--select`` takes: codes, and at least two letters that codes begin with."""
+    """Return all that ``--select`` takes: codes, and at least two letters that codes begin with."""
     return {code[:size] for code in rules for size in range(2, len(code) + 1)}
 
 
@@ -67,12 +67,12 @@ def explained(rule: Rule) -> str:
 
 
 def listed(rules: Iterable[Rule]) -> Iterator[tuple[str, str, str, str]]:
-    """Code, level, name and first sentence of each."""
+    """Return code, level, name and first sentence of each rule."""
     return ((it.code, it.level, it.name, it.what.partition(". ")[0].rstrip(".")) for it in rules)
 
 
 def examples(rule: Rule) -> list[tuple[str, str]]:
-    """Titles and texts of its examples, and of the files next to them."""
+    """Return titles and texts of a rule's examples, and of the files next to them."""
     page = rule.page
     good = "" if page.good == page.fixed else page.good
     texts = (("Bad", page.bad), ("Fixed by --fix", page.fixed), ("Good", good))

@@ -31,14 +31,14 @@ LEVELS = (ERROR, WARNING, NOTE)
 
 
 def locate(source: bytes, offset: int) -> tuple[int, int]:
-    """Line and column, from 1, of a byte offset; the column counts characters."""
+    """Return line and column, from 1, of a byte offset; the column counts characters."""
     block = offset // _BLOCK
     return _behind(*_blocks(source)[block], source[block * _BLOCK : offset])
 
 
 @lru_cache(maxsize=4)
 def _blocks(source: bytes) -> list[tuple[int, int]]:
-    """Line and column of the start of each block."""
+    """Return line and column of the start of each block."""
     here = 1, 1
     found = [here]
     for at in range(0, len(source), _BLOCK):
@@ -48,7 +48,7 @@ def _blocks(source: bytes) -> list[tuple[int, int]]:
 
 
 def _behind(line: int, column: int, text: bytes) -> tuple[int, int]:
-    """Line and column behind a text that starts at these."""
+    """Return line and column behind a text that starts at these."""
     lines = text.count(b"\n")
     if not lines:
         return line, column + _characters(text)
@@ -131,7 +131,7 @@ def by_place(finding: Finding) -> tuple[str, int, int, str, str, str]:
 
 
 def same_for(finding: Finding) -> str:
-    """``; the same for robot2 and 18 more``, empty where it is about one robot."""
+    """Return ``; the same for robot2 and 18 more``, empty for a finding about one robot."""
     if len(finding.robots) < 2:
         return ""
     _, first, *more = finding.robots

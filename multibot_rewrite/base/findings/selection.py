@@ -51,7 +51,7 @@ def selected(findings: Iterable[Finding], selection: Selecting) -> list[Finding]
 
 
 def fails(findings: Iterable[Finding], fail_on: str) -> bool:
-    """Is one of the findings at the level ``fail_on`` or worse?"""
+    """Return whether one of the findings is at the level ``fail_on`` or worse."""
     failing = LEVELS[: LEVELS.index(fail_on) + 1]
     return any(it.level in failing for it in findings)
 
@@ -62,7 +62,7 @@ def matched(codes: Sequence[str], code: str) -> int:
 
 
 def is_on(selection: Selecting, code: str) -> bool:
-    """Is the rule on? The code that selects it has to be longer than the one that ignores it."""
+    """Return whether the rule is on; the longer of the codes that select and ignore it counts."""
     decided = _level_key(selection, code)
     off = len(decided) if selection.levels.get(decided) == OFF else -1
     return matched(selection.select, code) > max(matched(selection.ignore, code), off)
@@ -92,7 +92,7 @@ def grouped(findings: Iterable[Finding], names: Mapping[str, str]) -> list[Findi
 def with_members(
     findings: Iterable[Finding], names: Mapping[str, str]
 ) -> list[tuple[Finding, list[Finding]]]:
-    """As ``grouped``, each with the findings that it stands for."""
+    """Return the findings as ``grouped``, each with the findings that it replaces."""
     order = {robot: at for at, robot in enumerate(dict.fromkeys(names.values()))}
     groups: dict[Finding, list[tuple[str, Finding]]] = {}
     for it in findings:

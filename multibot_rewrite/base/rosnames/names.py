@@ -115,7 +115,7 @@ def _first_letters(name: str) -> NameFault | None:
 
 
 def _full_form(name: str) -> NameFault | None:
-    """All that is asked of a fully qualified name but its length."""
+    """Return the fault of a fully qualified name, its length aside."""
     if _FULL.fullmatch(name):
         return None
     if not name:

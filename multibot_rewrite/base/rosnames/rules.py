@@ -179,10 +179,8 @@ def bind(node: str, namespace: str, rules: Iterable[RemapRule]) -> BoundNode:
 
 
 def resolve_bound(name: str, kind: str, bound: BoundNode) -> str:
-    """Where ``name`` of a bound node leads; UsageError where rcl refuses the name.
-
-    ``kind`` is ``topic`` or ``service``. One step only: the result is not remapped again.
-    """
+    """Return the name that ``name`` of a bound node becomes; UsageError where rcl refuses the name.
+    ``kind`` is ``topic`` or ``service``. One step only: the result is not remapped again."""
     _demand(f"{kind} name", name, check_topic_name(name))
     full = expand(name, bound.namespace, bound.node)
     if "{" in full:
@@ -198,9 +196,8 @@ def resolve_bound(name: str, kind: str, bound: BoundNode) -> str:
 def resolve_name(
     name: str, kind: str, node: str, namespace: str, rules: Iterable[RemapRule]
 ) -> str:
-    """Where ``name`` leads, a topic or service of ``node`` started in ``namespace`` with ``rules``.
-
-    ``node`` and ``namespace`` are those before the rules; ``rules`` the node's own ones followed by
-    the process's. Raises UsageError where rcl refuses the node or the name. See ``bind`` for many.
-    """
+    """Return the name that ``name`` becomes, a topic or service of ``node`` started in
+    ``namespace`` with ``rules``. ``node`` and ``namespace`` are those before the rules; ``rules``
+    the node's own ones followed by the process's. Raises UsageError where rcl refuses the node or
+    the name. See ``bind`` for many."""
     return resolve_bound(name, kind, bind(node, namespace, rules))

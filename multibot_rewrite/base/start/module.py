@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Run a module in a process that finds modules where its parent did, and not in the current folder.
 
-``python .../module.py MODULE``: ``python -m`` would put the current folder first, and a ``rclpy.py``
-beside somebody's robot would be run. (``-P`` came with Python 3.11, Humble has 3.10.)
+``python .../module.py MODULE``: ``python -m`` would put the current folder first, and a
+``rclpy.py`` next to somebody's robot would be run. (``-P`` came with Python 3.11, Humble has 3.10.)
 """
 
 from __future__ import annotations

@@ -113,7 +113,7 @@ def each(about: str, name: str, metavar: str) -> Option:
 
 
 def sources(about: str, name: str, metavar: str) -> Option:
-    """Where a graph comes from; read by ``cli/live.py``."""
+    """Return the option for where a graph comes from; read by ``cli/live.py``."""
     return _option(
         name, about, metavar, dest="sources", action="append", type=values.source, default=[]
     )
@@ -131,14 +131,14 @@ def launch_words(about: str, name: str, metavar: str) -> Option:
 
 
 def output(about: str, default: str = "") -> Option:
-    """``-o``; every command has it."""
+    """Return the option ``-o``; every command has it."""
     more = {"default": default} if default else {}
     text = f"{about}; missing folders are made"
     return _option("-o,--output", text, "PATH", type=values.path, **more)
 
 
 def form(about: str, known: str) -> Option:
-    """``--form``: the shape of a command's result, the first one by default."""
+    """Return the option ``--form``: the kind of a command's result, the first one by default."""
     first, *_ = words = known.split("|")
     text = f"{about}: {', '.join(words)}; default: {first}"
     return choice(text, "--form", "FORM", known, first)

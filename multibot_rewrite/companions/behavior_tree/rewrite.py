@@ -51,7 +51,7 @@ def port_data() -> Mapping[str, Any]:
 
 
 def ports_of(document: Document) -> Iterator[tuple[_Element, Site]]:
-    """Every literal with the kind of name it is; models for editors are left out."""
+    """Yield every literal with the kind of its name; models for editors are left out."""
     found = {str(it.get("ID", "")): it for it in document.root.iter("BehaviorTree")}
     trees = _Trees(found, str(document.root.get("BTCPP_format", "3")).startswith("4"))
     for element, start in zip(document.root.iter("*"), document.starts, strict=True):
@@ -75,7 +75,7 @@ def _site_of(document: Document, start: int, attribute: str, value: str, kind: s
 
 
 def character(document: Document, at: int) -> int:
-    """Templates count characters, documents bytes."""
+    """Return the character of a byte offset: templates count characters, documents bytes."""
     source = document.source
     return at if source.isascii() else len(source[:at].decode())
 
@@ -87,7 +87,7 @@ def is_model(element: _Element) -> bool:
 def _model_default(
     document: Document, element: _Element, start: int, trees: _Trees
 ) -> Iterator[tuple[_Element, Site]]:
-    """BT.CPP takes defaults from models of subtrees; other models are for editors."""
+    """Yield the default of a subtree's model, which BT.CPP reads; other models are for editors."""
     above = element.getparent()
     if above is None or above.tag not in _SUBTREES or "default" not in element.attrib:
         return
@@ -156,7 +156,7 @@ def rewrite_behavior_tree(data: bytes, file: str, context: Context) -> Companion
 
 
 def _default_splices(document: Document, context: Context) -> Iterator[Splice]:
-    """Ports that are left out and whose default all robots would share: they are added."""
+    """Yield the ports to add that are left out and whose default all robots would share."""
     for element, start in zip(document.root.iter("*"), document.starts, strict=True):
         name = node_name(element)
         for it in port_data()["defaults"] if not is_model(element) else ():

@@ -52,7 +52,7 @@ _Match = tuple[tuple[tuple[int, str, str], ...], Shape]
 
 @cache
 def kinds() -> tuple[MoveitKind, ...]:
-    """All kinds of files, in the order in which they are tried."""
+    """Return all kinds of files, in the order in which they are tried."""
     data = load_own_yaml(__file__, "moveit.yaml")
     return tuple(
         MoveitKind(name, tuple(it["marks"]), tuple(it["files"]), {**data["common"], **it["names"]})
@@ -63,8 +63,8 @@ def kinds() -> tuple[MoveitKind, ...]:
 def find_names(
     root: yaml.Node | None, rules: Shapes, names: CompanionNames
 ) -> tuple[list[Site], list[Site], list[Site]]:
-    """Every name below ``root``, the texts of unknown use, and repeated keys; an aliased value counts
-    once for every shape that reaches it."""
+    """Return every name below ``root``, the texts of unknown use, and repeated keys; an aliased
+    value counts once for every shape that reaches it."""
     walk = _Walk(names, [], set(), set())
     if root is not None:
         _below(root, rules, walk)
@@ -81,7 +81,7 @@ def find_names(
 
 
 def entries(node: yaml.Node | None) -> Iterator[tuple[yaml.ScalarNode, yaml.Node]]:
-    """Keys and values of a map, merged ones included."""
+    """Yield keys and values of a map, merged ones included."""
     for key, value in pairs(node):
         if not is_merge(key):
             yield key, value
@@ -92,7 +92,7 @@ def entries(node: yaml.Node | None) -> Iterator[tuple[yaml.ScalarNode, yaml.Node
 
 
 def is_merge(key: yaml.Node) -> bool:
-    """Is this YAML's merge key ``<<``?"""
+    """Return whether this is YAML's merge key ``<<``."""
     return isinstance(key, yaml.ScalarNode) and key.value == _MERGE and not key.style
 
 
@@ -201,7 +201,7 @@ def _wild(rules: Shapes) -> Iterator[tuple[str, tuple[str, ...], Shape]]:
 
 
 def _scalars(root: yaml.Node | None) -> Iterator[yaml.ScalarNode]:
-    """Every scalar once, keys included."""
+    """Yield every scalar once, keys included."""
     for node in _nodes(root):
         if isinstance(node, yaml.ScalarNode) and not is_merge(node):
             yield node
@@ -239,10 +239,8 @@ _DEPTH = 4
 
 
 def file_kind(document: YamlText) -> str:
-    """Which kind of MoveIt file this is, by its content, else by its name; ``empty`` if it is empty.
-
-    Raises InputError if it is not a MoveIt file.
-    """
+    """Return which kind of MoveIt file this is, by content or else name; ``empty`` if it is empty.
+    Raises InputError if it is not a MoveIt file."""
     kind = find_kind(document)
     return kind.name if kind else EMPTY
 
@@ -273,7 +271,7 @@ def find_kind(document: YamlText) -> MoveitKind | None:
 
 
 def pipeline_of(path: str) -> str:
-    """``ompl`` of ``ompl_planning.yaml``; empty for a file that is of no pipeline."""
+    """Return ``ompl`` for ``ompl_planning.yaml``; empty for a file of no pipeline."""
     stem = os.path.splitext(os.path.basename(path))[0]
     return stem.removesuffix(_PIPELINE) if stem.endswith(_PIPELINE) else ""
 

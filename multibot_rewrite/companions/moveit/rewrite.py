@@ -82,7 +82,7 @@ MOVE_GROUP, SERVO = "move_group", "servo_node"
 
 
 def node_of(kind: MoveitKind | None) -> str:
-    """Which node's parameters a file of this kind has."""
+    """Return the node whose parameters a file of this kind has."""
     return SERVO if kind and kind.name == OF_SERVO else MOVE_GROUP
 
 

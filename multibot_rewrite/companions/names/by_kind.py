@@ -23,12 +23,12 @@ PREFIXED = {"stem": "frame", "joint_stem": "joint", **_PREFIXES}
 
 
 def is_plain(value: str) -> bool:
-    """Is it a name, without substitutions or placeholders for a launch file?"""
+    """Return whether it is a name, without substitutions or placeholders for a launch file."""
     return bool(value) and "<" not in value and NOT_PLAIN.isdisjoint(value)
 
 
 def is_filled(value: str) -> bool:
-    """Is it a text without placeholders, though perhaps no name?"""
+    """Return whether it is a text without placeholders, though perhaps no name."""
     return bool(value) and not PLACEHOLDER.search(value)
 
 
@@ -43,7 +43,7 @@ def joint(context: Context, value: str) -> str:
 
 
 def interface(context: Context, value: str) -> str:
-    """``elbow/position``, or another controller's ``controller/elbow/position``."""
+    """Return ``elbow/position``, or another controller's ``controller/elbow/position``, renamed."""
     owner, slash, last = value.rpartition("/")
     if not slash:
         return value
@@ -128,7 +128,7 @@ def before_frames(between: str) -> Speller:
 
 
 def words(context: Context, value: str) -> str:
-    """Text with names of the description in it: ``joints(shoulder,elbow)``."""
+    """Return a text with names of the description renamed: ``joints(shoulder,elbow)``."""
 
     return _WORD.sub(lambda found: _word(context, found[0]), value)
 
@@ -204,7 +204,7 @@ SPELLERS: Mapping[str, Speller] = {
 
 
 def expressible(context: Context, kind: str) -> bool:
-    """Can a prefix parameter of this kind express the fleet's naming?"""
+    """Return whether a prefix parameter of this kind can express the fleet's naming."""
     of = PREFIXED.get(kind)
     if of is None or of not in context.names.naming.separators or _own_prefix(context, of):
         return True
@@ -213,7 +213,7 @@ def expressible(context: Context, kind: str) -> bool:
 
 
 def is_shared_frame(context: Context, value: str) -> bool:
-    """One frame for all robots, such as map."""
+    """Return whether it is one frame for all robots, such as map."""
     return value.strip("/") in context.names.naming.shared_frames
 
 

@@ -36,7 +36,7 @@ class TopicText(NamedTuple):
 
 @lru_cache
 def built_in_facts(release: str) -> Facts:
-    """Node -> facts, as in the node sets; nodes with their own remap rules first."""
+    """Return facts by node, as in the node sets; nodes with their own remap rules first."""
     library = built_in(release)
     facts = [node for stack in library.stacks.values() for node in stack.nodes]
     facts.sort(key=lambda it: not any(endpoint.remapped for endpoint in it.endpoints))

@@ -22,7 +22,7 @@ class CompanionNames(NamedTuple):
     """The names that a description declares (not rewritten), the naming, and the robot.
 
     ``own`` are names (kind and text) that arguments of the xacro make another for the robot; ``words``
-    are those that its systems make topics of, ``given`` the topics of Gazebo that it gives in full.
+    are those that its systems make topics of, ``given`` the topics of Gazebo that it gives itself.
     """
 
     declared: Declared
@@ -72,6 +72,7 @@ def companion_names(
     own: Mapping[tuple[str, str], str],
     words: Stems = NO_WORDS,
     in_full: Collection[str] = (),
+    given: frozenset[str] = frozenset(),
 ) -> CompanionNames:
     """Return the names of a robot; ``own`` are declared by either of their texts. Nodes in the robot's
     namespace call the topics ``in_full``, which it does not reach, by their full names."""
@@ -89,14 +90,14 @@ def companion_names(
     for (kind, plain), text in own.items():
         if text in both.get(kind, ()):
             both[kind].setdefault(plain, both[kind][text])
-    return CompanionNames(both, naming, robot, own, words)
+    return CompanionNames(both, naming, robot, own, words, given)
 
 
 def _without_argument(
     robot: str, own: Mapping[tuple[str, str], str]
 ) -> Iterator[tuple[str, str, str]]:
-    """Kind, name and text of those in which the robot's name stands where the argument's default was:
-    of ``lbr_A1`` a file with ``$(var robot_name)_A1`` has ``A1``."""
+    """Yield kind, name and text of names in which the robot's name is where the argument's default
+    was: of ``lbr_A1`` a file with ``$(var robot_name)_A1`` has ``A1``."""
     for (kind, plain), text in own.items():
         rest = text.removeprefix(robot)
         if robot and rest != text and rest[:1] in ("_", "/") and plain.endswith(rest):

@@ -17,7 +17,7 @@ NOTHING: Mapping[str, str] = {}
 
 
 def is_topic(value: str) -> bool:
-    """Is it a topic name: not empty, not private, without placeholders?"""
+    """Return whether it is a topic name: not empty, not private, without placeholders."""
     if not value or value.startswith("~") or not NOT_PLAIN.isdisjoint(value):
         return False
     return check_name_in_code(value) is None
@@ -40,7 +40,7 @@ def robot_topic(names: CompanionNames, value: str, known: Mapping[str, str] = NO
 
 
 def fleet_topics(table: Table, facts: Iterable[NodeFacts], robot: str) -> dict[str, str]:
-    """Topics of a single robot's nodes -> the same topics of ``robot`` in a fleet's table."""
+    """Return by the topics of a single robot's nodes those of ``robot`` in a fleet's table."""
     ours = {node.name for node in facts if not node.shared}
     stack = {
         node.full_name: node.node

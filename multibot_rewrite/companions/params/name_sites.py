@@ -69,7 +69,8 @@ class _Job(NamedTuple):
 
     @property
     def node(self) -> str:
-        """The node as the stacks call it: a pattern such as /**/amcl is for the node of that name."""
+        """The node as the node sets call it: a pattern such as /**/amcl is for the node of that
+        name."""
         path = self.section.path
         return path.rpartition("/")[2] if self.section.wild else path
 

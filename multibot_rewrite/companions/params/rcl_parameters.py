@@ -64,7 +64,7 @@ def check_values(document: YamlText) -> None:
 
 
 def exact_nodes(document: YamlText) -> list[str]:
-    """Full names of the nodes that have a section of their own."""
+    """Return the full names of the nodes that have a section of their own."""
     paths = dict.fromkeys(found.path for found in raw_sections(document))
     return [f"/{path}" for path in paths if "*" not in path]
 

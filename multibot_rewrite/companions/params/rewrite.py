@@ -26,7 +26,7 @@ from multibot_rewrite.companions.context import (
 from multibot_rewrite.companions.named_file import PARAMS, Companion, NamedFile
 from multibot_rewrite.companions.names.node_topics import facts_by_name
 from multibot_rewrite.companions.names.placeholders import without_robot
-from multibot_rewrite.companions.params.name_sites import NO_NAMES, find_names
+from multibot_rewrite.companions.params.name_sites import NO_NAMES, SectionNames, find_names
 from multibot_rewrite.companions.params.sections import (
     ParamSection,
     RawSection,
@@ -93,10 +93,8 @@ def rewrite_params(
 
 
 def rewrite_values(job: ParamsJob) -> Companion:
-    """Parameters of one node with slots for a robot: nothing is inserted, and no other file is asked.
-
-    Raises InputError as ``rewrite_params``.
-    """
+    """Return parameters of one node with slots for a robot; no other file is read, nothing
+    inserted. Raises InputError as ``rewrite_params``."""
     with gc_paused():
         check_no_slots(job.document.text, job.document.file)
         file = read_params(job.document, job.context, job.known)
@@ -128,8 +126,7 @@ def read_params(
     found = without_own(raw_sections(document), own)
     sections = identify_sections(found, context, known)
     pages = tuple(
-        (it, NO_NAMES if it.shared else find_names(document, it, known, context.distro))
-        for it in sections
+        (it, _own_names(it, find_names(document, it, known, context.distro))) for it in sections
     )
     # The frames that nodes of the file make themselves: no description has them.
     sites = [site for _, page in pages for site in page.sites]
@@ -156,6 +153,12 @@ def read_params(
         sent=known.sent | sent,
         is_for_one=bool(own),
     )
+
+
+def _own_names(section: ParamSection, found: SectionNames) -> SectionNames:
+    """Return the names of a section; of a node that all robots share only patterns for their names."""
+    patterns = [it for it in found.sites if it.kind == "pattern"]
+    return NO_NAMES._replace(sites=patterns) if section.shared else found
 
 
 def _keys(section: ParamSection, own: Collection[str]) -> Iterator[Site]:

@@ -62,7 +62,7 @@ class RawSection(NamedTuple):
 
 
 def raw_sections(document: YamlText) -> list[RawSection]:
-    """Every section in its order; InputError for a file that rcl rejects or that has no section."""
+    """Return every section in order; InputError for a file that rcl rejects or without a section."""
     is_map = document.root is None or isinstance(document.root, yaml.MappingNode)
     has_parameters = document.root is None or PARAMETERS in document.text
     # Hardly any file has one, and this search is far quicker.
@@ -225,7 +225,7 @@ def controller_types(found: Iterable[RawSection]) -> dict[str, str]:
 
 
 def is_for(section: str, full: str) -> bool:
-    """Is a section of this name for the node with this full name? Raises nothing."""
+    """Return whether a section of this name is for the node with this full name. Raises nothing."""
     if "*" not in section:
         return section.strip("/") == full.strip("/")
     parts = section.strip("/").split("/")
@@ -257,8 +257,8 @@ def _skipped(filled: set[int], parts: Sequence[str]) -> set[int]:
 
 
 def settings(node: yaml.Node, above: str = "") -> Iterator[tuple[str, yaml.ScalarNode, yaml.Node]]:
-    """Every parameter by its dotted name, with its key and value; nested and dotted keys are the same.
-    ``above`` is before all names."""
+    """Yield every parameter by its dotted name, with its key and value; nested and dotted keys are
+    the same. ``above`` is before all names."""
     for key, value in pairs(node):
         name = f"{above}{key.value}"
         if below := names_below(value):
@@ -268,12 +268,12 @@ def settings(node: yaml.Node, above: str = "") -> Iterator[tuple[str, yaml.Scala
 
 
 def flattened(node: yaml.Node) -> Iterator[tuple[str, yaml.ScalarNode]]:
-    """Every parameter by its dotted name, with its key."""
+    """Return every parameter by its dotted name, with its key."""
     return ((name, key) for name, key, _ in settings(node))
 
 
 def scalars(node: yaml.Node | None) -> Iterator[tuple[yaml.ScalarNode, yaml.ScalarNode]]:
-    """Every key with a single value, and that value."""
+    """Yield every key with a single value, and that value."""
     for key, value in pairs(node):
         if isinstance(value, yaml.ScalarNode):
             yield key, value

@@ -63,7 +63,7 @@ class DefaultLine(NamedTuple):
 def default_lines(
     job: ParamsJob, pages: Sequence[tuple[ParamSection, SectionNames]], beside: Sequence[RawSection]
 ) -> Iterator[Splice | Finding]:
-    """Lines for the first section of each known node, without those that ``beside`` sets."""
+    """Yield lines for the first section of each known node, without those that ``beside`` sets."""
     # What is set for which nodes, if patterns or other files set more than the section itself.
     several = beside or any(it.wild for it, _ in pages)
     bodies = [(it.full, it.body) for it, _ in pages] if several else []
@@ -186,7 +186,7 @@ def all_sections(context: Context, known: KnownNodes, at_run_time: Collection[st
 
 
 def takes_sections(document: YamlText) -> bool:
-    """Can a section stand behind its last line?"""
+    """Return whether a section can follow its last line."""
     root = document.root
     plain = isinstance(root, yaml.MappingNode) and not root.flow_style
     ends = re.search(r"^(?:\.\.\.|---)", document.text[1:], re.MULTILINE)
@@ -227,9 +227,10 @@ def _key(path: str, context: Context) -> str:
 
 
 def _section(full: str, lines: Sequence[DefaultLine]) -> Iterator[str]:
-    """Under keys of their own for a node in a namespace below the robot's: behind a key with a slash
-    that is not at the top rcl takes the next section for one of that namespace (rcl_yaml_param_parser
-    namespace.c, ``rem_name_from_ns``), and nav2_bringup puts a key above all of them."""
+    """Yield the lines of a section. A node in a namespace below the robot's gets nested keys: after
+    a key with a slash that is not at the top rcl takes the next section for one of that namespace
+    (rcl_yaml_param_parser namespace.c, ``rem_name_from_ns``), and nav2_bringup puts a key above all
+    of them."""
     yield from dict.fromkeys(it.comment for it in lines)
     *above, name = full.strip("/").split("/")
     keys = (f"/{'/'.join(above)}", name) if len(above) > 1 else (full,)

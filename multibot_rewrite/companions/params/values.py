@@ -30,7 +30,7 @@ ODOM = "odom"
 
 
 def is_guessed(section: ParamSection) -> bool:
-    """Is it for one node, of which nothing is known?"""
+    """Return whether a section is for one node, of which nothing is known."""
     return section.node is None and not section.wild
 
 

@@ -87,7 +87,7 @@ def for_one_process(one: RvizItem) -> bool:
 
 
 def has_own_windows(config: RvizConfig, robot: RvizRobot) -> bool:
-    """Is there anything that works for one robot, in an rviz2 of its own?"""
+    """Return whether anything works for one robot only, in an rviz2 of its own."""
     return robot.has_process and any(map(is_for_one, shown_in(config)))
 
 
@@ -234,7 +234,7 @@ def tool_edits(document: YamlText, tool: RvizItem, robot: RvizRobot) -> Iterator
 
 
 def panels(job: RvizJob) -> Iterator[Splice]:
-    """Panels, without those for one process and without references to moved displays."""
+    """Yield edits of panels: without those for one process and references to moved displays."""
     document = job.config.document
     for panel in job.config.panels:
         if for_one_process(panel):
@@ -264,7 +264,7 @@ def _docks(job: RvizJob) -> list[RvizItem]:
 
 
 def _gone(job: RvizJob) -> re.Pattern[str]:
-    """How paths to displays start that are in groups now: a name and its number."""
+    """Return how paths to displays start that are in groups now: a name and its number."""
     shown = job.config.displays
     kept = {one.name for one in shown if any(it.block.start not in job.own for it in leaves([one]))}
     names = sorted({one.name for one in shown} - kept)

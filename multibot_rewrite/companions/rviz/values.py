@@ -32,12 +32,12 @@ NAMED = frozenset({TOPIC, GRAPH_NAMESPACE, FRAME, LINK, JOINT, GROUP, TF_PREFIX}
 class RvizRobot(NamedTuple):
     """A robot to be shown. ``names`` is the rename map of its frames, ``topics`` of its ROS names.
 
-    ``name`` is the title of its group. ``colour`` is a name, ``#rrggbb`` or three numbers, empty for
-    one of the palette. ``known`` is its ``fleet_topics``. ``tf_prefix`` is for a description with
-    bare links and prefixed frames (robot_state_publisher's ``frame_prefix``); it stays empty for a
-    rewritten description, whose links have the prefix themselves. ``rules`` are the name and the remap
-    rules of an rviz2 of its own, which its stacks start.
-    """
+    ``name`` is the title of its group. ``colour`` is a name, ``#rrggbb`` or three numbers, empty
+    for one of the palette. ``known`` is its ``fleet_topics``. ``tf_prefix`` is for a description
+    with links without the robot's name and prefixed frames (robot_state_publisher's
+    ``frame_prefix``); it stays empty for a rewritten description, whose links have the prefix
+    themselves. ``rules`` are the name and the remap rules of an rviz2 of its own, which its node
+    sets start."""
 
     name: str
     names: CompanionNames

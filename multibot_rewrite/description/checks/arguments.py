@@ -35,8 +35,8 @@ ARGUMENT_MISSES_REFERENCE = declare(
 def missed_by_arguments(
     inventory: Inventory, renames: RenameMap, plain: Mapping[tuple[str, str], str], robot: str
 ) -> Iterator[Problem]:
-    """``plain`` maps names without the arguments (kind and text) to those that ``robot`` has with
-    them."""
+    """Yield frames that arguments do not rename: ``plain`` maps names without the arguments (kind
+    and text) to those that ``robot`` has with them."""
     links = inventory.declared["link"]
     pairs = zip(inventory.claims, inventory.names, strict=True) if robot else ()
     for claim, names in pairs:
@@ -63,7 +63,7 @@ def _missed(claim: Claim, frame: str, link: str) -> Problem:
 def unread_arguments(
     root: _Element, unread: Iterable[str], known: Sequence[str]
 ) -> Iterator[Problem]:
-    """Arguments that are given and that no file of a xacro knows; ``known`` are those that it knows."""
+    """Yield given arguments that no file of a xacro knows; ``known`` are those that it knows."""
     for name in unread:
         message = f"argument {name!r} is given, and no file of this xacro declares or reads it"
         more = ", ..." if len(known) > _LISTED else ""

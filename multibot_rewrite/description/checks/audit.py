@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 def audit(inventory: Inventory, renames: RenameMap, tree: Tree) -> list[Finding]:
-    """All findings that do not depend on the robot's name, in source order."""
+    """Return all findings that do not depend on the robot's name, in source order."""
     document = inventory.document
     errors = chain(leftover_xacro(inventory), worlds(inventory), references.duplicates(inventory))
     warnings = chain(
@@ -81,7 +81,7 @@ _SUBSTITUTION = lazy_compile(r"\$\{\s*[^\s{}]|\$\(arg\s+[^\s()]")
 
 
 def uses_xacro(document: Document) -> bool:
-    """Is a prefix bound to xacro, and is it used? A cheap look first; a comment does not count."""
+    """Return whether a prefix is bound to xacro and used; comments do not count."""
     spaces = document.root.nsmap.items()
     prefixes = {f"<{prefix}:" for prefix, uri in spaces if prefix and "/xacro" in uri}
     seen = any(prefix.encode() in document.source for prefix in prefixes | {"<xacro:"})
@@ -107,7 +107,7 @@ def undeclared(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
 
 
 def other_releases(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
-    """Values that hold names in other releases only: nothing in them is renamed."""
+    """Yield values that hold names in other releases only: nothing in them is renamed."""
     for host in inventory.hosts:
         section = host.node.section
         if section is None:
@@ -126,7 +126,7 @@ def other_releases(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
 
 
 def other_ros(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
-    """Parameters of the ROS 1 plugin of that name, which the ROS 2 plugin does not read."""
+    """Yield parameters of the ROS 1 plugin of that name, which the ROS 2 plugin does not read."""
     for host in inventory.hosts:
         section = host.node.section
         if section is None or section.type != "plugin" or section.ros != "2":

@@ -91,7 +91,7 @@ def _boxes(file: _File, node: _Element, above: _Rows, visits: Iterator[int]) -> 
 
 
 def _ends(row: Sequence[float], columns: Sequence[Sequence[float]]) -> tuple[float, float]:
-    """From where to where all corners are along an axis."""
+    """Return the least and largest coordinate of all corners along an axis."""
     used = [(it, column) for it, column in zip(row, columns, strict=False) if abs(it) > _TINY]
     at = row[3]
     if len(used) == 1:
@@ -120,7 +120,7 @@ def _transform(element: _Element) -> _Rows | None:
 
 
 def _rotation(x: float, y: float, z: float, degrees: float) -> _Rows:
-    """By an angle about an axis."""
+    """Return the rotation by an angle about an axis."""
     length = sqrt(x * x + y * y + z * z)
     if not length:
         return _SAME

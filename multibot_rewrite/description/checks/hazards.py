@@ -52,7 +52,7 @@ ALONE = "run each robot in a Gazebo of its own, by GZ_PARTITION, in Classic by G
 
 
 def hazards(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
-    """All of them; they do not depend on the robots' names."""
+    """Yield all hazards; they do not depend on the robots' names."""
     for of_naming in (prefix_only, leading_slashes, moved_tf, shared_below, process_wide):
         yield from of_naming(inventory, renames.naming)
     spelt = zip(inventory.claims, renames.values, strict=True)
@@ -65,8 +65,8 @@ def hazards(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
 
 
 def prefix_only(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
-    """Parameters that the consumer puts in front of names: they cannot hold a postfix. What an argument
-    made of the robot's name needs none."""
+    """Yield parameters that the consumer puts before names: they cannot hold a postfix. What an
+    argument made of the robot's name needs none."""
     if naming.affix == PREFIX or "sensor" not in naming.separators:
         return
     hint = "use --affix prefix"
@@ -86,7 +86,7 @@ def _in_front(path: str, value: str) -> str:
 
 
 def leading_slashes(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
-    """Frames written with a leading slash: kept, but tf2 look-ups reject them (buffer_core.cpp)."""
+    """Yield frames with a leading slash: kept, but tf2 look-ups reject them (buffer_core.cpp)."""
     for claim in inventory.claims:
         kinds = claim.site.kinds
         if claim.site.form != "whole" or kinds[0] not in FRAME_KINDS:
@@ -126,7 +126,7 @@ def shared_below(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
 
 
 def bare_lookups(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
-    """Consumers that find things by bare name in the whole world, where those names stay bare."""
+    """Yield consumers that find things by name in the whole world, where no robot's name is added."""
     declared = {claim.site.kinds[0] for claim in inventory.claims if claim.site.role == "declares"}
     for section, host in _known_hosts(inventory):
         kind = section.unique
@@ -143,9 +143,9 @@ def bare_lookups(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
 
 
 def process_wide(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
-    """Remap rules that hold for every node of the process keep robots apart only by namespaces
-    (gazebo_ros2_control_plugin.cpp and ign_ros2_control_plugin.cpp set the global arguments; since
-    Jazzy each manager has its own, gz_ros2_control_plugin.cpp ``options.arguments``)."""
+    """Yield plugins whose remap rules hold for the whole process: only namespaces separate robots
+    then (gazebo_ros2_control_plugin.cpp and ign_ros2_control_plugin.cpp set the global arguments;
+    since Jazzy each manager has its own, gz_ros2_control_plugin.cpp ``options.arguments``)."""
     if not controller_way(inventory.release).process_wide:
         return
     wide = [(section, host) for section, host in _known_hosts(inventory) if section.process_wide]
@@ -170,7 +170,7 @@ def process_wide(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
 def one_description(
     inventory: Inventory, naming: Naming, moved: Container[_Element] = ()
 ) -> Iterator[Problem]:
-    """Absolute names of descriptions and of the nodes that hold them, where these keep their names."""
+    """Yield absolute names of descriptions and of nodes with them, where these keep their names."""
     plugins = (it.element for it in inventory.hosts if it.element.tag == "plugin")
     for it in (child for plugin in plugins for child in plugin.iterchildren(*DESCRIPTIONS)):
         name = text_of(it)
@@ -181,7 +181,7 @@ def one_description(
 
 
 def world_systems(inventory: Inventory) -> Iterator[Problem]:
-    """Systems of the whole world that each robot loads again; in a world they are where they belong."""
+    """Yield systems of the whole world that each robot loads again; in a world they are right."""
     for section, host in _known_hosts(inventory):
         above = host.element.getparent()
         if WORLD not in section.opens or (above is not None and above.tag in (WORLD, "gui")):
@@ -199,7 +199,7 @@ def system_key(plugin: _Element) -> str:
 
 
 def hardwired(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
-    """Plugins whose code looks for a literal name: under another one they find nothing."""
+    """Yield plugins whose code looks for a literal name: under another one they find nothing."""
     for section, host in _known_hosts(inventory):
         for entry in section.hardwired:
             kind, _, name = entry.partition(":")
@@ -253,8 +253,8 @@ def outside_frames(inventory: Inventory, renames: RenameMap) -> Iterator[Problem
 
 
 def reordered(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
-    """urdfdom sorts sibling joints by name; a postfix can change that order, and with it the order
-    of pinocchio's configuration vector."""
+    """Yield joints whose order changes: urdfdom sorts siblings by name, and pinocchio's
+    configuration vector has that order."""
     if renames.naming.affix != POSTFIX or "joint" not in renames.naming.separators:
         return
     # Those of an SRDF are in its URDF.
@@ -280,7 +280,7 @@ GAZEBO = {"humble": "Fortress", "jazzy": "Harmonic", "kilted": "Ionic", "lyrical
 
 
 def ignored_namespaces(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
-    """Namespaces of models that the release's Gazebo does not read."""
+    """Yield namespaces of models that the release's Gazebo does not read."""
     release = tree.vocabulary.release
     for model in [] if _are_read(tree) else _with_namespace(inventory):
         who = f"Gazebo {GAZEBO.get(release, 'of main')} ({release})"
@@ -289,7 +289,7 @@ def ignored_namespaces(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
 
 
 def used_namespaces(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
-    """Namespaces of models that plugins of theirs put in front of their relative topics."""
+    """Yield namespaces of models that plugins of theirs put in front of their relative topics."""
     models = _with_namespace(inventory) if _are_read(tree) else []
     release = tree.vocabulary.release
     below = [

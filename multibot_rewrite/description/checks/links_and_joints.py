@@ -139,7 +139,7 @@ def _bodies(
 
 
 def weighs(robot: Robot) -> bool:
-    """Has any of its links a mass? What is no number counts as one."""
+    """Return whether any of its links has a mass. What is no number counts as one."""
     masses = (it.inertial.mass for it in robot.links if it.inertial)
     return any(it is None or it > 0 for it in masses)
 
@@ -161,16 +161,14 @@ def reached(robot: Robot, starts: Iterable[str], seen: set[str]) -> list[str]:
 
 
 def is_tree(robot: Robot) -> bool:
-    """Is everything below a root, and below one joint? Then there is no loop."""
+    """Return whether everything is below a root, and below one joint. Then there is no loop."""
     single = all(len(joints) == 1 for joints in robot.above.values())
     return single and robot.above.keys() <= robot.body.keys()
 
 
 def loops(robot: Robot) -> list[list[Joint]]:
-    """Loops of joints; a joint from a link to itself is not one.
-
-    Of loops that share links one is found.
-    """
+    """Return loops of joints; a joint from a link to itself is not one. Of loops that share links
+    one is found."""
     rest = _not_of_a_tree(robot)
     done: set[str] = set()
     found = []

@@ -152,7 +152,7 @@ def _changed(
 
 
 def _alike(reading: Reading, robot: str) -> bool:
-    """Are there topics that differ in the place of the robot's name alone?"""
+    """Return whether topics differ only in the place of the robot's name."""
     every = (*reading.names, *reading.other_ends)
     topics = {it.name for it in every if it.kind in (TOPIC, SERVICE)}
     bare = {it.replace(robot, "").replace("/", "").replace("_", "") for it in topics}

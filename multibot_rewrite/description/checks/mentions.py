@@ -85,9 +85,10 @@ def unclaimed_mentions(
     tree: Tree,
     usual: Collection[str] = (),
 ) -> list[Mention]:
-    """Each unclaimed value that is one of ``names`` or holds one as a list item, path segment,
-    scope or side of a remap rule, or is a ``usual`` frame or topic of tf; ``values`` are all of
-    ``slot_values``. Values with a ``keep`` site are no mention, nor what a plugin does not read."""
+    """Return each unclaimed value that is one of ``names`` or holds one as a list item, path
+    segment, scope or side of a remap rule, or is a ``usual`` frame or topic of tf; ``values`` are
+    all of ``slot_values``. Values with a ``keep`` site are no mention, nor what a plugin does not
+    read."""
     if not (names or usual):
         return []
     telling = _telling(values, frozenset(names)) | {it: it for it in {*usual}.intersection(values)}
@@ -107,8 +108,9 @@ def unclaimed_mentions(
 
 
 def _is_unread(element: etree._Element, attribute: str, vocabulary: Vocabulary) -> bool:
-    """Is it text that urdfdom does not read (model.cpp, link.cpp, joint.cpp), or in a parameter that a
-    plugin or hardware does not read, in no release, for ROS 1 or 2? All is known then that it reads."""
+    """Return whether it is text that urdfdom does not read (model.cpp, link.cpp, joint.cpp), or is
+    in a parameter that a plugin or hardware reads in no release, for ROS 1 or 2. Then all that it
+    reads is known."""
     parent = element.getparent()
     if not attribute and element.tag in NO_TEXT and parent is not None and parent.tag == "robot":
         return True
@@ -131,7 +133,7 @@ def _is_unread(element: etree._Element, attribute: str, vocabulary: Vocabulary) 
 
 
 def _is_meant(element: etree._Element, attribute: str, value: str) -> bool:
-    """Is a usual frame at a key for frames? A topic of tf is meant wherever it is."""
+    """Return whether it is a usual frame at a key for frames. A topic of tf is meant anywhere."""
     return value.startswith("/") or _FRAME_KEY.search(attribute or str(element.tag)) is not None
 
 
@@ -187,7 +189,7 @@ def _without_files(value: str) -> str:
 def _unclaimed(
     inventory: Inventory, suspects: set[str]
 ) -> Iterator[tuple[etree._Element, int, str, str]]:
-    """(element, start, attribute or "", value) of the suspect slots without a site, in order."""
+    """Yield (element, start, attribute or "", value) of suspect slots without a site, in order."""
     claimed = {(claim.start, claim.attribute) for claim in inventory.claims}
     document = inventory.document
     for element, start in zip(document.elements, document.starts, strict=True):

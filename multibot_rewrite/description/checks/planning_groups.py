@@ -21,7 +21,7 @@ def text_of(element: _Element, attribute: str = "name") -> str:
 
 
 def is_pinocchios(root: _Element) -> bool:
-    """Is an SRDF written for Pinocchio, which takes no group and no robot's name from it?"""
+    """Return whether an SRDF is for Pinocchio, which takes no group and no robot's name from it."""
     states = list(root.iterchildren("group_state"))
     return (
         any(True for _ in root.iterchildren("rotor_params", "gripper", "handle", "specificities"))
@@ -75,7 +75,7 @@ def joints_of(name: str, groups: Groups, robot: Robot) -> Collection[str]:
 
 
 def is_whole(name: str, groups: Groups) -> bool:
-    """Are a group and all of its subgroups declared?"""
+    """Return whether a group and all of its subgroups are declared."""
     return all(it in groups for it in _within(name, groups))
 
 

@@ -63,7 +63,7 @@ def quaternion_of_rpy(rpy: Vector) -> Quaternion:
 
 
 def rpy_of(matrix: Matrix) -> Vector:
-    """Roll, pitch and yaw of a matrix; where yaw is free, roll makes up for whatever it is."""
+    """Return roll, pitch and yaw of a matrix; where yaw is free, roll makes up for it."""
     (r00, r01, r02), (r10, r11, r12), (r20, *_) = matrix
     yaw = atan2(r10, r00)
     roll = atan2(sin(yaw) * r02 - cos(yaw) * r12, cos(yaw) * r11 - sin(yaw) * r01)
@@ -71,7 +71,7 @@ def rpy_of(matrix: Matrix) -> Vector:
 
 
 def is_same(one: Matrix, other: Matrix) -> bool:
-    """Are two matrices one rotation?"""
+    """Return whether two matrices are one rotation."""
     pairs = ((a, b) for rows in zip(one, other, strict=True) for a, b in zip(*rows, strict=True))
     return all(abs(a - b) <= SAME for a, b in pairs)
 
@@ -143,8 +143,8 @@ def _rolled(origin: _Element | None) -> Quaternion | None:
 
 
 def link_poses(robot: Robot) -> Mapping[str, Pose]:
-    """Each link's pose in the root of its tree; those below an origin that is no number are left
-    out."""
+    """Return each link's pose in the root of its tree; those below an origin that is no number are
+    left out."""
     found = {it.name: HERE for it in roots(robot)}
     todo = list(found)
     for name in todo:  # grows
@@ -241,5 +241,5 @@ def cross(one: Vector, other: Vector) -> Vector:
 
 
 def length(vector_: Vector) -> float:
-    """How long a vector is."""
+    """Return how long a vector is."""
     return sqrt(dot(vector_, vector_))

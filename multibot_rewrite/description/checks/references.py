@@ -87,7 +87,7 @@ def _code(site: SiteRow, part: NamePart) -> str:
 
 
 def where(claim: Claim) -> str:
-    """``<tag>`` or ``tag@attribute``; all parameters have one tag, so theirs has the name in it."""
+    """Return ``<tag>`` or ``tag@attribute``; that of a parameter has its name."""
     tag = str(claim.element.tag)
     if claim.attribute:
         return f"{tag}@{claim.attribute}"

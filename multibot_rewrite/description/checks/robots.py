@@ -27,7 +27,7 @@ strip_other_options = declare(
 def taken_names(
     inventory: Inventory, renames: RenameMap, robots: Iterable[str]
 ) -> Iterator[Problem]:
-    """Names that stay as they are, or are shared, and are what another name becomes for some robot."""
+    """Yield names that stay unchanged, or are shared, and that another name becomes for some robot."""
     yield from _shared_names(inventory, renames, robots)
     kept = list(_kept(inventory, renames))
     # Names that an argument of the xacro made are kept, and another name may become one of them.
@@ -47,7 +47,7 @@ def taken_names(
 def _shared_names(
     inventory: Inventory, renames: RenameMap, robots: Iterable[str]
 ) -> Iterator[Problem]:
-    """Names that become a shared one: ``base`` where ``robot1/base`` is shared by all robots."""
+    """Yield names that become a shared one: ``base`` where all robots share ``robot1/base``."""
     naming = renames.naming
     shared = dict.fromkeys(FRAME_KINDS, naming.shared_frames)
     shared |= dict.fromkeys(TOPIC_KINDS, naming.shared_topics)
@@ -77,7 +77,7 @@ def _kept(inventory: Inventory, renames: RenameMap) -> Iterator[tuple[str, str, 
 def meeting(
     inventory: Inventory, renames: RenameMap, pairs: Collection[tuple[str, str, str]]
 ) -> Iterator[Problem]:
-    """Names of two robots that become the same; ``pairs`` are from ``naming.overlap``."""
+    """Yield names of two robots that become the same; ``pairs`` are from ``naming.overlap``."""
     for *pair, _ in pairs:
         both = ((robot, inventory, renames) for robot in pair)
         yield from meeting_descriptions(both, "rename a robot or choose another separator")
@@ -87,7 +87,7 @@ def meeting_descriptions(
     made: Iterable[tuple[str, Inventory, RenameMap]],
     hint: str = "rename a robot, or give its xacro another argument",
 ) -> Iterator[Problem]:
-    """Names that two robots both have, each in a description of its own."""
+    """Yield names that two robots both have, each in a description of its own."""
     first: dict[tuple[str, str], str] = {}
     for robot, inventory, renames in made:
         names = {
@@ -103,7 +103,7 @@ def meeting_descriptions(
 
 
 def not_rewritten(inventory: Inventory, renames: RenameMap, robot: str) -> list[Finding]:
-    """Links and joints without the affix that ``--undo`` is to take off."""
+    """Return links and joints without the affix that ``--undo`` is to remove."""
     for claim, spelling in zip(inventory.claims, renames.values, strict=True):
         kind, name = claim.site.kinds[0], claim.value.strip()
         declares = claim.site.role == "declares" and name and kind in inventory.declared

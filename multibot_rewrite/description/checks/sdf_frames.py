@@ -65,7 +65,7 @@ class Frames(NamedTuple):
     source: str
 
     def pose(self, name: str, below: tuple[str, ...] = ()) -> Pose:
-        """Where a frame is in the top model, whose own name is empty."""
+        """Return the pose of a frame in the top model, whose own name is empty."""
         it = self.named.get(name)
         if it is None:
             return HERE

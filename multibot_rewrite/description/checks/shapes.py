@@ -60,7 +60,7 @@ def placed_box(box: Extent, pose: Pose) -> Extent:
 
 
 def _half(shape: _Element) -> Vector | None:
-    """Half of a shape's size along its own axes."""
+    """Return half of a shape's size along its own axes."""
     if shape.tag == "box":
         size = vector(_said(shape, "size"))
         return None if size is None or min(size) <= 0 else scaled(size, 0.5)
@@ -102,8 +102,8 @@ def _three(values: Iterable[float]) -> Vector:
 
 
 def way_out(shape: _Element, start: Vector, along: Vector) -> float:
-    """How far it is from a point inside a shape to its face; 0 from a point outside. All in its
-    frame."""
+    """Return the distance from a point inside a shape to its face; 0 from a point outside. All in
+    its frame."""
     half = _half(shape)
     if half is None:
         return 0.0

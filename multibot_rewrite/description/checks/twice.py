@@ -48,12 +48,10 @@ def already_rewritten(
     own: OwnNames = NO_OWN_NAMES,
     kinds: Collection[str] = CARRYING,
 ) -> Iterator[Problem]:
-    """Robots whose name is in names of the document, or in a marker of inserted elements.
-
+    """Yield robots whose name is in names of the document, or in a marker of inserted elements.
     ``again`` rewrites it once more, but not where it has inserted elements of the same robot. Names
     of ``own`` are the robot's by an argument of its xacro: they stay as they are. ``kinds`` are
-    those that get this word of the robot.
-    """
+    those that get this word of the robot."""
     marked = {mark.robot for mark in markers(inventory.document)}
     asked = list(robots)
     text = "\n".join({name.text for names in inventory.names for name in names}) if asked else ""
@@ -74,7 +72,7 @@ def rewritten_before(inventory: Inventory) -> Iterator[Problem]:
 
 
 def _names(inventory: Inventory, kinds: Collection[str]) -> list[UsedName]:
-    """Every name of these kinds that some rewrite changes, once."""
+    """Return every name of these kinds that some rewrite changes, once."""
     found: dict[tuple[str, str], UsedName] = {}
     for claim, names in zip(inventory.claims, inventory.names, strict=True):
         for name in names if claim.site.role != "keep" else ():
@@ -96,7 +94,7 @@ def carrying(known: list[UsedName], robot: str, own: OwnNames = NO_OWN_NAMES) ->
 
 
 def is_part(robot: str) -> bool:
-    """Is a robot called as parts of robots are: ``left``, ``base``, ``left_arm``, ``lf``?"""
+    """Return whether a robot is named as a part: ``left``, ``base``, ``left_arm``, ``lf``."""
     words = robot.split("_")
     return all(word in PART_WORDS or (len(word) < 3 and word.isalpha()) for word in words)
 
@@ -115,10 +113,8 @@ def _carries_name(name: UsedName, robot: str) -> bool:
 
 
 def _most(found: Iterable[UsedName], known: Iterable[UsedName], robot: str) -> bool:
-    """Are these more than half of the links, joints, namespaces or topics?
-
-    In a topic the robot is a word between slashes: ``left_scan`` is the scan of a part.
-    """
+    """Return whether these are more than half of the links, joints, namespaces or topics. In a
+    topic the robot is a word between slashes: ``left_scan`` is the scan of a part."""
     counted = (it for it in found if it.kind not in TOPIC_KINDS or robot in it.text.split("/"))
     carried, all_ = (
         Counter(GROUPS.get(it.kind, it.kind) for it in names) for names in (counted, known)

@@ -31,8 +31,8 @@ CODES = {PLUGIN: "MB902", HARDWARE: "MB903", INCLUDE: "MB906"}
 
 
 def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
-    """Plugins, hardware classes, sensor types and included models of which it is not known what they
-    open, and those of a Gazebo that the release has not, each at its element."""
+    """Yield plugins, hardware classes, sensor types and included models of which it is unknown what
+    they open, and those of a Gazebo that the release has not, each at its element."""
     guesses, release, root = Guesses(), tree.vocabulary.release, inventory.document.root
     # An SRDF starts nothing.
     parts = [] if inventory.format == SRDF else [*active_parts(root, tree.vocabulary)]
@@ -73,7 +73,7 @@ def _by_ros(parts: Iterable[ActivePart], vocabulary: Vocabulary) -> dict[str, li
 
 
 def is_unknown(section: VocabularySection) -> bool:
-    """Is the plugin in no section? Then the element's own is used, or the one for any ROS node."""
+    """Return whether a plugin has no section. Then its element's is used, or that for any ROS node."""
     return section.select == "plugin" or section.names[0] == ANY_WITH_ROS
 
 

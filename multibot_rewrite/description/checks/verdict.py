@@ -33,7 +33,7 @@ def given(findings: Iterable[Finding], of_world: Iterable[str] = ()) -> str:
 
 
 def not_verified(findings: Iterable[Finding]) -> tuple[str, ...]:
-    """Why a rewrite with these findings is not verified, with counts; empty where it is."""
+    """Return why a rewrite with these findings is not verified, with counts; empty where it is."""
     counts = Counter(it.code for it in findings)
     found = ((counts[code], *words) for code, words in REASONS.items() if counts[code])
     return tuple(f"{plural(count, what)} {why}" for count, what, why in found)

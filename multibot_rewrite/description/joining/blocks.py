@@ -2,16 +2,15 @@
 """What two parts both say is said once: ``<gazebo>`` blocks of the whole robot, a
 ``<ros2_control>`` for parts that one driver serves, materials of one name.
 
-A plugin that makes a controller manager is there once for all parts, with the parameter files of
-all (gz_ros2_control_plugin.cpp and gazebo_ros2_control_plugin.cpp read each ``<parameters>``). The
+A plugin that makes a controller manager exists once for all parts, with the parameter files of all
+(gz_ros2_control_plugin.cpp and gazebo_ros2_control_plugin.cpp read each ``<parameters>``). The
 first part's other settings count. Joints, sensors and gpios of a part's system go into an earlier
 one with the same type and ``<hardware>``.
 
 Sources: ros2_control component_parser.cpp (``parse_resource_from_xml``): a system has one hardware,
 and any number of joints, sensors, gpios and transmissions; urdfdom model.cpp (``parseURDF``: a
 material below ``<robot>`` that is there twice is an error; ``assignMaterial``: of a name that the
-model has, whatever stands in the visual is not read).
-"""
+model has, whatever is in the visual is not read)."""
 
 from __future__ import annotations
 
@@ -154,7 +153,7 @@ def driven(system: _Element) -> Sequence[_Element]:
 
 
 def has_all(system: _Element, others: Iterable[_Element]) -> bool:
-    """Has one of some systems all that another one drives?"""
+    """Return whether one of some systems has all that another one drives."""
     wanted = [plain(it) for it in driven(system)]
     every = ([plain(it) for it in driven(other)] for other in others)
     return any(all(it in own for it in wanted) for own in every)
@@ -217,7 +216,7 @@ def bare(text: bytes, file: str, prefix: str, names: Collection[str]) -> bytes:
 
 
 def _starts(document: Document, names: Collection[str]) -> Iterator[int]:
-    """Where these names begin; in a block a material is one of Gazebo's."""
+    """Yield where these names begin; in a block a material is one of Gazebo's."""
     for element, start in zip(document.elements, document.starts, strict=True):
         above = element.getparent()
         if element.tag != _TAG or above is None or above.tag == "gazebo":
@@ -229,7 +228,7 @@ def _starts(document: Document, names: Collection[str]) -> Iterator[int]:
 
 
 def repeated(joined: _Element, spans: Spans) -> Iterator[Edit]:
-    """Materials below the root that are there already, taken out."""
+    """Yield edits that remove materials below the root that exist already."""
     names = {it.get("name") for it in joined.iterchildren(_TAG)}
     for it in spans.document.root.iterchildren(_TAG):
         if it.get("name") in names:

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Parts -> one description: each text is kept as it is, behind those before it, with a joint between.
 
-The first part's file goes on: its declaration, name and attributes are those of the whole. A root link
-``world`` of a later part is left out, and what stands on it is fixed to ``at`` itself.
-"""
+The first part's file goes on: its declaration, name and attributes are those of the whole. A root
+link ``world`` of a later part is left out, and what is fixed to it is fixed to ``at`` itself."""
 
 from __future__ import annotations
 
@@ -127,7 +126,7 @@ def _turned(part: ReadPart, joint: Joint, pose: Sequence[float], spans: Spans) -
 
 
 def _origin(pose: Pose, given: Sequence[float] = ()) -> str:
-    """``<origin>``, in the numbers that were given where they are."""
+    """Return ``<origin>``, in the given numbers if there are any."""
     six = given or [round(it, 15) for it in (*pose.at, *rpy_of(pose.matrix))]
     words = [repr(float(it) + 0.0).removesuffix(".0") for it in six]
     return f'<origin xyz="{" ".join(words[:3])}" rpy="{" ".join(words[3:])}"/>'
@@ -258,7 +257,7 @@ def own_spaces(joined: Document, spans: Spans, others: Collection[Edit]) -> list
 
 
 def _declared(document: Document) -> set[tuple[bytes, bytes]]:
-    """Prefixes and namespaces that the root's start tag has itself."""
+    """Return prefixes and namespaces that the root's start tag has itself."""
     start = document.starts[0]
     tag = document.source[start : tag_end(document.source, start)]
     found = ((prefix, uri) for prefix, uri in document.root.nsmap.items() if prefix)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How a joined text says what it was made of, so that each part can be taken out byte by byte.
 
-A part stands in front of ``</robot>`` of the first one, between two comments:
+A part is in front of ``</robot>`` of the first one, between two comments:
 
     <!-- multibot part gripper prefix=left_ materials=grey HEAD -->
     <!-- multibot end gripper TAIL -->
@@ -57,12 +57,12 @@ class KeptText(NamedTuple):
 
 
 def is_joined(text: bytes) -> bool:
-    """Has it a comment of a join?"""
+    """Return whether it has a comment of a join."""
     return _OURS.search(text) is not None
 
 
 def is_joined_whole(text: bytes) -> bool:
-    """Is it the result of a join?"""
+    """Return whether it is the result of a join."""
     return _BASE.search(text) is not None
 
 

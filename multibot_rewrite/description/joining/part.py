@@ -179,7 +179,7 @@ def _faults(inventory: Inventory) -> Iterator[str]:
 
 
 def names_of(inventory: Inventory) -> Iterator[tuple[str, str]]:
-    """Kind and name of all that a robot has once; sensors are those of ros2_control."""
+    """Yield kind and name of all that a robot has once; sensors are those of ros2_control."""
     for claim in inventory.claims:
         site = claim.site
         if site.role != "declares" or not claim.attribute or site.kinds[0] not in ONCE:

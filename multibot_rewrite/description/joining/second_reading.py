@@ -82,7 +82,7 @@ def _names(root: _Element) -> Iterator[tuple[str, str]]:
 
 
 def _stands_for_it(it: _Element, mounted: Mounted, root: _Element) -> bool:
-    """Is there something in the place of an element of a part?"""
+    """Return whether something is in the place of an element of a part."""
     name = it.get("name", "")
     of_world = {"link": name, "gazebo": it.get("reference", "")}.get(str(it.tag)) == WORLD
     if mounted.is_without_world and of_world:
@@ -116,7 +116,7 @@ def _file(plugin: _Element) -> str:
 
 
 def _moved(old: _Element, mounted: Mounted, root: _Element) -> bool:
-    """Is a joint on the world, with all that it has, on the part's link now?"""
+    """Return whether a joint on the world is unchanged on the part's link now."""
     new = next((it for it in root.iterchildren("joint") if it.get("name") == old.get("name")), None)
     if new is None or end_of(new, "parent") != mounted.at:
         return False
@@ -136,7 +136,7 @@ def _is_at(joint: _Element, wanted: Pose) -> bool:
 
 
 def _check_tree(root: _Element) -> None:
-    """One root, and each other link below it, by one joint."""
+    """Raise an error unless there is one root, and each other link below it, by one joint."""
     links = {it.get("name", "") for it in root.iterchildren("link")}
     ends = [(end_of(it, "child"), end_of(it, "parent")) for it in root.iterchildren("joint")]
     below = lists_by_key((parent, child) for child, parent in ends)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The SRDFs of parts as one: groups, end effectors, states, passive joints and disabled collisions.
 
-A virtual joint says where a robot stands: that of the first part stays, a later part stands on a
-link. Links that meet at a joint between two parts are adjacent; of other pairs of links of two parts
+A virtual joint tells the place of a robot: that of the first part stays, a later part is on a link.
+Links that meet at a joint between two parts are adjacent; of other pairs of links of two parts
 random poses tell, where they are asked for.
 
 Sources: moveit2 robot_model.cpp (``buildModel``: a virtual joint counts only where its child is the
@@ -73,8 +73,8 @@ def spelled_srdf(part: ReadPart, data: bytes, file: str, tree: Tree) -> PartSema
 def joined_srdf(
     parts: Sequence[PartSemantics], urdf: bytes, samples: int = 0, hint: str = _PREFIX
 ) -> JoinedSemantics:
-    """One SRDF for the joined ``urdf``; raises InputError for a name that two parts have, with the
-    ``hint`` what to do, and as ``touching`` where ``samples`` poses are asked for."""
+    """Return one SRDF for the joined ``urdf``; raises InputError for a name that two parts have,
+    with the ``hint`` what to do, and as ``touching`` where ``samples`` poses are asked for."""
     described = read_xml(urdf, "the joined description")
     root = etree.Element("robot", name=described.get("name", ""))
     known: dict[tuple[str, ...], str] = {}
@@ -124,7 +124,7 @@ def xml_text(root: _Element) -> bytes:
 
 
 def _adjacent(described: _Element, parts: Iterable[PartSemantics]) -> Iterator[tuple[str, str]]:
-    """Pairs of links of two parts with nothing that has a shape between them."""
+    """Yield pairs of links of two parts with nothing that has a shape between them."""
     joints = described.iterchildren("joint")
     ends = [(end_of(it, "parent"), end_of(it, "child")) for it in joints]
     beside = sets_by_key((*ends, *((child, parent) for parent, child in ends)))

@@ -2,11 +2,11 @@
 """Everything in a description that can open a topic, node, service, frame, socket or file, and whether
 it is known what it opens.
 
-One rule: it is known by fields of the vocabulary, that is by a name that its section holds or by the
-section's ``opens:``; else it is not known. Where elements are found: sdformat src/Root.cc, Model.cc and
-parser_urdf.cc (plugins stand anywhere in a ``<gazebo>``), gz-sim SystemManager.cc (a plugin of a plugin
-is its own matter), webots_ros2_driver WebotsNode.cpp, ros2_control component_parser.cpp.
-"""
+One rule: it is known by fields of the plugin definitions, that is by a name that its section holds
+or by the section's ``opens:``; else it is not known. Where elements are found: sdformat
+src/Root.cc, Model.cc and parser_urdf.cc (plugins are anywhere in a ``<gazebo>``), gz-sim
+SystemManager.cc (a plugin of a plugin is its own matter), webots_ros2_driver WebotsNode.cpp,
+ros2_control component_parser.cpp."""
 
 from __future__ import annotations
 
@@ -65,8 +65,8 @@ def _keys(plugin: _Element) -> Iterator[str]:
 
 
 def _of_release(found: Sequence[VocabularySection], plugin: _Element) -> VocabularySection:
-    """ROS 1 and ROS 2 have plugins of one name. Only ROS 2 reads <ros>; without one the release that
-    reads more of the parameters counts, ROS 2 if both do."""
+    """Return the section of the ROS that loads a plugin. Only ROS 2 reads <ros>; without one the
+    release that reads more of the parameters counts, ROS 2 if both do."""
     by_release = {section.ros: section for section in found}
     new, old = by_release.get(ROS_2, found[0]), by_release.get(ROS_1)
     if old is None or plugin.find("ros") is not None:
@@ -145,7 +145,7 @@ class ActivePart(NamedTuple):
 
 
 def active_parts(root: _Element, vocabulary: Vocabulary) -> Iterator[ActivePart]:
-    """All of a description, kind by kind."""
+    """Yield all active parts of a description, kind by kind."""
     every = lists_by_key((str(it.tag), it) for it in root.iter("plugin", "sensor", "include"))
     for plugin in every["plugin"]:
         inside = _NO_PLUGINS.intersection(it.tag for it in plugin.iterancestors())
@@ -178,7 +178,7 @@ def plugin_name(plugin: _Element) -> str:
 
 
 def _is_simulated(sensor: _Element) -> bool:
-    """Is it Gazebo's? Those of urdfdom and of ros2_control run nothing."""
+    """Return whether it is a sensor of Gazebo; those of urdfdom and of ros2_control run nothing."""
     parent = sensor.getparent()
     if parent is None or parent.tag in ("robot", "ros2_control"):
         return False
@@ -195,8 +195,8 @@ def says_what_it_opens(section: VocabularySection) -> bool:
 
 
 def opened(host: _Element, section: VocabularySection) -> Iterator[tuple[str, str, str]]:
-    """Kind, text and parameter of the addresses and files that a part of the robot opens, and of
-    relative names that no row has."""
+    """Yield kind, text and parameter of the addresses and files that a part of the robot opens, and
+    of relative names that no row has."""
     if NAMESPACE in section.opens:
         yield RELATIVE, section.names[0], "opens"
     if TRANSFORMS in section.opens:
@@ -219,5 +219,5 @@ def opened(host: _Element, section: VocabularySection) -> Iterator[tuple[str, st
 
 
 def is_device(text: str) -> bool:
-    """Is this the name of a device of a computer, whatever parameter has it?"""
+    """Return whether this is the name of a computer's device, whatever parameter has it."""
     return _DEVICE.fullmatch(text) is not None

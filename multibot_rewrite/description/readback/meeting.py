@@ -185,7 +185,7 @@ class LostRule(NamedTuple):
 
 
 def lost_rules(before: Reading, after: Reading) -> Iterator[LostRule]:
-    """Each rule once for each name."""
+    """Yield each lost rule once for each name."""
     now = {node.number: node for node in after.nodes}
     found: dict[LostRule, None] = {}
     for node in (it for it in before.nodes if it.rules and it.number in now):
@@ -218,8 +218,8 @@ def _applied(node: ReadNode, end: RuntimeName) -> tuple[str, int | None]:
 
 
 def parted(before: Reading, after: Reading) -> Iterator[tuple[RuntimeName, RuntimeName]]:
-    """Each end that lost the first of those that it met, with that one, as they are now: what is left
-    as it was by the plugin definitions counts as well."""
+    """Yield each end that lost the first end on its topic, with that one, as they are now: what is
+    left unchanged by the plugin definitions counts as well."""
     now = _by_place((*after.names, *after.other_ends))
     was = _by_place((*before.names, *before.other_ends))
     of_topic = lists_by_key(((it.kind, it.name), at) for at, it in was.items() if at in now)
@@ -229,12 +229,10 @@ def parted(before: Reading, after: Reading) -> Iterator[tuple[RuntimeName, Runti
 
 
 def undescribed(before: Reading, after: Reading) -> Iterator[tuple[RuntimeName, str, str]]:
-    """Each image that had its camera_info next to it and has not now, with the name that is asked for
-    and the one that it has.
-
-    Who shows an image replaces the last segment of its topic (image_common camera_common.cpp
-    getCameraInfoTopic; RViz and image_pipeline subscribe with it).
-    """
+    """Yield each image that had its camera_info next to it and has not now, with the name that is
+    asked for and the one that it has. Who shows an image replaces the last segment of its topic
+    (image_common camera_common.cpp getCameraInfoTopic; RViz and image_pipeline subscribe with
+    it)."""
     now = _by_place(after.names)
     was = _by_place(before.names)
     infos = lists_by_key((name.name, place) for place, name in was.items())

@@ -22,8 +22,8 @@ def reads_it(section: VocabularySection, release: str) -> bool:
 
 
 def scoped_namespace(host: _Element) -> str | None:
-    """``/outer/inner``; ``/`` for the root, empty where no model has one, None where it is made of the
-    name that the robot's model is spawned by."""
+    """Return ``/outer/inner``; ``/`` for the root, empty where no model has one, None where it
+    contains the name that the robot's model is spawned by."""
     parts: list[str] = []
     own_name = given = False
     for model in host.iterancestors("model", "include"):
@@ -45,7 +45,7 @@ def scoped_namespace(host: _Element) -> str | None:
 
 
 def _name(model: _Element) -> str:
-    """Its name in the file; empty for the outermost, which is spawned by a name of its own."""
+    """Return a model's name in the file; empty for the outermost, which its spawner names."""
     if next(model.iterancestors("model", "include"), None) is None:
         return ""
     return (child_text(model, "name") if model.tag == "include" else model.get("name")) or ""

@@ -85,11 +85,10 @@ class ReadNode(NamedTuple):
     """The node of a plugin, which is the ``number``-th of the file.
 
     ``name`` and ``namespace`` are those that its rules ``__node`` and ``__ns`` make, ``rules`` the
-    other ones; ``stems`` are parameters with what further topics are below; ``frames`` are parameters
-    with the frames they hold, ``sends`` the parameters of parent and child of a transform it publishes.
-    ``helper`` is a node that it starts beside its own, ``manager`` the full name of the controller
-    manager that it makes, if any.
-    """
+    other ones; ``stems`` are parameters with what further topics are below; ``frames`` are
+    parameters with the frames they hold, ``sends`` the parameters of parent and child of a
+    transform it publishes. ``helper`` is a node that it starts in addition to its own, ``manager``
+    the full name of the controller manager that it makes, if any."""
 
     section: VocabularySection
     number: int
@@ -152,7 +151,7 @@ def node_of(
 
 
 def _manager(plugin: _Element, section: VocabularySection, name: str, namespace: str) -> str:
-    """Its node is the manager; Classic's plugin is a node of its own besides."""
+    """Return the controller manager: the plugin's node; Classic's plugin is another node."""
     site = next((it for it in section.sites if it.path == "controller_manager_name"), None)
     if site is None:
         return ""
@@ -161,10 +160,11 @@ def _manager(plugin: _Element, section: VocabularySection, name: str, namespace:
 
 
 def wheels_in(element: _Element) -> bool:
-    """May a controller of the description with this element send odometry, and so /tf? Those that do
-    command velocities of joints that turn (ros2_controllers: diff_drive_controller,
-    tricycle_controller, mecanum_drive_controller, omni_wheel_drive_controller and
-    steering_controllers_library, command_interface_configuration)."""
+    """Return whether a controller of the description with this element may send odometry, and so
+    /tf. Those that do command velocities of joints that turn (ros2_controllers:
+    diff_drive_controller, tricycle_controller, mecanum_drive_controller,
+    omni_wheel_drive_controller and steering_controllers_library,
+    command_interface_configuration)."""
     root = element.getroottree().getroot()
     joints = {it.get("name"): it for it in root.iter("joint") if it.get("type")}
     systems = list(root.iter("ros2_control"))
@@ -178,7 +178,7 @@ def wheels_in(element: _Element) -> bool:
 
 
 def _turns_on(joint: _Element | None) -> bool:
-    """May it be the joint of a wheel? Limits that it reaches after some turns are those of an arm."""
+    """Return whether it may be a wheel's joint. Limits reached after some turns are an arm's."""
     if joint is None:
         return True
     limit = joint.find("limit") if joint.get("type") == "revolute" else None
@@ -259,8 +259,9 @@ def _endpoints(
     rules: tuple[ReadRule, ...],
     release: str,
 ) -> Iterator[RuntimeName]:
-    """Those of the node, and those of the controllers that it loads. They publish by names of their
-    own: a rule for the manager's node is none for them, and in some releases they take none at all."""
+    """Yield the ends of the node, and of the controllers that it loads. These publish by names of
+    their own: a rule for the manager's node is none for them, and in some releases they take none
+    at all."""
     wide = section.process_wide
     alone = wide and not controller_way(release).of_manager
     taken = (it.rule for it in rules if not (alone or it.rule.node))
@@ -277,7 +278,7 @@ def _endpoints(
 def _asked_for(
     plugin: _Element, section: VocabularySection, rules: tuple[ReadRule, ...]
 ) -> Iterator[tuple[str, str, str, str, str, str]]:
-    """Kind, role, name, parameter and type of what a node asks for, and what would turn it on."""
+    """Yield kind, role, name, parameter and type of what a node asks for, and what would enable it."""
     off = switched_off(plugin, section)
     wired = list(wired_of(plugin, section))
     named = {it.name for it, _ in wired}
@@ -295,13 +296,13 @@ def _asked_for(
 
 
 def holds_topic(site: SiteRow) -> bool:
-    """Is its value a topic or service? Where a word topics are made of is set, they are below it."""
+    """Return whether its value is a topic or service, or a word that topics are below."""
     whole = site.form == "whole" and site.role != "keep" and site.when != SENT
     return whole and site.kinds[0] in TOPIC_KINDS and "qos" not in site.path
 
 
 def is_of_others(site: SiteRow) -> bool:
-    """Is its value a topic that the robot does not have for itself: of the world, or left as it is?"""
+    """Return whether its value is a topic that is not the robot's own: the world's, or one kept."""
     return site.when == SENT or (site.role == "keep" and "topic" in site.path.lower())
 
 

@@ -37,11 +37,9 @@ OF_GZ = frozenset({"sensor", "particle_emitter"})
 def resolved(
     host: _Element, section: VocabularySection, release: str
 ) -> Iterator[tuple[str, str, str]]:
-    """Kind, name and parameter of the topics of something that is no ROS 2 node.
-
-    Names are below the namespace that it puts in front, and below the word that topics are made of;
-    none where those come from the model, whose name each robot has for itself.
-    """
+    """Yield kind, name and parameter of the topics of something that is no ROS 2 node. Names are
+    below the namespace that it puts in front, and below the word that topics are made of; none
+    where those come from the model, whose name each robot has for itself."""
     above = _namespace(host, section)
     if reads_it(section, release) and scoped_namespace(host) != "":
         above = scoped_namespace(host)
@@ -75,8 +73,8 @@ def resolved(
 
 
 def of_others(host: _Element, section: VocabularySection) -> Iterator[tuple[str, str]]:
-    """Name and parameter of the topics that are the world's or left as they are, below the namespace
-    that the plugin puts in front. Where that is the model's name it also is before a slash
+    """Yield name and parameter of the topics that are the world's or unchanged, below the namespace
+    that the plugin puts in front. If that is the model's name it also is before a slash
     (rotors_simulator gazebo_mavlink_interface.cpp, as PX4's)."""
     # One without a name gets it from its spawner.
     model = around(host).get("name") or "~"

@@ -29,7 +29,7 @@ _SLOT = lazy_compile(r"\{([^{}]+)\}")
 
 
 def values_of(host: _Element, site: SiteRow) -> list[str]:
-    """Its values, in order, or the default; none where an empty element means something else."""
+    """Return a site's values in order, or the default; none where an empty element means another."""
     if site.when not in ("", SENT) and not _applies(host, site):
         return []
     given = list(values_at(host, site.path))
@@ -39,7 +39,7 @@ def values_of(host: _Element, site: SiteRow) -> list[str]:
 
 
 def _applies(host: _Element, site: SiteRow) -> bool:
-    """Has the sibling that decides this text? It is next to the last step of the path."""
+    """Return whether the sibling that decides this text exists, next to the path's last step."""
     sibling, _, wanted = site.when.partition("=")
     above = site.path.rpartition("/")[0]
     texts = set(wanted.split("|"))
@@ -49,9 +49,9 @@ def _applies(host: _Element, site: SiteRow) -> bool:
 
 
 def default_of(host: _Element, default: str) -> str:
-    """``x``; ``a=true,b=?x``: x where these siblings have these texts; ``topic/../x``: the value of
-    a sibling with its last segment replaced; ``{model}/x``: x below what the model is spawned as, with
-    ``MODEL`` for that. Empty where a name of the description is not there."""
+    """Return ``x``; ``a=true,b=?x``: x where these siblings have these texts; ``topic/../x``: the
+    value of a sibling with its last segment replaced; ``{model}/x``: x below what the model is
+    spawned as, with ``MODEL`` for that. Empty where a name of the description is missing."""
     conditions, asked, default = default.rpartition("?")
     if asked and not holds(host, conditions):
         return ""
@@ -64,7 +64,7 @@ def default_of(host: _Element, default: str) -> str:
 
 
 def holds(host: _Element, conditions: str) -> bool:
-    """``a=true,../@b=x|y``: is each of them so? A flag that is not there is off."""
+    """Return whether all of ``a=true,../@b=x|y`` hold. A missing flag is off."""
     return all(_holds(host, it) for it in conditions.split(","))
 
 
@@ -92,7 +92,7 @@ def switched_off(host: _Element, section: VocabularySection) -> dict[str, str]:
 
 
 def sends_odometry(host: _Element, section: VocabularySection) -> bool:
-    """Is the transform of odometry on? Its switch is the first one of /tf."""
+    """Return whether the transform of odometry is on. Its switch is the first one of /tf."""
     found = [is_set for _, topic, is_set in _switches(host, section) if topic == "/tf"]
     return not found or found[0]
 
@@ -132,7 +132,7 @@ def around(host: _Element) -> _Element:
 
 
 def wired_of(plugin: _Element, section: VocabularySection) -> Iterator[tuple[WiredTopic, str]]:
-    """Each with the path of the parameter that it is below, empty without one."""
+    """Yield each wired topic with the path of the parameter that it is below, empty without one."""
     for it in section.wired:
         if it.when and not holds(plugin, it.when):
             continue
@@ -159,7 +159,7 @@ def filled(plugin: _Element, section: VocabularySection, name: str) -> Iterator[
 
 
 def _type(plugin: _Element, type_: str) -> str:
-    """``{output_type:pkg/msg/A}``: what the plugin is told, which may be without ``msg``."""
+    """Return the type of ``{output_type:pkg/msg/A}``: what the plugin gets, maybe without ``msg``."""
     if not type_.startswith("{"):
         return type_
     path, _, usual = type_[1:-1].partition(":")

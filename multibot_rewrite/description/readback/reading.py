@@ -34,8 +34,8 @@ WITH_TOPICS = (
 
 
 class Reading(NamedTuple):
-    """What a description starts. ``unknown`` are the plugins that the vocabulary does not have, each
-    as its number among the plugins and its library; ``missed`` the frames below a model's name, which
+    """What a description starts. ``unknown`` are the plugins without plugin definitions, each as
+    its number among the plugins and its library; ``missed`` the frames below a model's name, which
     are in the tree of no robot, though nothing else of the model sends their transform;
     ``other_ends`` those of topics that are the world's or left as they are, and of what is below a
     word that ``names`` have."""
@@ -119,7 +119,7 @@ def _nodes(hosts: Iterable[_Host], release: str) -> tuple[ReadNode, ...]:
 def _of_first_senders(
     missed: tuple[RuntimeName, ...], hosts: list[_Host]
 ) -> tuple[RuntimeName, ...]:
-    """Without those of systems whose transform another one of the model sends, or sends first."""
+    """Return the names without those of systems whose transform another one sends, or sends first."""
     numbers = {it.number for it in missed}
     models = {it.number: parameters.around(it.element) for it in hosts}
     sent: set[_Element] = set()
@@ -167,7 +167,7 @@ def _without_rules(
 
 
 def _endpoints(node: ReadNode, below: bool) -> Iterator[RuntimeName]:
-    """Those that are on and ``below`` one of its stems, or the others."""
+    """Yield the ends that are on and ``below`` one of the node's stems, or the others."""
     stems = {path for path, _ in node.stems}
     yield from (it for it in node.endpoints if not it.off and (it.parameter in stems) == below)
 
@@ -184,8 +184,8 @@ def _of_hosts(
 
 
 def _is_of_either(host: _Host) -> bool:
-    """May ROS 1 load it, too? Its plugin of that name takes no rules, and reads a namespace beside its
-    other parameters; only ROS 2 reads a <ros>."""
+    """Return whether ROS 1 may load it, too. Its plugin of that name takes no rules, and reads a
+    namespace in addition to its other parameters; only ROS 2 reads a <ros>."""
     if host.section.ros or host.element.find("ros") is not None:
         return False
     return any(it.kinds == ("namespace",) and "/" not in it.path for it in host.section.sites)
@@ -220,7 +220,7 @@ def _links(root: _Element) -> Iterator[RuntimeName]:
 
 
 def _topics(host: _Host, tag: str, release: str) -> Iterator[RuntimeName]:
-    """Topics that are no ROS 2 node's: below the namespace that the plugin puts in front."""
+    """Yield topics that are no ROS 2 node's: below the namespace that the plugin puts in front."""
     for kind, name, path in resolved(host.element, host.section, release):
         yield RuntimeName(kind, name, tag, host.number, path)
 
@@ -240,13 +240,13 @@ def _opened(host: _Host, tag: str) -> Iterator[RuntimeName]:
 
 
 def _lookups(root: _Element, host: _Host, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
-    """Names that a plugin or system looks up in the whole world, of things that this file has; the
-    robot's own model in front of them is another one, where it keeps its name."""
+    """Yield names that a plugin or system looks up in the whole world, of things that this file
+    has; with the robot's own model in front it is another name, where the model keeps its name."""
     kind, tag = host.section.unique, str(host.element.tag)
     (every,) = vocabulary.find("element", tag)
     sites = [it for it in (*every.sites, *host.section.sites) if it.role != "keep"]
     model = root if root.tag == "robot" else next(root.iter("model"), root)
-    for site in (it for it in sites if it.form == "scoped"):
+    for site in (it for it in sites if it.form in ("scoped", "suffixed")):
         for value in dict.fromkeys(parameters.values_of(host.element, site)):
             if "::" in value and value.partition("::")[0] == model.get("name", ""):
                 yield RuntimeName("model", value, tag, host.number, site.path)

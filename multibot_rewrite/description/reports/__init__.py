@@ -1,2 +1,3 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reports about a description: changes, explanations, a xacro's arguments and suggested vocabulary."""
+"""Reports about a description: changes, explanations, a xacro's arguments and suggested plugin
+definitions."""

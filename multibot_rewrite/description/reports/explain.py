@@ -36,7 +36,7 @@ _PREFIXES = {uri: prefix for prefix, uri in NAMESPACES.items()}
 
 
 def tag_path(element: _Element, attribute: str) -> str:
-    """Where a value is: the tags from the root on, and the attribute."""
+    """Return the path of a value: the tags from the root on, and the attribute."""
     steps = [_step(element), *(_step(above) for above in element.iterancestors())]
     path = "/".join(reversed(steps))
     return f"{path}@{short_name(attribute)}" if attribute else path
@@ -67,10 +67,9 @@ class Explanation(NamedTuple):
     """One value: its place, the site that claims or keeps it if any, and in words what follows.
 
     ``new`` is the value for the robot; ``inserted`` are elements the plugin at this place gets.
-    ``source`` is where the vocabulary has it from, empty where it does not say. ``made_of`` are the
-    pieces that a xacro makes the value of, in words. ``within`` is the description that includes the
-    file of the line, empty where the file is that itself.
-    """
+    ``source`` is where the plugin definitions have it from, or empty. ``made_of`` are the pieces
+    that a xacro makes the value of, in words. ``within`` is the description that includes the file
+    of the line, empty where the file is that itself."""
 
     line: int
     column: int
@@ -88,7 +87,7 @@ class Explanation(NamedTuple):
 def explain_line(
     inventory: Inventory, naming: Naming, tree: Tree, robot: str, line: int
 ) -> list[Explanation]:
-    """Everything that starts on ``line``, in source order; empty where nothing does."""
+    """Return everything that starts on ``line``, in source order; empty where nothing does."""
     plan = make_plan(inventory, naming)
     found = [*_claimed(inventory, plan, naming, robot, line), *_others(inventory, tree, line)]
     found += _inserted(inventory, plan, robot, line)
@@ -143,7 +142,7 @@ def _reasons(
 
 
 def _stays(naming: Naming, kind: str, name: str, namespaced: bool) -> str:
-    """Why a name is not spelled; empty where it is, or where only its look forbids it."""
+    """Return why a name is not renamed; empty where it is, or where only its form forbids it."""
     bare = name.strip("/")
     reasons = (
         (not kind, "not declared, so it is not renamed"),
@@ -159,7 +158,7 @@ def _stays(naming: Naming, kind: str, name: str, namespaced: bool) -> str:
 
 
 def _others(inventory: Inventory, tree: Tree, line: int) -> Iterator[Explanation]:
-    """Values on the line that no site claims."""
+    """Yield values on the line that no site claims."""
     document = inventory.document
     claimed = {(claim.start, claim.attribute) for claim in inventory.claims}
     names = frozenset(name for kind in MENTIONED for name in inventory.declared[kind])
@@ -178,7 +177,7 @@ def _others(inventory: Inventory, tree: Tree, line: int) -> Iterator[Explanation
 
 
 def _inserted(inventory: Inventory, plan: Plan, robot: str, line: int) -> Iterator[Explanation]:
-    """Plugins on the line that get elements of their own, and empty elements on it that get a text."""
+    """Yield plugins on the line that get new elements, and empty elements on it that get a text."""
     source = inventory.document.source
     starts = dict(zip(inventory.document.elements, inventory.document.starts, strict=True))
     for host in inventory.hosts if plan.insertions else ():
@@ -248,12 +247,12 @@ class _Line(NamedTuple):
     line: int
 
     def has(self, start: int, end: int) -> bool:
-        """Is some of these bytes of the file on it?"""
+        """Return whether some of these bytes of the file are on the line."""
         source = self.read.sources[self.file]
         return locate(source, start)[0] <= self.line <= locate(source, end)[0]
 
     def begins(self, pieces: Iterable[Piece]) -> int | None:
-        """Where the first of some pieces that is on it begins."""
+        """Return where the first of some pieces that is on the line begins; None without."""
         mine = (it.start for it in pieces if it.file == self.file and self.has(it.start, it.start))
         return next(mine, None)
 
@@ -282,7 +281,7 @@ def _made_on(it: _Line, document: Document, explain: OnLine) -> Iterator[Explana
 
 
 def _words(read: Expansion, pieces: tuple[Piece, ...]) -> Iterator[str]:
-    """Each piece, what wrote it, and where."""
+    """Yield each piece, what wrote it, and where."""
     for piece in pieces:
         if piece.kind == GIVEN:
             yield f"{piece.text!r} (argument {piece.file} that was given)"

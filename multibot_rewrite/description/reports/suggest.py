@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A first vocabulary for what a description loads and nothing knows: guessed, each with its why."""
+"""First plugin definitions for what a description loads and nothing knows: guessed, each with its
+why."""
 
 from __future__ import annotations
 
@@ -126,7 +127,7 @@ def _can_head(type_: str, name: str) -> bool:
 
 
 def _values(element: _Element, node: tree.TreeNode | None, path: str) -> Iterator[tuple[str, str]]:
-    """Path and value of every attribute and text below an element that no row is about."""
+    """Yield path and value of every attribute and text below an element that no row is about."""
     known = {""} if node is not None and node.text is not None else set()
     if node is not None:
         known |= {attribute for attribute, _ in node.attributes} | node.keeps.keys()
@@ -222,7 +223,7 @@ def _why(value: str, named: Sequence[tuple[str, str]]) -> str:
 
 
 def _readings(value: str) -> Iterator[tuple[str, Sequence[str]]]:
-    """Forms that the value may have, and the names in it then."""
+    """Yield forms that the value may have, and the names in it then."""
     yield "whole", [value]
     if _NO_NAME.match(value):
         return

@@ -131,7 +131,7 @@ class XacroArguments(NamedTuple):
 
 
 def names_robots(name: str) -> bool:
-    """Is an argument of this name for a robot's own names, as vendors have it?"""
+    """Return whether an argument of this name is for a robot's own names, as vendors have it."""
     return _NAMING.search(name) is not None
 
 
@@ -198,14 +198,14 @@ def _uses(inventory: Inventory) -> Iterator[Use]:
     every = chain.from_iterable(inventory.names)
     names = dict.fromkeys((it.kind or it.kinds[0], it.text) for it in every)
     totals = Counter(kind for kind, _ in names)
-    groups = lists_by_key(((kind, *_how(text)), text) for kind, text in names if _MARK in text)
+    groups = lists_by_key(((kind, *_shape_of(text)), text) for kind, text in names if _MARK in text)
     for (kind, how, separator), texts in groups.items():
         example = texts[0].replace(_MARK, ROBOT)
         yield Use(kind, how, separator, len(texts), totals[kind], example)
 
 
-def _how(text: str) -> tuple[str, str]:
-    """Where in a name the argument is, and the separator next to it."""
+def _shape_of(text: str) -> tuple[str, str]:
+    """Return where in a name the argument is, and the separator next to it."""
     before, _, after = text.strip("/").partition(_MARK)
     if not before and not after:
         return WHOLE, ""

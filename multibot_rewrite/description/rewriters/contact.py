@@ -27,10 +27,8 @@ LUMP = "_fixed_joint_lump__"
 def respell_collisions(
     root: etree._Element, claims: Iterable[Claim], declared: Declared, respell: Respell
 ) -> list[tuple[Claim, str]]:
-    """Each contact collision whose name changes, with its new text.
-
-    ``respell(kind, name)`` is the new spelling of a link, joint or shape.
-    """
+    """Return each contact collision whose name changes, with its new text. ``respell(kind, name)``
+    is the new spelling of a link, joint or shape."""
     contacts = [claim for claim in claims if claim.site.form == "collision"]
     if not contacts:
         return []
@@ -45,7 +43,7 @@ def respell_collisions(
 
 
 def _scopes(names: list[str], declared: Declared, respell: Respell) -> Iterator[str]:
-    """``model::link`` before a collision, spelled; as it is where the model is not of this file."""
+    """Yield the scopes of a collision, renamed; as they are where the model is of another file."""
     elsewhere = len(names) > 1 and names[0] not in declared["model"]
     for name in names:
         kinds = [kind for kind in ("model", "link") if name in declared[kind]]
@@ -54,7 +52,7 @@ def _scopes(names: list[str], declared: Declared, respell: Respell) -> Iterator[
 
 
 def collision_map(root: etree._Element, respell: Respell) -> dict[str, str]:
-    """Old made-up collision name -> new one, for every collision of the description."""
+    """Return the old generated name -> the new one, for every collision of the description."""
     links = {link.get("name", ""): link for link in root.iterchildren("link")}
     lumped = _lumped(root)
     merged_away = {child for children in lumped.values() for _, child in children}
@@ -68,7 +66,7 @@ def collision_map(root: etree._Element, respell: Respell) -> dict[str, str]:
 
 
 def _names(left: str, links: Links, lumped: Lumped, spell: Respell) -> dict[tuple[str, int], str]:
-    """Name of each collision that ends in link ``left``, by link and index."""
+    """Return the name of each collision that ends up in link ``left``, by link and index."""
     found: dict[tuple[str, int], str] = {}
     there = spell("link", left)
     waiting = [left]
@@ -90,7 +88,7 @@ def _names(left: str, links: Links, lumped: Lumped, spell: Respell) -> dict[tupl
 
 
 def _lumped(root: etree._Element) -> Lumped:
-    """Parent link -> (joint, child link) of the fixed joints that are merged."""
+    """Return parent link -> (joint, child link) of the fixed joints that are merged."""
     kept = kept_joints(root)
     lumped = defaultdict(list)
     for joint in root.iterchildren("joint"):

@@ -63,7 +63,7 @@ def lettered(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ..
 
 
 def listed(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
-    """Names separated by commas or white space."""
+    """Return the names of a list separated by commas or white space."""
     parts = []
     at = 0
     for name in value.replace(",", " ").split():
@@ -74,11 +74,10 @@ def listed(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]
 
 
 def scoped(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
-    """SDF's ``model::link``: the last piece is the name, the ones before it are models.
-
-    No part where the first model is not of this file, and none behind an included model: what
-    they hold is named elsewhere. A link may be called ``a::b`` itself: SDF 1.7 is flattened so.
-    """
+    """Return the parts of SDF's ``model::link``: the last piece is the name, those before it are
+    models. There is none where the first model is not of this file, and none behind an included
+    model: their names are declared elsewhere. A link itself may be called ``a::b``: SDF 1.7 is
+    flattened so."""
     scopes: list[NamePart] = []
     for at, name in _pieces(value):
         rest = value[at:].rstrip()
@@ -107,15 +106,15 @@ def _pieces(value: str) -> Iterator[tuple[int, str]]:
 
 
 def words(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
-    """Text of whatever shape, ``(key value ...)``: every word of it that the file declares."""
+    """Return every word of a text such as ``(key value ...)`` that the file declares."""
     found = ((word.start(), word[0]) for word in _WORD.finditer(value))
     known = ((at, text, [k for k in kinds if text in declared.get(k, ())]) for at, text in found)
     return tuple(NamePart(at, text, tuple(of), True) for at, text, of in known if of)
 
 
 def suffixed(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
-    """``link/light`` or ``link::visual``: a name of the first kind, and what is behind it: a name where
-    the file declares it as one of the others."""
+    """Return the parts of ``link/light`` or ``link::visual``: a name of the first kind, and the
+    rest where the file declares that as one of the others."""
     parts, at = _owner(value, kinds[:1], declared)
     name = value[at:].rstrip()
     known = tuple(kind for kind in kinds[1:] if name in declared.get(kind, ()))
@@ -123,10 +122,9 @@ def suffixed(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ..
 
 
 def member(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
-    """``link::sensor``, ``world::model::link::sensor`` or ``link/sensor``: a name below a link's.
-
-    The first name before the link is a model where none of them is: it should be one of the file.
-    """
+    """Return the parts of ``link::sensor``, ``world::model::link::sensor`` or ``link/sensor``: a
+    name in a link. If none of the names before it is a link, the first must be a model of the
+    file."""
     if not _OWNED.search(value):
         return whole(value, kinds, declared)
     scopes, at = _owner(value, ("link",), declared)

@@ -59,7 +59,7 @@ class Insertion(NamedTuple):
 
 
 def insertions(hosts: Hosts, declared: Declared, naming: Naming) -> list[Insertion]:
-    """Everything that ``hosts`` need beyond what they say themselves."""
+    """Return everything that must be inserted into ``hosts``."""
     served = [(host, section) for host, section in hosts if section.inserts]
     silent = second_senders(served, naming)
     every: list[Insertion] = []
@@ -122,7 +122,7 @@ def _apart(
 def lacks_namespace(
     host: etree._Element, section: VocabularySection, declared: Declared, naming: Naming
 ) -> bool:
-    """Is a namespace among what a host needs beyond what it says itself?"""
+    """Return whether a host needs a namespace that it does not set itself."""
     sites = tuple([it for it in section.sites if "namespace" in it.kinds])
     if not sites or not section.inserts:
         return False
@@ -239,8 +239,9 @@ def _remaps(
 
 
 def _remap_target(topic: str, naming: Naming) -> str:
-    """Where a topic goes, always relative: gz_ros2_control makes a robot's rules process-wide, and
-    a relative target still ends in each robot's own namespace. Empty where it may stay."""
+    """Return the target of a topic's rule, always relative: gz_ros2_control makes a robot's rules
+    process-wide, and a relative target still ends in each robot's own namespace. Empty if it may
+    stay."""
     relative = topic.lstrip("/")
     if topic.startswith("~") or relative in naming.shared_topics:
         return ""

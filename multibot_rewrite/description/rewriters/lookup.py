@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sections of the vocabulary for a person: found by whatever name is at hand, and what they say."""
+"""Sections of the plugin definitions for a person: found by whatever name is at hand, and what they
+say."""
 
 from __future__ import annotations
 
@@ -34,7 +35,7 @@ def spellings(name: str) -> set[str]:
 
 
 def near_names(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> list[str]:
-    """Up to three known names most like ``name``, whatever the case of the letters."""
+    """Return up to three known names most like ``name``, in upper or lower case."""
     known = {known.lower(): known for type_ in types for known in vocabulary.names(type_)}
     words = sorted(word.lower() for word in spellings(name))
     near = [word for key in words for word in nearest_few(key, known, 3)]
@@ -69,6 +70,6 @@ def facts(section: VocabularySection) -> dict[str, str]:
 
 
 def _wired(topics: Iterable[WiredTopic]) -> str:
-    """Those with a type, each with it and the condition on which it is there."""
+    """Return the topics with a type, each with its type and the condition for it."""
     typed = ((it, f" if {it.when}" if it.when else "") for it in topics if it.type)
     return ", ".join(f"{it.name} ({it.type}{when})" for it, when in typed)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Topics of Gazebo that are made of names: ``/model/rover/joint/fin/cmd_thrust``.
 
-What one system makes of the model, a word of a parameter, a link, joint or sensor, another one may be
-told as a text. Both are one topic, so the names in the text are spelled as the system spells them.
+What one system makes of the model, a word of a parameter, a link, joint or sensor, another one may
+be told as a text. Both are one topic, so the names in the text are renamed as the system renames
+them.
 
 Sources: gazebosim/gz-sim src/Util.cc (scopedName), src/systems/thruster/Thruster.cc (a ``<namespace>``
 stands for the model), joint_controller, multicopter_motor_model (``<robotNamespace>``).
@@ -36,7 +37,8 @@ def names_in_topics(claims: Iterable[Claim], declared: Declared, of_models: bool
     found: dict[int, tuple[NamePart, ...]] = {}
     for at, claim in enumerate(claims):
         # Most values have none: a look that costs less than a call.
-        if "/" in claim.value and _is_topic(claim):
+        whole = claim.value.startswith("/") or _HEAD.match(claim.value)
+        if "/" in claim.value and whole and _is_topic(claim):
             if stems is None:
                 stems = words_of(claims)
             parts = tuple(parts_of(claim.value, stems, declared))
@@ -46,17 +48,12 @@ def names_in_topics(claims: Iterable[Claim], declared: Declared, of_models: bool
 
 
 def _is_topic(claim: Claim) -> bool:
-    site, value = claim.site, claim.value
-    return (
-        site.kinds[:1] == ("topic",)
-        and site.form == "whole"
-        and not site.namespaced
-        and (value.startswith("/") or _HEAD.match(value) is not None)
-    )
+    site = claim.site
+    return site.kinds[:1] == ("topic",) and site.form == "whole" and not site.namespaced
 
 
 def given_topics(claims: Iterable[Claim]) -> frozenset[str]:
-    """Return the topics of Gazebo that a description gives in full, without the slash in front."""
+    """Return the topics of Gazebo that a description gives, without the slash in front."""
     return frozenset(it.value.strip().lstrip("/") for it in claims if _is_topic(it))
 
 

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Gazebo's own namespaces: what ``<model namespace="...">`` and ``<include><namespace>`` do to claims.
 
-A release whose Gazebo does not read them leaves them out, and so does a rewrite. Where they are read,
-they get the robot's name, and relative topics of the systems that stand below them are left alone:
-they would have the name twice. Which systems do is ``model_namespace:`` in the plugin definitions.
+A release whose Gazebo does not read them leaves them out, and so does a rewrite. Where they are
+read, they get the robot's name, and relative topics of the systems below them are left alone: they
+would have the name twice. Which systems do is ``model_namespace:`` in the plugin definitions.
 
-Sources: gazebosim/sdformat 43fa4a69 (#1663, in sdformat17_17.0.0-pre1) sdf/1.12/model.sdf, world.sdf;
-gazebosim/gz-sim #3777 (scopedNamespace: those of nested models are joined, one with a leading slash
-stands alone).
-"""
+Sources: gazebosim/sdformat 43fa4a69 (#1663, in sdformat17_17.0.0-pre1) sdf/1.12/model.sdf,
+world.sdf; gazebosim/gz-sim #3777 (scopedNamespace: those of nested models are joined, one with a
+leading slash is absolute)."""
 
 from __future__ import annotations
 
@@ -79,7 +78,7 @@ def _word_of(claim: Claim, plugins: Container[_Element]) -> Claim:
 
 
 def has_own_names(section: VocabularySection) -> bool:
-    """Has the code of a ROS 1 plugin, which reads no <ros>, names that its namespace alone moves?"""
+    """Return whether a ROS 1 plugin has names in its code that only its namespace changes."""
     if not any(it.name[:1] not in "/{" for it in section.wired):
         return False
     paths = {it.path for it in section.sites}
@@ -92,7 +91,7 @@ def _word(site: SiteRow) -> SiteRow:
 
 
 def stands_below(claim: Claim) -> bool:
-    """Has a model around this value a namespace? The root is none."""
+    """Return whether a model around this value has a namespace. The root is none."""
     element: _Element | None = claim.element
     if is_model_namespace(claim.site) and not claim.attribute:
         element = claim.element.getparent()

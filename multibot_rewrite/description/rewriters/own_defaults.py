@@ -102,10 +102,10 @@ def second_senders(hosts: Hosts, naming: Naming) -> frozenset[etree._Element]:
 
 
 def frame_sites(host: etree._Element, section: VocabularySection, naming: Naming) -> list[SiteRow]:
-    """Where the frames of a transform are, of a system that sends one with these parameters."""
+    """Return the rows for frames of a system that sends a transform with these parameters."""
     return [it for it in _of_model(section) if default_of(host, it.default, naming)]
 
 
 def _of_model(section: VocabularySection) -> list[SiteRow]:
-    """Where the frames are that are below the model's name by default."""
+    """Return the rows for frames that are below the model's name by default."""
     return [it for it in section.sites if OF_MODEL in it.default and it.kinds[:1] == ("frame",)]

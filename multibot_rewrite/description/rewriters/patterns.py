@@ -80,7 +80,7 @@ class Pattern:
         self._steps: dict[tuple[frozenset[int], str], frozenset[int]] = {}
 
     def matches(self, name: str) -> bool:
-        """Is the whole name one of the pattern's?"""
+        """Return whether the whole name is one of the pattern's."""
         if not name:
             return 0 in self._alone
         here = self._first

@@ -89,7 +89,7 @@ def names_in_rules(
 
 
 def ros_home(host: etree._Element, section: VocabularySection) -> etree._Element | None:
-    """Where ROS settings of a plugin go; None where a ``<ros>`` must be made first."""
+    """Return where ROS settings of a plugin go; None if a ``<ros>`` must be made first."""
     ros = host.find("ros")
     if ros is not None:
         return ros

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The names in each claimed value: where they are, of what kind, and how they are spelled.
+"""The names in each claimed value: where they are, of what kind, and how they are renamed.
 
 The plan knows names by kind only. SDF looks a name up in the model it is in, where a link and a joint
 cannot share it; where two models of a file use one name for two kinds, the model that the reference
@@ -115,7 +115,7 @@ def names_in(claim: Claim, declared: Declared) -> tuple[NamePart, ...]:
 
 
 def is_reached(claim: Claim, naming: Naming) -> bool:
-    """Can the naming change this value? No postfix can be where the consumer wants a prefix."""
+    """Return whether the naming can change this value. A postfix cannot where a prefix is expected."""
     site = claim.site
     if site.form not in IN_FRONT:
         return True
@@ -154,7 +154,7 @@ def must_be_declared(site: SiteRow) -> bool:
 
 
 def kind_of(part: NamePart, role: str, declared: Declared, apart: bool = False) -> str:
-    """Which of its kinds a name is; empty for a use of something that is not declared."""
+    """Return which of its kinds a name is; empty for a use of something that is not declared."""
     if part.matched:
         return part.matched[0]
     return resolve(part.text, part.kinds, role, declared, part.closed, apart)
@@ -168,11 +168,9 @@ def resolve(
     closed: bool = False,
     apart: bool = False,
 ) -> str:
-    """Which of ``kinds`` a name is; empty for a use of something that must be declared and is not.
-
-    A frame that names a link is spelled like the link, one leading slash aside; not if frames are
-    ``apart`` from links, since nodes name them at run time.
-    """
+    """Return which of ``kinds`` a name is; empty for a use of something that must be declared and
+    is not. A frame that names a link is renamed like the link, ignoring one leading slash; not if
+    frames are ``apart`` from links, because nodes name them at run time."""
     if role == "declares":
         return kinds[0]
     for kind in kinds:
@@ -211,7 +209,7 @@ def stripped_names(declared: Declared, naming: Naming, robot: str) -> Declared:
 
 
 def unspelled(naming: Naming, kind: str, name: str, robot: str) -> str:
-    """``name`` without what ``affix`` put there for ``robot``."""
+    """Return ``name`` without what ``affix`` added for ``robot``."""
     span = removal(naming, robot, kind, name)
     return name[: span[0]] + name[span[1] :] if span else name
 

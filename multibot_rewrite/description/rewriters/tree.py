@@ -5,9 +5,9 @@ A ``Node`` answers, for one element, which of its attributes and text are sites 
 serves each child tag. Which plugin or hardware class an element is decides its node; those nodes
 are made when a document first asks for them.
 
-Threads share a tree without a lock: what is made late follows from the vocabulary alone, is made
-whole, and only then put where others find it. Threads that make one thing at once make it alike.
-"""
+Threads share a tree without a lock: what is made late follows from the plugin definitions alone, is
+made whole, and only then put where others find it. Threads that make one thing at once make it
+alike."""
 
 from __future__ import annotations
 
@@ -132,7 +132,7 @@ class TreeNode:
 
 
 class Tree:
-    """The whole tree for one vocabulary; sections are read when a document first needs them.
+    """The whole tree for some plugin definitions; sections are read when a document first needs them.
 
     ``formats`` maps the sections of root elements to their nodes; ``tags`` are all tags worth a
     visit so far.
@@ -192,7 +192,7 @@ class Tree:
         return node
 
     def _know(self, node: TreeNode) -> None:
-        """Its tags are known before anybody finds the node: else a thread would pass them by."""
+        """Note its tags before a thread can find the node and miss them."""
         waiting = [node]
         while waiting:
             for tag, child in waiting.pop().active.items():
@@ -226,8 +226,8 @@ class Tree:
 
 
 def _is_another(element: _Element, key: str, section: VocabularySection) -> bool:
-    """Is it a class of gz-sim, by its name, in a library that is called as one of Gazebo Classic, where
-    the name is that of a node?"""
+    """Return whether it is a class of gz-sim, by its name, in a library with a name of Gazebo
+    Classic's, where the name is that of a node."""
     of_node = any(it.path == "@name" and it.role == "declares" for it in section.sites)
     return of_node and "::" in element.get("name", "") and not key.startswith("gazebo_ros")
 
@@ -274,7 +274,7 @@ def values_of_plugin(
 
 
 def library_key(library: str) -> str:
-    """``libignition-gazebo6-imu-system.so`` -> ``gz-sim-imu-system``."""
+    """Return the key of a library: ``libignition-gazebo6-imu-system.so`` -> ``gz-sim-imu-system``."""
     key = library.removesuffix(".so").removesuffix(".dylib").removeprefix("lib")
     for family in ("ignition-gazebo", _GZ_SIM):
         if key.startswith(family):
@@ -301,12 +301,10 @@ SELECTORS: dict[str, Callable[[_Element], list[str]]] = {
 
 
 def _flavour(found: Sequence[VocabularySection], element: _Element) -> VocabularySection | None:
-    """ROS 1 and ROS 2 plugins share file names; the children tell them apart, ROS 2 where none do.
-
-    A ``ros`` child is ROS 2, whatever was left from before: nothing in ROS 1 reads one. What decides
-    for the whole document is in the plugin definitions already (``sources/dialect.py``).
-    Source: gazebo_ros_pkgs branches noetic-devel (camelCase, robotNamespace), ros2 (snake_case).
-    """
+    """Return the ROS 1 or ROS 2 section of plugins with one file name: the children tell them
+    apart, ROS 2 where none do. A ``ros`` child is ROS 2, because nothing in ROS 1 reads one. What
+    decides for the whole document is in the plugin definitions already (``sources/dialect.py``).
+    Source: gazebo_ros_pkgs branches noetic-devel (camelCase, robotNamespace), ros2 (snake_case)."""
     if element.find("ros") is not None:
         found = [section for section in found if section.ros != "1"]
     if len(found) < 2:

@@ -154,7 +154,7 @@ def _text(path: str, result: Result, trace: Trace) -> bytes:
 
 
 def _tell_missing(reach: Reach, held: tuple[str, ...]) -> None:
-    """One line of a process where the kernel has no fence for files that it expands."""
+    """Log once for a process that the kernel cannot restrict it while it expands files."""
     if not reach.trust and KERNEL.isdisjoint(held) and not KERNEL.isdisjoint(reach.fences):
         _tell_once()
 
@@ -204,7 +204,7 @@ def _macros(trace: Trace, failure: Failure, reason: str) -> str:
 
 
 def _place(failure: Failure, trace: Trace) -> str:
-    """``file:line:column`` of the element that was worked on, or of its attribute; "" if unknown."""
+    """Return ``file:line:column`` of the element that failed, or of its attribute; "" if unknown."""
     place = trace.place(*failure.place[:2]) if failure.place else None
     if place is None or failure.place is None:
         return ""

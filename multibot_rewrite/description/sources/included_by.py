@@ -48,8 +48,8 @@ def robot_instead(file: str) -> str:
 
 
 def includers(texts: Iterable[tuple[str, bytes]], *, composed: bool = False) -> dict[str, set[str]]:
-    """For each of some files those of them that include it; their ``texts`` are read one by one. A name
-    that is ``composed``, as ``${arm}_macro.xacro``, may be that of several files."""
+    """Return for each of some files those of them that include it; their ``texts`` are read one by
+    one. A name that is ``composed``, as ``${arm}_macro.xacro``, may be that of several files."""
     paths: list[str] = []
     named: dict[str, list[tuple[str, str]]] = {}
     for path, data in texts:
@@ -70,8 +70,8 @@ def includers(texts: Iterable[tuple[str, bytes]], *, composed: bool = False) -> 
 
 
 def parts_among(paths: Iterable[str], above: Mapping[str, Collection[str]]) -> set[str]:
-    """Files that another one includes which nothing includes, at any depth: a loop has no first one,
-    and what expands it says so."""
+    """Return the files that are included, at any depth, by a file that nothing includes. A loop of
+    includes has no such file, and expanding it reports it."""
     found = {it for it in paths if not above.get(it)}
     tops = set(found)
     while more := {it for it, by in above.items() if not found.isdisjoint(by)} - found:
@@ -101,7 +101,7 @@ def _xacros(folder: str) -> list[str]:
 
 
 def _means(included: str, path: str, by: str) -> bool:
-    """May the included file be this one? Of a path that a xacro fills in the base name counts."""
+    """Return whether the included file may be this one; with a xacro's parts by the base name."""
     if path == by:
         return False
     package = _FIND.match(included)

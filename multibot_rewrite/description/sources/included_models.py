@@ -6,8 +6,7 @@ Sources: gazebosim/sdformat src/parser.cc (readXml, insertIncludedElement, merge
 ``_merged__NAME__model__``), src/SDF.cc (findFile: SDF_PATH), gazebosim/gz-sim src/Util.cc
 (resourcePaths: GZ_SIM_RESOURCE_PATH, IGN_GAZEBO_RESOURCE_PATH).
 
-What is put in stands in one line, so that every line keeps its number.
-"""
+What is inserted is in one line, so that every line keeps its number."""
 
 from __future__ import annotations
 

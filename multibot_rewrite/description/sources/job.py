@@ -259,7 +259,7 @@ def _plain(
 
 
 def _check_links(job: Job, own: OwnNames, given: Arguments, words: Sequence[str]) -> None:
-    """Where nodes put the robot's name before links, no argument may."""
+    """Raise InputError if an argument puts the robot's name before links and nodes do it, too."""
     links = sorted(text for kind, text in own if kind == "link")
     if job.naming.layout.at_run_time and links:
         named = [f"{it}:={text}" for it, text in given.items() if words[0] in text or "{" in text]

@@ -125,7 +125,7 @@ def _is_marked(text: str) -> bool:
 
 
 def has_mark(data: bytes) -> bool:
-    """Is there a mark anywhere in a text?"""
+    """Return whether a mark is anywhere in a text."""
     return any(mark.encode() in data for mark in MARKS)
 
 
@@ -136,11 +136,8 @@ def _unmarked(text: str, words: Sequence[str]) -> str:
 
 
 def marked_texts(plain: Inventory, marked: Inventory) -> NameTexts:
-    """Names as they are without the arguments -> the same with marks.
-
-    Names are the same by their order among those of their kind: a kind with more names in one of the
-    two is left out.
-    """
+    """Return names as they are without the arguments -> the same with marks. Names are matched by
+    their order among those of their kind: a kind with another number of names is left out."""
     found: dict[tuple[str, str], str] = {}
     before, after = _by_kind(plain), _by_kind(marked)
     for kind, names in after.items():
@@ -163,7 +160,7 @@ def own_texts(texts: NameTexts, words: Sequence[str]) -> NameTexts:
 
 
 def own_affixes(texts: NameTexts) -> OwnNames | None:
-    """Where in the plain names the robot's name goes; None if the arguments replace more of a name."""
+    """Return where the robot's name goes in the plain names; None if more of a name is replaced."""
     found = {key: _inserted(key[1], text) for key, text in texts.items()}
     return None if None in found.values() else found
 

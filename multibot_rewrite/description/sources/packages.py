@@ -28,7 +28,7 @@ _SKIPPED = frozenset(("build", "log", "lib", "lib64", "include", "bin", "node_mo
 
 @outside
 def package_folders(name: str, file: str, roots: tuple[str, ...]) -> tuple[str, ...]:
-    """Every folder that may be the package ``name`` for a description ``file``."""
+    """Return every folder that may be the package ``name`` for a description ``file``."""
     sources = os.environ.get("ROS_PACKAGE_PATH", "")
     installed = os.environ.get("AMENT_PREFIX_PATH", "")
     here = os.path.dirname(os.path.abspath(file))
@@ -51,13 +51,13 @@ def package_folder(name: str, file: str, roots: tuple[str, ...]) -> str:
 
 @outside
 def package_of(file: str) -> tuple[str, str] | None:
-    """Name and folder of the package that a file is in."""
+    """Return name and folder of the package that a file is in."""
     return _own_package(os.path.dirname(os.path.abspath(file)))
 
 
 @outside
 def is_for_ros_1(file: str) -> bool:
-    """Is a file in a package that catkin builds, and nothing of ROS 2?"""
+    """Return whether a file is in a package that catkin builds, with nothing of ROS 2."""
     own = _own_package(os.path.dirname(os.path.abspath(file)))
     if own is None:
         return False
@@ -82,7 +82,7 @@ def _split(paths: str) -> tuple[str, ...]:
 
 @lru_cache(maxsize=256)
 def _own_package(folder: str) -> tuple[str, str] | None:
-    """Name and folder of the package that a folder is in."""
+    """Return name and folder of the package that a folder is in."""
     for _ in range(HIGHEST):
         # Asked for alone: folders above may be those of all users, or for temporary files.
         if os.path.isfile(os.path.join(folder, MANIFEST)):
@@ -118,8 +118,8 @@ def packages_below(roots: tuple[str, ...]) -> Mapping[str, tuple[str, ...]]:
 
 
 def _folders(roots: tuple[str, ...]) -> Iterator[tuple[str, bool]]:
-    """Folders breadth first, each with whether it is a package: links not followed, down to packages
-    and no further than the bounds."""
+    """Yield folders breadth first, each with whether it is a package: links are not followed, and
+    the search ends at packages and at the bounds."""
     waiting = deque((os.path.abspath(root), 0) for root in roots)
     for _ in range(MOST_FOLDERS):
         if not waiting:

@@ -45,7 +45,7 @@ def _is_xacro(source: Source) -> bool:
 
 
 def is_xacro(path: str) -> bool:
-    """Is it a xacro, by its name or, as turtlebot3's .urdf files are, by what is in it?"""
+    """Return whether it is a xacro, by its name or, as turtlebot3's .urdf files, by its contents."""
     if not path.endswith((".urdf", ".srdf", ".sdf", ".xml")):
         return path.endswith(XACRO)
     with suppress(InputError):

@@ -131,8 +131,9 @@ class Pieces:
         self.trace = trace
 
     def of(self, element: int, attribute: str, value: str) -> tuple[Piece, ...]:
-        """Those of an attribute of an element of the result, or of its text where ``attribute`` is
-        empty; () where nothing is known. Numbers of elements are in the order of the document."""
+        """Return the pieces of an attribute of an element of the result, or of its text if
+        ``attribute`` is empty; () if unknown. Elements are numbered in the order of the
+        document."""
         found, at = [], 0
         for row in self._rows.get((element, attribute or TEXT_NODE), ()):
             length = row[0]
@@ -177,7 +178,7 @@ class Pieces:
 
 
 def _slot(source: bytes, start: int, attribute: str) -> tuple[int, int] | None:
-    """Where a value is: of an attribute, or the text before anything else in an element."""
+    """Return where a value is: of an attribute, or the first text in an element."""
     if not attribute.startswith(TEXT_NODE):
         return attribute_slots(source, start).get(attribute.encode())
     begin = tag_end(source, start)

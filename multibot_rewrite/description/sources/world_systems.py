@@ -49,8 +49,8 @@ def set_aside(source: bytes, file: str, tree: Tree) -> tuple[bytes, Systems]:
 
 
 def _may_load(tag: bytes, tree: Tree) -> bool:
-    """Is a plugin called as a system of the world, or has it an entity? Most descriptions have none,
-    and need not be read for that."""
+    """Return whether a plugin is named as a system of the world, or has an entity. Most
+    descriptions have none, and need not be read for that."""
     said = {
         name.decode(): value.decode("utf-8", "replace") for name, _, value in _SAID.findall(tag)
     }

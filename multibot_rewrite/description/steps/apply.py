@@ -53,7 +53,7 @@ class Template(NamedTuple):
 
 
 def list_changes(template: Template, robot: str) -> list[Change]:
-    """Every renamed value at its place in the source, then every inserted one at its parent's."""
+    """Return every renamed value at its place in the source, and every inserted one at its parent's."""
     inventory, plan = template.inventory, template.plan
     source = inventory.document.source
     changes = []

@@ -39,8 +39,8 @@ class Host(NamedTuple):
 
 class Inventory(NamedTuple):
     """Everything a plan needs. ``declared`` maps a kind to its declarations by name, those of the
-    URDF beside an SRDF included; ``format`` is the section of the root element; ``names`` are the
-    names in each of the ``claims``, in their order; ``release`` is that of the facts."""
+    URDF of an SRDF included; ``format`` is the section of the root element; ``names`` are the names
+    in each of the ``claims``, in their order; ``release`` is that of the facts."""
 
     document: Document
     claims: list[Claim]
@@ -72,8 +72,8 @@ def collect(
     """Walk the document in order along the tree of rewriters.
 
     ``urdf_declarations`` is what the URDF of an SRDF declares. In a ``layout`` that names frames at
-    run time these are not spelled as links are, and in one that keeps the names of models no topic is.
-    """
+    run time these are not renamed as links are, and in one that keeps the names of models no topic
+    is."""
     format_ = _format(document, tree, SRDF if urdf_declarations else "")
     claims, hosts = _walk(document, tree, format_)
     release = tree.vocabulary.release
@@ -144,7 +144,7 @@ def _format(document: Document, tree: Tree, likely: str) -> str:
 
 
 def _of_the_robot(claims: list[Claim]) -> list[Claim]:
-    """Without the topics of the world that nothing else in the document has."""
+    """Return the claims without the world's topics that nothing else in the document has."""
     if not any(it.site.when == SENT for it in claims):
         return claims
     others = (it for it in claims if it.site.when != SENT)

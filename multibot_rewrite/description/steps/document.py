@@ -134,7 +134,7 @@ def _refuse_tree(document: Document) -> None:
 
 
 def _refuse_wide(document: Document) -> None:
-    """lxml looks through all attributes of an element for each of them."""
+    """Refuse elements with too many attributes: lxml compares each with all others."""
     source, file, _, elements, starts, _ = document
     # ` a=""`
     least = 5 * MAX_ATTRIBUTES
@@ -175,8 +175,8 @@ def slot_values(root: etree._Element) -> list[str]:
 
 
 def value_slot(source: bytes, start: int, attribute: str, value: str) -> tuple[int, int] | None:
-    """Where a value of the element at ``start`` is: of an attribute, or its text if that is empty.
-    None if the bytes there do not read back as ``value``."""
+    """Return where a value of the element at ``start`` is: of an attribute, or its text if that is
+    empty. None if the bytes there do not read back as ``value``."""
     if not attribute:
         return text_slot(source, start, value)
     # The common spelling, inside this tag and not inside another value; else the exact way.
@@ -219,10 +219,8 @@ def place_in(source: bytes, slot: tuple[int, int], value: str, at: int) -> int |
 
 
 def attribute_slot(source: bytes, start: int, name: str, value: str) -> tuple[int, int] | None:
-    """Where the value of an attribute is, however it is quoted, spaced and escaped.
-
-    A ``name`` of a namespace (``{uri}local``) matches under whatever prefix.
-    """
+    """Return where the value of an attribute is, with any quotes, spaces and escapes. A ``name`` of
+    a namespace (``{uri}local``) matches with any prefix."""
     uri, _, local = name.encode().rpartition(b"}")
     there = attribute_slots(source, start)
     # Without a prefix a name is in no namespace.
@@ -234,14 +232,14 @@ def attribute_slot(source: bytes, start: int, name: str, value: str) -> tuple[in
 # A tag may have thousands of attributes.
 @lru_cache(maxsize=4)
 def attribute_slots(source: bytes, start: int) -> dict[bytes, tuple[int, int]]:
-    """Where the values of a tag's attributes are, as they are written."""
+    """Return where the values of a tag's attributes are, as they are written."""
     found = _ATTRIBUTE.finditer(source, start, tag_end(source, start))
     return {it[1]: (it.start(2) + 1, it.end(2) - 1) for it in found}
 
 
 def text_slot(source: bytes, start: int, value: str) -> tuple[int, int] | None:
-    """Where the text after a start tag is, white space around it and comments before it aside; None
-    if it does not read back as ``value``, or if a comment cuts it: its readers differ then."""
+    """Return where the text after a start tag is, without white space around it and comments before
+    it; None if it does not read back as ``value``, or if a comment cuts it: readers differ then."""
     raw = value.encode()
     begin = source.find(b">", start) + 1
     end = begin + len(raw)
@@ -261,11 +259,9 @@ def _behind_comments(source: bytes, at: int) -> int:
 
 
 def fillable(source: bytes, start: int) -> tuple[int, int, bytes, bytes]:
-    """Where the text of an element without text goes, and what to write around it.
-
-    A filled ``<a/>`` ends in ``</a>``, a filled ``<a></a>`` in ``</a >``: so both can be emptied again.
-    Before anything else, white space or a comment, the text is just put.
-    """
+    """Return where text goes in an element without text, and what to write around it. A filled
+    ``<a/>`` ends in ``</a>``, a filled ``<a></a>`` in ``</a >``: so both can be emptied again.
+    Before white space, a comment or anything else, the text is written without more."""
     end = tag_end(source, start)
     if source[end - 2 : end] == b"/>":
         name = source[start + 1 : end].split(None, 1)[0].rstrip(b"/>")

@@ -49,7 +49,7 @@ class Marker(NamedTuple):
 
 
 def insertion_edits(document: Document, items: list[Insertion], release: str) -> list[Edit]:
-    """One edit group per parent element, right after its start tag, worded for a release."""
+    """Return one edit group per parent element, right after its start tag, for a release."""
     if not items:
         return []
     starts = dict(zip(document.root.iter("*"), document.starts, strict=True))
@@ -96,7 +96,7 @@ def _names(items: list[Insertion]) -> str:
 
 
 def lead_of(source: bytes, end: int) -> str:
-    """Line break and indentation of the parent's first child, as the file writes them."""
+    """Return line break and indentation of the parent's first child, as the file has them."""
     space = source[end : len(source) - len(source[end:].lstrip())].decode()
     if "\n" in space and source[end + len(space) : end + len(space) + 2] != b"</":
         return space[space.rindex("\n") - space.count("\r\n", space.rindex("\n") - 1) :]
@@ -121,7 +121,7 @@ def slot_edits(start: int, end: int, text: str) -> list[Edit]:
 
 
 def markers(document: Document) -> list[Marker]:
-    """All markers of a document; raises InputError for one that was edited by hand."""
+    """Return all markers of a document; raises InputError for one that was edited by hand."""
     if MARKER not in document.source:
         return []
     found = []
@@ -143,7 +143,7 @@ def _read_marker(document: Document, comment: etree._Element, words: list[str]) 
 
 
 def removals(document: Document, robot: str) -> list[Edit]:
-    """Edits that take out what was inserted for ``robot``."""
+    """Return edits that take out what was inserted for ``robot``."""
     mine = [marker for marker in markers(document) if marker.robot == robot]
     if not mine:
         return []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Inventory + naming -> rename map: names are spelled once, everything after reads the map."""
+"""Inventory + naming -> rename map: names are renamed once, everything after reads the map."""
 
 from __future__ import annotations
 
@@ -18,9 +18,8 @@ NameKey = tuple[str, str, bool]
 class RenameMap(NamedTuple):
     """What the names of a description become under a naming, for any robot.
 
-    ``affixes`` has every name that changes: in a value, or declared here or in the URDF beside an
-    SRDF. ``values`` are the names that change in each claimed value, in the order of the claims.
-    """
+    ``affixes`` has every name that changes: in a value, or declared here or in the URDF of an SRDF.
+    ``values`` are the names that change in each claimed value, in the order of the claims."""
 
     naming: Naming
     affixes: Mapping[NameKey, Affix]

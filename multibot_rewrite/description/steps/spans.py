@@ -36,7 +36,7 @@ class Spans:
         return self._silent.rindex(b">", 0, behind) + 1
 
     def of(self, element: _Element) -> tuple[int, int]:
-        """Where it starts and ends."""
+        """Return where the element starts and ends."""
         return self.start_of(element), self.end_of(element)
 
     def text_of(self, element: _Element) -> bytes:
@@ -44,7 +44,7 @@ class Spans:
         return self.document.source[slice(*self.of(element))]
 
     def inside(self, element: _Element) -> tuple[int, int]:
-        """From behind its start tag to its end tag; for one without an end tag both are its end."""
+        """Return the inside of an element, between its tags; twice its end if it has no end tag."""
         start = tag_end(self.document.source, self.start_of(element))
         end = self.end_of(element)
         return (start, self._silent.rindex(b"</", 0, end)) if start < end else (end, end)

@@ -21,7 +21,7 @@ NOWHERE: frozenset[Place] = frozenset()
 
 
 def own_places(inventory: Inventory, naming: Naming) -> frozenset[Place]:
-    """Where a description that is not rewritten has names that are the robot's already."""
+    """Return where a description that is not rewritten has names that are the robot's already."""
     places = (
         (at, number, (name.kind, name.text))
         for at, names in enumerate(inventory.names if naming.own else ())
@@ -33,11 +33,8 @@ def own_places(inventory: Inventory, naming: Naming) -> frozenset[Place]:
 def strip_edits(
     inventory: Inventory, naming: Naming, robot: str, own: frozenset[Place] = NOWHERE
 ) -> list[Edit]:
-    """Edits that undo ``make_plan`` for ``robot``, in source order.
-
-    ``own`` are the ``own_places`` of what was rewritten: what is there was not put there by a rewrite,
-    though a rewrite makes another name like it.
-    """
+    """Return edits that undo ``make_plan`` for ``robot``, in source order. ``own`` are the
+    ``own_places`` of the original: names there were not made by a rewrite, even if they look so."""
     document = inventory.document
     edits = removals(document, robot)
     is_inserted = inside_of(edits)
@@ -91,7 +88,7 @@ def _without(
 
 
 def inside_of(removed: Iterable[Edit]) -> Callable[[Claim], bool]:
-    """Whether a claim is in one of the elements."""
+    """Return a function: whether a claim is in one of the removed elements."""
     spans = sorted((edit.start, edit.end) for edit in removed)
     starts = [start for start, _ in spans]
     # How far those up to each one reach.

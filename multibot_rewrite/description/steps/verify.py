@@ -80,9 +80,8 @@ def verify(
 ) -> None:
     """Raise ProofError unless ``output`` is the input with its names renamed and nothing else changed.
 
-    ``slots`` says how often the robot's name was put in; ``urdf_declarations`` is what the URDF
-    beside an SRDF declares.
-    """
+    ``slots`` says how often the robot's name was put in; ``urdf_declarations`` is what the URDF of
+    an SRDF declares."""
     file = inventory.document.file
     beside = spelled_names(urdf_declarations, naming, robot)
     # Byte offsets of elements are needed only if more than affixes has to be removed.
@@ -174,7 +173,7 @@ def _collisions(inventory: Inventory, naming: Naming) -> dict[tuple[int, str], s
 
 
 def same_targets(it: Evidence) -> None:
-    """Every name means what it meant: a use finds what it named, and nothing else does."""
+    """Check that every name means what it meant: a use finds what it named, and nothing else does."""
     file, own = it.inventory.document.file, it.naming.own
     # Claims share the names of equal values, so few are different.
     seen: set[tuple[int, int]] = set()
@@ -206,7 +205,7 @@ def _left_behind(name: ResolvedName, inventory: Inventory) -> bool:
 
 
 def robots_own(it: Evidence) -> None:
-    """Every name in an inserted element that another robot would have, too, has this robot's name."""
+    """Check that names in inserted elements which other robots also have contain this robot's name."""
     for name, reach in _inserted_names(it):
         # What must be declared and is not is of no kind: it is another robot's, or nobody's.
         if not name.kind or removal(it.naming, it.robot, name.kind, name.text, reach) is None:
@@ -227,7 +226,7 @@ def _inserted_names(it: Evidence) -> Iterator[tuple[ResolvedName, bool]]:
 
 
 def nothing_to_add(it: Evidence) -> None:
-    """No plugin is left with a default or hard-wired topic that another robot would share."""
+    """Check that no plugin is left with a default or fixed topic that another robot would share."""
     for item in insertions(it.result.served, it.result.declared, it.naming):
         raise ProofError(
             f"{it.file}: {without(item, it.inventory.release)} {item.old!r}: nothing was inserted"
@@ -235,7 +234,7 @@ def nothing_to_add(it: Evidence) -> None:
 
 
 def added_once(it: Evidence) -> None:
-    """No inserted element is there already: consumers read the first, or both."""
+    """Check that no inserted element exists already: readers take the first, or both."""
     for marker in it.markers:
         behind = list(marker.comment.itersiblings("*"))
         added = behind[: marker.elements]
@@ -286,7 +285,7 @@ def as_planned(it: Evidence) -> None:
 
 
 def a_slot_each(it: Evidence) -> None:
-    """Each name of this robot was put into a slot: any other robot gets its own at the same places."""
+    """Check that each name of this robot is in a slot, so that another robot gets its own there."""
     values = "".join(it.expected).count(ROBOT_SLOT)
     wanted = values + len(list(_inserted_names(it))) + len(it.markers)
     wanted += sum(_is_own_namespace(claim, it) for claim, _ in it.added)
@@ -295,12 +294,12 @@ def a_slot_each(it: Evidence) -> None:
 
 
 def _is_own_namespace(claim: Claim, it: Evidence) -> bool:
-    """Is it the namespace that a plugin needs in a layout that has none?"""
+    """Return whether it is the namespace that a plugin needs in a layout that has none."""
     return "namespace" not in it.naming.separators and claim.value == f"/{it.robot}"
 
 
 def strips_to_source(it: Evidence) -> None:
-    """Undoing the rewrite, by what the output alone says, gives the input back."""
+    """Check that undoing the rewrite, by the output alone, gives the input back."""
     own = strip.own_places(it.inventory, it.naming)
     fills = any(marker.filled for marker in it.markers)
     if not (_strips(it, own) if own or fills or _replaces(it.plan) else _adds_affixes(it)):

@@ -19,7 +19,7 @@ NOT_ACROSS = declare("MF849", "not-across-domains", ERROR, formats=("fleet",))
 
 
 def not_across(fleet: Fleet) -> Iterator[Finding]:
-    """What the plan of a fleet has in the wrong domain."""
+    """Yield what the plan of a fleet has in the wrong domain."""
     apart = fleet.apart
     plan = planned(fleet) if apart.domains else System()
     yield from _of_simulator(apart, plan)
@@ -38,10 +38,10 @@ def not_across(fleet: Fleet) -> Iterator[Finding]:
 
 
 def _of_simulator(apart: Apart, plan: System) -> Iterator[Finding]:
-    """The nodes of plugins, which are in the simulator's process. rclcpp has one context there, so one
-    domain (gazebo_ros_pkgs ros2 gazebo_ros/include/gazebo_ros/node.hpp, CreateWithArgs; no element of
-    <ros> names another). What gz sends has its bridge, a process of the robot's domain. A domain_bridge
-    brings no services and actions, by which a manager is asked."""
+    """Yield nodes of simulator plugins in another domain. rclcpp has one context in that process,
+    so one domain (gazebo_ros_pkgs ros2 gazebo_ros/include/gazebo_ros/node.hpp, CreateWithArgs; no
+    element of <ros> names another). What gz sends has its bridge, a process of the robot's domain.
+    A domain_bridge brings no services and actions, by which a manager is asked."""
     numbers = domain_of(plan)
     own = [it for it in plan.nodes if it.plugin.file and numbers[it.robot] != numbers[""]]
     if own:
@@ -56,7 +56,7 @@ def _of_simulator(apart: Apart, plan: System) -> Iterator[Finding]:
 
 
 def one_launch_each(apart: Apart, starts: FleetStarts) -> Iterator[Finding]:
-    """Robots whose nodes the launch file has to reach: its own node is in one domain."""
+    """Report robots in several domains whose nodes one launch file would have to reach."""
     reached = [
         robot
         for robot in starts.robots

@@ -62,9 +62,9 @@ def not_as_planned(
     told: Sequence[Finding],
     real: Set[str] = frozenset(),
 ) -> Iterator[Finding]:
-    """What ``multibot check`` would say of the running fleet, as errors; ``started`` are the planned
-    nodes that the launch file is to start. What the build has ``told`` is said as it was told. Robots
-    that are ``real`` have drivers that no file names."""
+    """Yield as errors what ``multibot check`` would report of the running fleet. ``started`` are
+    the planned nodes that the launch file starts. What the build has ``told`` is reported as there.
+    Robots that are ``real`` have drivers that no file names."""
     running = {it.name: it for it in seen.nodes}
     found = check_view(planned, seen._replace(environment=Environment()))
     if not found:
@@ -84,12 +84,12 @@ def not_as_planned(
 
 
 def is_of_sources(it: Finding) -> bool:
-    """Does a robot alone have it, whatever it is called?"""
+    """Return whether a finding is about one robot alone, whatever its name."""
     return bool(it.robot) and it.code in (*_OF_SOURCES, *_MISSED)
 
 
 def _key(by_plan: Index, it: Finding) -> tuple[str, ...]:
-    """The code and the names without those of robots."""
+    """Return the code and the names without those of robots."""
     return (it.code, *map(by_plan.plain, it.names)) if it.names else (it.code, str(it))
 
 
@@ -105,7 +105,7 @@ def open_names(by_plan: Index, told: Iterable[Finding]) -> frozenset[tuple[str, 
 
 
 def _level(it: Finding, planned: System, seen: System, started: Set[str]) -> str:
-    """Empty for what is no fault of the folder."""
+    """Return the level of a finding; empty for what is no fault of the folder."""
     if it.code in _OF_NODES:
         return ERROR if _is_of_launch(it, planned, seen, started) else ""
     if it.code in CLAIMS and it.level == WARNING:
@@ -127,7 +127,7 @@ def _level(it: Finding, planned: System, seen: System, started: Set[str]) -> str
 
 
 def _is_of_a_lack(it: Finding, planned: System, seen: System, started: Set[str]) -> bool:
-    """Is it about a planned name that a node of the launch file lacks? What it has instead is known."""
+    """Return whether it is about a planned name that a node of the launch file lacks."""
     there = {(one.node, one.kind, one.role, one.name) for one in seen.ends}
     named = (one for one in surely(planned).ends if one.name in it.names)
     lacks = [one.node for one in named if (one.node, one.kind, one.role, one.name) not in there]
@@ -147,13 +147,13 @@ def is_for_driver(it: Finding, planned: System, started: Set[str]) -> bool:
 
 
 def _is_read(seen: System) -> bool:
-    """Is all that the launch file starts known, with its parameters?"""
+    """Return whether all that the launch file starts is known, with its parameters."""
     return all(it.code != NOT_WHOLE for it in doubts(seen))
 
 
 def _is_of_launch(it: Finding, planned: System, seen: System, started: Set[str]) -> bool:
-    """Is the node, or one of the robot, to be started by the launch file? What a node has rests on its
-    parameters, a controller on its manager; of a program that is not known nothing is."""
+    """Return whether the launch file is to start the node, or one of the robot. What a node has
+    depends on its parameters, a controller on its manager; nothing does on an unknown program."""
     if it.code == planned_nodes.missing_robot.code:
         return any(one.robot == it.robot and one.name in started for one in planned.nodes)
     own = next((one for one in planned.nodes if one.name == it.node), None)

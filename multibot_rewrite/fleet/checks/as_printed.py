@@ -158,7 +158,7 @@ class _Planned(NamedTuple):
         yield from self.processes(self.starts.windows)
 
     def is_on(self, condition: str) -> bool:
-        """Is each launch argument of a condition true, or false after ``!``?"""
+        """Return whether each launch argument of a condition is true, or false after ``!``."""
         words = ((it.lstrip("!"), it[0] != "!") for it in condition.split())
         return all((self.arguments.get(it, "") in _TRUE) == wanted for it, wanted in words)
 

@@ -41,10 +41,8 @@ from multibot_rewrite.system.records import Topic
 
 
 def closed_plan(plan: FleetPlan) -> Fleet:
-    """The fleet with all nodes that are started, and its ``gaps``.
-
-    Raises InputError for a companion that cannot be read or rewritten.
-    """
+    """Return the fleet with all nodes that are started, and its ``gaps``. Raises InputError for a
+    related file that cannot be read or rewritten."""
     with gc_paused():
         fleet = with_start_pose_nodes(plan)
         # The others close as the first one of each that differs in more than its names does.
@@ -56,8 +54,8 @@ def closed_plan(plan: FleetPlan) -> Fleet:
 
 
 def bridged_by(plan: FleetPlan, texts: Iterable[OutputFile]) -> tuple[Topic, ...]:
-    """What the bridges of these files carry, but for those of robots that may be real, and for that of
-    what all share where all may be."""
+    """Return what the bridges of these files carry, except those of robots that may be real, and
+    the shared one if all may be."""
     maybe = plan.fleet.maybe_real
     real = {it.spec.name for it in plan.robots if it.spec.namespace in maybe}
     left = {f"{it}/{BRIDGE_FILE}" for it in real}
@@ -75,7 +73,7 @@ def bridged_by(plan: FleetPlan, texts: Iterable[OutputFile]) -> tuple[Topic, ...
 def gaps_of(
     plan: FleetPlan, fleet: Fleet, made: Iterable[OutputFile | Finding]
 ) -> tuple[Finding, ...]:
-    """What is open in the robots of a fleet, by place; ``made`` are the files of the robots, and what
+    """Return the gaps in the robots of a fleet, by place; ``made`` are the robots' files, and what
     was found as they were made."""
     texts, found = sorted_out(made)
     known = of_files(found)
@@ -99,7 +97,7 @@ def _shared(plan: FleetPlan) -> Iterator[Finding]:
 
 
 def sorted_out(made: Iterable[OutputFile | Finding]) -> tuple[list[OutputFile], list[Finding]]:
-    """The files, and the findings."""
+    """Return the files, and the findings."""
     both = [*made]
     files = sorted(it for it in both if isinstance(it, OutputFile))
     return files, [it for it in both if isinstance(it, Finding)]
@@ -138,7 +136,7 @@ def _gaps(
 
 
 def _of_some(plan: FleetPlan, robots: Sequence[RewrittenRobot]) -> FleetPlan:
-    """A plan of some of the robots, with the nodes for all."""
+    """Return a plan of some of the robots, with the nodes for all."""
     fleet, kept = plan.fleet, {"", *(it.spec.namespace for it in robots)}
     table = fleet.table._replace(runs=tuple(it for it in fleet.table.runs if it.robot in kept))
     return plan._replace(

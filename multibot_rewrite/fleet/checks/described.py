@@ -23,9 +23,9 @@ def wrong_in_descriptions(
     said: Iterable[Member] = (),
     launched: Iterable[Member] = (),
 ) -> Iterator[Finding]:
-    """What stops robots with these descriptions, each once; the ``simulated`` ones run in Gazebo. That
-    they do is ``said`` of some; of the others a hint says how to say that they do not. What is wrong in
-    one that launch files of its own start (``launched``) stops nobody."""
+    """Yield once each what stops robots with these descriptions; the ``simulated`` ones run in
+    Gazebo. ``said`` are those of which the file says so; for others the hint says how to deny it.
+    In a description that launch files of the user start (``launched``) it stops nobody."""
     its = (simulated, said, launched)
     in_gazebo, sure, own = ({it.source.file for it in one} for one in its)
     documents = {
@@ -55,7 +55,7 @@ def as_known(it: Finding, what: str) -> Finding:
 def _linted(
     document: Document, made: Document, settings: Settings, may_be_real: bool
 ) -> Iterator[Finding]:
-    """What is wrong with a document, but for what is well in the one that was ``made`` of it."""
+    """Yield what is wrong with a document, except what is right in the one ``made`` of it."""
     # What only looks at a robot's files needs none of the lint.
     from multibot_rewrite.lint.check import lint_subject, unsuppressed
     from multibot_rewrite.lint.described import in_use, is_of_simulator, may_stop

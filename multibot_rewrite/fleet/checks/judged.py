@@ -43,11 +43,9 @@ _ASKED = (tf_tree_in_pieces.code, frame_not_sent.code, interface_not_exported.co
 
 
 def contradicted(plan: FleetPlan, whole: System, expected: System) -> Iterator[Finding]:
-    """What nodes that surely run do to each other; in one robot they did so before its rewrite.
-
-    What all robots are told to share is meant, as is what relays of tf ``expected`` send; where robots
-    meet is said with the table.
-    """
+    """Yield faults between nodes that surely run; in one robot it had them before its rewrite. What
+    all robots share on purpose is no fault, nor what tf relays ``expected`` to run send; collisions
+    are reported with the table."""
     whose, copies = whose_by_plan(expected), copying_nodes(expected)
     met = {(it.code, name) for it in plan.fleet.table.problems for name in it.names}
     shared = {f"/{it}" for it in plan.fleet.naming.shared_topics}
@@ -68,8 +66,8 @@ def left_open(
     whose: Whose,
     texts: Sequence[OutputFile] = (),
 ) -> Iterator[Finding]:
-    """What is open in a robot by its sources, and as it is written: an error where only its rewrite has
-    opened it. ``texts`` are the files that were made."""
+    """Yield what is open in a robot by its sources, and as it is written: an error where only its
+    rewrite has opened it. ``texts`` are the files that were made."""
     # As it is written, with the needs that its sources have.
     needed = _by_key(before, (it for it in before.ends if it.role in NEEDS))
     keys = {id(it): key for key, it in _by_key(after, after.ends).items()}
@@ -124,8 +122,8 @@ def _apart(
 def _controlled(
     robot: RewrittenRobot, before: System, after: System, texts: Sequence[OutputFile]
 ) -> Iterator[Finding]:
-    """What is wrong between a robot's controllers and its hardware, by its sources; an error where only
-    its rewrite has opened it."""
+    """Yield faults between a robot's controllers and its hardware, by its sources; an error where
+    only its rewrite has made them."""
     for it in _ask(
         (interface_not_exported, interface_claimed_twice, interface_commanded_twice), before
     ):
@@ -152,27 +150,27 @@ def _ask(rules: Iterable[Rule], system: System) -> Iterator[Finding]:
 
 
 def _claims(system: System) -> Iterator[tuple[tuple[bool, int], Interface]]:
-    """The claims of controllers, and those of MoveIt, each by its number."""
+    """Yield the claims of controllers, and those of MoveIt, each by its number."""
     numbers = {True: count(), False: count()}
     for it in (it for it in system.interfaces if it.role == CLAIMS):
         yield (it.kind == JOINT, next(numbers[it.kind == JOINT])), it
 
 
 def _by_key(system: System, ends: Iterable[End]) -> Mapping[Key, End]:
-    """Ends by what is the same before and after a rewrite: the node, and the name in its code."""
+    """Return ends by what a rewrite does not change: kind, role, node and the name in its code."""
     known = {it.name: it.known for it in system.nodes}
     return {(it.kind, it.role, known.get(it.node, it.node), it.code_name): it for it in ends}
 
 
 def _about(finding: Finding, system: System) -> Key | None:
-    """The key of the end that a finding is about."""
+    """Return the key of the end that a finding is about; None without one."""
     ends = (it for it in system.ends if (it.node, it.name) == (finding.node, finding.names[0]))
     return next(iter(_by_key(system, ends)), None)
 
 
 def _in_file(finding: Finding, robot: RewrittenRobot, by_sources: bool = False) -> Finding:
-    """The finding as one of its file, else of the robot's line in the fleet file: who it is about is in
-    the message. The names of the sources say no robot."""
+    """Return the finding at its file, otherwise at the robot's line in the fleet file, with the
+    node in the message. The names of the sources have no robot."""
     it, spec = finding, robot.spec
     file, line, column = (it.file, it.line, it.column) if it.file else (spec.file, spec.line, 1)
     who = f"{it.node} of {spec.name} " if by_sources else f"{it.node} "

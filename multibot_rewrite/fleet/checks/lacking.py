@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes of a stack that end at once, because what they read is in no file of the robot, or wait for
-ever, because no camera of its description sends it; a robot of which all is known and that does not
-drive: nothing reads its commands, or nothing sends what it senses.
+"""Nodes of a node set that end at once, because what they read is in no file of the robot, or wait
+for ever, because no camera of its description sends it; a robot of which all is known and that does
+not drive: nothing reads its commands, or nothing sends what it senses.
 
 Sources: moveit2 jazzy moveit_ros/planning/rdf_loader/src/rdf_loader.cpp (no robot_description_semantic,
 no model), ros2_control jazzy hardware_interface/src/component_parser.cpp ("no ros2_control tag"),
@@ -64,8 +64,8 @@ NEEDS: Mapping[str, Need] = {
 
 
 def lacking(plan: FleetPlan) -> Iterator[Finding]:
-    """Find the nodes that a stack starts and that end at once. A node that a file of the robot names
-    may get what it reads elsewhere: from the robot's driver, or from another launch file."""
+    """Find the nodes that a node set starts and that end at once. A node that a file of the robot
+    names may get what it reads elsewhere: from the robot's driver, or from another launch file."""
     for robot in (it for it in plan.robots if not it.spec.launch):
         for node in plan.evidence_of(robot).nodes:
             need = NEEDS.get(node.kind)
@@ -77,8 +77,8 @@ def lacking(plan: FleetPlan) -> Iterator[Finding]:
 
 
 def without_camera(plan: FleetPlan) -> Iterator[Finding]:
-    """Find the nodes of a stack that hear a camera which a simulated robot has not, or of which it has
-    several: nothing says which one is meant."""
+    """Find the nodes of a node set that hear a camera which a simulated robot has not, or of which
+    it has several: nothing says which one is meant."""
     for robot in (it for it in plan.robots if it.spec.simulator != REAL and not it.spec.launch):
         nodes = plan.evidence_of(robot).nodes
         waiting = [it for it in nodes if it.origin.stack and not (it.when or it.shared)]
@@ -137,6 +137,6 @@ def unmoved(robot: RewrittenRobot, facts: Sequence[NodeFacts], system: System) -
 
 
 def _words(ends: Iterable[End]) -> str:
-    """The names in the code, each with its node."""
+    """Return the names in the code, each with its node, for a message."""
     each = (f"{it.code_name or it.name} of {it.node.rpartition('/')[2]}" for it in ends)
     return shorten(dict.fromkeys(each))

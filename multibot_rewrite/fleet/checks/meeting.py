@@ -43,11 +43,9 @@ def robots_meet(
     written: Mapping[str, Written] = NOTHING,
     domains: Mapping[str, int] = ONE_DOMAIN,
 ) -> Iterator[Finding]:
-    """An error for each name that two robots have and that is not shared; ``written`` are the files of
-    robots, by namespace, ``domains`` theirs where they are not in one.
-
-    Controllers that a stack names are in the table, with their spawners' rules.
-    """
+    """Yield an error for each name that two robots have and that is not shared. ``written`` are the
+    files of robots, by namespace, ``domains`` theirs if they are not in one. Controllers of a node
+    set are in the table, with their spawners' rules."""
     shared = [it for member in members for it in member.shared]
     spawned = {it.robot for it in table.runs if it.fact.is_controller}
     if not spawned.issuperset(it.robot for it in members):
@@ -66,7 +64,7 @@ def robots_meet(
 
 
 def _named(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence[RuntimeName]]:
-    """What each robot has, first by its description."""
+    """Return what each robot has at run time, first by its description."""
     made = (it for it in table.runs if it.fact.of_hardware)
     ruled = sets_by_key((run.robot, end.name) for run in made for end, _ in run.names)
     found: dict[str, list[RuntimeName]] = {}
@@ -93,7 +91,7 @@ def _named(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence[Run
 
 
 def _finding(met: Meeting, member: Member | None, written: Written | None) -> Finding:
-    """At the element of the description that has the name first, else at the node."""
+    """Return a finding at the element of the description that has the name first, else at the node."""
     name, code = met.name, code_of(met.name)
     message = said(f"{met.robot} and {met.other} would both", name, met.twin)
     found = Finding(code, _level(code), message, advice(name, together=True), names=(name.name,))
@@ -110,5 +108,5 @@ def _finding(met: Meeting, member: Member | None, written: Written | None) -> Fi
 
 
 def _level(code: str) -> str:
-    """Whether one robot finds another's sensor depends on the order in which they are spawned."""
+    """Return WARNING if it depends on the order of spawning whether robots share it, else ERROR."""
     return WARNING if code in (LOOKUP, NOT_TAKEN) else ERROR

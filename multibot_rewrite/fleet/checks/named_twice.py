@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names that two robots of a fleet declare, each in its own description; and topics that have a robot's
-name from an argument of its xacro, and once more from its namespace; controller managers
-that a plugin makes under another name than that of the robot's stack."""
+"""Names that two robots of a fleet declare, each in its own description; and topics that have a
+robot's name from an argument of its xacro, and once more from its namespace; controller managers
+that a plugin makes under another name than that of the robot's node set."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ _KINDS = ("topic", "service")
 def declared_twice(
     robots: Iterable[RewrittenRobot], naming: Naming, told: Iterable[Finding]
 ) -> Iterator[Finding]:
-    """What two robots declare though it is not shared, each in its description; but for frames of which
-    it is ``told`` that they meet."""
+    """Yield what two robots declare though it is not shared, each in its description, except frames
+    that are ``told`` to collide."""
     met = {name for it in told if it.code == FRAMES for name in it.names}
     first: dict[tuple[str, str], RewrittenRobot] = {}
     kinds = [it for it in _DECLARED if it in naming.separators]
@@ -45,7 +45,7 @@ def declared_twice(
 
 
 def named_twice(robots: Sequence[RewrittenRobot]) -> Iterator[Finding]:
-    """Once for each description, with the first of its names."""
+    """Report for each description the first name that has the robot's name twice."""
     told = set()
     for it in robots:
         spec = it.spec
@@ -67,7 +67,7 @@ OTHER_MANAGER = declare("MF850", "other-manager", ERROR, formats=("fleet",))
 
 
 def other_manager(robots: Iterable[RewrittenRobot], table: Table) -> Iterator[Finding]:
-    """The robots whose stack has a manager that no plugin makes, though one makes another."""
+    """Yield the robots whose node set has a manager that no plugin makes, though one makes another."""
     robots = [*robots]
     tables = table.by_robot(it.member.robot for it in robots)
     first: dict[str, RewrittenRobot] = {}

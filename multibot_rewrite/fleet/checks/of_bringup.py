@@ -5,6 +5,7 @@ robots has it as well, and is built."""
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterable, Iterator, Mapping, Set
 from functools import cache
 from typing import NamedTuple
@@ -32,6 +33,7 @@ from multibot_rewrite.system.records import System
 from multibot_rewrite.system.tf_copies import tree_topic
 
 _ALREADY = "launch files have it"
+_SECOND = re.compile(r"_\d+$")
 # A node with its role.
 _Part = tuple[str, str]
 
@@ -55,7 +57,11 @@ def as_the_vendor_has_it(
         # What names no robot, as the interfaces of its hardware, is asked of all.
         about = (_robots(it, seen) or specs.keys()) if it.level == ERROR else set[str]()
         robots = about & specs.keys()
-        if robots and all(_is_in(alone(robot), it, seen, robot) for robot in robots):
+        own = (
+            _is_of_one_name(it, seen, specs[robot]) or _is_in(alone(robot), it, seen, robot)
+            for robot in robots
+        )
+        if robots and all(own):
             yield as_known(it, _ALREADY)
         else:
             yield it
@@ -111,8 +117,8 @@ def _described(graph: LaunchGraph, text: str) -> LaunchGraph:
 
 
 def _is_in(errors: Iterable[_Error], it: Finding, seen: Index, robot: str) -> bool:
-    """Is a finding about a fleet one of the errors of this robot alone, which may name more? Nodes of
-    other robots have no part in it, nor nodes that its own launch files do not start."""
+    """Return whether a finding about a fleet is an error of this robot alone, which may name more.
+    Nodes of other robots have no part in it, nor nodes that its own launch files do not start."""
     own = _error(it, seen)
     alike = [one for one in errors if one.code == own.code and own.names <= one.names]
     known = {part for one in alike for part in one.parts}
@@ -123,6 +129,17 @@ def _is_in(errors: Iterable[_Error], it: Finding, seen: Index, robot: str) -> bo
         if robot in whose and not (whose <= {robot, ""} and _plain(parts, seen) <= known):
             return False
     return True
+
+
+def _is_of_one_name(it: Finding, seen: Index, robot: RewrittenRobot) -> bool:
+    """Is a finding about nodes of one robot that its launch files start under one name? In a fleet the
+    second one has a number behind its name."""
+    nodes = [node for parts in _parts(it, seen.system).values() for _, node in parts]
+    names = {_SECOND.sub("", node.rpartition("/")[2]) for node in nodes}
+    if len(names) != 1 or {seen.robot(node) for node in nodes} != {robot.spec.namespace}:
+        return False
+    started = launch_of(robot.spec.launch, robot.spec.words[0]).nodes
+    return [node.name or node.executable for node in started].count(*names) > 1
 
 
 def _robots(it: Finding, seen: Index) -> set[str]:

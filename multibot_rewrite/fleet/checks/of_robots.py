@@ -50,7 +50,7 @@ MOST = 400
 
 
 def of_robots(plan: FleetPlan) -> Iterator[Finding]:
-    """What is wrong with the robots themselves, whatever files go with them."""
+    """Yield what is wrong with the robots themselves, whatever files go with them."""
     yield from plan.of_rewrites
     yield from other_hardware(plan.robots, plan.file)
     yield from moved_services(plan)
@@ -77,8 +77,8 @@ def of_robots(plan: FleetPlan) -> Iterator[Finding]:
 
 
 def _not_started(plan: FleetPlan) -> Iterator[Finding]:
-    """The nodes of launch files that something else makes under their name: the plugin in a simulator,
-    whose controller manager is called as ros2_control_node's."""
+    """Yield the launch files' nodes that something else makes under their name: the plugin in a
+    simulator makes a controller manager named as ros2_control_node's."""
     table = plan.fleet.table
     for robot in plan.robots:
         started = {*names_of(table, robot.spec.namespace).started, *names_of(table, "").started}
@@ -91,8 +91,8 @@ def _not_started(plan: FleetPlan) -> Iterator[Finding]:
 
 
 def _on_another_time(plan: FleetPlan) -> Iterator[Finding]:
-    """The robots in a simulator that are told to use the time of the machine, with nodes that compare
-    it with that of what they get; gz-sim's sensors have the time of the simulator."""
+    """Yield simulated robots that use the time of the machine, with nodes that compare it with that
+    of their input: gz-sim's sensors have simulated time."""
     for robot in plan.robots:
         facts = plan.evidence_of(robot).nodes if robot.spec.use_sim_time is False else ()
         own = (it.name for it in facts if not (it.when or it.shared))
@@ -106,8 +106,8 @@ def _on_another_time(plan: FleetPlan) -> Iterator[Finding]:
 
 
 def _one_device_each(plan: FleetPlan) -> Iterator[Finding]:
-    """What two robots were both given of a device, its address, number or calibration, or a port: at
-    the second one, but for values that are told already."""
+    """Yield the devices, addresses, numbers, calibrations and ports that two robots share, at the
+    second one, except values that were reported."""
     robots = plan.robots
     told = {name for it in plan.fleet.table.problems if it.code == OPENED for name in it.names}
     known = load_known_nodes(plan.file.nodes, plan.file.distro)
@@ -148,7 +148,7 @@ def _said(it: Finding, hint: str) -> Finding:
 def _of_hardware(
     robot: RewrittenRobot, told: Collection[str], vocabulary: Vocabulary
 ) -> Iterator[Address]:
-    """At the robot's line of the fleet file; those of simulators have no devices."""
+    """Yield the addresses of a robot's devices, at its line of the fleet file; none if simulated."""
     spec = robot.spec
     if spec.simulator != "gazebo":
         node, place = f"/{spec.namespace}/{MANAGER}", Place(spec.file, spec.line, 1)
@@ -170,7 +170,7 @@ def _of_nodes(
 
 
 def _of_words(robot: RewrittenRobot, evidence: RobotEvidence) -> Iterator[Address]:
-    """What nodes and processes of launch files have by their words."""
+    """Yield the addresses in the arguments of nodes and processes of launch files."""
     spec = robot.spec
     rows = [(name, it.arguments, it.place) for name, it in evidence.handed_on.items()]
     own = (it for it in evidence.processes if not it.once)
@@ -180,12 +180,10 @@ def _of_words(robot: RewrittenRobot, evidence: RobotEvidence) -> Iterator[Addres
 
 
 def _too_near(plan: FleetPlan) -> Iterator[Finding]:
-    """The robots in a simulator that start in another one.
-
-    A robot turns in its place, so half of what the larger one reaches is let pass: what is found
-    overlaps however they are turned. A fleet that all stands at the origin is a warning: somebody else
-    may place it, but the launch file of a build does not.
-    """
+    """Yield the simulated robots that start inside another one. A robot turns in its place, so half
+    of what the larger one reaches is allowed: what is found overlaps however they are turned. A
+    fleet that is all at the origin is a warning: somebody else may place it, but the launch file of
+    a build does not."""
     robots = [it for it in plan.robots if is_simulated(it)]
     if not any(any(_place(it.spec)) for it in robots):
         if len(robots) > 1:
@@ -240,8 +238,8 @@ SDF_ALONE = declare("MF712", "sdf-for-state-publisher", WARNING, formats=("fleet
 
 
 def of_sdf_alone(plan: FleetPlan) -> Iterator[Finding]:
-    """The robots whose robot_state_publisher gets an SDF: robot_state_publisher.cpp reads it by
-    urdf::Model, which asks the parsers that are installed."""
+    """Yield the robots whose robot_state_publisher gets an SDF: robot_state_publisher.cpp reads it
+    by urdf::Model, which asks the parsers that are installed."""
     published = {it.name for it in plan.fleet.facts if it.package == STATE_PUBLISHER}
     runs = {it.robot for it in plan.fleet.table.runs if it.node in published}
     for robot in plan.robots:
@@ -256,7 +254,7 @@ def of_sdf_alone(plan: FleetPlan) -> Iterator[Finding]:
 
 
 def differences(plan: FleetPlan) -> Iterator[Finding]:
-    """What the model of a robot and its description do not have in common."""
+    """Yield what the model of a robot and its description do not have in common."""
     for robot in plan.robots:
         if robot.simulated:
             described, model = _moving(robot.member.described), _moving(robot.member.inventory)
@@ -270,7 +268,7 @@ def differences(plan: FleetPlan) -> Iterator[Finding]:
 
 
 def _moving(inventory: Inventory) -> list[str]:
-    """The joints that need states: neither fixed nor following another one."""
+    """Return the joints that need states: neither fixed nor following another one."""
     return [
         str(it.get("name", ""))
         for it in inventory.document.root.iter("joint")

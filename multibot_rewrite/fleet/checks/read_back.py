@@ -42,7 +42,6 @@ from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import NO_TREE, REFUSED, launched
 from multibot_rewrite.producers.launch.spawner_managers import NO_MANAGER
 from multibot_rewrite.rules.check import inconclusive_where_in_doubt, judge
-from multibot_rewrite.rules.declaration import OF_NO_NODE
 from multibot_rewrite.rules.launch.judge import as_sure, judge_launch, placed
 from multibot_rewrite.rules.system.unsent import nothing_known_sends
 from multibot_rewrite.system.index import index
@@ -139,17 +138,16 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
 def _of_launch(
     found: Launched, whose: Whose, told: Set[str], elsewhere: Set[str]
 ) -> Iterator[Finding]:
-    """What ``multibot check-launch`` calls an error and the build has not ``told``, but for names that
-    are given ``elsewhere``. Descriptions and parameters were asked as they are in the sources.
-    ``whose`` is by the plan: a robot may have other words in frames than in topics."""
+    """Yield the errors of ``multibot check-launch`` that the build has not ``told``, except for
+    names given ``elsewhere``. Descriptions and parameters were checked in the sources. ``whose`` is
+    by the plan: a robot may have other names in frames than in topics."""
     from multibot_rewrite.lint.launched import bridge_findings
 
     seen = index(found.system, whose)
     judged = inconclusive_where_in_doubt(judge(seen), found.system)
     between = placed((as_sure(it, found, seen) for it in judged), found)
     every = (*judge_launch(found), *bridge_findings(found), *between)
-    # Of a node that runs once for all robots each robot's file may have a section of its own.
-    asked = (it for it in every if it.code != OF_NO_NODE.code and not elsewhere & {*it.names})
+    asked = (it for it in every if not elsewhere & {*it.names})
     yield from (it for it in asked if it.level == ERROR and it.code not in told)
 
 
@@ -166,7 +164,7 @@ def _not_open(found: list[Finding], made: Outputs) -> list[Finding]:
 
 def _remedy(plan: FleetPlan) -> str:
     """Return what to write where nothing starts a controller manager: the argument of a description
-    with which a simulator's plugin makes one, else the stack that has one."""
+    with which a simulator's plugin makes one, else the node set that has one."""
     for it in (it.spec for it in plan.robots):
         given = filled(it.arguments, it.name)
         if found := switch_for(it.simulated or it.description, given, loads_hardware, BOUNDED):
@@ -179,7 +177,7 @@ def _remedy(plan: FleetPlan) -> str:
 
 
 def _known(plan: FleetPlan) -> Knowledge:
-    """What is known of nodes in the release of the fleet, as its file and NoDL documents have them."""
+    """Return what is known of nodes in the fleet's release, by its file and NoDL documents too."""
     file = plan.file
     facts = known_nodes(file.nodes, file.distro, file.nodl)
     nodes = dict(facts.library.nodes)
@@ -201,8 +199,8 @@ def _temporary_folder() -> Iterator[str]:
 
 
 def _lost(graph: LaunchGraph, seen: System, home: str) -> Iterator[Finding]:
-    """What the launch file names and is not there, a node without its description, and what rcl refuses
-    to start."""
+    """Yield missing files that the launch file names, a node without its description, and what rcl
+    refuses to start."""
     for note in graph.notes:
         # A file that a plugin names and that is no file of the fleet is told where it is rewritten.
         if not note.parameters or note.file.startswith(f"{home}/"):

@@ -85,8 +85,8 @@ DRIVERS = Environment(caveats=(Caveat(UNKNOWN_NODES, True, _MAY_RUN),))
 
 
 def of_sources(robot: RewrittenRobot, evidence: RobotEvidence, srdf: Job | None = None) -> System:
-    """The system of a robot's sources, if it were alone: nothing is renamed or remapped but what the
-    usual launch files remap."""
+    """Return the system of a robot's sources, if it were alone: nothing is renamed or remapped but
+    what the usual launch files remap."""
     source, given = robot.member.source, evidence.given
     moves = any(it.get("type", FIXED) != FIXED for it in source.root.iter("joint"))
     nodes = []
@@ -145,8 +145,8 @@ def of_sources(robot: RewrittenRobot, evidence: RobotEvidence, srdf: Job | None 
 
 
 def as_written(fleet: Fleet, robot: RewrittenRobot, texts: Sequence[OutputFile]) -> System:
-    """What runs on a robot by the files that were made, with the places in the sources; ``fleet`` has
-    the nodes and transforms of this robot alone."""
+    """Return what runs on a robot by the files that were made, with the places in the sources;
+    ``fleet`` has the nodes and transforms of this robot alone."""
     name, topic = robot.spec.namespace, tf_topic(robot.spec.namespace, fleet.naming)
     runs, home = fleet.table.runs, f"/{name}"
     sent = {node: edges for (_, node), edges in fleet.edges.items()}
@@ -165,7 +165,7 @@ def as_written(fleet: Fleet, robot: RewrittenRobot, texts: Sequence[OutputFile])
 
 
 def of_all_robots(runs: Iterable[Run], texts: Iterable[OutputFile]) -> System:
-    """The system of the nodes for all robots of a fleet, as they are written."""
+    """Return the system of the nodes for all robots of a fleet, as they are written."""
     return _system(runs, _rows((it for it in texts if it.path == BRIDGE_FILE), ""))
 
 
@@ -176,7 +176,7 @@ def with_controllers(
     texts: Sequence[OutputFile],
     known: KnownNodes,
 ) -> System:
-    """The system with the controllers and interfaces by the files that were made for a robot."""
+    """Return the system with the controllers and interfaces by the files that were made for a robot."""
     own = [it for it in texts if it.path.startswith(f"{robot.spec.name}/")]
     given = given_nodes([it.yaml for it in own if PARAMETERS in it.text], known)
     written = read_document(robot.description, robot.member.source.file)
@@ -188,13 +188,13 @@ def with_controllers(
 
 
 def beside(own: System, shared: System) -> System:
-    """The system of one robot, with what nodes for all robots give it; what these need is left out."""
+    """Return the system of one robot, with what nodes for all robots give it, not what these need."""
     given = tuple(it for it in shared.ends if it.role not in NEEDS)
     return joined(own, shared._replace(ends=given))
 
 
 def joined(first: System, *others: System) -> System:
-    """The first system, with the nodes, ends and transforms of others."""
+    """Return the first system, with the nodes, ends and transforms of others."""
     systems = (first, *others)
     return first._replace(
         nodes=tuple(it for one in systems for it in one.nodes),
@@ -206,8 +206,8 @@ def joined(first: System, *others: System) -> System:
 
 
 def _system(runs: Iterable[Run], rows: Iterable[End] = (), edges: Iterable[Edge] = ()) -> System:
-    """The system of nodes as they run, of the rows of bridges, which may be for one way each, and of
-    the transforms that they send."""
+    """Return the system of running nodes, of rows of bridges, which may be for one direction each,
+    and of the transforms that they send."""
     running, bridged = [*runs], [*rows]
     nodes = {}
     for run in merged(running):
@@ -230,7 +230,7 @@ def _system(runs: Iterable[Run], rows: Iterable[End] = (), edges: Iterable[Edge]
 
 
 def _rows(bridges: Iterable[OutputFile], home: str) -> Iterator[End]:
-    """What the bridges carry that run in a namespace."""
+    """Yield the ends of bridges that run in a namespace."""
     for text in bridges:
         for it in bridge_ends(text.yaml):
             place = Place(*line_in_source(text, it.place.line)) if text.sources else NOWHERE
@@ -246,8 +246,8 @@ def _edges(
     topic: str = TF,
     inside: Iterable[Edge] = (),
 ) -> Iterator[Edge]:
-    """The transforms of a description, those of a bridge from ``inside`` the simulator, and those that
-    nodes send besides, by their names in the stack."""
+    """Yield the transforms of a description, those of a bridge from ``inside`` the simulator, and
+    those that other nodes send, by their names in the node set."""
     nodes = {it.node: it for it in runs}
     described = nodes.get(STATE_PUBLISHER)
     publisher = described.full_name if described else f"{home}/{STATE_PUBLISHER}"
@@ -264,7 +264,7 @@ def _edges(
 
 
 def _simulated(robot: RewrittenRobot) -> Iterator[Edge]:
-    """The transforms of gz-sim's drive and odometry systems, which the bridge brings to tf."""
+    """Yield the transforms of gz-sim's drive and odometry systems, which the bridge brings to tf."""
     for host, section in robot.member.inventory.served:
         sites = frame_sites(host, section, robot.names.naming)
         given = [text_at(host, it.path) for it in sites]
@@ -273,7 +273,7 @@ def _simulated(robot: RewrittenRobot) -> Iterator[Edge]:
 
 
 def _heard(fleet: Fleet, robot: RewrittenRobot, bridges: Iterable[OutputFile]) -> Iterator[Heard]:
-    """The frames of what a robot's bridge has from sensors whose description names none; those that it
+    """Yield the frames of a robot's bridged sensors whose description names none; those that it
     names are compared with its links."""
     if robot.spec.simulator == REAL:
         return
@@ -289,7 +289,7 @@ def _heard(fleet: Fleet, robot: RewrittenRobot, bridges: Iterable[OutputFile]) -
 
 
 def _said(data: bytes, file: str, root: _Element) -> Semantics:
-    """What an SRDF, which may be empty, says of the description."""
+    """Return what an SRDF, which may be empty, declares for the description."""
     return semantics(read_document(data, file).root, root, file) if data else Semantics((), ())
 
 
@@ -301,19 +301,19 @@ def _controlled(
     moveit: Iterable[YamlText],
     said: Semantics,
 ) -> System:
-    """The system with its controllers and interfaces."""
+    """Return the system with its controllers and interfaces."""
     made = control_system(given, evidence.known, exports, active(evidence.spawned))
     planned = planning_system(moveit, said).interfaces
     return system._replace(controllers=made.controllers, interfaces=(*made.interfaces, *planned))
 
 
 def _own(robot: RewrittenRobot) -> Mapping[str, str]:
-    """What an argument makes -> the name without it, which may begin with the slash behind it: /imu."""
+    """Return by what an argument makes the name without it, which may begin with a slash: /imu."""
     return {text: name.lstrip("/") for (_, name), text in robot.names.own.items()}
 
 
 def _plain(robot: RewrittenRobot, export: Exported) -> Exported:
-    """The interface as parameter files call it, where an argument of the xacro renames its owner."""
+    """Return the interface as parameter files call it, if an xacro argument renames its owner."""
     own = _own(robot)
     # A name may have a slash of its own: robot1/imu.
     whole = (it for it in own if export.name.startswith(f"{it}/"))
@@ -326,8 +326,8 @@ def _plain(robot: RewrittenRobot, export: Exported) -> Exported:
 
 
 def _plainly(robot: RewrittenRobot, given: Run) -> Run:
-    """The same of what a launch file fills in for a robot that has such an argument, and of what is
-    left of a name without it."""
+    """Return the parameters of a node without what such an argument makes, which a launch file
+    fills in."""
     own = _own(robot)
     own = {**{name: own[text] for (_, name), text in robot.names.own.items()}, **own}
     values = {}

@@ -51,7 +51,7 @@ class Sample(NamedTuple):
 
 
 def two_of_each(made: Outputs, robots: Sequence[RobotSpec]) -> Sample:
-    """The sample; all robots where the launch file and the plan have not one part for each."""
+    """Return the sample; all robots if launch file and plan do not have one part for each."""
     words = {word for it in robots for word in it.words}
     cut = ((word, it.start()) for word in words for it in re.finditer("[_/]", word))
     # Names of two robots could be one, such as those of ``arm`` and ``arm_left``.
@@ -81,7 +81,7 @@ def two_of_each(made: Outputs, robots: Sequence[RobotSpec]) -> Sample:
 
 
 def names_one_of(graph: LaunchGraph, words: Collection[str]) -> bool:
-    """Is one of the words in what the launch gives to a node?"""
+    """Return whether one of the words is in what the launch gives to a node."""
     every = "|".join(map(re.escape, sorted(words, reverse=True)))
     found = re.compile(rf"(?<![A-Za-z0-9])(?:{every})(?![A-Za-z0-9])")
     texts = {it.text for _, it in graph.files}
@@ -119,7 +119,7 @@ def _alike(one: _Sort, other: _Sort) -> bool:
 
 
 def _but_for(poses: Collection[tuple[float, float]], one: str, other: str) -> bool:
-    """Are two texts the same but for numbers of the poses?"""
+    """Return whether two texts are the same but for numbers of the poses."""
     ours, theirs = _NUMBER.split(one), _NUMBER.split(other)
     if len(ours) != len(theirs) or ours[::2] != theirs[::2]:
         return False
@@ -128,7 +128,7 @@ def _but_for(poses: Collection[tuple[float, float]], one: str, other: str) -> bo
 
 
 def _without(made: Outputs, left: Sequence[RobotSpec]) -> Outputs:
-    """The outputs without some robots."""
+    """Return the outputs without some robots."""
     names = {it.name for it in left}
     files = [it for it in made.files if it.path.partition("/")[0] not in names]
 
@@ -144,7 +144,7 @@ def _without(made: Outputs, left: Sequence[RobotSpec]) -> Outputs:
 
 
 def _planned(plan: System, robots: Collection[str]) -> System:
-    """The plan without some robots, and without what only they have."""
+    """Return the plan without some robots, and without what only they have."""
     names = {it.name for it in plan.nodes if it.robot in robots}
     owner = whose_by_plan(plan).robot
     gone: dict[str, bool] = defaultdict(lambda: True)

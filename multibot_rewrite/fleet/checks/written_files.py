@@ -33,8 +33,8 @@ from multibot_rewrite.system.records import NOWHERE, Place
 def wrong_in_file(
     plan: FleetPlan, file: NamedFile, robots: Sequence[RewrittenRobot]
 ) -> list[Finding]:
-    """What all rules find in a file for some robots, with what a fleet knows: the words for its robots,
-    frames that its nodes send, and what is beside it."""
+    """Return what all rules find in a file for some robots, with what a fleet knows: its robots'
+    names, frames that its nodes send, and related files."""
     known = load_known_nodes(plan.file.nodes, plan.file.distro)
     words = {name for it in plan.robots for name in (it.spec.namespace, it.spec.tag)}
     own = frozenset(robots[0].spec.words if len(robots) == 1 else ())
@@ -46,7 +46,7 @@ def wrong_in_file(
 
 
 def of_files(found: Iterable[Finding]) -> set[Finding]:
-    """Those of the rules for files that are more than a note."""
+    """Return the findings of the rules for files that are more than a note."""
     asked = codes()
     return {it for it in found if it.code in asked and it.level != NOTE}
 
@@ -54,8 +54,8 @@ def of_files(found: Iterable[Finding]) -> set[Finding]:
 def written_findings(
     plan: FleetPlan, group: RobotGroup, texts: Sequence[OutputFile], known: Collection[Finding]
 ) -> Iterator[Finding]:
-    """What is wrong with the files of a robot as they are written, at the lines of their sources; what
-    only the rewrite has opened is an error. ``known`` is what was found in the sources."""
+    """Yield what is wrong with the written files of a robot, at the lines of their sources; an
+    error if only the rewrite has made it. ``known`` is what was found in the sources."""
     robot, context = group.robots[0], group.context
     own = [it for it in texts if it.path.startswith(f"{robot.spec.name}/") and it.sources]
     bridges = [it for it in own if it.path == f"{robot.spec.name}/{BRIDGE_FILE}"]

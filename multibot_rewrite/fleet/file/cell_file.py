@@ -28,8 +28,8 @@ class Cell(NamedTuple):
 
 
 def with_cell(read: FleetData) -> FleetData:
-    """The data with what a cell means for its keys: groups of each arm's own, one move_group, one topic
-    of joint states."""
+    """Return the data with what a cell means for its keys: groups for each arm, one move_group, one
+    topic of joint states."""
     if CELL not in read.data:
         return read
     data = dict(read.data)
@@ -43,7 +43,7 @@ def with_cell(read: FleetData) -> FleetData:
 
 
 def cell_of(read: FleetData, naming: Naming) -> Cell | None:
-    """The cell of a fleet, if it has one; InputError where its robots cannot be joined."""
+    """Return the cell of a fleet, None without; raises InputError if its robots cannot be joined."""
     if CELL not in read.data:
         return None
     given = read.data[CELL]

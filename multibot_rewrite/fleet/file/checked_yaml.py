@@ -38,8 +38,8 @@ class CheckedYaml(NamedTuple):
 
 
 def text_checked(text: bytes, path: str, schema: Mapping[str, Any], hint: str) -> CheckedYaml:
-    """The data of a file; InputError with its line, the key and what is allowed. ``hint`` says what to
-    write into an empty file."""
+    """Return the data of a file; raises InputError with its line, the key and what is allowed.
+    ``hint`` says what to write into an empty file."""
     refuse_others(text, path, FLEET)
     document = read_yaml(text, path)
     if document.root is None:
@@ -58,7 +58,7 @@ def text_checked(text: bytes, path: str, schema: Mapping[str, Any], hint: str) -
 
 
 def _lines(node: yaml.Node, file: str, path: Path) -> Iterator[tuple[Path, int]]:
-    """The line of every value and key; a repeated key is an error."""
+    """Yield the path and line of every value and key; raises InputError for a repeated key."""
     yield path, line_of(node)
     if isinstance(node, yaml.SequenceNode):
         for at, item in enumerate(node.value):
@@ -75,7 +75,7 @@ def _lines(node: yaml.Node, file: str, path: Path) -> Iterator[tuple[Path, int]]
 
 
 def _errors(data: Any, schema: Mapping[str, Any]) -> list[Any]:
-    """Every fault, the deepest reason of each."""
+    """Return every error, with the deepest reason of each."""
     try:
         import jsonschema
         from jsonschema.exceptions import best_match
@@ -92,7 +92,7 @@ def _errors(data: Any, schema: Mapping[str, Any]) -> list[Any]:
 def _faults(
     error: Any, lines: Mapping[Path, int], schema: Mapping[str, Any]
 ) -> Iterator[tuple[int, str]]:
-    """The lines of an error, and it in words."""
+    """Yield the lines of an error, each with its words."""
     path = tuple(error.absolute_path)
     line = next(lines[path[:end]] for end in range(len(path), -1, -1) if path[:end] in lines)
     where = "".join(f"[{it}]" if isinstance(it, int) else f".{it}" for it in path).lstrip(".")
@@ -108,7 +108,7 @@ def _faults(
 
 
 def _in_words(error: Any) -> str:
-    """A validation error in plain words, with what is allowed."""
+    """Return a validation error in plain words, with what is allowed."""
     given, wanted = error.instance, error.validator_value
     if error.validator == "required":
         # There is an error for each key that is missing.
@@ -151,10 +151,8 @@ def _shown(value: object) -> str:
 
 
 def _known(word: object, known: Iterable[object], below: Collection[str] = ()) -> str:
-    """What to write instead of an unknown word: the nearest known one, else all of them.
-
-    ``below`` are words that are known one step down, in ``BELOW``.
-    """
+    """Return what to write for an unknown word: the nearest known one, otherwise all of them.
+    ``below`` are words that are known one step down, in ``BELOW``."""
     words = [str(it) for it in known]
     other = other_words("keys").get(str(word), str(word))
     if other in words:

@@ -40,8 +40,8 @@ TOGETHER = Apart()
 
 
 def apart_of(read: FleetData, robots: Mapping[str, str]) -> Apart:
-    """What a fleet file says; ``robots`` are the names with the namespaces. Raises InputError with its
-    line where that does not fit together."""
+    """Return the domains of a fleet file; ``robots`` are the names with the namespaces. Raises
+    InputError with its line if they do not fit together."""
     data = read.data
     for key in (it for it in (CROSSING, FREE_FLEET) if it in data and DOMAINS not in data):
         file, line = read.places.get((key,), (read.file, 1))

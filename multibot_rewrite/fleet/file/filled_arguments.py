@@ -46,11 +46,9 @@ class _Choice(NamedTuple):
 def with_own_arguments(
     file: FleetFile, naming: Naming, trust: bool
 ) -> tuple[FleetFile, Mapping[str, Sequence[Finding]]]:
-    """The fleet with a value for each argument that names robots, where it fits the layout, and what is
-    said of them, by robot.
-
-    A file that cannot be expanded is left to whoever reads it.
-    """
+    """Return the fleet with a value for each argument that names robots, if that fits the layout,
+    and the findings about them, by robot. A file that cannot be expanded is left to whoever reads
+    it."""
 
     @cache
     def found(path: str, given: frozenset[tuple[str, str]]) -> tuple[Argument, ...]:
@@ -119,7 +117,7 @@ def _choice(it: Argument, naming: Naming, robot: RobotSpec) -> _Choice:
 
 
 def _makes_other_names(use: Use, naming: Naming) -> bool:
-    """Are names with the argument others than the layout's?"""
+    """Return whether names with the argument differ from the layout's."""
     if use.kind in ROS_KINDS:
         return naming.topics != NAMESPACE or use.how == POSTFIX
     if use.kind not in _KNOWN:

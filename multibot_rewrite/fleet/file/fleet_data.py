@@ -58,7 +58,7 @@ def check_files(data: Mapping[str, Any], at: Path, places: Places) -> None:
 
 
 def texts_of(values: Sequence[Any], file: str) -> dict[str, str]:
-    """The texts of parameters that stand in the fleet file itself, by the path that each has then."""
+    """Return the texts of parameters written in the fleet file itself, by the path that each gets."""
     given = [it for it in values if not isinstance(it, str)]
     paths = (os.path.join(file, f"values{at or ''}.yaml") for at in range(len(given)))
     full = ({node: {"ros__parameters": own} for node, own in it.items()} for it in given)
@@ -66,7 +66,7 @@ def texts_of(values: Sequence[Any], file: str) -> dict[str, str]:
 
 
 def with_paths(folder: str, data: dict[str, Any]) -> dict[str, Any]:
-    """The data with every path relative to the working directory."""
+    """Return the data with every path relative to the working directory."""
 
     def resolve(value: Any) -> Any:
         if isinstance(value, str):
@@ -98,7 +98,7 @@ def with_paths(folder: str, data: dict[str, Any]) -> dict[str, Any]:
 
 
 def _file_and_rest(text: str) -> tuple[str, str]:
-    """The first word of what follows ``ros2 launch``, as a shell has it, and what follows that."""
+    """Return the first word of arguments for ``ros2 launch``, as a shell splits it, and the rest."""
     rest = StringIO(text)
     words = shlex.shlex(rest, posix=True)
     words.whitespace_split, words.commenters = True, ""
@@ -109,26 +109,26 @@ def _file_and_rest(text: str) -> tuple[str, str]:
 
 
 def _joined(folder: str, path: str) -> str:
-    """A path below a folder, without ``..`` where no link makes that another place."""
+    """Return a path below a folder, without ``..`` unless a link makes that another place."""
     found = os.path.join(folder, path)
     short = os.path.normpath(found) if os.pardir in found else found
     return short if os.path.realpath(short) == os.path.realpath(found) else found
 
 
 def _of_package(text: str) -> bool:
-    """Is it a package and the name of a file in it, not a path?"""
+    """Return whether it is a package and the name of a file in it, not a path."""
     package, rest = _file_and_rest(text)
     file = next(iter(rest.split()), "")
     return bool(file) and "=" not in package + file
 
 
 def listed(value: Any) -> Sequence[Any]:
-    """A list as it is, one word as a list."""
+    """Return a list as it is, one word as a list."""
     return [value] if isinstance(value, str) else value
 
 
 def nodl_files(nodl: Sequence[str], places: Places) -> list[str]:
-    """The NoDL files that a fleet file names, those in its folders too; InputError with its line."""
+    """Return the NoDL files that a fleet file names, also by folder; raises InputError with a line."""
     try:
         return list(find_interfaces(nodl).given.values())
     except UsageError as error:
@@ -182,7 +182,7 @@ def fleet_yaml(value: Any, **options: Any) -> str:
 
 
 def read_data(source: FleetSource) -> FleetData:
-    """The data of a fleet; paths in a dict are relative to the working directory. Raises InputError."""
+    """Return the data of a fleet; in a dict paths are from the working directory. Raises InputError."""
     if isinstance(source, str):
         return _with_includes(_of_file(source), ())
     hint = "write texts, numbers, lists and dicts"
@@ -225,13 +225,13 @@ def _placed(path: str, folder: str, checked: CheckedYaml) -> FleetData:
 
 
 def _wanted() -> dict[str, Any]:
-    """The schema; an included file need not list robots."""
+    """Return the schema without required keys: an included file need not list robots."""
     return {key: value for key, value in schema().items() if key != "required"}
 
 
 @cache
 def schema() -> dict[str, Any]:
-    """The published JSON Schema of fleet files, with the layouts and releases that there are."""
+    """Return the published JSON Schema of fleet files, with the existing layouts and releases."""
     result: dict[str, Any] = json.loads(own_text(fleet.__file__, SCHEMA))
     names = [*(it.name for it in LAYOUTS), *(it.short for it in LAYOUTS)]
     result["properties"]["layout"]["enum"] = names
@@ -242,10 +242,8 @@ def schema() -> dict[str, Any]:
 def given_arguments(
     data: Mapping[str, Any], own: Mapping[str, Any], described: Sequence[str], place: str
 ) -> dict[str, str]:
-    """The xacro arguments of a robot, over those of the fleet; only for xacro files.
-
-    Raises InputError for arguments without a xacro, and for an unknown placeholder.
-    """
+    """Return the xacro arguments of a robot, over those of the fleet; only for xacro files. Raises
+    InputError for arguments without a xacro, and for an unknown placeholder."""
     files = (*described, *(own.get(it, data.get(it, "")) for it in ("srdf", "simulated")))
     if not any(is_xacro(it) for it in files):
         if own.get("arguments"):

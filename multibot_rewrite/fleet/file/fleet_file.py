@@ -34,16 +34,16 @@ IN_FILE = "the fleet file says so"
 
 class FleetFile(NamedTuple):
     """A fleet file with its includes. ``policy`` are the options of ``make_naming`` that it sets,
-    ``files`` all files of the fleet except the robots' own: the fleet file, what it includes, nodes,
-    parameters, vocabulary. ``shared_nodes`` are nodes that run once for all robots, ``own_nodes`` those
-    that each robot has though others of the kind run once.
-    ``sros2`` asks for a policy, ``params_style`` says how parameter files are written,
-    ``relayed`` asks for each robot's tf on /tf as well, ``cell`` for one move_group for all robots,
-    ``shape`` for outputs as the launch files of a vendor take them, ``zenoh`` for configurations;
-    ``apart`` are the domains of robots that are not in one; ``why`` is what says the release.
-    ``installed`` is where the results are when they are used, empty for where
-    they are written. ``simulator_world`` is the user's world for it, which the file names at
-    ``world_place``. ``shared_places`` are the file and line of the lists of shared names, by key."""
+    ``files`` all files of the fleet except the robots' own: the fleet file, what it includes,
+    nodes, parameters, plugin definitions. ``shared_nodes`` are nodes that run once for all robots,
+    ``own_nodes`` those that each robot has though others of the kind run once. ``sros2`` asks for a
+    policy, ``params_style`` says how parameter files are written, ``relayed`` asks for each robot's
+    tf on /tf as well, ``cell`` for one move_group for all robots, ``shape`` for outputs as the
+    launch files of a vendor take them, ``zenoh`` for configurations; ``apart`` are the domains of
+    robots that are not in one; ``why`` is what says the release. ``installed`` is where the results
+    are when they are used, empty for where they are written. ``simulator_world`` is the user's
+    world for it, which the file names at ``world_place``. ``shared_places`` are the file and line
+    of the lists of shared names, by key."""
 
     file: str
     policy: Policy
@@ -118,7 +118,7 @@ def read_fleet(
 
 
 def _policy(read: FleetData) -> tuple[Policy, Naming]:
-    """The options of ``make_naming`` that a fleet file sets, and the naming; raises InputError."""
+    """Return the options of ``make_naming`` in a fleet file, and the naming; raises InputError."""
     data = read.data
     given = {key: data[key] for key in POLICY if key in data}
     lists = {key: tuple(listed(given[key])) for key in LISTS if key in given}
@@ -135,7 +135,7 @@ def _policy(read: FleetData) -> tuple[Policy, Naming]:
 
 
 def _check_world(read: FleetData, naming: Naming) -> None:
-    """Raises InputError for a world that is no frame of all robots."""
+    """Raise InputError for a world that is no frame of all robots."""
     world = read.data.get("world", "")
     if world and world not in naming.shared_frames:
         file, line = read.places["world",]
@@ -149,7 +149,7 @@ def _nodes(data: Mapping[str, Any], key: str) -> tuple[str, ...]:
 
 
 def _release(data: Mapping[str, Any], given: str, environment: Mapping[str, str]) -> SaidRelease:
-    """The release, and what says it."""
+    """Return the release, and what it comes from."""
     asked = given or data.get("distro", "")
     chosen = chosen_release(asked, environment)
     if why := why_told(asked, environment):
@@ -160,14 +160,14 @@ def _release(data: Mapping[str, Any], given: str, environment: Mapping[str, str]
 
 
 def input_files(fleet: FleetFile) -> Iterator[str]:
-    """Every file that it names, itself among them."""
+    """Yield every file that the fleet file names, and itself."""
     yield from fleet.files
     for robot in fleet.robots:
         yield from robot.files
 
 
 def _check_robots_differ(robots: Sequence[RobotSpec]) -> None:
-    """No two robots may have the same name, namespace, prefix or postfix, model or pose."""
+    """Refuse two robots with the same name, namespace, prefix or postfix, model or pose."""
     for what in ("name", "namespace", "tag", "model", "pose"):
         seen: dict[object, RobotSpec] = {}
         for robot in robots:

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which robots a fleet has, where that is said when it starts: as a text, or as a number.
 
-A robot of the file with ``count`` is a pattern: ``{name: robot, count: 3, step: {y: 2}}`` stands for
-robot1, robot2 and robot3, each 2 m beside the one before.
-"""
+A robot of the file with ``count`` is a pattern: ``{name: robot, count: 3, step: {y: 2}}`` stands
+for robot1, robot2 and robot3, each 2 m from the one before."""
 
 from __future__ import annotations
 
@@ -39,10 +38,8 @@ _Row = tuple[int, dict[str, Any]]
 
 
 def with_robots(read: FleetData, choice: Choice) -> FleetData:
-    """The data with all robots that patterns stand for, or with those that are chosen.
-
-    Raises UsageError for a choice that cannot be meant, InputError for a wrong pattern.
-    """
+    """Return the data with all robots of its patterns, or with those that are chosen. Raises
+    UsageError for an impossible choice, InputError for a wrong pattern."""
     given = read.data["robots"]
     if choice == ALL and not any(COUNT in it or STEP in it for it in given):
         return read
@@ -62,7 +59,7 @@ def with_robots(read: FleetData, choice: Choice) -> FleetData:
 
 
 def _repeated(read: FleetData, at: int, asked: int) -> Iterator[_Row]:
-    """A robot of the file, or those that it stands for."""
+    """Yield a robot of the file, or the robots of its pattern."""
     robot = read.data["robots"][at]
     file, line = read.places["robots", at]
     if COUNT not in robot:
@@ -85,8 +82,8 @@ def _repeated(read: FleetData, at: int, asked: int) -> Iterator[_Row]:
 
 
 def _continued(read: FleetData, count: int) -> Iterator[_Row]:
-    """The first robots of a file that numbers them, and more like the last one, as far from each other
-    as the last two."""
+    """Yield the first robots of a file that numbers them, and more like the last one, as far from
+    each other as the last two."""
     given = read.data["robots"]
     if not 0 < count <= MOST:
         raise UsageError(f"count {count}: write a number from 1 to {MOST}")
@@ -107,7 +104,7 @@ def _continued(read: FleetData, count: int) -> Iterator[_Row]:
 
 
 def _numbered(read: FleetData, count: int) -> tuple[str, int]:
-    """The name of all robots without their numbers, and the last number; raises UsageError."""
+    """Return the name of all robots without their numbers, and the last number; raises UsageError."""
     given = read.data["robots"]
     found = [_NUMBERED.fullmatch(robot[NAME]) for robot in given]
     names = [(it[1], int(it[2])) for it in found if it]
@@ -118,12 +115,12 @@ def _numbered(read: FleetData, count: int) -> tuple[str, int]:
 
 
 def _without(robot: Mapping[str, Any]) -> dict[str, Any]:
-    """What all robots of a pattern have."""
+    """Return what all robots of a pattern share."""
     return {key: it for key, it in robot.items() if key not in (COUNT, STEP, POSE, NAME)}
 
 
 def _chosen(text: str, rows: list[_Row], given: list[dict[str, Any]]) -> Iterator[_Row]:
-    """The robots that a text names: as the file has them, else as its pattern or first robot."""
+    """Yield the robots that a text names: as the file has them, otherwise like its pattern or first."""
     known = {robot[NAME]: (at, robot) for at, robot in rows}
     like = next((at for at, it in enumerate(given) if COUNT in it), 0)
     base = like, {key: it for key, it in _without(given[like]).items() if key not in OWN}
@@ -133,7 +130,7 @@ def _chosen(text: str, rows: list[_Row], given: list[dict[str, Any]]) -> Iterato
 
 
 def parse_robots(text: str) -> Iterator[tuple[str, dict[str, float]]]:
-    """Each name with its pose, which is empty where none is given; raises UsageError."""
+    """Yield each name with its pose, which is empty if none is given; raises UsageError."""
     seen: set[str] = set()
     for part in filter(None, map(str.strip, text.split(";"))):
         name, _, pose = (it.strip() for it in part.partition("="))

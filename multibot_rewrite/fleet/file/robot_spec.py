@@ -105,7 +105,7 @@ class RobotSpec(NamedTuple):
         return self.name, self.namespace, self.tag
 
     def bridge_namespace_of(self, path: str) -> str:
-        """The namespace below its own that one of its bridge files is for."""
+        """Return the namespace, below the robot's, of one of its bridge files."""
         return dict(self.bridges_below).get(path, self.bridge_namespace)
 
     @property
@@ -116,12 +116,12 @@ class RobotSpec(NamedTuple):
 
 
 def is_simulated(data: Mapping[str, Any], own: Mapping[str, Any]) -> bool:
-    """Does it run in a simulator?"""
+    """Return whether a robot runs in a simulator."""
     return bool(own.get("simulator", data.get("simulator", REAL)) != REAL)
 
 
 def robot_spec(read: FleetData, naming: Naming, at: int, release: str) -> RobotSpec:
-    """The robot in row ``at``; raises InputError with file and line."""
+    """Return the robot in row ``at``; raises InputError with file and line."""
     data, own = read.data, read.data["robots"][at]
     file, line = read.places["robots", at]
     place, name = f"{file}:{line}", own["name"]
@@ -182,7 +182,7 @@ def robot_spec(read: FleetData, naming: Naming, at: int, release: str) -> RobotS
 
 
 def _launch(data: Mapping[str, Any], own: Mapping[str, Any], place: str) -> Iterator[LaunchOrder]:
-    """The launch files of a robot; InputError for words that are no arguments."""
+    """Yield the launch files of a robot; raises InputError for words that are no arguments."""
     roots = listed(data.get("launch_roots", []))
     try:
         for text in listed(own.get("launch", data.get("launch", []))):
@@ -223,11 +223,9 @@ _MADE = "robot.urdf"
 
 
 def described(read: FleetData, at: int) -> tuple[str, tuple[Part, ...]]:
-    """The description of a robot, by its number, and the parts that it is joined of.
-
-    That of a list in the fleet file is no file, and is called as if it were below. Raises InputError
-    for a robot with both.
-    """
+    """Return the description of a robot, by its number, and the parts that it is joined from. A
+    list in the fleet file gets a path as if it were a file below. Raises InputError for a robot
+    with both."""
     data, own = read.data, read.data["robots"][at]
     file, line = read.places["robots", at]
     if any(JOIN in it and DESCRIPTION in it for it in (own, data)):

@@ -52,7 +52,7 @@ class Shape(NamedTuple):
 
 @cache
 def shapes() -> Mapping[str, Shape]:
-    """All shapes by name."""
+    """Return all shapes by name."""
     rows = load_own_yaml(fleet.__file__, "shapes.yaml")
     found = {}
     for name, it in rows.items():
@@ -65,10 +65,8 @@ def shapes() -> Mapping[str, Shape]:
 
 
 def with_shape(file: FleetFile) -> FleetFile:
-    """The fleet with the style of parameter files that its shape needs.
-
-    Raises UsageError for a layout or a style that the vendor's launch files cannot start.
-    """
+    """Return the fleet with the style of parameter files that its shape needs. Raises UsageError
+    for a layout or a style that the vendor's launch files cannot start."""
     if not file.shape:
         return file
     shape, place = shapes()[file.shape], f"{file.file}: shape {file.shape}"
@@ -87,7 +85,7 @@ def with_shape(file: FleetFile) -> FleetFile:
 
 
 def placed(robot: RewrittenRobot, shape: str) -> RewrittenRobot:
-    """The robot with the places of its outputs, by the names that they have without a shape."""
+    """Return the robot with the places of its outputs, by their names without a shape."""
     if not shape:
         return robot
     made, companions = {}, robot.spec.companions
@@ -105,7 +103,7 @@ def placed(robot: RewrittenRobot, shape: str) -> RewrittenRobot:
 
 
 def name_of(robot: RewrittenRobot, what: str) -> str:
-    """The output of a robot without its place: its description, its SRDF, its bridge, or the first
+    """Return the output of a robot without its place: its description, SRDF, bridge, or first
     parameter file with a section of a node; empty if it has none."""
     return next(_files_with(robot, what), "")
 

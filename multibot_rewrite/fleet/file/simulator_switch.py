@@ -37,7 +37,7 @@ Suits = Callable[[_Element], bool]
 
 
 def is_called_as_switch(argument: str) -> bool:
-    """Is an argument called as those are that switch between the simulated and the real robot?"""
+    """Return whether an argument is named as a switch between the simulated and the real robot."""
     return _NAME.search(argument.lower()) is not None
 
 
@@ -47,50 +47,50 @@ def other_values(value: str) -> list[str]:
 
 
 def hardware_classes(root: _Element) -> list[str]:
-    """The hardware classes of a description's ``<ros2_control>``."""
+    """Return the hardware classes of a description's ``<ros2_control>``."""
     found = (it.text or "" for it in root.iterfind(".//ros2_control/hardware/plugin"))
     return [it.strip() for it in found if it.strip()]
 
 
 def of_simulator(hardware: str) -> bool:
-    """Is a hardware class surely one of a simulator?"""
+    """Return whether a hardware class is surely one of a simulator."""
     return any(hardware in it.hardware for it in SIMULATORS)
 
 
 def may_be_simulated(hardware: str) -> bool:
-    """Is it one of a simulator, or called as a vendor's own one is?"""
+    """Return whether it is a simulator's class, or is named as a vendor's own one is."""
     return _SIMULATED.search(hardware.lower()) is not None
 
 
 def loads_hardware(root: _Element) -> bool:
-    """Has it a plugin of a simulator that makes a controller manager?"""
+    """Return whether it has a plugin of a simulator that makes a controller manager."""
     blocks = [root] if root.tag == "sdf" else root.findall("gazebo")
     files = (it.get("filename") or "" for block in blocks for it in block.iter("plugin"))
     return any("ros2_control" in it for it in files)
 
 
 def suits_simulator(root: _Element) -> bool:
-    """Can a simulator's controller manager load its hardware?"""
+    """Return whether a simulator's controller manager can load its hardware."""
     if _lacks_a_class(root):
         return False
     return not loads_hardware(root) or all(map(may_be_simulated, hardware_classes(root)))
 
 
 def suits_real(root: _Element) -> bool:
-    """Is none of its hardware a simulator's?"""
+    """Return whether none of its hardware is a simulator's."""
     return not (_lacks_a_class(root) or any(map(of_simulator, hardware_classes(root))))
 
 
 def _lacks_a_class(root: _Element) -> bool:
-    """Is there hardware of which another argument names the class?"""
+    """Return whether another argument names the class of some hardware."""
     return any(it.find("plugin") is None for it in root.iterfind(".//ros2_control/hardware"))
 
 
 def switch_for(
     path: str, given: Mapping[str, str], suits: Suits, reach: Reach
 ) -> tuple[str, str] | None:
-    """The one argument and its other value with which the description suits; None where it does as it
-    is, or with none."""
+    """Return the one argument and its other value with which the description suits; None if it
+    already does, or no value does."""
     if not path.endswith(".xacro"):
         return None
     with suppress(InputError):
@@ -106,8 +106,8 @@ def switch_for(
 
 
 def _switches(sources: Mapping[str, bytes], given: Mapping[str, str]) -> Iterator[tuple[str, str]]:
-    """Arguments with a value that may switch: one that is called so and is true or false, one that is
-    compared with other words (``mode == 'gazebo'``), one that is a hardware class."""
+    """Yield arguments with a value that may switch the simulator: one that is named so and is true
+    or false, one that is compared with other words (``mode == 'gazebo'``), a hardware class."""
     declared: dict[str, str] = {}
     for file, data in sources.items():
         for it in read_document(data, file).root.iter("{*}arg"):
@@ -129,6 +129,6 @@ def _switches(sources: Mapping[str, bytes], given: Mapping[str, str]) -> Iterato
 
 
 def _compared(name: str, text: str) -> list[str]:
-    """The words that an argument is compared with, those of a simulator or its hardware first."""
+    """Return the words that an argument is compared with, those of simulators first."""
     found = re.findall(rf"""\b{re.escape(name)}\)?["']?\s*==\s*["']([\w-]+)["']""", text)
     return sorted(dict.fromkeys(found), key=lambda it: _SIMULATED.search(it.lower()) is None)

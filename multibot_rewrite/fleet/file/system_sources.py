@@ -51,17 +51,15 @@ def system_of_description(
     trust: bool = False,
     distro: str = "",
 ) -> System:
-    """What robots of a description should run, with the nodes of ``stacks``: a plan.
-
-    ``policy`` are naming options of ``rewrite``. Raises as ``rewrite_all``, and UsageError for a stack
-    that is not known.
-    """
+    """Return what robots of a description should run, with the nodes of ``stacks``: a plan.
+    ``policy`` are naming options of ``rewrite``. Raises as ``rewrite_all``, and UsageError for an
+    unknown node set."""
     given = (source, robots, stacks, policy)
     return expected(make_fleet(*given, xacro_args=xacro_args, trust=trust, release=distro))
 
 
 def system_of_fleet(path: Path, *, trust: bool = False, distro: str = "") -> System:
-    """What the robots of a fleet file should run: a plan. Raises as ``load_fleet``."""
+    """Return what the robots of a fleet file should run: a plan. Raises as ``load_fleet``."""
     file = read_fleet(os.fspath(path), distro, os.environ)
     return expected(closed_plan(plan_fleet(file, trust=trust)))
 
@@ -74,9 +72,9 @@ def system_of_launch(
     trust: bool = False,
     distro: str = "",
 ) -> System:
-    """What a launch file would start. It is a program: ``trust`` lets it do anything, without it it may
-    compute and read (SECURITY.md). ``roots`` are folders with the sources of packages. Raises
-    InputError for a file that cannot be read."""
+    """Return what a launch file would start. It is a program: with ``trust`` it may do anything,
+    without it only compute and read (SECURITY.md). ``roots`` are folders with the sources of
+    packages. Raises InputError for a file that cannot be read."""
     from multibot_rewrite.producers.launch.records import LaunchOrder
 
     order = LaunchOrder(os.fspath(path), tuple(arguments.items()), tuple(roots), trust)
@@ -89,9 +87,9 @@ def launched_by(
     nodes: str | None = None,
     nodl: Sequence[str] = (),
 ) -> Launched:
-    """What launch files would start, together, in the release that was ``told``, else in the one that
-    they are for; ``nodes`` and ``nodl`` are files of the user's own nodes. Raises InputError for a
-    file that cannot be read."""
+    """Return what launch files would start together, in the release ``told`` or otherwise the one
+    that they are for; ``nodes`` and ``nodl`` are files of the user's own nodes. Raises InputError
+    for a file that cannot be read."""
     from multibot_rewrite.producers.launch.child import launch_graph
     from multibot_rewrite.producers.launch.known_node import with_sources
     from multibot_rewrite.producers.launch.records import joined
@@ -112,16 +110,14 @@ def launched_by(
 
 
 def system_of_folder(path: Path, *, distro: str = "") -> System:
-    """What a folder that ``multibot build`` wrote would start, read as ``system_of_launch`` reads its
-    launch file and with no look at its plan. Raises InputError for a folder without one."""
+    """Return what a folder of ``multibot build`` would start, read as ``system_of_launch`` reads
+    its launch file, without its plan. Raises InputError for a folder without one."""
     return system_of_launch(os.path.join(os.fspath(path), LAUNCH), distro=distro)
 
 
 def system_of_files(*paths: Path) -> System:
-    """What a plan says (``multibot plan``), or what any of several snapshots has seen.
-
-    Raises InputError with file, place and what is wrong.
-    """
+    """Return the system of a plan (``multibot plan``), or of one or several snapshots. Raises
+    InputError with file, place and what is wrong."""
     if len(paths) == 1:
         file = os.fspath(paths[0])
         data = read_file(file, MAX_FLEET_BYTES)
@@ -131,7 +127,7 @@ def system_of_files(*paths: Path) -> System:
 
 
 def system_of_bag(path: Path) -> System:
-    """What a recording shows; raises InputError, and MultibotError without the extra ``bags``."""
+    """Return the system in a recording; raises InputError, and MultibotError without extra ``bags``."""
     from multibot_rewrite.producers.bags.read import read_bag
     from multibot_rewrite.producers.bags.recording import as_snapshot
 
@@ -141,8 +137,8 @@ def system_of_bag(path: Path) -> System:
 def system_of_graph(
     *, seconds: float = 30.0, domain: int | None = None, states: bool = False
 ) -> System:
-    """The running ROS graph, looked at until it no longer changes; with ``states`` its nodes are asked
-    for theirs. Raises MultibotError where rclpy is missing or does not start."""
+    """Return the running ROS graph, observed until it no longer changes; with ``states`` its nodes
+    are asked for theirs. Raises MultibotError if rclpy is missing or does not start."""
     from multibot_rewrite.producers.ros.child import ask, observe
     from multibot_rewrite.producers.ros.request import Request
 
@@ -154,10 +150,10 @@ def system_of_graph(
 
 
 def judge(system: System) -> list[Finding]:
-    """What is wrong with a system, as ``multibot check`` says it. Raises nothing."""
+    """Return what is wrong with a system, as ``multibot check`` reports it. Raises nothing."""
     return list(diagnose(system).findings)
 
 
 def compare(plan: System, seen: System) -> list[Finding]:
-    """What of a system is not as planned, as ``multibot check`` says it. Raises nothing."""
+    """Return where a system differs from its plan, as ``multibot check`` reports it. Raises nothing."""
     return check(plan, seen)

@@ -192,7 +192,7 @@ def _parts(text: str, robot: str) -> list[str]:
 
 
 def _is_number(text: str) -> bool:
-    """Is it the text of a number that gives this text again?"""
+    """Return whether it is the text of a number that gives this text again."""
     try:
         return str(float(text)) == text and text.strip("-")[0].isdigit()
     except ValueError:

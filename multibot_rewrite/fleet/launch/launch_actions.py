@@ -99,9 +99,9 @@ _BRIDGE = ("ros_gz_bridge", "parameter_bridge")
 def of_robot(
     one: FleetPlan, files: Mapping[str, bool], bridged: Collection[str], values: Values
 ) -> RobotStarts:
-    """What the one robot of a plan runs; ``files`` are the paths that the build writes, each with
-    whether it has substitutions of launch, ``bridged`` the topics that bridges bring from a simulator,
-    ``values`` what launch files themselves set."""
+    """Return what the one robot of a plan runs. ``files`` are the paths that the build writes, each
+    with whether it has launch substitutions, ``bridged`` the topics that bridges bring from a
+    simulator, ``values`` what launch files themselves set."""
     (robot,) = one.robots
     names = names_of(one.fleet.table, robot.spec.namespace)
     facts = {it.name: it for it in one.evidence_of(robot).nodes}
@@ -162,13 +162,13 @@ class _Given(NamedTuple):
 
     @property
     def running(self) -> list[str]:
-        """The nodes that are started, by their names in the stacks."""
+        """The nodes that are started, by their names in the node sets."""
         return [it for it in self.names.started if it not in self.left]
 
 
 def _left(given: _Given) -> Iterator[tuple[str, str]]:
-    """The nodes that are not started, each with the reason; it is empty for those that are started by
-    something else."""
+    """Yield the nodes that are not started, each with the reason; it is empty for those that are
+    started by something else."""
     naming, file = given.plan.fleet.naming, given.plan.file
     relayed = {it.run.node for it in relays(given.robot.spec.namespace, naming, file)}
     for name in given.names.started:
@@ -188,7 +188,7 @@ def _left(given: _Given) -> Iterator[tuple[str, str]]:
 
 
 def _is_needed(given: _Given, it: NodeFacts) -> bool:
-    """A node under a condition: what nobody else sends is needed, and what is launched runs."""
+    """Return whether a conditional node runs: it is launched, or nobody else sends its topic."""
     evidence = given.plan.evidence_of(given.robot)
     if it.name in evidence.handed_on or it.name in evidence.spawned:
         return True
@@ -207,7 +207,7 @@ def _is_needed(given: _Given, it: NodeFacts) -> bool:
 
 
 def _started(given: _Given, name: str) -> Start:
-    """What runs a node, with the components in it."""
+    """Return what runs a node, with the components in it."""
     it, facts = given.names.started[name], given.facts[name]
     if it.way == SPAWNER:
         return controller(given.plan, it)
@@ -242,7 +242,7 @@ def _started(given: _Given, name: str) -> Start:
 
 
 def _program(given: _Given, name: str) -> Program | None:
-    """What runs a node: its program, for a component its class; None where nobody says it."""
+    """Return a node's program, or a component's class; None if it is unknown."""
     program = started_as(given.facts[name], given.release)
     is_component = given.names.started[name].way == COMPONENT
     known = program and (program.plugin if is_component else program.executable)
@@ -250,7 +250,7 @@ def _program(given: _Given, name: str) -> Program | None:
 
 
 def _made(given: _Given, name: str) -> Start:
-    """The process or component of a node, with its parameters and what its launch file gives it."""
+    """Return the process or component of a node, with its parameters and its launch file's."""
     program = _program(given, name)
     assert program is not None
     made = start_of(given.names.started[name], program, _parameters(given, name))
@@ -258,7 +258,7 @@ def _made(given: _Given, name: str) -> Start:
 
 
 def _with_own(plan: FleetPlan, robot: RewrittenRobot, it: Start, name: str) -> Start:
-    """A process or component with what its launch file gives it; a description in it is the robot's."""
+    """Return a process with what its launch file gives it; a description in that is the robot's."""
     found = plan.evidence_of(robot).handed_on.get(name)
     if found is None:
         return it
@@ -282,8 +282,8 @@ def _with_own(plan: FleetPlan, robot: RewrittenRobot, it: Start, name: str) -> S
 
 
 def _processes(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[Start]:
-    """The processes of its launch files that are no nodes, with the robot's own parameter files in the
-    words of a launch file."""
+    """Yield the processes of its launch files that are no nodes, with the robot's parameter files
+    in the arguments of a launch file."""
     own = {os.path.realpath(it): it for it in robot.spec.companions.get("params", ())}
     for it in (one for one in plan.evidence_of(robot).processes if not one.once):
         made = _process(it.node, robot.spec.name, robot.spec.namespace, plan.fleet.naming)
@@ -295,8 +295,8 @@ def _processes(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[Start]:
 
 
 def _of_one(it: LaunchedNode, space: str, naming: Naming) -> tuple[str, ...]:
-    """The command and its words; those of ``ros2`` ask for nodes and topics of its robot, in a line for
-    a shell, too."""
+    """Return the command and its words; those of ``ros2`` name nodes and topics of its robot, in a
+    line for a shell, too."""
     words, verb = (it.executable, *it.arguments), ""
     found: list[str] = []
     for at, word in enumerate(words):
@@ -347,7 +347,7 @@ def _named_for(word: str, verb: str, space: str, naming: Naming) -> str:
 
 
 def _process(it: LaunchedNode, robot: str, space: str, naming: Naming | None) -> Start:
-    """A process of a robot; of all without a naming, as it is."""
+    """Return a process of a robot; without a naming one for all robots, as it is."""
     made: LaunchedNode = for_robot(it, robot)
     namespace, name = made.namespace, made.name
     if naming is not None:
@@ -380,7 +380,7 @@ def _process(it: LaunchedNode, robot: str, space: str, naming: Naming | None) ->
 
 
 def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
-    """Its robot's parameter files, and what no file says of it."""
+    """Return the robot's parameter files for a node, and the values that no file has."""
     robot, facts = given.robot, given.facts[name]
     is_launched = name in given.plan.evidence_of(robot).handed_on
     files = [
@@ -421,8 +421,8 @@ def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
 
 
 def _described(given: _Given, name: str) -> Parameters:
-    """What a robot_state_publisher publishes: the robot, or what its launch file has beside it, whose
-    frames get the robot's name in front."""
+    """Return what a robot_state_publisher publishes: the robot, or the other description of its
+    launch file, whose frames get the robot's name in front."""
     robot, naming = given.robot, given.plan.fleet.naming
     handed = given.plan.evidence_of(robot).handed_on.get(name)
     if handed is None or not handed.description:
@@ -435,8 +435,8 @@ def _described(given: _Given, name: str) -> Parameters:
 
 
 def _readers(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, frozenset[str]]]:
-    """The parameter files that launch files name, each with the nodes that get it: none has what is
-    for a spawner or for a launch file that is not here."""
+    """Yield the parameter files that launch files name, each with its nodes; without nodes if it is
+    for a spawner or for a launch file that is missing."""
     evidence = plan.evidence_of(robot)
     words = (
         word
@@ -455,8 +455,8 @@ def _readers(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, froz
 
 
 def _types(given: _Given, manager: str) -> Iterator[tuple[str, str]]:
-    """The types of the controllers that no file of the robot declares: without one a controller is not
-    loaded (ros2_control controller_manager.cpp)."""
+    """Yield the types of the controllers that no file of the robot declares: without one a
+    controller is not loaded (ros2_control controller_manager.cpp)."""
     file = given.plan.file
     types = {it: type_ for type_, it in load_known_nodes(file.nodes, file.distro).types.items()}
     declared = {it.node for it in given.plan.evidence_of(given.robot).given if it.program}
@@ -467,7 +467,7 @@ def _types(given: _Given, manager: str) -> Iterator[tuple[str, str]]:
 
 
 def _called(given: _Given, node: str) -> str:
-    """What a node of a stack is called: its robot's parameter file may have it under an older name."""
+    """Return the name of a node of a node set: the robot's parameter file may have an older one."""
     if node in given.names.nodes:
         return given.names.name(node)
     alike = (name for name, it in given.facts.items() if it.known == node)
@@ -502,7 +502,7 @@ def controller(plan: FleetPlan, it: Started) -> Start:
 
 
 def _spawned(given: _Given) -> Iterator[Start]:
-    """What puts the robot into its simulator, and what brings its topics from there."""
+    """Yield what puts the robot into its simulator, and what brings its topics from there."""
     robot = given.robot
     if not is_simulated(robot):
         return
@@ -532,7 +532,7 @@ def _qos(plan: FleetPlan, robot: RewrittenRobot, space: str) -> Iterator[tuple[s
 
 
 def _domain_bridge(robot: RewrittenRobot, files: Collection[str]) -> Iterator[Start]:
-    """What brings topics between its domain and that of all robots."""
+    """Yield the process that brings topics between the robot's domain and that of all robots."""
     path = bridge_path(robot.spec.namespace)
     if path in files:
         name = bridge_name(robot.spec.namespace)
@@ -542,7 +542,7 @@ def _domain_bridge(robot: RewrittenRobot, files: Collection[str]) -> Iterator[St
 def of_all(
     plan: FleetPlan, files: Mapping[str, bool], simulators: Collection[str], values: Values
 ) -> tuple[Start, ...]:
-    """What runs once for all robots: the bridge of the clock, and nodes that all of them share."""
+    """Return what runs once for all robots: the clock's bridge, and nodes that all of them share."""
     names = names_of(plan.fleet.table, "")
     known = {it.name: it for one in plan.evidence.values() for it in one.nodes}
     # The processes that run once, each once.
@@ -570,7 +570,7 @@ def _shared(
     values: Values,
     built: Mapping[str, bool],
 ) -> Iterator[Start]:
-    """The shared nodes have their sections in the files of every robot, and they are alike."""
+    """Yield the shared nodes, from the first robot's files: their sections are alike in all."""
     first, started = plan.robots[0], []
     for name, it in names.started.items():
         facts = known.get(name)

@@ -28,7 +28,7 @@ _SUBSTITUTION = lazy_compile(rb"\$\((?:(find-pkg-share|env) |(\w))")
 
 
 def launch_file(starts: FleetStarts) -> OutputFile:
-    """The launch file."""
+    """Return the launch file."""
     return OutputFile(LAUNCH, to_python(starts).encode())
 
 
@@ -40,9 +40,9 @@ def fleet_starts(
     shown: Sequence[tuple[str, Start]],
     opens: Sequence[tuple[str, Start]],
 ) -> FleetStarts:
-    """What the launch file starts; ``each`` is every robot as a fleet of its own, ``files`` what else
-    is built, ``bridged`` the topics that bridges bring, ``shown`` the windows of RViz, each with its
-    robot; those of them that it ``opens``, somebody has asked for."""
+    """Return what the launch file starts; ``each`` is every robot as a fleet of its own, ``files``
+    what else is built, ``bridged`` the topics that bridges bring, ``shown`` the windows of RViz,
+    each with its robot; it ``opens`` those of them that somebody has asked for."""
     # Whether the launch can replace all substitutions of a file, and there are some.
     found = ((it.path, [known for known, _ in _SUBSTITUTION.findall(it.data)]) for it in files)
     paths = {path: bool(known) and all(known) for path, known in found}
@@ -83,8 +83,8 @@ def fleet_starts(
 def _environment(
     plan: FleetPlan, robots: Sequence[RobotStarts]
 ) -> tuple[dict[str, str], list[RobotStarts]]:
-    """The environment that launch files set for all processes of all robots, and the robots with what
-    they set for one. What starts later is no longer in the domain of its robot: it gets that, too."""
+    """Return the environment that launch files set for all robots' processes, and the robots with
+    what they set for one. What starts later is outside its robot's domain: it gets that, too."""
     own = {
         it.spec.name: for_robot(plan.evidence_of(it).environment, it.spec.name)
         for it in plan.robots
@@ -119,7 +119,7 @@ def domains_of(plan: FleetPlan) -> dict[str, int]:
 
 
 def _world(simulators: Collection[str], paths: Collection[str], launched: str) -> File | str:
-    """The world of the build, else that of the launch files, else that of Gazebo."""
+    """Return the world of the build, otherwise that of the launch files, otherwise Gazebo's."""
     if simulators and world_file.FILE in paths:
         return File(world_file.FILE)
     return launched or ("empty.sdf" if GZ in simulators else "")

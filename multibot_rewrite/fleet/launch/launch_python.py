@@ -21,7 +21,7 @@ _STARTED_APART = "[in_domain(name, ROBOTS[name]()) for name in words or ROBOTS]"
 
 
 def to_python(it: FleetStarts) -> str:
-    """The text of the file."""
+    """Return the text of the launch file."""
     body = _text(_part("file and text"), *_parts(it))
     return _text(_head(it), _imports(body)) + body
 
@@ -96,7 +96,7 @@ def _imports(body: str) -> Iterator[str]:
 
 
 def _shell(line: str) -> Iterator[str]:
-    """A command for a shell, at most as wide as the file."""
+    """Yield the lines of a shell command, at most as wide as the file."""
     words = wrap(line, WIDTH - 6, break_long_words=False, break_on_hyphens=False)
     for number, it in enumerate(words):
         indent, more = "    " * bool(number), " \\" * (number + 1 < len(words))

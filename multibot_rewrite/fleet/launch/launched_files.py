@@ -49,12 +49,10 @@ class _Named(NamedTuple):
 
 
 def with_launched_files(file: FleetFile) -> tuple[FleetFile, Mapping[str, Sequence[Finding]]]:
-    """The fleet with parameter files that only its launch files name, and for each robot by its name
-    notes of those that are left out.
-
-    Raises InputError for a launch file that cannot be read. Robots with the same launch files have
-    those of the first; an argument that names a file by ``{robot}`` makes them differ.
-    """
+    """Return the fleet with parameter files that only its launch files name, and for each robot by
+    its name notes of those that are left out. Raises InputError for a launch file that cannot be
+    read. Robots with the same launch files have those of the first; an argument that names a file
+    by ``{robot}`` makes them differ."""
     first = {it.launch: it for it in reversed(file.robots) if it.launch}
     named = {launch: tuple(_named(spec)) for launch, spec in first.items()}
     found = [_with(it, named.get(it.launch, ())) for it in file.robots]
@@ -64,7 +62,7 @@ def with_launched_files(file: FleetFile) -> tuple[FleetFile, Mapping[str, Sequen
 
 
 def _named(spec: RobotSpec) -> Iterator[_Named]:
-    """The parameter files that are there without the launch, each once."""
+    """Yield the parameter files that exist without the launch, each once."""
     seen: set[str] = set()
     graph = launch_of(spec.launch, spec.words[0])
     robot = graph.robots[0] if graph.robots else ""
@@ -75,7 +73,7 @@ def _named(spec: RobotSpec) -> Iterator[_Named]:
 
 
 def _given_to(node: LaunchedNode) -> Iterator[ParameterText]:
-    """The parameter files of a node, and those that a launch file which is not here is given."""
+    """Yield the parameter files of a node, and those given to a launch file that is missing here."""
     yield from node.parameters
     for word in node.arguments if node.process.is_include else ():
         path = os.path.realpath(word.partition(":=")[2])
@@ -84,8 +82,8 @@ def _given_to(node: LaunchedNode) -> Iterator[ParameterText]:
 
 
 def _bridged(spec: RobotSpec) -> tuple[dict[str, str], tuple[str, ...]]:
-    """The topics in the words of bridges, as files of bridges have them, by the launch file that starts
-    them; the first row of each bridge is in its line there. And the files that bridges are told."""
+    """Return the topics in arguments of bridges as text of bridge files, by launch file, with each
+    bridge's first row in its line there; and the files that bridges are given."""
     words = {*spec.words, *(it.strip("/") for one in spec.launch for _, it in one.arguments)}
     found: dict[str, str] = {}
     nodes = launch_of(spec.launch, spec.words[0]).nodes
@@ -100,7 +98,7 @@ def _bridged(spec: RobotSpec) -> tuple[dict[str, str], tuple[str, ...]]:
 
 
 def _with_bridges(spec: RobotSpec, found: Mapping[str, str], files: Sequence[str]) -> RobotSpec:
-    """The robot with what its launch files bridge, and the files that it has."""
+    """Return the robot with what its launch files bridge, and the files that exist of it."""
     own = spec.companions.get("bridge", ())
     there = {os.path.realpath(it) for it in own}
     own = (*own, *(it for it in files if os.path.realpath(it) not in there), *found)
@@ -118,7 +116,7 @@ def _sets_parameters(path: str) -> bool:
 
 
 def _with(spec: RobotSpec, named: Sequence[_Named]) -> tuple[RobotSpec, list[Finding]]:
-    """The robot with the files that it has not got, and notes of those that are left out."""
+    """Return the robot with the files that it lacked, and notes of those that are left out."""
     own, filled, notes = list(spec.companions.get(PARAMS, ())), [], []
     written = filter(None, (spec.description, spec.srdf, spec.simulated))
     beside = (path for paths in spec.companions.values() for path in paths)
@@ -145,18 +143,16 @@ def _with(spec: RobotSpec, named: Sequence[_Named]) -> tuple[RobotSpec, list[Fin
 
 
 def _is_filled(it: _Named, text: str, spec: RobotSpec) -> bool:
-    """Is what the launch makes of the file the same for all robots, line by line that file?"""
+    """Return whether the launch makes the same of the file for all robots, line by line that file."""
     same = len(it.text.splitlines()) == len(text.splitlines())
     named = {word for word in spec.words if word in it.text and word not in text}
     return same and not named and _SUBSTITUTED not in it.text
 
 
 def with_one_map(file: FleetFile) -> FleetFile:
-    """The fleet with the topics of map servers that its launch files start among those of all robots.
-
-    Robots with different maps have a server each, as nav2_bringup starts it. Raises InputError for a
-    launch file that cannot be read.
-    """
+    """Return the fleet with the topics of launched map servers among those of all robots. Robots
+    with different maps have a server each, as nav2_bringup starts it. Raises InputError for a
+    launch file that cannot be read."""
     maps = sets_by_key(row for spec in file.robots for row in _maps(spec))
     apart = {it for it in maps if len(maps[it]) > 1 or file.params_style == BRINGUP}
     own = tuple(dict.fromkeys((*file.own_nodes, *sorted(apart))))
@@ -169,7 +165,7 @@ def with_one_map(file: FleetFile) -> FleetFile:
 
 
 def _maps(spec: RobotSpec) -> Iterator[tuple[str, tuple[object, str]]]:
-    """The map servers outside of the robot's namespace: name, map, and the topic from the root."""
+    """Yield the map servers outside the robot's namespace: name, map, and the topic from the root."""
     words = {*spec.words, *(it.strip("/") for one in spec.launch for _, it in one.arguments)}
     for it in launch_of(spec.launch, spec.words[0]).nodes if spec.launch else ():
         if it.package == _MAPS and once_for_all(it) and not is_of_robot(it.namespace, words):
@@ -183,11 +179,9 @@ _PACKAGES = ("ros_gz_bridge", "ros_ign_bridge")
 
 
 def with_bridge_namespaces(file: FleetFile) -> FleetFile:
-    """The fleet with the namespaces that launch files give to bridges, where it has none of its own.
-
-    Raises InputError for a launch file that cannot be read. A file of the launch is the robot's of the
-    same name, as for parameter files.
-    """
+    """Return the fleet with the namespaces that launch files give to bridges, where it has none.
+    Raises InputError for a launch file that cannot be read. A file of the launch is the robot's of
+    the same name, as for parameter files."""
     # A launch file may be written for one of the robots.
     robots = {word for it in file.robots for word in it.words}
     return file._replace(robots=tuple(_with_namespaces(it, robots) for it in file.robots))
@@ -206,7 +200,7 @@ def _with_namespaces(spec: RobotSpec, robots: Collection[str]) -> RobotSpec:
 
 
 def _below(node: LaunchedNode, words: Collection[str]) -> str:
-    """The namespace of a launched node without the robot's, which is one of the words."""
+    """Return the namespace of a launched node without the robot's, which is one of the words."""
     own = node.namespace.strip("/")
     for word in sorted(words, key=len, reverse=True):
         if f"{own}/".startswith(f"{word}/"):

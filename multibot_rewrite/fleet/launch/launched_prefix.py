@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A prefix of frames that a launch file gives robot_state_publisher, beside the built description.
+"""A prefix of frames that a launch file gives robot_state_publisher, in addition to the built
+description.
 
 Source: robot_state_publisher src/robot_state_publisher.cpp: frame_prefix is put before each frame; tf2
 takes a leading slash away.
@@ -19,7 +20,7 @@ OTHER_PREFIX = declare("MF841", "launch-file-adds-prefix", WARNING, formats=("fl
 
 
 def launched_prefixes(plan: FleetPlan) -> Iterator[Finding]:
-    """Those of the first robot of each kind."""
+    """Report prefixes that launch files give, for the first robot of each kind."""
     for key, found in plan.evidence.items():
         robot = next(it for it in plan.robots if node_sources(it.spec) == key)
         # What its own robot_state_publisher gets; there may be another one, as of a dock.

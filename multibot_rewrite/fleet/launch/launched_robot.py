@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The launch files of a robot -> its nodes: its stacks as the launch files start them."""
+"""The launch files of a robot -> its nodes: its node sets as the launch files start them."""
 
 from __future__ import annotations
 
 import os
 import time
-from collections.abc import Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Collection, Mapping, Sequence
 from functools import lru_cache
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.rosnames import RemapRule
 from multibot_rewrite.description.sources.expand import once_kept
 from multibot_rewrite.description.sources.own_names import filled
+from multibot_rewrite.fleet.launch.starts import OWN_ARGUMENTS
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.producers.evidence.nodes import RobotNodes, nodes_of, under_plugin
@@ -21,6 +21,7 @@ from multibot_rewrite.producers.launch.known_node import with_sources
 from multibot_rewrite.producers.launch.of_robot import Launched, as_launched, with_launched
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder, joined
 from multibot_rewrite.producers.launch.several_robots import of_first_robot, with_extras
+from multibot_rewrite.producers.launch.source_packages import ROOTS
 from multibot_rewrite.spelling.records import Run
 
 NOT_SPAWNED = "no spawner of the launch files loads it"
@@ -34,11 +35,9 @@ def launched_robot(
     parameters: KnownNodes,
     release: str,
 ) -> Launched | None:
-    """The nodes of a robot with these launch files, in a release; None without any.
-
+    """Return the nodes of a robot with these launch files, in a release; None without any.
     ``words`` stand for the robot in names, the first one for ``{robot}`` in arguments. Raises
-    InputError for a launch file that cannot be read, and UsageError for an unknown placeholder.
-    """
+    InputError for a launch file that cannot be read, and UsageError for an unknown placeholder."""
     if not orders:
         return None
     mine = _own(orders, words[0])
@@ -52,24 +51,51 @@ def launched_robot(
 def known_here(
     known: Mapping[str, NodeFacts], orders: Sequence[LaunchOrder], robot: str, release: str
 ) -> dict[str, NodeFacts]:
-    """The known nodes, and what these launch files start, by its source; raises as
+    """Return the known nodes, and by their sources those that launch files start; raises as
     ``launched_robot``."""
     return with_sources(known, launch_of(orders, robot).nodes if orders else (), orders, release)
 
 
 def launch_of(orders: Sequence[LaunchOrder], robot: str) -> LaunchGraph:
-    """All that these launch files start, with the robot in the place of ``{robot}``; of several robots
-    the first one. Raises as ``launched_robot``."""
-    return with_extras(of_first_robot(joined([*map(_read, _own(orders, robot))])))
+    """Return all that these launch files start, with the robot in the place of ``{robot}``; of
+    several robots the first one. Raises as ``launched_robot``."""
+    graph = with_extras(of_first_robot(joined([*map(_read, _own(orders, robot))])))
+    return _with_off(graph, {name for it in orders for name, _ in it.arguments})
+
+
+def _with_off(graph: LaunchGraph, given: Collection[str]) -> LaunchGraph:
+    """Return launch files with what an argument turns on among their nodes, if it decides nothing else,
+    and is not ``given`` or one of every fleet."""
+    fixed = {name for it in graph.nodes for name, _ in it.process.switches}
+    fixed |= {name for it in graph.idle if not it.is_off for name, _ in it.asked}
+    fixed.update(OWN_ARGUMENTS, given, (it.process.off for it in graph.off if graph.robots))
+    off = [it for it in graph.off if it.process.off not in fixed]
+    values = {name: value for it in off for name, value in it.process.switches}
+    switched = (it._replace(later=f"with {it.process.off}:={values[it.process.off]}") for it in off)
+    names = {it.process.off for it in off}
+    idle = tuple(it for it in graph.idle if not it.is_off or it.asked[0][0] not in names)
+    return graph._replace(nodes=(*graph.nodes, *switched), idle=idle)
 
 
 def _read(order: LaunchOrder) -> LaunchGraph:
-    """However its path is written, a launch file is read once; what is wrong is said of the path that
-    was given."""
+    """Return the graph of a launch file, which is read once, whatever the spelling of its path;
+    errors name the path that was given."""
     whole = _whole(order)
-    with suppress(InputError):
-        return once_kept(whole, lambda: _graph(whole, times_of(whole.file)))
-    return launch_graph(order)
+    try:
+        graph = once_kept(whole, lambda: _graph(whole, times_of(whole.file)))
+    except InputError:
+        graph = launch_graph(order)
+    if why := why_not(graph):
+        raise InputError(f"{order.file}: the launch file cannot be read: {why}")
+    return graph
+
+
+def why_not(graph: LaunchGraph) -> str:
+    """Return why a fleet is not made of a launch file that was read; empty if it is."""
+    first = graph.imports[:1]
+    return (
+        f"it imports the Python package {first[0]!r}, which is not here; {ROOTS}" if first else ""
+    )
 
 
 def keep(order: LaunchOrder, graph: LaunchGraph) -> None:
@@ -107,7 +133,7 @@ def nodes_with(
     given: Sequence[Run],
     known: Mapping[str, NodeFacts],
 ) -> RobotNodes:
-    """The nodes that a robot runs, by its launch files, its other files and its stacks."""
+    """Return the nodes that a robot runs, by its launch files, its other files and its node sets."""
     if launched is None:
         return nodes_of(stack, given, known)
     # Controllers of which launch files say whether they run -> the condition; empty for always.
@@ -122,15 +148,15 @@ def nodes_with(
 def under_plugins(
     nodes: Sequence[NodeFacts], launched: Launched | None, rules: Sequence[RemapRule], release: str
 ) -> tuple[NodeFacts, ...]:
-    """The nodes, with the controllers under the rules of the plugin in the description that loads them,
-    unless a launch file starts their controller manager."""
+    """Return the nodes; controllers get the remap rules of the plugin that loads them, unless a
+    launch file starts their controller manager."""
     if launched and MANAGER in launched.started:
         return tuple(nodes)
     return tuple(under_plugin(it, rules, release) for it in nodes)
 
 
 def given_with(launched: Launched | None, given: Sequence[Run]) -> tuple[Run, ...]:
-    """What a robot's files set and what its launch files do: these come last, so they count."""
+    """Return the settings of a robot's files, then those of its launch files, which override them."""
     if launched is None:
         return tuple(given)
     started = {it.node: it for it in launched.given}
@@ -140,7 +166,7 @@ def given_with(launched: Launched | None, given: Sequence[Run]) -> tuple[Run, ..
 
 
 def _both(own: Run, launched: Run) -> Run:
-    """A value that both have keeps its place in the robot's own file."""
+    """Return both settings as one; a value that both have keeps its place in the robot's own file."""
     same = {
         k: it
         for k, it in own.values.items()

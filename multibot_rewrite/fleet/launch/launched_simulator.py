@@ -36,7 +36,7 @@ class Simulator(NamedTuple):
 
 
 def launched_simulator(file: FleetFile) -> Simulator:
-    """The simulator of the first robot whose launch files start one."""
+    """Return the simulator of the first robot whose launch files start one."""
     for spec in file.robots:
         nodes = launch_of(spec.launch, spec.words[0]).nodes if spec.launch else ()
         started = [it for it in nodes if it.executable == SIMULATOR and it.package in SIMULATORS]
@@ -53,7 +53,7 @@ def launched_simulator(file: FleetFile) -> Simulator:
 
 
 def with_launched_world(file: FleetFile) -> FleetFile:
-    """The fleet with the world of gz-sim that its launch files name, where it names none of its own."""
+    """Return the fleet with the gz-sim world that its launch files name, if it names none itself."""
     own = launched_simulator(file)
     if file.simulator_world or own.is_classic or not os.path.isfile(own.world):
         return file
@@ -65,7 +65,7 @@ def with_launched_world(file: FleetFile) -> FleetFile:
 
 
 def _options(words: Sequence[str]) -> Iterator[str]:
-    """The options with their values, each as one text."""
+    """Yield the options with their values, each as one text."""
     before = ""
     for word in words:
         if before in _VALUED and word[:1] != "-":

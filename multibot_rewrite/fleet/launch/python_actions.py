@@ -195,7 +195,7 @@ def lines(before: str, it: Any, after: str = "") -> list[str]:
 
 
 def _pairs(words: Iterable[str | File]) -> Iterator[Code]:
-    """Yield the arguments of a program: a flag and its value stand together."""
+    """Yield the arguments of a program: a flag and its value are on one line."""
     flag = ""
     for it in words:
         is_flag = isinstance(it, str) and not isinstance(it, Code) and bool(FLAG.fullmatch(it))

@@ -82,7 +82,7 @@ class FleetStarts(NamedTuple):
 
 
 def launch_arguments(it: FleetStarts) -> Iterator[tuple[str, str | File, str]]:
-    """The launch arguments: name, default, what it is."""
+    """Yield the launch arguments: name, default, what it is."""
     yield "robots", "", "only these: robot1,robot2, or so many: 2"
     yield "use_sim_time", str(it.use_sim_time).lower(), "whether all nodes use /clock"
     if any(start.condition == RVIZ for start in it.every):
@@ -92,23 +92,31 @@ def launch_arguments(it: FleetStarts) -> Iterator[tuple[str, str | File, str]]:
         yield "headless", str(it.headless).lower(), "whether the simulator has no window"
         yield "world", it.world, "the world of the simulator"
     for name, default in it.switches.items():
-        yield name, default, "as in the launch files of the robots: it turns something off"
+        yield name, default, "as in the launch files of the robots: it turns something on or off"
 
 
 def with_switches(it: FleetStarts, others: Collection[str]) -> FleetStarts:
-    """Return the fleet with launch arguments that turn off what launch files start with them: those of
-    one value, by which these start nothing else as they do by ``others``. What waits for something
-    that has a condition of ours has no further one."""
-    values = lists_by_key(dict.fromkeys(pair for one in it.every for pair in one.process.switches))
+    """Return the fleet with launch arguments that turn off, or on, what launch files start with them:
+    those of one value, by which these start nothing else as they do by ``others``. What waits for
+    something that has a condition of ours has no further one."""
+    rows = ((one.process.off, pair) for one in it.every for pair in one.process.switches)
+    values = lists_by_key(
+        dict.fromkeys((name, (off == name, value)) for off, (name, value) in rows)
+    )
     taken = {*OWN_ARGUMENTS, *others}
     own = {name: its[0] for name, its in values.items() if len(its) == 1 and name not in taken}
     robots = [one._replace(starts=_switched(one.starts, own)) for one in it.robots]
     made = it._replace(shared=_switched(it.shared, own), robots=robots)
     used = {word.lstrip("!") for one in made.every for word in one.condition.split()}
-    return made._replace(switches={name: text for name, text in own.items() if name in used})
+    usual = {
+        name: str(text.lower() != "true").lower() if off else text
+        for name, (off, text) in own.items()
+        if name in used
+    }
+    return made._replace(switches=usual)
 
 
-def _switched(starts: Sequence[Start], own: Mapping[str, str]) -> tuple[Start, ...]:
+def _switched(starts: Sequence[Start], own: Collection[str]) -> tuple[Start, ...]:
     numbered = {it.number: it for it in starts if it.number >= 0}
 
     def terms(it: Start) -> str:
@@ -119,4 +127,5 @@ def _switched(starts: Sequence[Start], own: Mapping[str, str]) -> tuple[Start, .
         words = (name if value.lower() == "true" else f"!{name}" for name, value in named)
         return it.condition if first else " ".join(words)
 
-    return tuple(it._replace(condition=terms(it)) for it in starts)
+    there = (it for it in starts if not it.process.off or it.process.off in own)
+    return tuple(it._replace(condition=terms(it)) for it in there)

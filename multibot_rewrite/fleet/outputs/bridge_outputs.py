@@ -39,10 +39,8 @@ from multibot_rewrite.spelling.bridged_topics import (
 
 
 def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
-    """Every bridge file of a fleet.
-
-    Raises InputError for a bridge file that cannot be read or rewritten.
-    """
+    """Return every bridge file of a fleet. Raises InputError for a bridge file that cannot be read
+    or rewritten."""
     fleet = plan.fleet
     topics, unbridged = bridged_topics(
         fleet.inventories, fleet.naming, fleet.models, fleet.table.runs, fleet.placed
@@ -101,7 +99,7 @@ def _for_robot(
 def _for_all(
     groups: Iterable[dict[str, BridgeFile]], topics: Sequence[BridgedTopic], is_timed: bool
 ) -> FilesAndFindings:
-    """The bridge of what all robots share, where there is anything to bridge; ``is_timed`` is whether
+    """Yield the bridge of what all robots share, if there is anything to bridge; ``is_timed``:
     their clock is that of Gazebo."""
     shared = dict.fromkeys(
         (path, file.shared) for files in groups for path, file in files.items() if file.shared
@@ -119,7 +117,7 @@ NO_TOPIC = declare("MF509", "sensor-without-gz-topic", WARNING, formats=("fleet-
 def _is_carried(
     topic: UnbridgedTopic, made: Iterable[OutputFile], others: Iterable[BridgedTopic]
 ) -> bool:
-    """Does a file of the user have a row for it? Only who knows the world can write one."""
+    """Return whether a user's file has a row for a topic, which only who knows the world can write."""
     known = {it.gz.lstrip("/") for it in others}
     for row in (row for it in made for row in items(read_yaml(it.data, it.path).root)):
         name = text_of(row, GZ) or text_of(row, BOTH)
@@ -136,7 +134,7 @@ _GZ_WORD = lazy_compile(r"[A-Za-z0-9_.-]+(?:/[A-Za-z0-9_.-]+)*")
 
 
 def fill_bridge(template: FileTemplate, namespace: str, tag: str, model: str) -> str:
-    """A robot's bridge file; InputError if its model's name cannot be part of a gz topic."""
+    """Return a robot's bridge file; raises InputError if its model's name is invalid in gz topics."""
     text = fill_template(template, namespace, tag)
     if MODEL_SLOT in text and not _GZ_WORD.fullmatch(model):
         raise InputError(
@@ -148,11 +146,9 @@ def fill_bridge(template: FileTemplate, namespace: str, tag: str, model: str) ->
 def merge_bridges(
     texts: Iterable[tuple[str, str]], generated: Iterable[BridgedTopic]
 ) -> tuple[str, tuple[Finding, ...]]:
-    """One file from several (file, text) and the bridged topics of descriptions.
-
-    An entry of a file wins over a generated one with the same gz topic. Two gz topics that are
-    bridged to one ROS topic are an error.
-    """
+    """Return one file from several (file, text) and the bridged topics of descriptions. An entry of
+    a file wins over a generated one with the same gz topic. Two gz topics that are bridged to one
+    ROS topic are an error."""
     parts: list[str] = []
     findings: list[Finding] = []
     # By gz topic the file, by ROS topic its first gz topic.

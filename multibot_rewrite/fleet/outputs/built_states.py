@@ -20,10 +20,9 @@ _PLACEHOLDERS = ("$(", "${", "<", *ZONES)
 
 
 def with_built(plan: System, folder: str) -> System:
-    """The plan with the parameters in the files of ``folder``, which has a folder for each robot.
-
-    What the plan itself says of a node comes first. Raises InputError for a file that rcl rejects.
-    """
+    """Return the plan with the parameters in the files of ``folder``, which has a folder for each
+    robot. What the plan itself says of a node comes first. Raises InputError for a file that rcl
+    rejects."""
     folders = folders_of(folder)
     found = (
         it for robot, nodes in nodes_by_robot(plan).items() if robot
@@ -63,10 +62,8 @@ def _of_robot(
 
 
 def _names(document: YamlText, robot: str, nodes: Sequence[str]) -> dict[str, str]:
-    """The names that a file has for a robot's nodes -> their full names.
-
-    A file for nav2_bringup has them below the robot's namespace; all others begin with a slash.
-    """
+    """Return the full names of a robot's nodes by the names that a file has for them. A file for
+    nav2_bringup has them below the robot's namespace; all others begin with a slash."""
     if any(key.value.startswith("/") for key, _ in pairs(document.root)):
         return {it: it for it in nodes}
     above = f"/{robot}"

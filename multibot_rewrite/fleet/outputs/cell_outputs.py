@@ -45,10 +45,8 @@ DISAGREE = declare("MF836", "arms-of-a-cell-disagree", WARNING, formats=("fleet"
 
 
 def cell_outputs(plan: FleetPlan, files: Iterable[OutputFile]) -> FilesAndFindings:
-    """The files of a fleet's cell, if it has one, made of the ``files`` of its robots.
-
-    Raises InputError where the arms cannot be joined.
-    """
+    """Yield the files of a fleet's cell, if it has one, made from the ``files`` of its robots.
+    Raises InputError where the arms cannot be joined."""
     cell = plan.file.cell
     if cell is None:
         return
@@ -80,12 +78,12 @@ def cell_outputs(plan: FleetPlan, files: Iterable[OutputFile]) -> FilesAndFindin
 
 
 def parameters_path(cell: Cell) -> str:
-    """Where the parameters of a cell's move_group are."""
+    """Return the path of the parameters of a cell's move_group."""
     return f"{cell.name}/{FILE}"
 
 
 def cell_commands(plan: FleetPlan) -> Iterator[str]:
-    """The section of ``commands.md`` that starts the cell."""
+    """Yield the section of ``commands.md`` that starts the cell."""
     if cell := plan.file.cell:
         line = shell_line(Start(*PROGRAMS[MOVE_GROUP], parameters=(File(parameters_path(cell)),)))
         yield f"\n## {cell.name}\n\nOne move_group for all arms.\n\n```sh\n{line}\n```\n"
@@ -94,7 +92,7 @@ def cell_commands(plan: FleetPlan) -> Iterator[str]:
 def _moveit(
     plan: FleetPlan, robot: RewrittenRobot, made: Mapping[str, bytes]
 ) -> Iterator[PartMoveit]:
-    """An arm's MoveIt files as a move_group for all has them; servo runs for each arm."""
+    """Yield an arm's MoveIt files as a move_group for all needs them; servo runs for each arm."""
     for it in robot.spec.companions.get("moveit", ()):
         path = path_for(robot, it)
         document = read_yaml(made[path], path)
@@ -127,8 +125,8 @@ _GROUP = "group"
 def cell_window(
     document: YamlText, cell: Cell, first: RewrittenRobot, world: str
 ) -> RvizText | None:
-    """The window, seen from ``world``; it starts with the cell's first group, or with that of the
-    ``first`` arm. None for a config without planning groups; raises as ``read_config``."""
+    """Return the window, seen from ``world``; it starts with the cell's first group, or with that
+    of the ``first`` arm. None for a config without planning groups; raises as ``read_config``."""
     config = read_config(document)
     shown = (place for it in every(config.displays) for place in it.places)
     groups = [it for it in shown if it.kind == _GROUP]

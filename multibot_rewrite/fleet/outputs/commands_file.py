@@ -31,10 +31,8 @@ TAKING = "\nThe vendor's launch files take its files, in the folder of this file
 def commands_file(
     plan: FleetPlan, each: Iterable[FleetPlan], windows: Sequence[tuple[str, Start]]
 ) -> FilesAndFindings:
-    """The commands robot by robot, and the parameters of those that amcl has to place.
-
-    ``each`` is every robot as a fleet of its own, ``windows`` open RViz, each with its robot.
-    """
+    """Yield the commands robot by robot, and the parameters of those that amcl has to place.
+    ``each`` is every robot as a fleet of its own, ``windows`` open RViz, each with its robot."""
     domains = domains_of(plan)
     clocks: set[bool | None] = set()
     rows = [f"# Commands of this fleet{facts_of_release(plan.file.distro)}\n"]
@@ -75,14 +73,14 @@ def commands_file(
 
 
 def _lines(starts: Iterable[Start], use_sim_time: bool | None) -> Iterator[str]:
-    """The lines that start processes, with the clock that the fleet file says, if it says one."""
+    """Yield the lines that start processes, with the clock of the fleet file, if it sets one."""
     clock = () if use_sim_time is None else ({"use_sim_time": str(use_sim_time).lower()},)
     for it in starts:
         yield f"{shell_line(it._replace(parameters=(*it.parameters, *clock)))}\n"
 
 
 def _controllers(plan: FleetPlan) -> Iterator[str]:
-    """The command that loads each controller, with the condition under which the robot has it."""
+    """Yield the command that loads each controller, with the condition for having it."""
     (robot,) = plan.robots
     # What a launch file spawns is started, if later.
     spawned = plan.evidence_of(robot).spawned

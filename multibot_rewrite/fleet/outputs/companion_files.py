@@ -53,10 +53,8 @@ _KINDS = {"params": PARAMS, "moveit": MOVEIT, "behavior_trees": TREE, "lua": LUA
 
 
 def companion_files(plan: FleetPlan) -> FilesAndFindings:
-    """Every companion file that is one text with slots for the robot.
-
-    Raises InputError for a file that cannot be read or rewritten.
-    """
+    """Yield every related file that is one text with slots for the robot. Raises InputError for a
+    file that cannot be read or rewritten."""
     groups = list(group_robots(plan))
     for key in _KINDS:
         for group in groups:
@@ -126,8 +124,8 @@ def launched_values(plan: FleetPlan) -> LaunchedValues:
 def _lacking(
     group: RobotGroup, name: str, it: HandedOn, known: KnownNodes, given: Iterable[str]
 ) -> str:
-    """The names that a launched node has by default, where robots would share them, as parameters with
-    slots; none of a node of a stack: its section has them. ``given`` are those that its files set."""
+    """Return as parameters with slots the default names of a launched node that robots would share;
+    empty for a node of a node set, which has a section. ``given`` are those that its files set."""
     first, *_ = (*group.companions.get("params", ()), "")
     has_section = name in group.context.nodes and (not first or os.path.realpath(first) in it.files)
     if it.kind not in known.nodes or has_section or it.kind == STATIC:
@@ -137,7 +135,7 @@ def _lacking(
 
 
 def _section(text: str, file: str) -> Mapping[str, Any]:
-    """The parameters of the one section of a text."""
+    """Return the parameters of the one section of a text."""
     found: Any = load_yaml(text, file) if text else {}
     for section in found.values():
         found = section.get("ros__parameters", found) if isinstance(section, dict) else found
@@ -145,7 +143,7 @@ def _section(text: str, file: str) -> Mapping[str, Any]:
 
 
 def _known(plan: FleetPlan, group: RobotGroup) -> tuple[KnownNodes, frozenset[str]]:
-    """What is known of nodes with the frames that they send, and those that prefix their frames."""
+    """Return what is known of nodes with the frames that they send, and those that prefix frames."""
     evidence = plan.evidence_of(group.robots[0])
     known = load_known_nodes(plan.file.nodes, plan.file.distro)
     bare = _at_run_time(plan.fleet.naming, evidence.given, known)
@@ -156,7 +154,7 @@ def _known(plan: FleetPlan, group: RobotGroup) -> tuple[KnownNodes, frozenset[st
 
 
 def _files(plan: FleetPlan, group: RobotGroup, key: str, path: str) -> FilesAndFindings:
-    """A file for each robot of a group, and what is found in it."""
+    """Yield a file for each robot of a group, and what is found in it."""
     spec = group.robots[0].spec
     if _KINDS[key] == PARAMS:
         made = _params(plan, group, path)
@@ -189,7 +187,7 @@ def _files(plan: FleetPlan, group: RobotGroup, key: str, path: str) -> FilesAndF
 
 
 def _own_defaults(plan: FleetPlan, group: RobotGroup) -> Iterator[OutputFile]:
-    """What a parameter file of each robot would get for its nodes, where there is no such file."""
+    """Yield for each robot without a parameter file the one that its nodes need."""
     known = load_known_nodes(plan.file.nodes, plan.file.distro)
     given = plan.evidence_of(group.robots[0]).given
     text = all_sections(group.context, known, _at_run_time(plan.fleet.naming, given, known))
@@ -200,7 +198,7 @@ def _own_defaults(plan: FleetPlan, group: RobotGroup) -> Iterator[OutputFile]:
 
 
 def _params(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
-    """A ROS parameter file; what the robot's other parameter files set is not inserted in it."""
+    """Return a ROS parameter file; what the robot's other parameter files set is not inserted in it."""
     read = params_of(group.robots[0].spec)
     others = [document for it, document in read.items() if it != path]
     known, bare = _known(plan, group)
@@ -219,8 +217,8 @@ def _params(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
 
 
 def _at_run_time(naming: Naming, given: Iterable[Run], known: KnownNodes) -> frozenset[str]:
-    """The nodes that put the robot's name before their frames, by their files and launch files: those
-    frames stay bare."""
+    """Return the nodes that put the robot's name before their frames, by their files and launch
+    files; a rewrite leaves those frames unchanged."""
     if not naming.layout.at_run_time:
         return frozenset()
     found = set()

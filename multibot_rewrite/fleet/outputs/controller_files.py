@@ -3,9 +3,8 @@
 and each robot's description loads the one that was made for it.
 
 gz_ros2_control and gazebo_ros2_control hand ``<parameters>`` on as ``--params-file``
-(gz_ros2_control_plugin.cpp), and rcl opens it as it stands: there is no ``package://`` and no
-``$(find ...)``, and a relative path is one from where Gazebo was started.
-"""
+(gz_ros2_control_plugin.cpp), and rcl opens it as it is: there is no ``package://`` and no ``$(find
+...)``, and a relative path is one from where Gazebo was started."""
 
 from __future__ import annotations
 
@@ -37,11 +36,9 @@ OTHER_CONTROLLER_FILE = declare(
 
 
 def with_own_controllers(robot: RewrittenRobot, folder: str) -> tuple[bytes, tuple[Finding, ...]]:
-    """What the simulator gets, with the paths of the files that are made for this robot in ``folder``.
-
-    Without a ``folder`` nothing is written, and it stays as it is. So does that of a real robot, which
-    loads no file for its simulator's plugin.
-    """
+    """Return what the simulator gets, with the paths of the files made for this robot in
+    ``folder``. Without a ``folder`` nothing is written, and it stays as it is. So does that of a
+    real robot, which loads no file for its simulator's plugin."""
     if robot.spec.simulator == REAL:
         return robot.description, ()
     source = robot.member.inventory.document.source
@@ -68,7 +65,7 @@ def with_own_controllers(robot: RewrittenRobot, folder: str) -> tuple[bytes, tup
 
 
 def loaded_files(robot: RewrittenRobot) -> Iterator[tuple[str, tuple[int, int]]]:
-    """Each file that a plugin with a controller manager loads, and where its path stands."""
+    """Yield each file that a plugin with a controller manager loads, and the span of its path."""
     inventory = robot.member.inventory
     document = inventory.document
     starts = dict(zip(document.elements, document.starts, strict=True))
@@ -83,7 +80,7 @@ def loaded_files(robot: RewrittenRobot) -> Iterator[tuple[str, tuple[int, int]]]
 
 
 def is_same(path: str, file: str, description: str) -> bool:
-    """Is ``path``, as ``description`` names it, this ``file`` or an installed copy of it?"""
+    """Return whether ``path``, as ``description`` names it, is this ``file`` or an installed copy."""
     plain = path.removeprefix("file://")
     for it in (plain, os.path.join(os.path.dirname(description), plain)):
         # What stands in the fleet file itself is no file.
@@ -116,7 +113,7 @@ def _in_sources(path: str, description: str) -> Iterator[str]:
 
 
 def named_alike(path: str, file: str) -> bool:
-    """Has ``path`` the file name of this ``file``?"""
+    """Return whether ``path`` has the file name of this ``file``."""
     return os.path.basename(path) == os.path.basename(file)
 
 
@@ -125,11 +122,9 @@ NOT_FOLLOWED = declare("MF834", "loaded-file-not-found", NOTE, formats=("fleet",
 
 
 def with_loaded_files(robot: RewrittenRobot) -> RewrittenRobot:
-    """The robot with the files that its description loads among its parameter files.
-
-    One that has the name of a listed file is left out: ``OTHER_CONTROLLER_FILE`` says so. A real robot
-    loads none.
-    """
+    """Return the robot with the files that its description loads among its parameter files. One
+    that has the name of a listed file is left out: ``OTHER_CONTROLLER_FILE`` reports it. A real
+    robot loads none."""
     spec = robot.spec
     file, params = spec.simulated or spec.description, spec.companions.get(PARAMS, ())
     more: list[str] = []
@@ -150,7 +145,7 @@ def with_loaded_files(robot: RewrittenRobot) -> RewrittenRobot:
 
 
 def _found(path: str, description: str) -> Iterator[str]:
-    """The file that a description names, where it can be."""
+    """Yield the existing files that a path in a description may name."""
     plain = path.removeprefix("file://")
     match = IN_PACKAGE.fullmatch(plain)
     if match:

@@ -27,7 +27,7 @@ _MAP = "map"
 
 
 def configurations(plan: System, setup: FreeFleet) -> Iterator[tuple[str, bytes]]:
-    """Each file by its path; raises UsageError for names that the adapter does not look for."""
+    """Yield each file by its path; raises UsageError for names that the adapter does not look for."""
     numbers, whose = domain_of(plan), whose_by_plan(plan)
     for robot in plan.robots:
         # Why the adapter would find nothing of the robot.
@@ -84,7 +84,7 @@ def _bridge(robot: Robot, domain: int, setup: FreeFleet) -> bytes:
 
 
 def _robot_frame(plan: System, robot: Robot, whose: Whose) -> str:
-    """What odometry moves: a fixed frame is on tf_static, which the adapter does not read."""
+    """Return the frame that odometry moves; fixed ones are on tf_static, not read by the adapter."""
     nodes = {it.name for it in plan.nodes if it.robot == robot.name}
     moved = (
         it.child

@@ -55,8 +55,8 @@ class _Text(NamedTuple):
 def own_world(
     path: str, robots: Sequence[RewrittenRobot], systems: str, file: str, line: int
 ) -> tuple[bytes, list[Finding]]:
-    """The world for these robots with the ``systems`` that it lacks, and what is said of it in this
-    ``line`` of the fleet file. Raises InputError for a file that is no world."""
+    """Return the world for these robots with the ``systems`` that it lacks, and the findings for
+    this ``line`` of the fleet file. Raises InputError for a file that is no world."""
     document = read_document(read_file(path), path)
     world = document.root.find("world")
     if world is None:
@@ -91,8 +91,8 @@ def own_world(
 
 
 def world_topics(path: str) -> dict[str, str]:
-    """The gz topics of a world of the user's, or of Gazebo's empty one, each with its type: empty where
-    that is not known."""
+    """Return the gz topics of a user's world, or of Gazebo's empty one, each with its type: empty
+    if unknown."""
     root = read_document(read_file(path), path).root if path else None
     world = root.find("world") if root is not None else None
     if root is None or world is None:
@@ -153,7 +153,7 @@ def _in_plugin(it: _Text, plugin: _Element, kind: _Kind) -> Iterator[Edit | Find
 
 
 def _block(it: _Text, block: _Element, kind: _Kind, robot: RewrittenRobot) -> bytes:
-    """The block for one robot; its own name, if it has one, is made the robot's."""
+    """Return the block for one robot; its own name, if it has one, becomes the robot's."""
     source = it.document.source
     start, end = it.spans.of(block)
     edits = []
@@ -172,8 +172,8 @@ def _block(it: _Text, block: _Element, kind: _Kind, robot: RewrittenRobot) -> by
 
 
 def _new(value: str, robot: RewrittenRobot, names: frozenset[str], tied: bool) -> str:
-    """What a value becomes for a robot, empty for one that does not name it; of what is ``tied`` to the
-    robot links and joints are its own."""
+    """Return what a value becomes for a robot, empty if it does not name it; in what is ``tied`` to
+    the robot, links and joints become its own."""
     model, scope, rest = value.partition(_SCOPE)
     if value in names:
         return robot.spec.model
@@ -195,7 +195,7 @@ def _part(value: str, robot: RewrittenRobot) -> str:
 
 
 def _own_paths(it: _Text) -> Iterator[Edit]:
-    """A path beside the world is looked up beside its copy, else."""
+    """Yield edits that make relative paths absolute: the copy of the world is in another folder."""
     folder = os.path.dirname(os.path.abspath(it.document.file))
     for one in it.document.root.iter("uri", "filename"):
         text = text_of(one)

@@ -49,12 +49,12 @@ _OMPL = "ompl"
 
 
 def has_moveit(robot: RewrittenRobot) -> bool:
-    """Has the robot what the file is made of?"""
+    """Return whether the robot has what the file is made of."""
     return bool(robot.srdf and robot.spec.companions.get("moveit"))
 
 
 def moveit_commands(plan: FleetPlan) -> Iterator[Start]:
-    """What a person starts of the one robot of a plan: move_group and servo_node."""
+    """Yield what a person starts of the one robot of a plan: move_group and servo_node."""
     (robot,) = plan.robots
     servo = any(
         file_kind(own_yaml(robot.spec, it)) == OF_SERVO
@@ -68,7 +68,7 @@ def moveit_commands(plan: FleetPlan) -> Iterator[Start]:
 
 
 def moveit_parameters(plan: FleetPlan, files: Iterable[OutputFile]) -> Iterator[OutputFile]:
-    """The file of each robot that has an SRDF and MoveIt files, of ``files`` that were made."""
+    """Yield the file of each robot that has an SRDF and MoveIt files, made from ``files``."""
     made = {it.path: it.data for it in files}
     for robot in filter(has_moveit, plan.robots):
         values = parameters_of(robot, made, plan.file.distro)
@@ -79,7 +79,7 @@ def moveit_parameters(plan: FleetPlan, files: Iterable[OutputFile]) -> Iterator[
 def parameters_of(
     robot: RewrittenRobot, made: Mapping[str, bytes], release: str
 ) -> Mapping[str, Any]:
-    """The parameters of a robot's MoveIt, by its files that were ``made``, by path."""
+    """Return the parameters of a robot's MoveIt, by its files that were ``made``, by path."""
     paths = robot.spec.companions.get("moveit", ())
     texts = {it: made[path_for(robot, it)].decode() for it in paths}
     srdf = made[path_for(robot, expanded_name(robot.spec.srdf))].decode()
@@ -87,14 +87,14 @@ def parameters_of(
 
 
 def parameter_file(values: Mapping[str, Any]) -> bytes:
-    """A file that any node takes."""
+    """Return a file that any node takes."""
     data = {"/**": {"ros__parameters": values}}
     dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
     return str(yaml.dump(data, None, dumper, sort_keys=False)).encode()
 
 
 def parameters_from(srdf: str, texts: Mapping[str, str], release: str) -> Mapping[str, Any]:
-    """The parameters that an SRDF and MoveIt files, by path, are for the nodes of MoveIt."""
+    """Return the parameters of MoveIt's nodes, from an SRDF and from MoveIt files by path."""
     found: dict[str, Any] = {SEMANTIC: srdf, "publish_robot_description_semantic": True}
     pipelines: list[str] = []
     for path, text in texts.items():
@@ -115,11 +115,8 @@ def parameters_from(srdf: str, texts: Mapping[str, str], release: str) -> Mappin
 
 
 def move_group_parameters(description: str, srdf: str, texts: Mapping[str, str]) -> dict[str, Any]:
-    """What ``to_dict`` of moveit_configs_utils has for move_group; ``texts`` are the MoveIt files
-    by path.
-
-    Raises InputError for a file that is none.
-    """
+    """Return what ``to_dict`` of moveit_configs_utils has for move_group; ``texts`` are the MoveIt
+    files by path. Raises InputError for a file that is none."""
     found: dict[str, Any] = {"robot_description": description}
     if srdf:
         found[SEMANTIC] = srdf
@@ -135,7 +132,7 @@ def move_group_parameters(description: str, srdf: str, texts: Mapping[str, str])
 
 
 def _with_plugins(name: str, data: Mapping[str, Any], release: str) -> Mapping[str, Any]:
-    """A pipeline with the plugins that its file leaves to the launch file."""
+    """Return a pipeline with the plugins that its file leaves to the launch file."""
     if name != _OMPL or "planning_plugins" in data or "planning_plugin" in data:
         return data
     of_release = "humble" if has_release("<=humble", release) else "usual"
@@ -143,7 +140,7 @@ def _with_plugins(name: str, data: Mapping[str, Any], release: str) -> Mapping[s
 
 
 def _plain(value: Any) -> Any:
-    """A value as rcl takes it, without what it does not: nothing, and lists of several types."""
+    """Return a value as rcl takes it: without null, and without lists of several types."""
     if isinstance(value, dict):
         items = ((str(key), _plain(it)) for key, it in value.items())
         return {key: it for key, it in items if it is not None and it not in ([], {})}
@@ -165,7 +162,7 @@ PREFIXED_LATER = declare("MF837", "moveit-with-frame-prefix", ERROR, formats=("f
 
 
 def moveit_frames(plan: FleetPlan) -> Iterator[Finding]:
-    """The robots whose MoveIt would look for frames that tf does not have."""
+    """Yield the robots whose MoveIt would look for frames that tf does not have."""
     if not plan.fleet.naming.layout.at_run_time:
         return
     those = {it.name for it in plan.fleet.facts if it.package in _PACKAGES}

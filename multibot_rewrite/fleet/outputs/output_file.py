@@ -45,16 +45,14 @@ FilesAndFindings: TypeAlias = Iterator[OutputFile | Finding]
 
 
 def described_path(robot: RewrittenRobot, node: str) -> str:
-    """Return where the description is that a node publishes beside the robot's."""
+    """Return the path of the description that a node publishes in addition to the robot's."""
     return path_for(robot, f"{node.replace('/', '_')}.urdf")
 
 
 def path_for(robot: RewrittenRobot, source: str) -> str:
-    """Where the robot's version of a source file goes: ``robot1/params.yaml``.
-
-    Files with one name are in folders called as their own, as many as it takes to tell them apart:
-    ``robot1/base/params.yaml``. A vendor's launch files may want one in a place of their own.
-    """
+    """Return where the robot's version of a source file goes: ``robot1/params.yaml``. Files of one
+    name go into folders named as theirs, as many as tell them apart: ``robot1/base/params.yaml``. A
+    vendor's launch files may want one in a place of its own."""
     kinds = robot.spec.companions
     name = name_among(source, (it for its in kinds.values() for it in its))
     kind = next((kind for kind, its in kinds.items() if source in its), "")
@@ -93,32 +91,32 @@ def _told_apart(path: str, alike: Collection[str]) -> str:
 
 
 def expanded_name(path: str) -> str:
-    """The file's name once xacro is expanded, or parts are joined."""
+    """Return the file's name once xacro is expanded, or parts are joined."""
     name = os.path.basename(path).removesuffix(XACRO).removesuffix(JOIN)
     return name if "." in name else f"{name}.urdf"
 
 
 def params_paths(robot: RewrittenRobot, files: Collection[str]) -> tuple[str, ...]:
-    """Where a robot's parameter files are among the ``files`` of a build, the one that it is given
-    where it has none included."""
+    """Return where a robot's parameter files are among the ``files`` of a build; the default one if
+    it has no others."""
     named = robot.spec.companions.get("params", ())
     paths = tuple(path_for(robot, it) for it in named or (DEFAULTS,))
     return tuple(it for it in paths if it in files)
 
 
 def params_of(spec: RobotSpec) -> dict[str, YamlText]:
-    """A robot's parameter files by path, as a launch fills them; raises InputError as ``read_yaml``."""
+    """Return a robot's parameter files by path, as a launch fills them; raises as ``read_yaml``."""
     return {it: own_yaml(spec, it) for it in spec.companions.get("params", ())}
 
 
 def text_of(spec: RobotSpec, path: str) -> bytes:
-    """The bytes of a file of a robot, which may be made for it; raises as ``read_file``."""
+    """Return the bytes of a file of a robot, which may be made for it; raises as ``read_file``."""
     filled = dict(spec.filled)
     return filled[path].encode() if path in filled else read_file(path)
 
 
 def own_yaml(spec: RobotSpec, path: str) -> YamlText:
-    """A YAML file of a robot; raises as ``yaml_of``."""
+    """Return a YAML file of a robot; raises as ``yaml_of``."""
     return read_yaml(text_of(spec, path), path)
 
 
@@ -128,7 +126,7 @@ def yaml_of(path: str) -> YamlText:
 
 
 def line_in_source(file: OutputFile, line: int) -> tuple[str, int]:
-    """The source of a file, and its line that a line of the file was made from."""
+    """Return the source of a file, and its line that a line of the file was made from."""
     for start, end, first, last in _changes(file):
         if first < line <= last:
             return file.sources[0], max(1, min(start + line - first, end))
@@ -137,7 +135,7 @@ def line_in_source(file: OutputFile, line: int) -> tuple[str, int]:
 
 @lru_cache(maxsize=16)
 def _changes(file: OutputFile) -> tuple[tuple[int, int, int, int], ...]:
-    """The lines of the source, and those of the file that were made from them, piece by piece."""
+    """Return the changed ranges: lines of the source, and lines of the file made from them."""
     from difflib import SequenceMatcher
 
     try:

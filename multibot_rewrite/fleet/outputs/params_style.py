@@ -42,7 +42,7 @@ NO_RULE = declare("MF829", "rule-not-of-bringup", NOTE, formats=("fleet",))
 
 
 def check_style(file: FleetFile) -> None:
-    """Raises UsageError for a fleet that nav2_bringup cannot start, with parameter files for it."""
+    """Raise UsageError for parameter files in the style of nav2_bringup that it cannot start."""
     if file.params_style != BRINGUP:
         return
     naming = make_naming(**file.policy)
@@ -58,7 +58,7 @@ def check_style(file: FleetFile) -> None:
 
 
 def in_style(plan: FleetPlan, files: Sequence[OutputFile]) -> FilesAndFindings:
-    """The files of a fleet in the style that it asks for."""
+    """Yield the files of a fleet in the style that it asks for."""
     robots = {
         path_for(robot, source): robot.spec
         for robot in plan.robots
@@ -95,7 +95,7 @@ def _with_zones(it: OutputFile, spec: RobotSpec, file: FleetFile) -> OutputFile:
 
 
 def _without_rule(plan: FleetPlan) -> Iterator[Finding]:
-    """What a robot's nodes use by an absolute name that neither a rule nor a parameter moves."""
+    """Yield the absolute names of a robot's nodes that neither a rule nor a parameter changes."""
     first = plan.robots[0].spec.namespace
     started = {it.name for stack in _STACKS for it in load_stack(stack, plan.file.distro)}
     left = [

@@ -41,7 +41,7 @@ class Relay(NamedTuple):
 
 
 def relays(robot: str, naming: Naming, file: FleetFile) -> list[Relay]:
-    """The relays of a robot (its namespace), if the fleet file asks for them."""
+    """Return the relays of a robot (its namespace), if the fleet file asks for them."""
     if not file.relayed:
         return []
     copied = naming.layout.frames
@@ -71,7 +71,7 @@ def _bridge(robot: str, naming: Naming, world: str) -> Iterator[Relay]:
 
 
 def not_bridged(robot: str) -> str:
-    """What is said where the bridge is not installed: a relay would put all robots' frames into one."""
+    """Return the message if the bridge is not installed: a relay would merge all robots' frames."""
     why = f"{BRIDGE} is not installed, so the tf of {robot} is not on /tf"
     return f"{why}: install it, or take layout both"
 
@@ -79,7 +79,7 @@ def not_bridged(robot: str) -> str:
 def _run(
     robot: str, node: str, naming: Naming, reads: Iterable[str], writes: Iterable[str], why: str
 ) -> Run:
-    """A node with topics of these full names; ``why`` no rule moves them."""
+    """Return a node with topics of these full names; ``why`` no remap rule changes them."""
     ends = ((role, it) for role, own in ((SUBSCRIBES, reads), (PUBLISHES, writes)) for it in own)
     names = ((Endpoint(TOPIC, role, it, TF_TYPE, fixed=why), it) for role, it in ends)
     origin = Origin(place=Place("relayed of the fleet file"))
@@ -88,7 +88,7 @@ def _run(
 
 
 def with_relays(fleet: Fleet, file: FleetFile) -> Fleet:
-    """The fleet with the relays that its file asks for; raises as ``check_relayed``."""
+    """Return the fleet with the relays that its file asks for; raises as ``check_relayed``."""
     if not file.relayed:
         return fleet
     # Raises UsageError for a layout whose tf need not be relayed to one topic, or cannot be.

@@ -56,10 +56,8 @@ class RvizOutput(NamedTuple):
 
 
 def rviz_outputs(plan: FleetPlan, each: Iterable[FleetPlan]) -> Iterator[RvizOutput]:
-    """The windows by the config they are made from; ``each`` is every robot as a fleet of its own.
-
-    Raises InputError for a config that cannot be read or rewritten.
-    """
+    """Yield the windows by the config they are made from; ``each`` is every robot as its own fleet.
+    Raises InputError for a config that cannot be read or rewritten."""
     robots_of = lists_by_key(
         (path, it) for it in plan.robots for path in it.spec.companions.get("rviz", ())
     )
@@ -83,16 +81,14 @@ def rviz_outputs(plan: FleetPlan, each: Iterable[FleetPlan]) -> Iterator[RvizOut
 
 
 def usual_windows(plan: FleetPlan, planned: System) -> list[RvizOutput]:
-    """The windows of a fleet that names no config of RViz."""
+    """Return the windows of a fleet that names no config of RViz."""
     made = windows_of_plan(planned, plan.file.relayed)
     return [RvizOutput(USUAL, made, (), os.path.basename(USUAL))] if plan.robots else []
 
 
 def robot_windows(plan: FleetPlan, each: bool) -> list[tuple[str, RvizText]]:
-    """The windows of a fleet with the names of their files, or with ``each`` one for each robot.
-
-    Raises as ``rviz_outputs``.
-    """
+    """Return the windows of a fleet with the names of their files, or with ``each`` one for each
+    robot. Raises as ``rviz_outputs``."""
     apart = list(split_per_robot(plan))
     made = [rviz_outputs(one, [one]) for one in apart] if each else [rviz_outputs(plan, apart)]
     found = (it for outputs in made for it in outputs)
@@ -100,7 +96,7 @@ def robot_windows(plan: FleetPlan, each: bool) -> list[tuple[str, RvizText]]:
 
 
 def _as_rviz_robot(plan: FleetPlan) -> RvizRobot:
-    """The one robot of a plan as RViz shows it."""
+    """Return the one robot of a plan as RViz shows it."""
     (robot,) = plan.robots
     spec = robot.spec
     names = robot.names._replace(robot=spec.tag)
@@ -116,7 +112,7 @@ def _as_rviz_robot(plan: FleetPlan) -> RvizRobot:
 
 
 def rviz_files(configs: Iterable[RvizOutput]) -> FilesAndFindings:
-    """The files of the windows, and what was found."""
+    """Yield the files of the windows, and the findings."""
     for config in configs:
         yield from config.findings
         read = () if config.source == USUAL else (config.source,)

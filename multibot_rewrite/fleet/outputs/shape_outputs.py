@@ -22,7 +22,7 @@ from multibot_rewrite.fleet.robots.simulators import is_simulated
 
 
 def vendor_commands(plan: FleetPlan) -> Iterator[str]:
-    """The vendor's commands that take the files of the one robot of a plan."""
+    """Yield the vendor's commands that take the files of the one robot of a plan."""
     (robot,) = plan.robots
     for it in _commands(plan, robot):
         given = {**it.takes, **it.as_it_is}
@@ -41,7 +41,7 @@ def vendor_commands(plan: FleetPlan) -> Iterator[str]:
 
 
 def taken_as_they_are(plan: FleetPlan) -> set[str]:
-    """The outputs that a vendor's launch file hands on to nodes as they are."""
+    """Return the outputs that a vendor's launch file hands on to nodes unchanged."""
     return {
         placed_path(robot, name)
         for robot in plan.robots
@@ -52,10 +52,8 @@ def taken_as_they_are(plan: FleetPlan) -> set[str]:
 
 
 def copied(plan: FleetPlan) -> Iterator[OutputFile]:
-    """The vendor's files beside descriptions, with each robot's namespace.
-
-    Raises InputError for one that cannot be read or has no namespace.
-    """
+    """Yield the vendor's files next to descriptions, with each robot's namespace. Raises InputError
+    for one that cannot be read or has no namespace."""
     wanted = shapes()[plan.file.shape].namespace_in if plan.file.shape else {}
     for robot in plan.robots:
         for name, keys in wanted.items():

@@ -58,8 +58,8 @@ class Spawn(NamedTuple):
 
 
 def spawns(plan: FleetPlan) -> tuple[tuple[Spawn, ...], tuple[Finding, ...]]:
-    """How each robot is spawned, and findings: only some of its plugins have a namespace, a plugin
-    looks for the robot by another name or is of ROS 1, it has no mass."""
+    """Return how each robot is spawned, and findings: only some of its plugins have a namespace, a
+    plugin looks for the robot by another name or is of ROS 1, it has no mass."""
     made: list[Spawn] = []
     findings: list[Finding] = []
     for robot in plan.robots:
@@ -82,8 +82,8 @@ def spawns(plan: FleetPlan) -> tuple[tuple[Spawn, ...], tuple[Finding, ...]]:
 
 
 def in_folder(plan: FleetPlan) -> tuple[Spawn, ...]:
-    """How the robots are spawned where their files are beside: from the file of a description that no
-    planned node publishes; of an SDF none does."""
+    """Return how robots are spawned from a built folder: from the file of a description that no
+    planned node publishes, as that of an SDF."""
     sent = {name for _, end, name in plan.fleet.table.ends if end.role == PUBLISHES}
     made, _ = spawns(plan)
     found = []
@@ -96,12 +96,12 @@ def in_folder(plan: FleetPlan) -> tuple[Spawn, ...]:
 
 
 def simulators(plan: FleetPlan) -> list[str]:
-    """The simulators of the robots: ``classic``, ``gz``, none."""
+    """Return the simulators of the robots: ``classic``, ``gz``, none."""
     return sorted({"classic" if it.is_classic else "gz" for it in plan.robots if is_simulated(it)})
 
 
 def spawn(robot: RewrittenRobot, topic: str = "") -> Spawn:
-    """How one robot is spawned; ``topic`` is that of its description if it is not the usual one."""
+    """Return how one robot is spawned; ``topic`` is that of its description if not the usual one."""
     spec = robot.spec
     named, bare = _namespaces(robot)
     needed = robot.topics.naming.topics == NAMESPACE and bare and not named
@@ -116,11 +116,9 @@ def spawn(robot: RewrittenRobot, topic: str = "") -> Spawn:
 
 
 def spawner(it: Spawn, classic: bool) -> Start:
-    """What spawns a robot, in Gazebo Classic or in gz-sim.
-
-    That of gz-sim uses gflags, where ``-allow_renaming false`` means true: a boolean flag takes its
-    value only after an equals sign.
-    """
+    """Return what spawns a robot, in Gazebo Classic or in gz-sim. That of gz-sim uses gflags, where
+    ``-allow_renaming false`` means true: a boolean flag takes its value only after an equals
+    sign."""
     program, named = (CLASSIC, "-entity") if classic else (GZ, "-name")
     last = ["-robot_namespace", f"/{it.namespace}"] if it.namespace else []
     more = last if classic else ["-allow_renaming=false"]
@@ -130,7 +128,7 @@ def spawner(it: Spawn, classic: bool) -> Start:
 
 
 def either(it: Spawn, robot: RewrittenRobot) -> str:
-    """The command for the description's simulator, with the other simulator's as a comment."""
+    """Return the command for the description's simulator, with the other simulator's as a comment."""
     gz, classic = (shell_line(spawner(it, classic)) for classic in (False, True))
     if robot.is_classic:
         return f"{classic}\n# gz-sim: {gz}\n"
@@ -138,7 +136,7 @@ def either(it: Spawn, robot: RewrittenRobot) -> str:
 
 
 def is_of_vendor(own: LaunchedNode | None) -> bool:
-    """Does a program that nobody knows put the robot into its simulator?"""
+    """Return whether an unknown program puts the robot into its simulator."""
     return own is not None and program_of(own) not in programs().spawners
 
 
@@ -154,7 +152,7 @@ def placed_at(words: Sequence[str | File], pose: Pose | None) -> Iterator[str | 
 
 
 def _namespaces(robot: RewrittenRobot) -> tuple[list[str], list[str]]:
-    """The Gazebo Classic plugins of a description: those with a namespace, those without."""
+    """Return the Gazebo Classic plugins of a description: those with a namespace, those without."""
     named: list[str] = []
     bare: list[str] = []
     for plugin in robot.member.inventory.document.root.iter("plugin"):
@@ -176,7 +174,7 @@ PLUGIN_OF_ROS_1 = declare("MF713", "plugin-of-ros-1", WARNING, formats=("fleet",
 
 
 def _of_ros_1(robot: RewrittenRobot) -> Iterator[Finding]:
-    """The plugins that no section of ROS 2 has."""
+    """Yield a finding for each plugin without a definition for ROS 2."""
     of_ros_1 = (it for it in robot.member.inventory.served if it[1].type == "plugin")
     names = (host.get("filename") or it.names[0] for host, it in of_ros_1 if it.ros == "1")
     for name in dict.fromkeys(names):
@@ -186,7 +184,7 @@ def _of_ros_1(robot: RewrittenRobot) -> Iterator[Finding]:
 
 
 def _made(robot: RewrittenRobot) -> set[str]:
-    """The gz topics that the robot's plugins make, as the model is spawned."""
+    """Return the gz topics that the robot's plugins make, as the model is spawned."""
     spec, inventory = robot.spec, robot.member.inventory
     names = {spec.namespace: spec.model}
     bridged, _ = bridged_topics({spec.namespace: inventory}, robot.topics.naming, names)
@@ -194,7 +192,7 @@ def _made(robot: RewrittenRobot) -> set[str]:
 
 
 def _other_models(robot: RewrittenRobot) -> Iterator[Finding]:
-    """The first plugin that names the robot's own model, and not by the name it is spawned with."""
+    """Yield the first plugin that names the robot's model otherwise than it is spawned."""
     inventory = robot.member.inventory
     own = model_name(inventory)
     if own == robot.spec.model:

@@ -44,8 +44,8 @@ class Teleop(NamedTuple):
 
 
 def teleops(plan: FleetPlan) -> tuple[Teleop, ...]:
-    """How each robot is driven that reads velocity commands. Raises InputError for a bridge file that
-    cannot be read."""
+    """Return how to drive each robot that reads velocity commands. Raises InputError for a bridge
+    file that cannot be read."""
     found = []
     for robot in plan.robots:
         # Something reads velocity commands, or sends them to a base that is not in the plan.
@@ -66,8 +66,8 @@ def _usual(robot: RewrittenRobot) -> str:
 
 
 def teleop(plan: FleetPlan, robot: RewrittenRobot) -> Teleop:
-    """How to drive a robot: by its ``cmd_vel`` if a node obeys it, else the first topic that one obeys;
-    where a mux, a smoother or a monitor sends there, by an input of that."""
+    """Return how to drive a robot: by its ``cmd_vel`` if a node obeys it, else the first topic that
+    one obeys; if a mux, a smoother or a monitor sends there, by an input of that."""
     ends = [*_commands(plan, robot)]
     usual, obeyed = _usual(robot), _obeyed(ends)
     topic = entry_of(usual if usual in obeyed or not obeyed else obeyed[0], ends)
@@ -102,8 +102,8 @@ def _obeyed(ends: Sequence[CommandEnd]) -> list[str]:
 
 
 def _bridged(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, str]]:
-    """The topics that go to the simulator, with their types: those of the robot's bridge files, then
-    those of the bridge that is made."""
+    """Yield the topics that go to the simulator, with their types: those of the robot's bridge
+    files, then those of the generated bridge."""
     for path in robot.spec.companions.get("bridge", ()):
         for end in bridge_ends(own_yaml(robot.spec, path), robot.spec.bridge_namespace_of(path)):
             if end.role == SUBSCRIBES:

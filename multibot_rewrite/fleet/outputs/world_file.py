@@ -34,8 +34,8 @@ _ALWAYS = {
 
 
 def world_file(plan: FleetPlan) -> FilesAndFindings:
-    """The world of the fleet file with what the robots need; else an empty one, where a robot in gz-sim
-    has a sensor that Gazebo's own does not run. Raises InputError for a file that is no world."""
+    """Yield the fleet file's world with what the robots need; otherwise an empty one, if a gz-sim
+    robot's sensor needs more than Gazebo's own. Raises InputError for a file that is no world."""
     kind = "ignition-gazebo" if has_release(OLD_NAMES, plan.file.distro) else "gz-sim"
     robots = [it for it in plan.robots if is_simulated(it) and not it.is_classic]
     usual = {library: _system(kind, library, name) for library, name in _ALWAYS.items()}
@@ -68,7 +68,7 @@ def world_file(plan: FleetPlan) -> FilesAndFindings:
 
 
 def _needed(robots: Sequence[RewrittenRobot], kind: str) -> dict[str, str]:
-    """The systems for the sensors of these robots, by library, and those that their files had."""
+    """Return the systems for the sensors of these robots, by library, and those of their files."""
     roots = [it.member.inventory.document.root for it in robots]
     types = {sensor.get("type", "") for root in roots for sensor in root.iter("sensor")}
     needed = dict(sorted(SYSTEMS[it] for it in types & SYSTEMS.keys()))

@@ -53,11 +53,9 @@ class Rights(NamedTuple):
 
 
 def rights(plan: System, domain: int) -> list[Rights]:
-    """What each robot of the plan may do in its domain, which is this one where the plan has none.
-
-    All below its namespace is its own, unless another robot has names there too. Of all other names
-    it has those that its nodes have in the plan.
-    """
+    """Return what each robot of the plan may do in its domain, which is this one where the plan has
+    none. All below its namespace is its own, unless another robot has names there too. Of all other
+    names it has those that its nodes have in the plan."""
     numbers, bridged = domain_of(plan), beyond(plan)
     bridges = {it.name for it in plan.nodes if it.stack == DOMAIN_BRIDGE}
     whole = plan
@@ -142,7 +140,7 @@ def _rights(
 
 
 def _key(domain: int, end: End) -> str:
-    """An action has its services and topics below ``_action``."""
+    """Return the key of an end; an action has its services and topics below ``_action``."""
     return f"{domain}{end.name}/_action/*/*/*" if end.kind == ACTION else f"{domain}{end.name}/*/*"
 
 
@@ -151,7 +149,7 @@ def _latched(keys: Sequence[str]) -> tuple[str, ...]:
 
 
 def robot_rules(given: Rights, side: str = SESSION) -> list[Rule]:
-    """The rules of a robot where they are applied: its sessions, its own router, the fleet's router."""
+    """Return the rules of a robot for one side: its sessions, its own router, the fleet's router."""
     out, back = _FLOWS[side]
     name = given.robot
     found = [
@@ -165,13 +163,13 @@ def robot_rules(given: Rights, side: str = SESSION) -> list[Rule]:
 
 
 def graph_rule(name: str, domains: Iterable[int]) -> Rule:
-    """Everybody may know who is there: tokens of rmw_zenoh, and of what is latched."""
+    """Return the rule that lets everybody see which nodes run, and what is latched."""
     keys = [key for it in domains for key in (f"{SPACE}/{it}/**", f"{it}/**/@adv/**")]
     return _rule(name, _LIVELINESS, (OUT, IN), keys)
 
 
 def all_rule(name: str, domains: Iterable[int]) -> Rule:
-    """For who looks after all robots."""
+    """Return the rule for an operator of all robots."""
     keys = [key for it in domains for key in (f"{it}/**", f"{it}/**/@adv/**")] + [f"{SPACE}/**"]
     return _rule(name, list(dict.fromkeys([*_SENDS, *_ASKS, *_LIVELINESS])), (OUT, IN), keys)
 
@@ -187,7 +185,7 @@ def _rule(name: str, messages: Sequence[str], flows: Sequence[str], keys: Sequen
 
 
 def access_control(parts: Iterable[tuple[dict[str, object], Sequence[Rule]]]) -> dict[str, object]:
-    """Who may do what, and nothing else: subjects with the rules of each."""
+    """Return the access control: subjects with the rules of each, everything else denied."""
     given = list(parts)
     return {
         "enabled": True,

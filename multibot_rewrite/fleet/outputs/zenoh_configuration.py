@@ -52,7 +52,7 @@ class Setup(NamedTuple):
 
 
 def configurations(plan: System, setup: Setup) -> Iterator[tuple[str, bytes]]:
-    """Each file by name: the router's, one for the nodes of each robot, one for each operator."""
+    """Yield each file by name: the router's, one for the nodes of each robot, one for each operator."""
     known = rights(plan, setup.domain)
     domains = sorted({*domain_of(plan).values()}) or [setup.domain]
     # On every address, at the port that the robots connect to.
@@ -98,7 +98,7 @@ def configurations(plan: System, setup: Setup) -> Iterator[tuple[str, bytes]]:
 
 
 def operator_word(enclave: str) -> str:
-    """What the file of an enclave is called."""
+    """Return the file name for an enclave."""
     return enclave.strip("/").replace("/", "_")
 
 
@@ -115,7 +115,7 @@ def _text(config: Config, about: str) -> bytes:
 
 
 def _common(enclave: str, setup: Setup) -> Config:
-    """What rmw_zenoh sets for ROS, and the certificates."""
+    """Return what rmw_zenoh sets for ROS, and the certificates."""
     config: Config = json.loads(own_text(__file__, "zenoh_session.json"))
     if setup.keystore:
         # As ``zenoh_security_tools`` writes them: both sides show a certificate of the keystore.
@@ -136,7 +136,7 @@ def _common(enclave: str, setup: Setup) -> Config:
 
 
 def _endpoint(setup: Setup) -> str:
-    """With certificates the link is TLS."""
+    """Return the router's endpoint; with certificates it is TLS."""
     return f"tls/{setup.router.partition('/')[2]}" if setup.keystore else setup.router
 
 
@@ -145,7 +145,7 @@ def _subject(enclave: str) -> Config:
 
 
 def _own_router(given: Rights, setup: Setup) -> Config:
-    """A router on the robot: its nodes come by loopback, all else by the fleet's router."""
+    """Return a router on the robot: nodes connect by loopback, the rest through the fleet's router."""
     config: Config = {
         "mode": "router",
         "connect": {"endpoints": [_endpoint(setup)]},
@@ -160,7 +160,7 @@ def _own_router(given: Rights, setup: Setup) -> Config:
 
 
 def _client(enclave: str, setup: Setup) -> Config:
-    """A client: all that it says goes through the router, which may refuse it."""
+    """Return a client: all that it sends goes through the router, which may refuse it."""
     config = {"mode": "client", "connect": {"endpoints": [_endpoint(setup)]}}
     return config | _common(enclave, setup)
 
@@ -169,7 +169,7 @@ ZENOH = "zenoh"
 
 
 def zenoh_of(read: FleetData) -> Setup | None:
-    """What a fleet file says of Zenoh, if it does; InputError where that does not fit together."""
+    """Return the Zenoh settings of a fleet file, None without; raises InputError if they conflict."""
     if ZENOH not in read.data:
         return None
     given = read.data[ZENOH]

@@ -60,9 +60,9 @@ class Robot(NamedTuple):
 
 
 def bringup_as_named(order: LaunchOrder) -> Bringup:
-    """The launch file that was named; an argument that names the vendor's robot names each robot, where
-    the launch file starts the same with it. Raises InputError where it cannot be read, or starts
-    nothing."""
+    """Return the launch file that was named; an argument that names the vendor's robot names each
+    robot, if the launch file starts the same with it. Raises InputError if it cannot be read, or
+    starts nothing."""
     graph = read_named(order).graph
     each = tuple((name, _for_each(name, value)) for name, value in order.arguments)
     with suppress(InputError):
@@ -75,20 +75,20 @@ def bringup_as_named(order: LaunchOrder) -> Bringup:
 
 
 def _for_each(argument: str, value: str) -> str:
-    """The value of a launch argument for any robot: ``hippo/`` of ``vehicle_name`` is ``{robot}/``."""
+    """Return an argument's value for any robot: ``hippo/`` of ``vehicle_name`` is ``{robot}/``."""
     name = value.strip("/_")
     return value.replace(name, ROBOT, 1) if names_robots(argument) and name else value
 
 
 def _does(graph: LaunchGraph) -> tuple[object, ...]:
-    """What a launch file starts and reads, whatever it calls the robot."""
+    """Return what a launch file starts and reads, whatever it calls the robot."""
     started = sorted((it.package, it.executable) for it in graph.nodes)
     return started, _reads(graph), len(graph.notes), len(graph.idle)
 
 
 def bringup_of(robot: Robot, launch: Sequence[str], trust: bool) -> Bringup | None:
-    """The launch file that starts most processes of the robot, of those that are for its simulator, or
-    for the real one; one that is called as a trial comes last. None where none starts the robot."""
+    """Return the launch file that starts most of the robot, among those for its simulator, or the
+    real robot's; one with the name of a trial comes last. None where none starts the robot."""
     every = read_any(launch)
     included = _included(every)
     roots = [it for it in every if not it.why and it.file not in included]
@@ -111,8 +111,8 @@ def bringup_of(robot: Robot, launch: Sequence[str], trust: bool) -> Bringup | No
 
 
 def processes_of_robot(it: Reading) -> int:
-    """How many processes a launch file starts for a robot, those that show it as one; none where it is
-    a trial, or neither publishes a description nor simulates one. Raises nothing."""
+    """Return how many processes a launch file starts for a robot, those that only show it as one; 0
+    if it is a test, or neither publishes a description nor simulates one. Raises nothing."""
     starts = starts_simulator(it.graph) or any(map(_publishes, it.graph.nodes))
     own = {one for one in _own(it.graph) if not _shows(one)}
     own |= {one for one in it.graph.nodes if one.package in programs().simulators}
@@ -122,8 +122,8 @@ def processes_of_robot(it: Reading) -> int:
 def _with_own_arguments(
     likely: Sequence[Reading], every: Sequence[Reading], robot: Robot, trust: bool
 ) -> list[Reading]:
-    """The launch files with the arguments with which they start the robot as it is wanted: their own,
-    else with a switch; else files that these include. All that start it, where none does it so."""
+    """Return the launch files with arguments that start the robot as wanted: their own, otherwise a
+    switch; otherwise files that these include. All that start it, if none does it so."""
 
     def starting(orders: Iterable[LaunchOrder]) -> list[Reading]:
         read = read_as(it._replace(trusted=trust) for it in orders)
@@ -146,7 +146,7 @@ def _with_own_arguments(
 
 
 def _included(read: Iterable[Reading]) -> frozenset[str]:
-    """The paths of the launch files that another one includes."""
+    """Return the paths of the launch files that another one includes."""
     files = {os.path.realpath(it.file): it.file for it in read}
     named = (
         os.path.realpath(one.file)
@@ -171,13 +171,13 @@ def _switched(likely: Iterable[Reading], passed: Mapping[str, set[str]]) -> Iter
 
 
 def _others(it: LaunchArgument, passed: set[str]) -> list[str]:
-    """Other values of an argument: those that launch files give it, that it may have, the opposite."""
+    """Return other values of an argument: given by launch files, among its choices, the opposite."""
     values = [*sorted(passed), *it.choices, *other_values(it.default)]
     return [value for value in dict.fromkeys(values) if value not in ("", it.default)]
 
 
 def _is_of_another(graph: LaunchGraph, robot: Robot) -> bool:
-    """Does a launch file read another robot's description alone?"""
+    """Return whether a launch file reads only another robot's description."""
     read = _reads(graph)
     return bool(read & robot.others) and not read & robot.files
 
@@ -187,7 +187,7 @@ def _reads(graph: LaunchGraph) -> set[str]:
 
 
 def _is_bringup(graph: LaunchGraph, robot: Robot) -> bool:
-    """Does it start more than what shows the description, and no second robot?"""
+    """Return whether a launch file starts more than a display of the description, and one robot."""
     homes = {it.namespace for it in graph.nodes if _is_called(it, "publishers")}
     # What is said of a file as a whole starts nothing by itself.
     unread = any(it.place.line > 1 and not it.parameters for it in graph.notes)
@@ -196,8 +196,8 @@ def _is_bringup(graph: LaunchGraph, robot: Robot) -> bool:
 
 
 def _beside(roots: Sequence[Reading], robot: Robot, trust: bool) -> Bringup | None:
-    """The only launch file that starts something of a robot, where none publishes its description: a
-    build does that, but spawns no controllers."""
+    """Return the only launch file that starts something of a robot, if none publishes its
+    description: a build does that, but spawns no controllers. None otherwise."""
     own = (it for it in roots if not _is_of_another(it.graph, robot))
     found = [it for it in own if any(map(is_of_robot, it.graph.nodes))]
     if len(found) != 1 or robot.has_control:
@@ -217,7 +217,7 @@ def _is_called(it: LaunchedNode, kind: str) -> bool:
 
 
 def _shows(it: LaunchedNode) -> bool:
-    """Does it show a description and move nothing?"""
+    """Return whether a node shows a description and moves nothing."""
     return _is_called(it, "publishers") or _is_called(it, "showing")
 
 
@@ -226,7 +226,7 @@ def _own(graph: LaunchGraph) -> list[LaunchedNode]:
 
 
 def _tries(it: Reading, simulated: bool) -> bool:
-    """Is a launch file called as a trial, or as one of a simulator that nothing here is known of?"""
+    """Return whether a launch file is named as a trial, or as one of an unknown simulator."""
     words = {*_WORD.findall(os.path.basename(it.file).lower())}
     kinds = ("trials",) if simulated else ("trials", "simulations")
     return any(not words.isdisjoint(known_names()[it]) for it in kinds)

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which of several descriptions is the robot: what launch files load that start one, and whose names
-the files beside them have. Where nothing says it, the likeliest has rivals.
-"""
+"""Which of several descriptions is the robot: what launch files load that start one, and whose
+names their related files have. Where nothing says it, the likeliest has rivals."""
 
 from __future__ import annotations
 
@@ -33,9 +32,10 @@ _MORE = 2
 
 
 class Candidate(NamedTuple):
-    """A description and what speaks for it: how many processes the launch file starts that loads it,
-    whether its package is named after it, how many of its names the files beside it have; ``part`` is
-    whether it is called like a part, or the package of another description uses its package."""
+    """A description and what speaks for it: how many processes the launch file starts that loads
+    it, whether its package is named after it, how many of its names their related files have;
+    ``part`` is whether it is called like a part, or the package of another description uses its
+    package."""
 
     robot: Looked
     started: int
@@ -52,7 +52,7 @@ class Candidate(NamedTuple):
 
     @property
     def share(self) -> float:
-        """How many of a hundred of its names are known to the files beside it."""
+        """How many of a hundred of its names are known to its related files."""
         return self.named / max(1, len(self.links) + len(self.moving))
 
 
@@ -65,7 +65,7 @@ class Chosen(NamedTuple):
 
 
 def chosen(robots: Sequence[Looked], found: Found) -> Chosen:
-    """The descriptions by how likely each is the robot; a house or a shelf is none."""
+    """Return the descriptions, the likeliest to be the robot first; a house or a shelf is none."""
     said = names_of_files(found)
     used = {it.path for it in robots if any(_uses(one, it) for one in robots if one.links > 1)}
     made = [_candidate(it, said, found) for it in robots]
@@ -78,8 +78,8 @@ def chosen(robots: Sequence[Looked], found: Found) -> Chosen:
 
 
 def may_be_partners(path: str, found: Found) -> Iterator[str]:
-    """Files of the other kind that may be of the same robot: an SDF of a URDF, a URDF of an SDF. They
-    are called alike, or a launch file loads both."""
+    """Yield files of the other kind that may be of the same robot: an SDF for a URDF, a URDF for an
+    SDF. They have similar names, or a launch file loads both."""
     launched = [paths for _, paths in loaded(found) if os.path.realpath(path) in paths]
     for other in found.every:
         if is_model(other) != is_model(path) and (
@@ -89,7 +89,7 @@ def may_be_partners(path: str, found: Found) -> Iterator[str]:
 
 
 def partner(it: Looked, others: Iterable[Looked]) -> Looked | None:
-    """Of these the one of another kind that has most of the same links, half of them at least."""
+    """Return that of another kind with most links in common, at least half of them."""
     own = _bare_links(it)
     shared = {id(one): len(own & _bare_links(one)) for one in others}
     fits = [one for one in others if one.tag != it.tag and 2 * shared[id(one)] >= one.links > 0]
@@ -97,17 +97,17 @@ def partner(it: Looked, others: Iterable[Looked]) -> Looked | None:
 
 
 def _bare_links(it: Looked) -> set[str]:
-    """Its links without what a xacro puts in front for a robot."""
+    """Return its links without what a xacro puts in front for a robot."""
     return {name.rpartition("/")[2] for name in _links(it)}
 
 
 def is_model(path: str) -> bool:
-    """Is it an SDF, or a xacro of one? Gazebo Classic's may end with .model."""
+    """Return whether it is an SDF, or a xacro of one. Gazebo Classic's may end with .model."""
     return ".sdf" in os.path.basename(path) or path.endswith(".model")
 
 
 def acts(it: Looked) -> bool:
-    """Can it move, or does it sense? A model of a thing has at most a plugin of its own."""
+    """Return whether it can move, or senses. A model of a thing has at most a plugin of its own."""
     if it.tag != "sdf" or it.links > 1 or any(_moving(it)):
         return True
     return it.root is not None and next(it.root.iter("sensor"), None) is not None
@@ -149,8 +149,8 @@ def names_its_package(path: str) -> bool:
 
 
 def _rank(it: Candidate) -> tuple[object, ...]:
-    """By kind, by what its launch file starts, of its package, named; then what is no copy, for a
-    simulator, has ``<ros2_control>``, a short path."""
+    """Return a sort key: by kind, by what its launch file starts, of its package, named; then no
+    copy, for a simulator, with ``<ros2_control>``, a short path."""
     robot = it.robot
     is_copy = _COPY.search(os.path.basename(robot.path).lower()) is not None
     more = is_copy, robot.simulator == NO_SIMULATOR, not robot.control, len(robot.path), robot.path
@@ -166,8 +166,8 @@ def _is_behind(it: Candidate, best: Candidate) -> bool:
 
 
 def _same_robot(it: Candidate, best: Candidate) -> bool:
-    """Two files of one robot: as URDF, xacro and SDF, or for a simulator and for real, or a copy. Other
-    files of one name in two folders are variants."""
+    """Return whether two files are of one robot: as URDF, xacro and SDF, simulated and real, or a
+    copy. Other files of one name in two folders are variants."""
     if data_of_file(it.robot.path) == data_of_file(best.robot.path):
         return True
     names = {it.robot.name, _stem(it.robot.path)} & {best.robot.name, _stem(best.robot.path)}
@@ -177,20 +177,19 @@ def _same_robot(it: Candidate, best: Candidate) -> bool:
 
 
 def processes_with(path: str, found: Found) -> int:
-    """How many processes of a robot the launch file starts that loads this description, and most."""
+    """Return how many processes the launch file with most of them starts for this description."""
     real = os.path.realpath(path)
     return max((processes_of_robot(it) for it, paths in loaded(found) if real in paths), default=0)
 
 
 def launched_descriptions(found: Found) -> list[str]:
-    """The descriptions that the launch file loads which was named, or else those that do which start a
-    robot."""
+    """Return the descriptions loaded by the named launch file, or by all that start a robot."""
     each = (paths for it, paths in loaded(found) if found.named or processes_of_robot(it))
     return [*dict.fromkeys(path for paths in each for path in paths.values())]
 
 
 def loaded(found: Found) -> list[tuple[Reading, Mapping[str, str]]]:
-    """The launch files, each with the descriptions that it loads, by their real paths."""
+    """Return the launch files, each with the descriptions that it loads, by their real paths."""
     return once_kept(
         ("loaded", found), lambda: [(it, loaded_by(it.graph, found)) for it in found.read]
     )
@@ -220,7 +219,7 @@ def _package(path: str) -> str:
 
 
 def _stem(path: str) -> str:
-    """What a description is called: by its file, a model by its folder."""
+    """Return the name of a description: that of its file, for a model that of its folder."""
     stem = os.path.basename(path).partition(".")[0]
     is_model = _COPY.sub("", stem).strip() == "model"
     return os.path.basename(os.path.dirname(path)) if is_model else stem

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The files beside a description -> those that it runs with, and the stacks that they say.
+"""The related files of a description -> those that it runs with, and the node sets that they say.
 
 Where several files are for the same thing (parameters of a node, an RViz config), the nearest is taken.
 """
@@ -42,7 +42,7 @@ _WORD = re.compile(r"[a-z0-9]+")
 
 
 class Companions(NamedTuple):
-    """What goes with a description: files by kind, its SRDF, its stacks each with the reason.
+    """What goes with a description: files by kind, its SRDF, its node sets each with the reason.
 
     ``left`` are files of the same kind that were not taken, each with the reason.
     """
@@ -60,7 +60,7 @@ class Companions(NamedTuple):
 
 
 def companions_of(robot: Looked, found: Found, release: str) -> Companions:
-    """What goes with a description of these files."""
+    """Return the related files of a description, among those found."""
     left = of_others(robot, found)
     every = without(found, left)
     left |= _with_others_names(robot, every)
@@ -92,7 +92,7 @@ def companions_of(robot: Looked, found: Found, release: str) -> Companions:
 
 
 def srdf_of(robot: Looked, found: Found) -> str:
-    """The SRDF with most of the robot's names; empty for none."""
+    """Return the SRDF with most of the robot's names; empty for none."""
     named = without(found, {**of_others(robot, found), **_with_others_names(robot, found)})
     return _best_srdf(robot, named)
 
@@ -104,8 +104,8 @@ def _best_srdf(robot: Looked, found: Found) -> str:
 
 
 def _controllers_of_others(robot: Looked, sections: Mapping[str, frozenset[str]]) -> dict[str, str]:
-    """The files of controllers of the real robot, whose simulated one is driven by other plugins, and
-    those beside a description that has nothing for them to move."""
+    """Return, with the reason, controller files of a real robot whose simulated one is driven by
+    other plugins, and those that a description has nothing to move for."""
     if robot.control:
         return {}
     reason = "no plugin of the simulated robot makes a controller manager"
@@ -115,8 +115,8 @@ def _controllers_of_others(robot: Looked, sections: Mapping[str, frozenset[str]]
 
 
 def moveit_beside(robot: Looked, srdf: str, found: Found, left: dict[str, str]) -> tuple[str, ...]:
-    """MoveIt's files of the folder with most names of the robot and its groups, then of others; those
-    that are ``left`` out get a reason there."""
+    """Return MoveIt's files of the folder with most names of the robot and its groups, then of
+    others; those ``left`` out get a reason there."""
     if not srdf:
         return ()
     left |= moveit_of_others(robot, srdf, found)
@@ -134,8 +134,8 @@ def _of_kind(
     rank: Callable[[str], int] = lambda _: 0,
     packages: Container[object] = (),
 ) -> Iterator[str]:
-    """The files of a kind by their rank, nearest first; of equal base names, or where one is enough,
-    only one. An RViz config of the ``packages`` of the robot goes before others."""
+    """Yield the files of a kind by their rank, nearest first; only one of equal base names, or if
+    one is enough. An RViz config of the robot's ``packages`` goes before others."""
     taken: dict[str, str] = {}
     near = _nearest(robot, every)
     if kind == "rviz":
@@ -150,9 +150,9 @@ def _of_kind(
 
 
 def _fitting(robot: Looked, found: Found, release: str, left: dict[str, str]) -> Iterator[Fitting]:
-    """The parameter files that can be read; those that were named come first, that after the robot's
-    description first of all, then those with fewest names that the robot has not, then the nearest.
-    Raises Undecided where none is more likely than another for one node."""
+    """Yield the readable parameter files: named ones, first the one after the robot's description,
+    then those with fewest names that the robot lacks, then the nearest. Raises Undecided if none is
+    the likeliest for a node."""
     known = load_known_nodes("", release)
     loaded = {*_loaded(robot)}
     asked = {*filter(lambda it: it in found.meant or os.path.abspath(it) in loaded, found.params)}
@@ -179,8 +179,8 @@ def _fitting(robot: Looked, found: Found, release: str, left: dict[str, str]) ->
 def _sections(
     read: Iterable[Fitting], left: dict[str, str]
 ) -> Iterator[tuple[str, frozenset[str]]]:
-    """Parameter files with the nodes that they are for; one that has a node of an earlier one is left
-    out."""
+    """Yield parameter files with the nodes that they are for; a file with a node of an earlier one
+    is left out."""
     before: dict[str, str] = {}
     for path, names, *_ in read:
         if again := sorted(names & before.keys()):
@@ -191,15 +191,15 @@ def _sections(
 
 
 def _with_others_names(robot: Looked, found: Found) -> dict[str, str]:
-    """SRDFs and RViz configs of which most names are not the robot's."""
+    """Return SRDFs and RViz configs of which most names are not the robot's."""
     known = {it: hundredths_known(robot, it) for it in (*found.srdf, *found.rviz)}
     reason = "of its links and joints {} in a hundred are the robot's"
     return {it: reason.format(share) for it, share in known.items() if share < LEAST}
 
 
 def _of_other_packages(found: Found, own: Collection[tuple[str, str] | None]) -> dict[str, str]:
-    """RViz configs of packages that neither have nor launch the robot, and that show none of its links:
-    those of a vendor's driver beside it."""
+    """Return RViz configs of packages that neither have nor launch the robot, and that show none of
+    its links: those of a vendor's driver."""
     own = {*own, None}
     apart = (it for it in found.rviz if package_of(it) not in own and it not in found.meant)
     reason = "it is of a package that does not launch the robot"
@@ -207,13 +207,13 @@ def _of_other_packages(found: Found, own: Collection[tuple[str, str] | None]) ->
 
 
 def _best_known(robot: Looked, paths: Sequence[str]) -> list[str]:
-    """Those first of whose names most are the robot's, then the nearest."""
+    """Return the paths sorted: those with most of the robot's names first, then the nearest."""
     return sorted(_nearest(robot, paths), key=lambda it: -hundredths_known(robot, it))
 
 
 def _nearest(robot: Looked, paths: Sequence[str]) -> list[str]:
-    """What the description itself loads first, what is in its own package, and by how like its own the
-    paths are."""
+    """Return the paths in order: those that the description loads, then those of its own package,
+    then by how much they are like its own path."""
     words, home = set(_WORD.findall(robot.path.lower())), package_of(robot.path)
     loaded = set(_loaded(robot))
 
@@ -227,13 +227,13 @@ def _nearest(robot: Looked, paths: Sequence[str]) -> list[str]:
 
 
 def _loaded(robot: Looked) -> Iterator[str]:
-    """The files of parameters that plugins of the description load."""
+    """Yield the parameter files that plugins of the description load."""
     for it in robot.root.iter("parameters") if robot.root is not None else ():
         yield os.path.abspath((it.text or "").strip())
 
 
 def _stacks(robot: Looked, nodes: Mapping[str, str], srdf: str) -> Iterator[tuple[str, str]]:
-    """The stacks that a robot runs, each with what says so."""
+    """Yield the node sets that a robot runs, each with the reason."""
     bare = {name.rpartition("/")[2]: path for name, path in nodes.items()}
     for stack, with_, lacking in known_names()["stacks"]:
         if set(with_) <= bare.keys() and not set(lacking) & bare.keys():

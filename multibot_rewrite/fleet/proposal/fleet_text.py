@@ -127,7 +127,7 @@ def _flow(value: Any) -> str:
 def _of_member(
     member: Member, folder: str, layout: str
 ) -> Iterator[tuple[str, tuple[Any, tuple[str, ...]]]]:
-    """The keys of a description and its files, each with the reasons."""
+    """Yield the keys of a description and its files, each with the reasons."""
 
     def here(path: str) -> str:
         return os.path.relpath(path, folder)
@@ -165,12 +165,13 @@ def _launched(it: Bringup, apart: str) -> Iterator[str]:
     ``apart`` is why each robot has its own RViz, if it has one."""
     each = {node: apart if node.executable == RVIZ else "" for node in it.graph.nodes}
     whys = {node: "" if each[node] else once_for_all(node) for node in it.graph.nodes}
+    texts = {it: said_of(it) + (f", {it.later}" if it.process.off else "") for it in whys}
     own = [
-        f"{said_of(node)}, since {each[node]}" if each[node] else said_of(node)
+        f"{texts[node]}, since {each[node]}" if each[node] else texts[node]
         for node, why in whys.items()
         if not why
     ]
-    once = [f"{said_of(node)}, since {why}" for node, why in whys.items() if why]
+    once = [f"{texts[node]}, since {why}" for node, why in whys.items() if why]
     yield f"What {it.name} starts for each robot:"
     yield from _some(own)
     if once:
@@ -194,7 +195,7 @@ def _some(rows: Iterable[str]) -> Iterator[str]:
 
 
 def _needed(it: Looked) -> Iterator[str]:
-    """What nobody gave and the xacro cannot do without, and what makes it simulated or real."""
+    """Yield comments on arguments that the xacro needs, and on its simulated-or-real switch."""
     arguments = dict(it.arguments)
     if it.switch:
         yield f"{it.switch} is the switch between the simulated and the real robot"

@@ -27,8 +27,8 @@ _NAMED = ("rviz", "bridge", "behavior_trees")
 def companions_launched(
     robot: Looked, bringup: Bringup, found: Found, release: str, asked: Mapping[str, str]
 ) -> Companions:
-    """What the launch file of a robot gives its nodes, but for the parameter files that a build finds
-    there itself, and what goes with the stacks that were ``asked`` for."""
+    """Return the files that a robot's launch file gives its nodes, except parameter files, which a
+    build finds itself, and those of the node sets that were ``asked`` for."""
     graph = bringup.graph
     # The words and texts that nodes get, in which the files that they read are named.
     words = "\n".join((*(word for it in graph.nodes for word in it.arguments), *graph.texts))
@@ -60,7 +60,7 @@ def companions_launched(
 
 
 def _of_stacks(guessed: Companions, stacks: Mapping[str, str], release: str) -> list[str]:
-    """The parameter files that have a node of the stacks."""
+    """Return the parameter files that have a node of the node sets."""
     nodes = {os.path.basename(it.name) for one in stacks for it in load_stack(one, release)}
     every = guessed.files.get("params", ())
     return [it for it in every if any(f"{name}:" in text_of(it) for name in nodes)]

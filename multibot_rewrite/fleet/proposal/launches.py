@@ -14,7 +14,7 @@ from typing import NamedTuple
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.sources.included_by import data_of_file
-from multibot_rewrite.fleet.launch.launched_robot import keep, launch_of, times_of
+from multibot_rewrite.fleet.launch.launched_robot import keep, launch_of, times_of, why_not
 from multibot_rewrite.producers.launch.child import read_launch_files
 from multibot_rewrite.producers.launch.handed_on import handed_on
 from multibot_rewrite.producers.launch.programs import programs
@@ -63,8 +63,8 @@ class Bringup(NamedTuple):
 
 
 def read_named(order: LaunchOrder) -> Reading:
-    """A launch file that was named, as it is launched. Raises InputError where it cannot be read, or
-    starts nothing."""
+    """Return a named launch file, read as it is launched. Raises InputError if it cannot be read,
+    or starts nothing."""
     graph = launch_of([order], ANY)
     unread = [it.message for it in graph.notes if not it.parameters]
     if unread and not graph.nodes:
@@ -73,7 +73,7 @@ def read_named(order: LaunchOrder) -> Reading:
 
 
 def read_any(launch: Sequence[str]) -> list[Reading]:
-    """What launch files start with any arguments; what one of them includes is in that one alone."""
+    """Return what launch files start with any arguments; what one includes is in that one alone."""
     # What others include is read with them.
     texts = {it: data_of_file(it) for it in launch}
     named = {
@@ -86,12 +86,12 @@ def read_any(launch: Sequence[str]) -> list[Reading]:
 
 
 def read_as(orders: Iterable[LaunchOrder]) -> list[Reading]:
-    """What launch files start, each as it is launched."""
+    """Return what launch files start, each as it is launched."""
     every = tuple(orders)
     read = _read(every, tuple(times_of(it.file) for it in every)) if every else []
     for it in (one for one in read if one.graph.nodes and not one.order.every):
         keep(it.order, it.graph)
-    return read
+    return [it if it.order.every else it._replace(why=it.why or why_not(it.graph)) for it in read]
 
 
 @lru_cache(maxsize=16)
@@ -157,13 +157,13 @@ def starts_simulator(graph: LaunchGraph) -> bool:
 
 
 def is_of_robot(it: LaunchedNode) -> bool:
-    """Is it a process of a robot, no simulator, and no program that ends or only looks?"""
+    """Return whether it is a process of a robot: no simulator, no program that ends or only looks."""
     ways = programs()
     passes = f"{it.package}/{it.executable}" in ways.passing or it.package in ways.simulators
     return not passes and not is_viewer(it.executable)
 
 
 def _is_moved(topic: str, target: str) -> bool:
-    """Does a rule move a topic of which not every robot has its own?"""
+    """Return whether a rule renames a topic of which not every robot has its own."""
     is_name = topic.rpartition(":")[2].startswith("__")
     return bool(topic and target) and not is_name and topic.rpartition("/")[2] not in _USUAL_TOPICS

@@ -87,13 +87,13 @@ class Looked(NamedTuple):
 
 
 def filled_for_any(it: Looked) -> tuple[tuple[str, str], ...]:
-    """Its arguments as they are for one robot; raises nothing."""
+    """Return its arguments as they are for one robot; raises nothing."""
     return tuple(filled(dict(it.arguments), ANY).items())
 
 
 def look(path: str, given: Mapping[str, str], reach: Reach, values: NeededValues) -> Looked:
-    """What a description is; ``given`` are values for arguments of xacros, others that it needs have
-    those of ``values``."""
+    """Return what a description is; ``given`` are values for arguments of xacros, others that it
+    needs get those of ``values``."""
     known = dict(given)
     for _ in range(MOST_ARGUMENTS):
         found = _look(path, known, reach)
@@ -122,9 +122,9 @@ def _look(path: str, given: Mapping[str, str], reach: Reach) -> Looked:
 def with_bringup(
     it: Looked, bringup: Bringup | None, given: Mapping[str, str], reach: Reach
 ) -> Looked:
-    """The same with the launch file that starts it, and with the arguments that this gives its xacro,
-    where they are not the default. What was ``given`` counts, and what names a robot stays. A launch
-    file that loads hardware of a simulator is for one, whoever starts that."""
+    """Return the description with the launch file that starts it, and the arguments that this gives
+    its xacro, unless they are the default. What was ``given`` counts, and what names a robot stays.
+    A launch file that loads hardware of a simulator is for one, whoever starts that."""
     launched = it._replace(bringup=bringup)
     read = bringup.graph.read if bringup and not it.model else ()
     own = next((dict(one.arguments) for one in read if one.file == os.path.realpath(it.path)), {})
@@ -157,8 +157,8 @@ def _own_values(given: Iterable[tuple[str, str]], path: str) -> dict[str, str]:
 
 
 def with_own_arguments(it: Looked, tree: Tree, reach: Reach) -> Looked:
-    """The same with the arguments of its xacro that give each robot its own names, and without those
-    that it does not have."""
+    """Return the description with the xacro arguments that give each robot its own names, and
+    without those that it does not have."""
     if not it.path.endswith(".xacro"):
         return it
     given = dict(it.arguments)
@@ -172,7 +172,7 @@ def with_own_arguments(it: Looked, tree: Tree, reach: Reach) -> Looked:
 
 
 def with_semantic_arguments(it: Looked, srdf: str, reach: Reach, values: NeededValues) -> Looked:
-    """The same with what its SRDF cannot be expanded without, where a value is known."""
+    """Return the description with the arguments that its SRDF requires, where a value is known."""
     more: dict[str, str] = {}
     for _ in range(MOST_ARGUMENTS if srdf.endswith(".xacro") else 0):
         given = {**more, **dict(it.arguments)}
@@ -194,8 +194,8 @@ def with_semantic_arguments(it: Looked, srdf: str, reach: Reach, values: NeededV
 
 
 def without_names(it: Looked, given: Mapping[str, str]) -> Looked:
-    """The same with the arguments that name robots empty, but for those that were ``given`` or that it
-    cannot do without."""
+    """Return the description with the arguments that name robots empty, except those that were
+    ``given`` or that it requires."""
     kept = {*given, *it.needed}
     values = {
         name: value if name in kept or ROBOT not in value else "" for name, value in it.arguments
@@ -204,7 +204,7 @@ def without_names(it: Looked, given: Mapping[str, str]) -> Looked:
 
 
 def in_its_world(it: Looked, simulated: bool, reach: Reach) -> Looked:
-    """The same with the argument that makes it the simulated robot, or the real one, if it has one."""
+    """Return the description with the argument that makes it simulated, or real, if it has one."""
 
     def suits_its_simulator(root: etree._Element) -> bool:
         return _simulator(root) != NO_SIMULATOR and suits_simulator(root)
@@ -231,8 +231,8 @@ def _switched(it: Looked, suits: Suits, reach: Reach) -> Looked:
 
 
 def with_controllers(it: Looked, files: Sequence[str], reach: Reach) -> Looked:
-    """The same with the argument that names the file of controllers, where the plugin that makes the
-    manager got none: launch files give it. The file is named from the description's folder."""
+    """Return the description with the argument that names the controllers' file, if the manager's
+    plugin got none: launch files give it. The path is relative to the description's folder."""
     file = next((one for one in files if "controller_manager" in text_of(one)), "")
     if not (it.control and file and it.path.endswith(".xacro") and _loads_nothing(it.root)):
         return it
@@ -246,7 +246,7 @@ def with_controllers(it: Looked, files: Sequence[str], reach: Reach) -> Looked:
 
 
 def _loads_nothing(root: etree._Element | None) -> bool:
-    """Has the plugin that makes a controller manager a file of parameters, and is it named nowhere?"""
+    """Return whether the plugin that makes a controller manager has a file that nothing names."""
     parts = _parts(root) if root is not None else []
     plugins = (it for part in parts for it in part.iter("plugin"))
     made = (it for it in plugins if "ros2_control" in (it.get("filename") or ""))
@@ -255,7 +255,7 @@ def _loads_nothing(root: etree._Element | None) -> bool:
 
 
 def with_model(it: Looked, sdf: Looked) -> Looked:
-    """A URDF for robot_state_publisher, and the SDF of the same robot for the simulator."""
+    """Return a URDF for robot_state_publisher with the same robot's SDF for the simulator."""
     return it._replace(
         model=sdf.path, simulator=sdf.simulator, control=sdf.control, own_tf=sdf.own_tf
     )
@@ -279,7 +279,7 @@ def _looked(path: str, text: bytes, arguments: tuple[tuple[str, str], ...]) -> L
 
 
 def _is_controlled(root: etree._Element) -> bool:
-    """A robot that other plugins drive in its simulator keeps the block of the real one."""
+    """Return whether ros2_control runs; other simulator plugins leave a real robot's block unused."""
     if next(root.iter("ros2_control"), None) is None:
         return False
     # gz_ros2_control, ign_ros2_control, gazebo_ros2_control and what vendors make of them.
@@ -296,7 +296,7 @@ def _plugin_files(root: etree._Element) -> list[str]:
 
 
 def _simulator(root: etree._Element) -> str:
-    """By the plugins below ``<gazebo>``, or of an SDF; sensors alone are for gz-sim."""
+    """Return the simulator, by the plugins of ``<gazebo>`` or an SDF; sensors alone are for gz-sim."""
     parts, files = _parts(root), _plugin_files(root)
     if any(it.startswith(_CLASSIC) for it in files):
         return CLASSIC
@@ -305,13 +305,13 @@ def _simulator(root: etree._Element) -> str:
 
 
 def holds_the_world(it: Looked) -> bool:
-    """Is the robot fixed to the world by its own description?"""
+    """Return whether the robot is fixed to the world by its own description."""
     links = it.root.iterfind("link") if it.root is not None else ()
     return any(link.get("name") == WORLD for link in links)
 
 
 def is_placed(it: Looked) -> bool:
-    """Is a real robot fixed to a frame of all robots, such as map, by its own description?"""
+    """Return whether a real robot's description fixes it to a shared frame, such as map."""
     links = it.root.iterfind("link") if it.root is not None else ()
     shared = {*WORLD_FRAMES} - {WORLD}
     return it.simulator == NO_SIMULATOR and any(link.get("name") in shared for link in links)
@@ -330,8 +330,8 @@ class NeededValues(NamedTuple):
     launch: Sequence[str] = ()
 
     def of(self, name: str) -> str:
-        """The value of an argument: the robot's name where it is called so, else what a launch file
-        gives or declares; empty where none does. Raises nothing."""
+        """Return the value of an argument: the robot's name for one with such a name, otherwise
+        what a launch file gives or declares; empty where none does. Raises nothing."""
         if name in _PREFIX:
             return "{robot}_"
         if name in _NAME:
@@ -342,7 +342,7 @@ class NeededValues(NamedTuple):
         return next(filter(None, (*given, *declared)), self._choice(name))
 
     def of_file(self, path: str) -> dict[str, str]:
-        """What the first launch file gives a xacro that gives it anything but names. Raises nothing."""
+        """Return what the first launch file gives a xacro, if it is more than names. Raises nothing."""
         real = os.path.realpath(path)
         read = (one for it in self._every() for one in it.graph.read if one.file == real)
         given = (_own_values(one.arguments, path) for one in read)
@@ -353,8 +353,8 @@ class NeededValues(NamedTuple):
         yield from read_any(self.launch)
 
     def of_mandatory(self, path: str) -> dict[str, str]:
-        """The arguments of a xacro that every launch has to choose a value for, with the first of them:
-        the xacro's own default may be no value at all. Raises nothing."""
+        """Return the arguments of a xacro that every launch has to choose a value for, with the
+        first value: the xacro's own default may be no value at all. Raises nothing."""
         names = dict.fromkeys(_ARGUMENT.findall(text_of(path)))
         free = (it for it in names if not any(one.default for one in self._declared(it)))
         return {name: value for name in free if (value := self._choice(name))}

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which files beside a description belong to another one, by place and by what they name, and which of
-several parameter files for one node goes with it."""
+"""Which related files of a description belong to another one, by place and by what they name, and
+which of several parameter files for one node goes with it."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class _Words(NamedTuple):
 
 
 def of_others(robot: Looked, found: Found) -> dict[str, str]:
-    """The files that belong to another description than the robot's, each with what says so."""
+    """Return the files that belong to another description than the robot's, each with the reason."""
     near = dict(_nearer_to_others(robot.path, found))
     rest = [path for path in _companions(found) if path not in near]
     return {**near, **dict(_naming_others(robot, found, rest))}
@@ -66,7 +66,7 @@ def _owners(file: str, robots: Iterable[Looked]) -> list[Looked]:
 
 
 def _is_called_like(file: str, robot: Looked) -> bool:
-    """Does the name of a file begin with that of the description, as a word of its own?"""
+    """Return whether a file name begins with the description's name as a separate word."""
     name, front = os.path.basename(file), os.path.basename(robot.path).partition(".")[0]
     return name.startswith(front) and not name[len(front) : len(front) + 1].isalnum()
 
@@ -81,8 +81,8 @@ def _near(folder: str, file: str) -> int:
 
 
 def _nearer_to_others(robot: str, found: Found) -> Iterator[tuple[str, str]]:
-    """Files of the description's package that are nearer to another one: a folder of examples has files
-    of several robots."""
+    """Yield files of the description's package that are nearer to another description: a folder of
+    examples has files of several robots."""
     others = {os.path.dirname(it): it for it in reversed(found.every)}
     own, base = os.path.dirname(robot), home_of(robot)
     for file in _companions(found):
@@ -112,7 +112,7 @@ def _naming_others(robot: Looked, found: Found, files: Iterable[str]) -> Iterato
 
 
 def _known(words: _Words, names: frozenset[str]) -> frozenset[str]:
-    """The names that a file has: a plain word such as camera only as a value."""
+    """Return the names that a file has: a plain word such as camera only as a value."""
     return frozenset(it for it in names & words.all if it in words.values or _is_specific(it))
 
 
@@ -126,8 +126,8 @@ LEAST = 50
 
 
 def hundredths_known(robot: Looked, path: str) -> int:
-    """How many of a hundred links and joints that an SRDF names, or an RViz config shows, are the
-    robot's; all of a file that names none."""
+    """Return how many of a hundred links and joints that an SRDF or RViz config names are the
+    robot's; 100 for a file that names none."""
     if path.endswith(".rviz"):
         named = names_shown(path)
     else:
@@ -139,13 +139,13 @@ def hundredths_known(robot: Looked, path: str) -> int:
 
 
 def own_names(robot: Looked) -> frozenset[str]:
-    """Its links and joints: as they are, without what its arguments put in front, as written."""
+    """Return its links and joints: as they are, without what its arguments put in front, as written."""
     made = frozenset(_expanded(robot))
     return made | _plain(robot, made) | _names_in(robot.path)
 
 
 def _plain(robot: Looked, names: frozenset[str]) -> frozenset[str]:
-    """The names without what the arguments for its names put in front."""
+    """Return the names without what the arguments for its names put in front."""
     given = [it.rstrip("_/") for _, it in filled_for_any(robot) if ANY in it]
     fronts = tuple(f"{it}{end}" for it in given for end in "_/")
     front = {name: next((it for it in fronts if name.startswith(it)), "") for name in names}
@@ -153,8 +153,8 @@ def _plain(robot: Looked, names: frozenset[str]) -> frozenset[str]:
 
 
 def semantic_names(robot: Looked, path: str) -> tuple[frozenset[str], frozenset[str]]:
-    """The links and joints that an SRDF names, and its groups: with the robot's arguments, if it is a
-    xacro; as written where that cannot be expanded."""
+    """Return the links and joints that an SRDF names, and its groups: with the robot's arguments,
+    if it is a xacro; as written if that cannot be expanded."""
     if path.endswith(".xacro"):
         with suppress(InputError):
             names, groups = _semantics(path, filled_for_any(robot))
@@ -174,7 +174,7 @@ def _semantics(
 
 
 def best_folders(robot: Looked, srdf: str, paths: Iterable[str]) -> dict[str, int]:
-    """How many names of the robot and groups of its SRDF the files of each folder have."""
+    """Return how many names of the robot and groups of its SRDF the files of each folder have."""
     groups = semantic_names(robot, srdf)[1]
     own = own_names(robot) | groups
     found: dict[str, int] = {}
@@ -185,7 +185,7 @@ def best_folders(robot: Looked, srdf: str, paths: Iterable[str]) -> dict[str, in
 
 
 def names_shown(path: str) -> frozenset[str]:
-    """The links in the trees of an RViz config."""
+    """Return the links in the trees of an RViz config."""
     found = (it.decode("utf-8", "replace") for it in _SHOWN.findall(data_of_file(path)))
     return frozenset(found) - {*SENT_FRAMES}
 
@@ -196,14 +196,14 @@ def _expanded(robot: Looked) -> Iterator[str]:
 
 
 def _names_in(path: str) -> frozenset[str]:
-    """The links and joints of a description as they are written, without what a xacro fills in."""
+    """Return the links and joints of a description as they are written, without what xacro fills in."""
     written = (it.decode("utf-8", "replace") for it in _NAMED.findall(data_of_file(path)))
     names = (_FILLED_IN.sub("", it).strip("_/ ") for it in written)
     return frozenset(it for it in names if it) - {*SENT_FRAMES}
 
 
 def names_of_files(found: Found) -> frozenset[str]:
-    """The words that the files beside descriptions have as values, and specific ones as keys."""
+    """Return the words that descriptions' related files have as values, and specific ones as keys."""
     words = [_words(it) for it in _companions(found)]
     keys = (name for it in words for name in it.all if _is_specific(name))
     return frozenset(keys).union(*(it.values for it in words)) - {*SENT_FRAMES}
@@ -242,8 +242,8 @@ class Fitting(NamedTuple):
 def fitting(
     robot: Looked, path: str, nodes: Sequence[Run], known: KnownNodes, bridges: Iterable[str]
 ) -> Fitting:
-    """How a file goes with a robot: frames, links and joints are those of its description, a sensor's
-    topic of several words stands in it or in a bridge."""
+    """Return how a file fits a robot: whether its frames, links and joints are those of the
+    description, and sensors' topics of several words are in it or in a bridge."""
     own = own_names(robot) | {*SENT_FRAMES}
     text = etree.tostring(robot.root).decode() if robot.root is not None else ""
     said = "\n".join((text, *map(text_of, bridges)))
@@ -257,9 +257,9 @@ def fitting(
 
 
 def not_started(path: str, nodes: Sequence[Run], known: KnownNodes) -> str:
-    """Why a file of another package than the description's is not the robot's, where no launch file
-    starts that; empty where it may be: it is an example beside the code of a node, or nobody knows its
-    nodes."""
+    """Return why a file of another package is not the robot's, if no launch file starts that
+    package; empty if it may be. It is an example next to a node's code, or its nodes are
+    unknown."""
     own = package_of(path)
     packages = {known.nodes[it.fact.known].package for it in nodes if it.fact.known in known.nodes}
     if own and own[0] in packages:
@@ -269,7 +269,7 @@ def not_started(path: str, nodes: Sequence[Run], known: KnownNodes) -> str:
 
 
 def _named(nodes: Iterable[Run], known: KnownNodes) -> Iterator[tuple[str, str]]:
-    """The names in values of known parameters, each with its kind."""
+    """Yield the names in values of known parameters, each with its kind."""
     for node in (it for it in nodes if it.fact.known in known.nodes):
         params = [*known.nodes[node.fact.known].params.values()]
         for name, given in node.values.items():

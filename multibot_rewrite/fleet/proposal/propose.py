@@ -105,7 +105,7 @@ class Proposal(NamedTuple):
 
 
 def layout_of(members: Sequence[Member]) -> Choice:
-    """The layout that the files of these robots are made for."""
+    """Return the layout that the files of these robots are made for."""
     if any(it.looked.own_tf for it in members):
         return Choice(PER_ROBOT, "plugins of the description send tf on each robot's own topic")
     stacks = {name for it in members for name in it.companions.stacks}
@@ -121,14 +121,14 @@ def layout_of(members: Sequence[Member]) -> Choice:
 
 
 def affix_of(layout: str) -> Choice | None:
-    """``prefix`` where frames have the robot's name, as most robots of vendors do."""
+    """Return ``prefix`` if frames have the robot's name, as with most robots of vendors."""
     if layout == PER_ROBOT:
         return None
     return Choice("prefix", "frames are called robot1/base_link, the usual form in ROS")
 
 
 def simulator_of(members: Sequence[Member]) -> Choice:
-    """Whether the robots are simulated, by their launch files, else by what their descriptions have."""
+    """Return whether robots are simulated, by their launch files, else by their descriptions."""
     launched = {it.bringup.is_simulated: it.bringup for it in members if it.bringup}
     if len(launched) == 1 and all(it.bringup for it in members):
         ((is_simulated, bringup),) = launched.items()
@@ -160,8 +160,8 @@ def two_simulators(members: Sequence[Member]) -> str:
 
 
 def worlds_of(members: Sequence[Member], is_real: bool) -> dict[str, Choice]:
-    """Where descriptions fix their robots to the world, each real robot gets a world of its own, which
-    stands at its pose in the map. A simulator needs the one world."""
+    """Return a frame of its own for each real robot whose description is fixed to the world, which
+    is at its pose in the map. A simulator needs one world."""
     if not is_real or not any(holds_the_world(it.looked) for it in members):
         return {}
     why = "the description fixes the robot to a link `world`: each robot has its own, placed in map"
@@ -169,8 +169,8 @@ def worlds_of(members: Sequence[Member], is_real: bool) -> dict[str, Choice]:
 
 
 def poses_of(members: Sequence[Member], apart: float) -> Mapping[str, Mapping[str, float]]:
-    """A place for each robot, in a row along y, so many metres ``apart``; with 0 as they are wide. None
-    for a real one whose description has its place in the map."""
+    """Return a place for each robot, in a row along y, so many metres ``apart``; with 0 as they are
+    wide. None for a real one whose description has its place in the map."""
     found: dict[str, dict[str, float]] = {}
     y = before = 0.0
     for member in members:
@@ -183,14 +183,14 @@ def poses_of(members: Sequence[Member], apart: float) -> Mapping[str, Mapping[st
 
 
 def names_of(stems: Sequence[str], count: int) -> list[tuple[str, ...]]:
-    """The names of ``count`` robots of each description: robot1, robot2, or by its own name."""
+    """Return the names of ``count`` robots of each description: robot1, robot2, or by its own name."""
     if len(stems) == 1:
         return [numbered_names(count)]
     return [numbered_names(count, stem) for stem in unlike(stems)]
 
 
 def unlike(words: Iterable[str]) -> list[str]:
-    """The words as names of robots, made different where they are equal."""
+    """Return the words as names of robots, made different where they are equal."""
     found: list[str] = []
     for word in words:
         plain = "".join(it if it.isalnum() else "_" for it in word.lower()).strip("_") or "robot"
@@ -201,8 +201,8 @@ def unlike(words: Iterable[str]) -> list[str]:
 
 
 def release_of(robots: Sequence[Looked], found: Found, wanted: Wanted) -> Choice:
-    """The release that was asked for, else the one that has the robots' simulator and what they load,
-    that their repository names, or that has what the parameter files set."""
+    """Return the release that was asked for, otherwise the one that the robots' simulator and
+    plugins, their repository or their parameter files show."""
     if wanted.named:
         return Choice(wanted.release, "the ROS 2 release that was asked for")
     if any(it.simulator == CLASSIC for it in robots):
@@ -218,7 +218,7 @@ def release_of(robots: Sequence[Looked], found: Found, wanted: Wanted) -> Choice
 def propose(
     robots: Sequence[Looked], found: Found, wanted: Wanted, refused: Mapping[str, str]
 ) -> Proposal:
-    """A fleet of these descriptions; ``refused`` are files that do not go with them, and why."""
+    """Return a fleet of these descriptions; ``refused`` are files that do not go with them, and why."""
     stems = [it.name or os.path.basename(it.path).partition(".")[0] for it in robots]
     names = names_of(stems, wanted.each)
     if wanted.names and len(robots) == 1:
@@ -263,7 +263,7 @@ def propose(
 
 
 def _companions(it: Looked, found: Found, release: str, wanted: Wanted) -> Companions:
-    """The files that go with a robot: those of its launch file, else of its folders."""
+    """Return the files that go with a robot: those of its launch file, otherwise of its folders."""
     asked = dict.fromkeys(wanted.stacks, MEANT)
     if it.bringup:
         return companions_launched(it, it.bringup, found, release, asked)
@@ -288,8 +288,8 @@ _ENOUGH = 2
 
 
 def release_of_files(paths: Sequence[str]) -> SaidRelease:
-    """The release that has most of what the parameter files set, where another one clearly has less;
-    no word of why where all have it alike."""
+    """Return the release that has most of what the parameter files set, if another one clearly has
+    less; without a reason if all are alike."""
     lacking = {release: _lacking(paths, release) for release in _ORDER}
     most = len(lacking[NEWEST_LTS])
     best = min(_ORDER, key=lambda it: len(lacking[it]))
@@ -302,7 +302,7 @@ def release_of_files(paths: Sequence[str]) -> SaidRelease:
 
 
 def _lacking(paths: Sequence[str], release: str) -> list[str]:
-    """The file of each parameter, and of each class of a plugin, that a release does not have."""
+    """Return the file of each parameter, and of each plugin class, that a release does not have."""
     context = make_context({}, make_naming("tf-per-robot"), (), release)
     found = []
     for path in paths:

@@ -64,10 +64,9 @@ def known_names() -> Mapping[str, Any]:
 class Found(NamedTuple):
     """Files by what they are for, each sorted; ``srdf`` are xacros, too. ``folders`` were searched.
 
-    ``descriptions`` are those that were named, if any were; ``every`` are all that are there. ``meant``
-    are files beside them that were named, ``follows`` those with the description that was named before
-    each, ``named`` is the launch file that was.
-    """
+    ``descriptions`` are those that were named, if any were; ``every`` are all that are there.
+    ``meant`` are related files that were named, ``follows`` those with the description that was
+    named before each, ``named`` is the launch file that was."""
 
     descriptions: tuple[str, ...] = ()
     params: tuple[str, ...] = ()
@@ -99,12 +98,9 @@ class Found(NamedTuple):
 
 
 def search(paths: Sequence[str], launch: Sequence[LaunchOrder] = ()) -> Found:
-    """What there is for the descriptions and folders that are named, or for the ``launch`` file: no
-    other one counts then.
-
-    With a description goes what is in its package; raises UsageError for a path that is not there,
-    InputError for a file of another kind.
-    """
+    """Return the files found for the named descriptions and folders, or for the ``launch`` file,
+    which then is the only one. A description brings the files of its package; raises UsageError for
+    a path that does not exist, InputError for a file of another kind."""
     for path in paths:
         if not os.path.exists(path):
             link = os.path.islink(path)
@@ -137,8 +133,8 @@ def search(paths: Sequence[str], launch: Sequence[LaunchOrder] = ()) -> Found:
 
 
 def loaded_by(graph: LaunchGraph, found: Found) -> Mapping[str, str]:
-    """The descriptions that a launch file loads, by their real paths: it reads the file, gives it to a
-    node, or starts a world with the model."""
+    """Return the descriptions that a launch file loads, by their real paths: it reads the file,
+    gives it to a node, or starts a world with the model."""
     known = {os.path.realpath(it): it for it in found.every}
     ends = tuple(known_names()["ends"])
     words = (it for node in graph.nodes for it in node.arguments if it.endswith(ends))
@@ -156,7 +152,7 @@ class Undecided(UsageError):
     """Nothing says which of some files is meant: ``files`` have what is to be said of each."""
 
     def __init__(self, what: str, files: Mapping[str, str], found: Found, *before: str) -> None:
-        """``before`` are files that are named beside the one that is meant, as are those that were."""
+        """``before`` are files that are named before the choice, as are those named already."""
         self.files = files
         named = [*before, *found.meant, next(iter(files))]
         home = os.path.abspath(home_of(named[0]))
@@ -166,12 +162,12 @@ class Undecided(UsageError):
         super().__init__(f"{what}: {shown}; name one: {command}")
 
     def said(self, path: str) -> str:
-        """A file as it is shown."""
+        """Return a file as a message shows it."""
         return f"{path} ({self.files[path]})" if self.files[path] else path
 
 
 def without(found: Found, paths: Container[str]) -> Found:
-    """The same without some files, of whatever kind."""
+    """Return what was found, without some files of whatever kind."""
     kept = {
         kind: tuple(it for it in its if it not in paths) for kind, its in found._asdict().items()
     }
@@ -179,13 +175,13 @@ def without(found: Found, paths: Container[str]) -> Found:
 
 
 def home_of(file: str) -> str:
-    """The package of a file, as a path like the file's; its folder where it is in none."""
+    """Return the package of a file, as a path like the file's; its folder where it is in none."""
     package = package_of(file)
     return os.path.relpath(package[1]) if package else os.path.dirname(file) or os.curdir
 
 
 def is_below(path: str, folder: str) -> bool:
-    """Is it in the folder, however both are written?"""
+    """Return whether it is in the folder, however both are written."""
     above = os.path.join(os.path.abspath(folder), "")
     return os.path.abspath(path).startswith(above)
 
@@ -210,7 +206,7 @@ def _files(folder: str) -> Iterator[str]:
 
 
 def _can_be_named(path: str) -> bool:
-    """May a fleet file, which is UTF-8, name a path?"""
+    """Return whether a fleet file, which is UTF-8, can name a path."""
     return path.isascii() or not any("\ud800" <= it <= "\udfff" for it in path)
 
 
@@ -237,12 +233,12 @@ def _sorted(paths: Iterable[str], named: Sequence[Reading]) -> Iterator[tuple[st
 
 @lru_cache(maxsize=512)
 def text_of(path: str) -> str:
-    """The text of a file such as a launch file; empty where it cannot be read."""
+    """Return the text of a file such as a launch file; empty where it cannot be read."""
     return data_of_file(path).decode("utf-8", "replace")
 
 
 def _kind(path: str, data: bytes) -> str:
-    """The field of ``Found`` that a file goes into; empty for none."""
+    """Return the field of ``Found`` that a file goes into; empty for none."""
     stem, end = os.path.splitext(os.path.basename(path))
     above = os.path.basename(os.path.dirname(path))
     if stem.endswith((".launch", "_launch")) or (above == "launch" and _LAUNCH.search(data)):
@@ -255,7 +251,7 @@ def _kind(path: str, data: bytes) -> str:
 
 
 def _of_model(_: str, data: bytes) -> str:
-    """By what a file that is named is recognised by, too."""
+    """Return the kind of a file by what also recognizes a file that is named."""
     kind = recognised(data)
     if kind == SDF and (b"<model" not in data or _STATIC.search(data)):
         return ""
@@ -263,7 +259,7 @@ def _of_model(_: str, data: bytes) -> str:
 
 
 def _of_xacro(stem: str, data: bytes) -> str:
-    """One that names no robot is a part of others."""
+    """Return the kind of a xacro; one that names no robot is a part of others."""
     kind = _of_model(stem, data)
     if kind != "descriptions" or recognised(data) == SDF:
         return kind
@@ -281,7 +277,7 @@ def _of_yaml(stem: str, data: bytes) -> str:
 
 
 def _is_list(data: bytes) -> bool:
-    """Is a YAML text a list, as those of bridges are?"""
+    """Return whether a YAML text is a list, as those of bridges are."""
     lines = (it.strip() for it in data.splitlines())
     first = next((it for it in lines if it and not it.startswith((b"#", b"%", b"---"))), b"")
     return first.startswith((b"-", b"["))

@@ -49,11 +49,11 @@ MOST_PARTNERS = 5
 
 
 class Wanted(NamedTuple):
-    """What is asked for: files and folders, robots of each description or their names, values of xacro
-    arguments, the release and whether somebody named it, a layout if not the one that the files are
-    made for, metres from robot to robot if not as they are wide, whether xacros may do anything, a
-    simulator or "none" if not what the files are for. ``file`` is the fleet file to be written,
-    ``tell`` is told what is looked at."""
+    """What is asked for: files and folders, robots of each description or their names, values of
+    xacro arguments, the release and whether somebody named it, a layout if not the one that the
+    files are made for, metres from robot to robot if not as they are wide, whether xacros may do
+    anything, a simulator or "none" if not what the files are for. ``file`` is the fleet file to be
+    written, ``tell`` is told what is being checked."""
 
     paths: tuple[str, ...]
     each: int
@@ -143,7 +143,7 @@ def _is_robot(it: Looked) -> bool:
 def _likeliest(
     wanted: Wanted, found: Found, looked: Sequence[Looked], rest: Sequence[str] = ()
 ) -> Seen:
-    """The robots of a folder, the likeliest first; no launch file loads the ``rest``."""
+    """Return the robots of a folder, the likeliest first; no launch file loads the ``rest``."""
     usable = [*filter(_is_robot, looked)]
     if not usable:
         others = f" (of {len(looked)} files none is a robot)" if looked[1:] else ""
@@ -172,15 +172,15 @@ def _likeliest(
 
 
 def _partners(it: Looked, found: Found) -> list[str]:
-    """Files that may be of the same robot: none of a URDF that has its simulator's part itself."""
+    """Return files that may be of the same robot; none for a URDF with its simulator's part in it."""
     if it.tag == "robot" and it.simulator != NO_SIMULATOR:
         return []
     return [*may_be_partners(it.path, found)][:MOST_PARTNERS]
 
 
 def _with_partner(it: Looked, others: Sequence[Looked], wanted: Wanted) -> Looked:
-    """The URDF of a robot for robot_state_publisher, which takes no SDF, and its SDF for the simulator,
-    where both are there."""
+    """Return the URDF of a robot for robot_state_publisher, which takes no SDF, with its SDF for
+    the simulator, if both exist."""
     other = partner(it, others) if wanted.simulator != REAL else None
     if other is None or (it.tag == "robot" and it.simulator != NO_SIMULATOR):
         return it
@@ -198,12 +198,12 @@ def _rather(likeliest: Candidate, looked: Sequence[Looked], found: Found) -> lis
 
 
 def _by_launches(looked: Iterable[Looked], found: Found) -> list[Looked]:
-    """Those first that cannot be read, and whose launch file starts most."""
+    """Return descriptions sorted: unreadable ones first, then those whose launch file starts most."""
     return sorted(looked, key=lambda it: (not it.fault, -processes_with(it.path, found)))
 
 
 def _other_one(path: str, found: Found) -> str:
-    """What is said behind the fault of a description: how another one is taken."""
+    """Return the end of a message about a description: how to choose another one."""
     why = "the launch files load it; " if launched_descriptions(found) else ""
     return f"; {why}for another one: multibot init {shlex.join([path, *found.words])}"
 
@@ -218,7 +218,7 @@ def _refuse(which: Sequence[Looked], more: str) -> None:
 
 
 def with_arguments(robots: Sequence[Looked], wanted: Wanted, found: Found) -> list[Looked]:
-    """The robots with the launch file that starts each, and the arguments of their xacros that give
+    """Return the robots with the launch file that starts each, and the xacro arguments that give
     each its own names and make it simulated or real: as it was asked for, or as the files are."""
     tree = builtin_tree((), wanted.release)
     reach = Reach(trust=wanted.trust)
@@ -234,7 +234,7 @@ def with_arguments(robots: Sequence[Looked], wanted: Wanted, found: Found) -> li
 
 
 def _bringup(it: Looked, wanted: Wanted, found: Found) -> Bringup | None:
-    """The launch file that starts a robot."""
+    """Return the launch file that starts a robot; None without."""
     if wanted.launch is not None:
         return next(map(bringup_as_named, wanted.launch), None)
     files = {*map(os.path.realpath, it.files)}

@@ -43,10 +43,8 @@ MOST_ROUNDS, MOST_TRIED = 10, 5
 
 
 def first_that_builds(seen: Seen, wanted: Wanted) -> Proposal:
-    """The fleet of the likeliest description of which one builds; that of the first where none does.
-
-    Raises Undecided where another one that builds may be meant as well.
-    """
+    """Return the fleet of the likeliest description with which one builds; otherwise of the first.
+    Raises Undecided if another one that builds may be meant as well."""
     likely = [seen.robots[0], *seen.rivals]
     if len(likely) > MOST_TRIED:
         _refuse_to_choose(likely, seen.found)
@@ -61,8 +59,8 @@ def first_that_builds(seen: Seen, wanted: Wanted) -> Proposal:
 
 
 def as_named(seen: Seen, wanted: Wanted) -> Proposal:
-    """The fleet of the descriptions that were named; without the other file of the same robot where it
-    does not build with it."""
+    """Return the fleet of the descriptions that were named; without the other file of the same
+    robot if it does not build with it."""
     made = that_builds(seen.robots, seen.found, wanted)
     if not made.notes or list(seen.alike) in ([], list(seen.robots)):
         return made
@@ -78,9 +76,9 @@ def _refuse_to_choose(likely: Sequence[Looked], found: Found) -> None:
 def that_builds(
     robots: Sequence[Looked], found: Found, wanted: Wanted, refused: Mapping[str, str] | None = None
 ) -> Proposal:
-    """The fleet of these robots without the files that do not go with them (``refused`` are left out,
-    too), in its own layout or the first one that builds; the arguments that name robots stay empty
-    where it builds so alone."""
+    """Return the fleet of these robots without the files that do not go with them (``refused`` are
+    left out, too), in its own layout or the first that builds. Arguments that name robots stay
+    empty if it builds only so."""
     wanted.tell(f"does a fleet of {', '.join(it.path for it in robots)} build?")
     own = with_arguments(robots, wanted, found)
     made, errors = _without_blamed(own, found, wanted, refused or {})
@@ -135,7 +133,7 @@ def _can_be_simulated(it: Looked) -> bool:
 def _without_blamed(
     own: Sequence[Looked], found: Found, wanted: Wanted, refused: Mapping[str, str]
 ) -> tuple[Proposal, list[tuple[str, str]]]:
-    """The proposal without the files that have an error, and the errors that are left."""
+    """Return the proposal without the files that have an error, and the errors that are left."""
     out = dict(refused)
     for _ in range(MOST_ROUNDS):
         made = propose(own, found, wanted, out)
@@ -153,7 +151,7 @@ def _written(it: Proposal, wanted: Wanted) -> FleetText:
 
 
 def _blamed(it: Proposal, errors: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
-    """The files that were found beside a description and have one of the errors, and which."""
+    """Yield the related files that have one of the errors, with it."""
     paths = (path for member in it.members for path in member.companions.paths)
     files = {os.path.abspath(path): path for path in paths}
     for file, line in errors:
@@ -186,7 +184,7 @@ def errors_of(
 
 
 def _built(source: FleetSource, trust: bool) -> tuple[FleetPlan, Set[Finding], Set[Finding]]:
-    """A fleet as a build has it: what is found of it, and what is found where it is read back."""
+    """Return a fleet as a build has it: what is found in it, and what is found when it is read back."""
     folder = os.path.abspath("out")
     plan = plan_fleet(read_fleet(source, "", os.environ), trust=trust)
     made = make_outputs(plan, folder)
@@ -199,10 +197,8 @@ def _built(source: FleetSource, trust: bool) -> tuple[FleetPlan, Set[Finding], S
 def in_a_layout_that_builds(
     it: Proposal, own: Sequence[tuple[str, str]], wanted: Wanted
 ) -> Proposal:
-    """The proposal in its own layout if it has no errors (``own``) so, else in the first that builds.
-
-    Where none does it is left as it is, and its first errors are notes.
-    """
+    """Return the proposal in its own layout if that has no errors (``own``), or in the first that
+    builds. If none does it is unchanged, and its first errors are notes."""
     first = it.keys["layout"].value
     if not own:
         return it
@@ -215,7 +211,7 @@ def in_a_layout_that_builds(
 
 
 def with_faults_of_sources(it: Proposal, wanted: Wanted) -> Proposal:
-    """The proposal that was chosen; what no choice mends is a note as well."""
+    """Return the chosen proposal; faults that no choice mends are notes as well."""
     if it.notes:
         return it
     return _with_notes(it, errors_of(_written(it, wanted), wanted.trust, True))
@@ -229,7 +225,7 @@ def _with_notes(it: Proposal, errors: Sequence[tuple[str, str]]) -> Proposal:
 
 
 def in_layout(it: Proposal, layout: Choice) -> Proposal:
-    """The proposal in another layout."""
+    """Return the proposal in another layout."""
     keys = {key: one for key, one in it.keys.items() if key not in ("layout", "affix")}
     affix = affix_of(layout.value)
     more = {"affix": affix} if affix else {}

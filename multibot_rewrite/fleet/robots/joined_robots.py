@@ -35,7 +35,7 @@ ABOUT_PARTS = declare("MF848", "joined-parts", NOTE, formats=("fleet",))
 
 
 def with_joined(file: FleetFile, trust: bool) -> tuple[FleetFile, Mapping[str, Sequence[Finding]]]:
-    """The fleet with the descriptions of robots that have parts, and what a person should know of the
+    """Return the fleet with the descriptions of robots that have parts, and findings about the
     first robot of each kind; raises InputError as ``join_plain``."""
     found: dict[str, Joined] = {}
     notes: dict[str, Sequence[Finding]] = {}
@@ -65,7 +65,7 @@ def with_joined(file: FleetFile, trust: bool) -> tuple[FleetFile, Mapping[str, S
 
 
 def _with_files(robot: RobotSpec, made: Joined) -> RobotSpec:
-    """The robot with its texts; an SRDF of its own is taken instead of the parts'."""
+    """Return the robot with its texts; an SRDF of its own replaces that of the parts."""
     folder, name = os.path.split(robot.description)
     below = robot.description if name.endswith(JOIN) else folder
     stem = os.path.join(below, name.removesuffix(JOIN).removesuffix(".urdf"))
@@ -91,8 +91,8 @@ _STANDING = Pose()
 
 
 class Arm(NamedTuple):
-    """A robot of a cell: its written URDF and SRDF, the word in its frames, where it stands; ``place``
-    is its line of the fleet file."""
+    """A robot of a cell: its written URDF and SRDF, the word in its frames, its place; ``place`` is
+    its line of the fleet file."""
 
     name: str
     tag: str
@@ -108,12 +108,10 @@ class Arm(NamedTuple):
 
 
 def joined_arms(cell: Cell, world: str, arms: Sequence[Arm], tree: Tree) -> Mapping[str, bytes]:
-    """One URDF and one SRDF of all arms, by their endings: each arm is fixed to the link ``world``
-    where it stands, and the cell's own groups are there besides.
-
-    Raises InputError for an arm that has no place or moves, for groups that are not there, and as
-    ``join_texts`` and ``joined_srdf``.
-    """
+    """Return one URDF and one SRDF of all arms, by their endings: each arm is fixed to the link
+    ``world`` at its place, together with the cell's own groups. Raises InputError for an arm that
+    has no place or moves, for groups that do not exist, and as ``join_texts`` and
+    ``joined_srdf``."""
     root = etree.Element("robot", name=cell.name)
     etree.SubElement(root, "link", name=world)
     parts = [GivenPart(Part("", name=cell.name), etree.tostring(root), cell.name)]

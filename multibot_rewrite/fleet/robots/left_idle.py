@@ -24,7 +24,7 @@ from multibot_rewrite.spelling.records import Run
 def left_idle(
     nodes: Sequence[NodeFacts], given: Iterable[Run], known: Mapping[str, NodeFacts]
 ) -> Iterator[Finding]:
-    """What starts and does nothing, by the robot's own files of parameters."""
+    """Yield what starts and does nothing, by the robot's own parameter files."""
     own = {it.node: it for it in given}
     yield from _unlisted(nodes, own)
     yield from _unbonded(nodes, own)
@@ -39,7 +39,7 @@ def left_idle(
 
 
 def _unlisted(nodes: Sequence[NodeFacts], own: Mapping[str, Run]) -> Iterator[Finding]:
-    """Where a file has the list; a manager of the stack alone lists what the stack starts."""
+    """Where a file has the list; a manager of the node set alone lists what the node set starts."""
     managers = [it for it in nodes if it.kind == LIFECYCLE_MANAGER]
     place = next((own[it.name].place for it in managers if it.name in own), None)
     listed = _listed(managers)
@@ -51,7 +51,7 @@ def _unlisted(nodes: Sequence[NodeFacts], own: Mapping[str, Run]) -> Iterator[Fi
 
 
 def _unbonded(nodes: Sequence[NodeFacts], own: Mapping[str, Run]) -> Iterator[Finding]:
-    """Where a file has the list, and a node on it keeps no bond with its manager."""
+    """Report nodes that keep no bond with the manager that lists them, if a file has the list."""
     for manager in (it for it in nodes if it.kind == LIFECYCLE_MANAGER and it.name in own):
         given, listed = own[manager.name], _listed([manager])
         timeout = given.values.get("bond_timeout")
@@ -62,5 +62,5 @@ def _unbonded(nodes: Sequence[NodeFacts], own: Mapping[str, Run]) -> Iterator[Fi
 
 
 def _listed(managers: Sequence[NodeFacts]) -> Set[str]:
-    """The nodes whose services managers call."""
+    """Return the nodes whose services managers call."""
     return {end.name.strip("/").partition("/")[0] for it in managers for end in it.endpoints}

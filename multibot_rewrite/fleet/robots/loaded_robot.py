@@ -47,7 +47,7 @@ class KeptFiles:
         self._folder: TemporaryDirectory[str] | None = None
 
     def path(self, robot: str, file: str, text: str) -> str:
-        """The path of a robot's file with this text; raises OSError where none can be written."""
+        """Return the path of a robot's file with this text; raises OSError if none can be written."""
         if self._folder is None:
             self._folder = TemporaryDirectory(prefix="multibot_")
         path = os.path.join(self._folder.name, robot, os.path.basename(file))
@@ -78,10 +78,9 @@ class OfFleet(Protocol):
 class LoadedRobot:
     """One robot of a fleet: what its nodes, its simulator and its tf need, as plain values.
 
-    ``namespace`` is absolute; ``tag`` is the prefix or postfix of its frames and joints; ``pose`` is
-    None if the fleet file has none; ``stack`` are the nodes of its stacks. It can be copied and
-    pickled, with its fleet.
-    """
+    ``namespace`` is absolute; ``tag`` is the prefix or postfix of its frames and joints; ``pose``
+    is None if the fleet file has none; ``stack`` are the nodes of its node sets. It can be copied
+    and pickled, with its fleet."""
 
     def __init__(self, fleet: OfFleet, robot: RewrittenRobot) -> None:
         self._fleet, self._robot = fleet, robot
@@ -131,8 +130,9 @@ class LoadedRobot:
         return self._robot.srdf.decode()
 
     def to_dict(self) -> dict[str, Any]:
-        """The parameters of its move_group, as ``to_dict()`` of moveit_configs_utils has them for one
-        robot: description, SRDF and the files of ``companions: moveit``. Raises as ``text``."""
+        """Return the parameters of its move_group, as moveit_configs_utils' ``to_dict()`` has them
+        for one robot: description, SRDF and the files of ``companions: moveit``. Raises as
+        ``text``."""
         files = self._robot.spec.companions.get("moveit", ())
         texts = {it: self.text(it) for it in files}
         return move_group_parameters(self.description, self.srdf, texts)
@@ -145,14 +145,12 @@ class LoadedRobot:
 
     @checked
     def node(self, node: str, *files: str) -> dict[str, Any]:
-        """Name, namespace, remappings and parameters of a node of its stacks, for ``Node(**...)``.
-
-        ``files`` are parameter files of the fleet; amcl gets its start pose as well, and
-        each node the clock that the fleet file says. Where other nodes run in its process, such as
-        costmaps or components, these are paths of files, which go with this process: only files
-        reach them. Raises UsageError for a node that no stack has and for a controller
-        (``spawner``), and as ``params`` for a file.
-        """
+        """Return name, namespace, remappings and parameters of a node of its node sets, for
+        ``Node(**...)``. ``files`` are parameter files of the fleet; amcl also gets its start pose,
+        and each node the clock of the fleet file. If other nodes run in its process, such as
+        costmaps or components, these are paths of files, deleted with this process: only files
+        reach them. Raises UsageError for a node that no node set has and for a controller
+        (``spawner``), and as ``params`` for a file."""
         clock = {} if self.use_sim_time is None else {"use_sim_time": self.use_sim_time}
         given: list[Any] = [self.params(file, node) for file in files]
         if self.table.inside(node):
@@ -169,19 +167,17 @@ class LoadedRobot:
 
     @checked
     def spawner(self, controller: str, *paths: str) -> dict[str, Any]:
-        """What loads a controller of its stacks, with its remappings, for ``Node(**...)``.
-
-        ``paths`` are parameter files for it. Raises UsageError for a node that is no controller or
-        that no stack has.
-        """
+        """Return what loads a controller of its node sets, with its remap rules, for
+        ``Node(**...)``. ``paths`` are parameter files for it. Raises UsageError for a node that is
+        no controller or that no node set has."""
         made = self.table.spawner(controller)
         files = (word for path in paths for word in ("-p", path))
         return {**made, "arguments": [*made["arguments"], *files]}
 
     @checked
     def program(self, node: str) -> Program | None:
-        """What is started for a node of its stacks, its class where it is a component; None where no
-        source says it. Raises UsageError for a node that no stack has."""
+        """Return what is started for a node of its node sets, its class if it is a component; None
+        if no source says it. Raises UsageError for a node that no node set has."""
         self.table.name(node)
         runs = self._fleet.plan.evidence_of(self._robot).nodes
         facts = next((it for it in runs if it.name == node), None)
@@ -189,12 +185,10 @@ class LoadedRobot:
 
     @checked
     def params(self, file: str, node: str) -> dict[str, Value]:
-        """The parameters of a node in a rewritten parameter file of the fleet, by dotted names.
-
-        ``node`` is its name in the stack or in the file. A node of a stack without a section gets an
-        empty dict. Raises UsageError for an unknown node, and as ``text`` and
-        ``LoadedFleet.parameters`` for the file.
-        """
+        """Return the parameters of a node in a rewritten parameter file of the fleet, by dotted
+        names. ``node`` is its name in the node set or in the file. A node of a node set without a
+        section gets an empty dict. Raises UsageError for an unknown node, and as ``text`` and
+        ``LoadedFleet.parameters`` for the file."""
         document = self._fleet.parameters(self._own(file))
         known = node in self.table.nodes
         release, naming = self._fleet.planned.table.release, self._robot.topics.naming
@@ -208,16 +202,14 @@ class LoadedRobot:
 
     @checked
     def text(self, file: str) -> str:
-        """This robot's version of a file of the fleet, such as ``params.yaml`` or ``bridge.yaml``.
-
-        Raises as ``LoadedFleet.text``.
-        """
+        """Return this robot's version of a file of the fleet, such as ``params.yaml`` or
+        ``bridge.yaml``. Raises as ``LoadedFleet.text``."""
         return self._fleet.text(self._path(file))
 
     @checked
     def node_text(self, file: str) -> str:
-        """The same of a parameter file for nodes that are started here: with their full names,
-        also where the fleet file wants files for nav2_bringup. Raises as ``text``."""
+        """Return the text of a parameter file for nodes that are started here: with full node
+        names, also if the fleet file wants files for nav2_bringup. Raises as ``text``."""
         return self._fleet.node_text(self._path(file))
 
     def _path(self, file: str) -> str:
@@ -226,7 +218,7 @@ class LoadedRobot:
         return own if own in self._fleet.files else name
 
     def _own(self, file: str) -> str:
-        """Where its version of a file is; of two with one name the folder counts."""
+        """Return where its version of a file is; the folder decides between two with one name."""
         *_, above, name = ("", *os.path.normpath(file).split(os.sep))
         places = dict(self._robot.spec.places)
         paths = [f"{self.name}/{places.get(it, it)}" for it in (f"{above}/{name}", name)]
@@ -234,26 +226,24 @@ class LoadedRobot:
 
     @checked
     def frame(self, name: str) -> str:
-        """This robot's name of a frame: a link, or one that its nodes or nodes of any robot send.
-
-        Raises UsageError for another.
-        """
+        """Return this robot's name of a frame: a link, or one that its nodes or any robot's nodes
+        send. Raises UsageError for another."""
         runs = self._fleet.plan.evidence_of(self._robot).nodes
         sent = (it.default for node in runs for it in node.frames)
         return self._known("frame", name, (*SENT_FRAMES, *sent))
 
     @checked
     def link(self, name: str) -> str:
-        """This robot's name of a link of the description; raises UsageError for another name."""
+        """Return this robot's name of a link of the description; raises UsageError for another name."""
         return self._known("link", name)
 
     @checked
     def joint(self, name: str) -> str:
-        """This robot's name of a joint of the description; raises as ``link``."""
+        """Return this robot's name of a joint of the description; raises as ``link``."""
         return self._known("joint", name)
 
     def _known(self, word: str, name: str, more: Iterable[str] = ()) -> str:
-        """The robot's version of a name that the description has, or that is one of ``more``."""
+        """Return the robot's version of a name that the description or ``more`` has."""
         names = self._robot.names
         described = [it for kind in KINDS[word] for it in names.declared.get(kind, ())]
         if name not in {*described, *more}:
@@ -262,7 +252,7 @@ class LoadedRobot:
 
     @checked
     def topic(self, name: str) -> str:
-        """This robot's absolute name of a single robot's topic ``name``; raises as ``frame``."""
+        """Return this robot's absolute name of a single robot's topic ``name``; raises as ``frame``."""
         plan = self._fleet.plan
         known = fleet_topics(plan.fleet.table, plan.fleet.facts, self._graph)
         full = robot_topic(self._robot.topics, name, known)
@@ -270,7 +260,8 @@ class LoadedRobot:
 
     @property
     def tf_remappings(self) -> Rules:
-        """The remappings with which a node outside the stacks reads this robot's tf; raises nothing."""
+        """The remappings with which a node outside the node sets reads this robot's tf; raises
+        nothing."""
         names = self._robot.topics
         targets = {
             f"/{it}": target_of(f"/{it}", TOPIC, self._graph, names.naming) for it in TF_TOPICS
@@ -313,8 +304,8 @@ class LoadedRobot:
 
     @checked
     def start_parameters(self, node: str) -> dict[str, Any]:
-        """Parameters with the start pose for ``node``, empty if it does not use them; raises as
-        ``frame``."""
+        """Return parameters with the start pose for ``node``, empty if it does not use them; raises
+        as ``frame``."""
         made = self._fleet.placed.initial
         own = (it for it in made if it.robot == self._graph and it.node == node)
         return next((dict(it.values) for it in own), {})

@@ -60,11 +60,9 @@ class Member(NamedTuple):
 def member(
     source: Rewrite, data: bytes, tag: str, real: bool = False, described: Member | None = None
 ) -> Member:
-    """The robot of a rewrite; ``data`` is its final description, of which a ``real`` robot takes
-    nothing that is for a simulator. ``described`` has what it publishes, if that is another one.
-
-    Raises InputError where ROS refuses the names of a plugin.
-    """
+    """Return the robot of a rewrite; ``data`` is its final description, of which a ``real`` robot
+    takes nothing that is for a simulator. ``described`` has what it publishes, if that is another
+    one. Raises InputError where ROS refuses the names of a plugin."""
     document, tree = source.template.inventory.document, source.template.tree
     data = without_simulator(data, document.file) if real else data
     written = collect(read_document(data, document.file), tree)
@@ -94,7 +92,7 @@ def member(
 
 
 def with_text(it: Member, data: bytes) -> Member:
-    """The robot with another text of what the simulator gets."""
+    """Return the robot with another text of what the simulator gets."""
     file = it.inventory.document.file
     written = collect(read_document(data, file), it.tree)
     described = written if it.described is it.inventory else it.described
@@ -103,7 +101,7 @@ def with_text(it: Member, data: bytes) -> Member:
 
 
 def without_simulator(data: bytes, file: str) -> bytes:
-    """A description without its plugins and sensors for simulators; raises InputError."""
+    """Return a description without its plugins and sensors for simulators; raises InputError."""
     root = read_xml(data, file)
     tags = ("plugin", "sensor") if root.tag == "sdf" else ("gazebo",)
     for element in list(root.iter(*tags)):
@@ -114,15 +112,15 @@ def without_simulator(data: bytes, file: str) -> bytes:
 
 
 def line_of(document: Document, tag: str, number: int) -> int:
-    """The line of the ``number``-th element with this tag, 1 where there is none."""
+    """Return the line of the ``number``-th element with this tag, 1 without one."""
     element = next(islice(document.root.iter(tag), number, None), document.root)
     line: int = element.sourceline or 1  # type: ignore[assignment]
     return line
 
 
 def is_for_simulator(member: Member) -> bool:
-    """May a simulator run it? Not where nothing in its description is for one, and it drives hardware
-    or has no mass: Gazebo spawns nothing of that."""
+    """Return whether a simulator may run it. It may not if nothing in its description is for one,
+    and it drives hardware or has no mass: Gazebo spawns nothing of that."""
     root: etree._Element = member.inventory.document.root
     if root.tag == "sdf" or has_parts_for_simulator(member):
         return True
@@ -130,7 +128,7 @@ def is_for_simulator(member: Member) -> bool:
 
 
 def has_parts_for_simulator(member: Member) -> bool:
-    """Has its description a plugin or sensor of a simulator?"""
+    """Return whether its description has a plugin or sensor of a simulator."""
     root: etree._Element = member.inventory.document.root
     parts = [root] if root.tag == "sdf" else root.findall("gazebo")
     return any(it.find(f".//{tag}") is not None for it in parts for tag in ("plugin", "sensor"))

@@ -20,7 +20,7 @@ SPAWNED = "is a controller: its spawner takes its remappings, robot.spawner({nod
 
 
 class NodeNames(NamedTuple):
-    """Names and remappings of a robot's nodes, by their names in the stacks.
+    """Names and remappings of a robot's nodes, by their names in the node sets.
 
     ``started`` is what is started for the nodes, with all rules that it takes; ``managed`` are the
     nodes whose life cycle each of them manages, in their order.
@@ -33,11 +33,9 @@ class NodeNames(NamedTuple):
 
     @checked
     def for_node(self, node: str) -> Rules:
-        """The node's remappings, as ``launch_ros.actions.Node`` and ``ComposableNode`` take them.
-
-        Rules for nodes in its process come first: rcl applies the first rule that matches. Raises
-        UsageError for a node that no stack of the fleet has, and for a controller.
-        """
+        """Return the node's remap rules, as ``launch_ros.actions.Node`` and ``ComposableNode`` take
+        them. Rules for nodes in its process come first: rcl applies the first rule that matches.
+        Raises UsageError for a node that no node set of the fleet has, and for a controller."""
         own = self._found(node)
         it = self.started.get(node)
         if it is None:
@@ -48,11 +46,9 @@ class NodeNames(NamedTuple):
 
     @checked
     def spawner(self, node: str) -> dict[str, Any]:
-        """Package, executable, namespace and arguments of the program that loads a controller.
-
-        ``launch_ros.actions.Node`` takes them as they are. Raises as ``for_node``, and UsageError for
-        a node that is no controller.
-        """
+        """Return package, executable, namespace and arguments of the program that loads a
+        controller. ``launch_ros.actions.Node`` takes them as they are. Raises as ``for_node``, and
+        UsageError for a node that is no controller."""
         self._found(node)
         it = self.started.get(node)
         if it is None or it.way != SPAWNER:
@@ -61,18 +57,18 @@ class NodeNames(NamedTuple):
         return launch_arguments(it)
 
     def is_controller(self, node: str) -> bool:
-        """Is this node a controller, which a spawner loads? Raises nothing."""
+        """Return whether this node is a controller, which a spawner loads. Raises nothing."""
         return node in self.started and self.started[node].way == SPAWNER
 
     def container(self, node: str) -> str:
-        """The full name of the container that this node is loaded into, empty for other nodes; raises
-        nothing."""
+        """Return the full name of the container that this node is loaded into, empty for other
+        nodes; raises nothing."""
         it = self.started.get(node)
         return self.full_name(it.node.fact.container) if it and it.way == COMPONENT else ""
 
     def inside(self, node: str) -> list[str]:
-        """The other nodes in the process that is started for this one: costmaps, components; raises
-        nothing."""
+        """Return the other nodes in the process that is started for this one: costmaps, components;
+        raises nothing."""
         homes = {it.node: it.fact.host or it.fact.container for it in self.nodes.values()}
         found = []
         for name in homes:
@@ -85,17 +81,17 @@ class NodeNames(NamedTuple):
 
     @checked
     def name(self, node: str) -> str:
-        """The name the node runs under, without its namespace; raises as ``for_node``."""
+        """Return the name the node runs under, without its namespace; raises as ``for_node``."""
         return self._found(node).name
 
     @checked
     def namespace(self, node: str) -> str:
-        """The namespace the node runs in, from the root; raises as ``for_node``."""
+        """Return the namespace the node runs in, from the root; raises as ``for_node``."""
         return self._found(node).namespace
 
     @checked
     def full_name(self, node: str) -> str:
-        """The node's name with its namespace; raises as ``for_node``."""
+        """Return the node's name with its namespace; raises as ``for_node``."""
         return f"{self.namespace(node).rstrip('/')}/{self.name(node)}"
 
     def _found(self, node: str) -> Run:
@@ -107,7 +103,7 @@ class NodeNames(NamedTuple):
 
 
 def names_of(table: Table, robot: str) -> NodeNames:
-    """The nodes of one robot in a fleet's table; of those for all robots if it is empty."""
+    """Return the nodes of one robot in a fleet's table; of those for all robots if it is empty."""
     nodes: dict[str, Run] = {}
     own = [it for it in table.runs if it.robot == robot]
     for it in own:

@@ -39,8 +39,8 @@ class Source(NamedTuple):
 
 
 def sources_of(written: Written, member: Member, elements: Iterable[_Element]) -> list[Source]:
-    """What gives the texts of elements of a robot's description, as it was read; none where it is not
-    known: of a file that is no xacro, or that cannot be expanded within bounds."""
+    """Return what gives the texts of elements in a robot's description, as it was read; empty if it
+    is unknown: for a file that is no xacro, or cannot be expanded within bounds."""
     path, arguments = written
     if not is_xacro(path):
         return []
@@ -83,7 +83,7 @@ def _by_trying(
 
 
 def _source(read: Expansion, piece: Piece) -> Iterator[Source]:
-    """What wrote a piece; nothing of blanks and of what is computed."""
+    """Yield what wrote a piece; nothing for blanks and for what is computed."""
     if piece.kind == EXPRESSION or not piece.text.strip():
         return
     if piece.kind == GIVEN:
@@ -100,7 +100,7 @@ def _source(read: Expansion, piece: Piece) -> Iterator[Source]:
 
 
 def own_value(sources: Iterable[Source]) -> str:
-    """What to write so that each robot has its own; empty where nothing is known."""
+    """Return what to write so that each robot has its own value; empty where nothing is known."""
     its = list(sources)
     names = ", ".join(f"{it.argument}: ..." for it in its if it.argument)
     places = " and ".join(it.place for it in its if it.place)

@@ -120,7 +120,7 @@ class RewrittenRobot(NamedTuple):
 def at_robot(
     rule: Rule, robot: RewrittenRobot, message: str, hint: str, level: str = ""
 ) -> Finding:
-    """A finding of ``rule`` in the robot's line of the fleet file; ``level`` is the rule's if empty."""
+    """Return a finding of ``rule`` at the robot's line of the fleet file, at its level if not given."""
     level, spec = level or rule.level, robot.spec
     return rule.finding(message, hint, level=level, file=spec.file, line=spec.line)
 
@@ -165,7 +165,7 @@ def read_jobs(
 def _jobs(
     it: RobotSpec, read: Callable[..., Reader], words: tuple[Sequence[str], Set[str]]
 ) -> Jobs:
-    """The jobs of a robot's files; an argument may be for one of them alone."""
+    """Return the jobs of a robot's files; an argument may be for one of them alone."""
     taken = _taken(it, it.description, it.srdf)
     description = job_for(read(it, it.description), taken, *words)
     srdf = job_for(read(it, it.srdf, it.description), taken, *words) if it.srdf else None
@@ -183,7 +183,7 @@ def _jobs(
 
 
 def _taken(robot: RobotSpec, *files: str) -> Arguments:
-    """The arguments for a robot's description or model: they are for whichever is a xacro."""
+    """Return the arguments for a robot's description or model, if one of these is a xacro."""
     return robot.arguments if any(map(is_xacro, files)) else {}
 
 
@@ -206,7 +206,7 @@ def rewrite_robots(
 
 
 def _names_simulator(it: RewrittenRobot) -> bool:
-    """Has its description what one simulator alone loads: plugins, sensors, hardware, an SDF?"""
+    """Return whether its description has what one simulator alone loads: plugins, hardware, SDF."""
     root = it.member.inventory.document.root
     parts = ("gazebo//plugin", "gazebo//sensor", "ros2_control")
     return root.tag == "sdf" or any(root.find(part) is not None for part in parts)
@@ -236,9 +236,9 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
             found = (*found, *model.findings)
             made = member(model, simulated, robot.tag, described=made)
         simulated_parts = (model or text).template.inventory
-        more = words_of(simulated_parts.claims), simulated_parts.topics_in_full
+        claims, in_full = simulated_parts.claims, simulated_parts.topics_in_full
+        more = words_of(claims), in_full, given_topics(claims)
         names = companion_names(declared, naming, robot.tag, own, *more)
-        names = names._replace(given=given_topics(simulated_parts.claims))
         yield RewrittenRobot(
             robot,
             data,
@@ -254,8 +254,8 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
 
 
 def _srdf_findings(semantic: Rewrite) -> Iterator[Finding]:
-    """The findings of an SRDF; one in place of all about links and joints where most are not there: it
-    was not written for its URDF."""
+    """Yield the findings of an SRDF; a single one about its links and joints if most are missing:
+    then it was not written for its URDF."""
     named = {
         (kind, name.text): name.kind
         for names in semantic.template.inventory.names
@@ -278,10 +278,9 @@ def _srdf_findings(semantic: Rewrite) -> Iterator[Finding]:
 
 
 def _texts(job: Job, group: Sequence[RobotSpec]) -> Iterator[Rewrite]:
-    """The text of each robot with its namespace; refused where it carries one of its words.
-
-    A namespace of several levels is no robot's name: its robot's text is made of its halves alone.
-    """
+    """Yield the text of each robot with its namespace; refused if it has one of its names already.
+    A namespace of several levels is no robot's name: its robot's text is made from its halves
+    alone."""
     words = [it.tag if "/" in it.namespace else it.namespace for it in group]
     for number, text in enumerate(rewrite_job(job, words, again=True)):
         if not number:
@@ -295,7 +294,7 @@ def _texts(job: Job, group: Sequence[RobotSpec]) -> Iterator[Rewrite]:
 
 
 def _final(text: Rewrite, robot: RobotSpec, naming: Naming) -> bytes:
-    """The description of a robot; if its namespace and tag differ, two rewrites, each verified."""
+    """Return the description of a robot; if namespace and tag differ, two rewrites, each verified."""
     if robot.tag == robot.namespace:
         return text.data
     template = text.template
@@ -319,7 +318,7 @@ OWN_PORTS = declare(NUMBERED, "own-ports", NOTE, formats=("fleet",))
 
 
 def with_own_ports(robots: Sequence[RewrittenRobot]) -> list[RewrittenRobot]:
-    """The robots with the ports that no earlier one has; the first that has to change says it."""
+    """Return the robots with ports that no earlier one has; the first that changes has the note."""
     sources = [it.member.inventory.document.source for it in robots]
     made = numbered(
         {
@@ -342,6 +341,6 @@ def with_own_ports(robots: Sequence[RewrittenRobot]) -> list[RewrittenRobot]:
 
 
 def robot_with_text(robot: RewrittenRobot, data: bytes) -> RewrittenRobot:
-    """The robot with another text of what its simulator gets."""
+    """Return the robot with another text of what its simulator gets."""
     robot = robot._replace(member=with_text(robot.member, data))
     return robot._replace(simulated=data) if robot.simulated else robot._replace(description=data)

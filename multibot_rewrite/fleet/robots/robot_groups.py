@@ -19,7 +19,7 @@ from multibot_rewrite.knowledge.records import NodeFacts
 
 
 class RobotGroup(NamedTuple):
-    """Robots of one description, with the same nodes and companion files."""
+    """Robots of one description, with the same nodes and related files."""
 
     robots: tuple[RewrittenRobot, ...]
     facts: tuple[NodeFacts, ...]
@@ -27,24 +27,23 @@ class RobotGroup(NamedTuple):
 
     @property
     def companions(self) -> dict[str, tuple[str, ...]]:
-        """The companion files that all robots of the group have, by kind."""
+        """The related files that all robots of the group have, by kind."""
         return dict(self.robots[0].spec.companions)
 
 
 def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
-    """The groups of a fleet, in the order of their first robots."""
+    """Yield the groups of a fleet, in the order of their first robots."""
     for robots in lists_by_key((_key(it.spec), it) for it in plan.robots).values():
         spec = robots[0].spec
         evidence = plan.evidence_of(robots[0])
         facts = tuple(companion_nodes(evidence.nodes, stack_nodes(spec, plan.file)))
         declared, naming, _, own, words, given = robots[0].names
-        context = make_context(declared, naming, facts, plan.file.distro, own, words)
-        context = context._replace(names=context.names._replace(given=given))
+        context = make_context(declared, naming, facts, plan.file.distro, own, words, given)
         yield RobotGroup(tuple(robots), facts, context._replace(frames=evidence.frames))
 
 
 def _key(spec: RobotSpec) -> object:
-    """Robots for which this is equal have the same files."""
+    """Return a key; robots with equal keys have the same files."""
     files = tuple(spec.companions.items())
     said = spec.use_sim_time, spec.bridge_namespace, spec.bridges_below
     return spec.sources, spec.stacks, spec.launch, spec.simulator, files, said
@@ -62,7 +61,7 @@ def split_per_robot(plan: FleetPlan) -> Iterator[FleetPlan]:
 
 
 def said_once(plan: FleetPlan, findings: Iterable[Finding]) -> list[Finding]:
-    """Findings sorted by place; what is the same for many robots is one finding."""
+    """Return findings sorted by place; what is the same for many robots is one finding."""
     specs = [it.spec for it in plan.robots]
     ordered = sorted(
         set(findings), key=lambda it: (it.file, it.line, it.column, it.code, it.message, it)

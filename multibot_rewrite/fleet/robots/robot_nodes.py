@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The nodes that a robot of a fleet file runs: its stacks, as its own files have them. Some run once
-for all robots, as one map_server with one map."""
+"""The nodes that a robot of a fleet file runs: its node sets, as its own files have them. Some run
+once for all robots, as one map_server with one map."""
 
 from __future__ import annotations
 
@@ -80,19 +80,20 @@ _HANDED_ON = ("handed_on", "environment", "placing", "idle", "qos")
 
 
 def node_sources(spec: RobotSpec) -> NodeSources:
-    """Robots for which this is equal run the same nodes."""
+    """Return a key; robots with equal keys run the same nodes."""
     files = tuple(spec.companions.get(it, ()) for it in ("params", "bridge", "rviz", "moveit"))
     return spec.stacks, files, spec.launch, spec.srdf, spec.simulator, spec.sources
 
 
 class RobotEvidence(NamedTuple):
     """What a robot's files set for nodes, the nodes that are known by name, those that it runs,
-    where its files and stacks disagree, the controllers that its launch files spawn, whether these
-    start all of its nodes and no simulator, the arguments of all that they start, the frames that it
-    has in the place of defaults, the transforms that a simulator sends, whether a node of its files
-    sends one of these, which no bridge file of its own has, what its launch files hand on to nodes, the
-    processes of these that are no nodes, the environment of all, what places it, what they do not
-    start on a condition, and the quality of service of topics that their bridges set."""
+    where its files and node sets disagree, the controllers that its launch files spawn, whether
+    these start all of its nodes and no simulator, the arguments of all that they start, the frames
+    that it has in the place of defaults, the transforms that a simulator sends, whether a node of
+    its files sends one of these, which no bridge file of its own has, what its launch files hand on
+    to nodes, the processes of these that are no nodes, the environment of all, what places it, what
+    they do not start on a condition, and the quality of service of topics that their bridges
+    set."""
 
     given: tuple[Run, ...]
     known: Mapping[str, NodeFacts]
@@ -119,11 +120,9 @@ def robot_nodes(
     member: Member,
     topics: Mapping[str, str],
 ) -> RobotEvidence:
-    """The nodes of a robot with this description; ``notes`` are findings about its files. ``topics``
-    are the full names of those that arguments of its xacro make, by their names without these.
-
-    Raises InputError for a parameter file that cannot be read.
-    """
+    """Return the nodes of a robot with this description; ``notes`` are findings about its files.
+    ``topics`` are the full names of those that xacro arguments make, by their names without these.
+    Raises InputError for a parameter file that cannot be read."""
     parameters = load_known_nodes(file.nodes, file.distro)
     read = given_nodes(params_of(spec).values(), parameters)
     own = tuple(without_robot(it, spec.words) for it in read)
@@ -177,8 +176,7 @@ def robot_nodes(
 def _for_its_wheels(
     nodes: tuple[NodeFacts, ...], given: Iterable[Run], member: Member
 ) -> tuple[NodeFacts, ...]:
-    """The nodes; of a robot that does not drive without controllers of wheels that a stack has for
-    those that do."""
+    """Return the nodes; for a robot without wheels not the wheel controllers of a node set."""
     root = member.source.root
     held = root.iterfind("joint[@type='fixed']/parent")
     if wheels_in(root) and not any(it.get("link") == WORLD for it in held):
@@ -192,7 +190,7 @@ def _for_its_wheels(
 def _with_launch(
     it: RobotEvidence, spec: RobotSpec, launched: Launched | None, file: FleetFile
 ) -> RobotEvidence:
-    """What is known of a robot's nodes, with what its launch files start; without any with what its
+    """Return a robot's evidence with what its launch files start, or without any with what its
     files leave idle."""
     if not launched:
         idle = left_idle(it.nodes, it.given, it.known)
@@ -214,7 +212,7 @@ def _with_launch(
 def _as_written(
     nodes: Iterable[NodeFacts], own: Iterable[Run], known: KnownNodes, release: str
 ) -> Iterator[NodeFacts]:
-    """The nodes, with the topics of costmaps as the robot's files will have them: absolute, where the
+    """Yield the nodes, with costmap topics as the robot's files will have them: absolute if the
     node does not resolve a relative one in the robot's namespace."""
     outside = {it.node: frozenset(_outside(it, known, release)) for it in own}
     for it in nodes:
@@ -247,7 +245,7 @@ def _made_by_arguments(
 
 
 def _outside(it: Run, known: KnownNodes, release: str) -> Iterator[str]:
-    """The parameters of a node whose relative topics are resolved outside of its robot's namespace."""
+    """Yield a node's parameters whose relative topics are resolved outside its robot's namespace."""
     if it.fact.known not in known.nodes:
         return
     params = [one for one in known.nodes[it.fact.known].params.values() if one.absolute]
@@ -260,9 +258,8 @@ def _outside(it: Run, known: KnownNodes, release: str) -> Iterator[str]:
 
 
 def _is_needed(it: NodeFacts, spec: RobotSpec, member: Member) -> bool:
-    """A plugin's node runs where a simulator loads the plugin of the description, a controller manager
-    of its own where no such plugin makes one, the robot's own bridge where there is something to
-    bridge."""
+    """Return whether a node runs: a plugin's in a simulator that loads the plugin, a controller
+    manager if no plugin makes one, the robot's own bridge if there is something to bridge."""
     if it.plugin and spec.simulator == REAL:
         return False
     if it.name == MANAGER and not it.plugin and spec.simulator != REAL:
@@ -278,7 +275,7 @@ def _is_needed(it: NodeFacts, spec: RobotSpec, member: Member) -> bool:
 def _of_srdf(
     spec: RobotSpec, nodes: Iterable[NodeFacts], known: Mapping[str, NodeFacts]
 ) -> Iterator[NodeFacts]:
-    """The node that reads an SRDF may run, where neither a stack nor a launch file says so."""
+    """Yield the node that reads an SRDF, which may run, unless a node set or launch file has it."""
     if spec.srdf and MOVE_GROUP not in {it.kind for it in nodes}:
         file = os.path.basename(spec.srdf)
         yield known[MOVE_GROUP]._replace(
@@ -287,7 +284,7 @@ def _of_srdf(
 
 
 def _known(given: Iterable[Run], file: FleetFile) -> dict[str, NodeFacts]:
-    """The known nodes; those that the robot's files name as their installed packages declare them."""
+    """Return the known nodes; those that the robot's files name as their packages declare them."""
     facts = known_nodes(file.nodes, file.distro, file.nodl)
     nodes = dict(facts.library.nodes)
     named = {it.fact.known for it in given} & nodes.keys()
@@ -295,15 +292,15 @@ def _known(given: Iterable[Run], file: FleetFile) -> dict[str, NodeFacts]:
 
 
 def stack_nodes(spec: RobotSpec, file: FleetFile) -> tuple[NodeFacts, ...]:
-    """The nodes of a robot's stacks, as their usual files have them."""
+    """Return the nodes of a robot's node sets, as their usual files have them."""
     return facts_of(spec.stacks, file.nodes or None, file.distro, file.nodl)
 
 
 def _manager_in_plugin(
     stack: Iterable[NodeFacts], own: Iterable[Run], member: Member, release: str
 ) -> Iterator[NodeFacts]:
-    """The controller manager that a plugin of the description makes, as the stack of the plugin has
-    it: where a file of the robot sets it, or a stack has controllers; none where a stack has it."""
+    """Yield the controller manager of a plugin in the description, as the plugin's node set has it:
+    if a robot's file sets it, or a node set has controllers and no manager."""
     nodes = tuple(stack)
     if any(it.name == MANAGER for it in nodes):
         return
@@ -316,11 +313,11 @@ def _manager_in_plugin(
 
 
 def companion_nodes(nodes: Sequence[NodeFacts], stack: Sequence[NodeFacts]) -> Iterator[NodeFacts]:
-    """The nodes for which companion files are rewritten, with the names of their code: those in
+    """Yield the nodes for which related files are rewritten, with the names in their code: those in
     parameters are what is rewritten."""
     bare: Mapping[str, NodeFacts] = {it.name: it for it in stack}
     # A section for a node in a namespace below the robot's is known to be right if the node runs there.
-    mine = (it for it in nodes if it.name in bare or it.host or "/" in it.name)
+    mine = (it for it in nodes if it.name in bare or it.shared or it.host or "/" in it.name)
     yield from (bare.get(it.name, it)._replace(shared=it.shared) for it in mine)
 
 
@@ -331,7 +328,7 @@ NOT_MANAGED = declare("MF803", "shared-node-not-managed", NOTE, formats=("fleet"
 def apart(
     nodes: Sequence[NodeFacts], file: FleetFile
 ) -> tuple[tuple[NodeFacts, ...], tuple[Finding, ...]]:
-    """The nodes, those that all robots share marked; findings about managers that would manage them."""
+    """Return the nodes, those that all robots share marked; and findings about managers of these."""
     marked = [it._replace(shared=_is_once(it.name, it.shared, file)) for it in nodes]
     shared = {it.name: None for it in marked if it.shared}
     managers = [it for it in marked if it.package == MANAGERS and not it.shared]
@@ -354,7 +351,7 @@ def _is_once(name: str, once: bool, file: FleetFile) -> bool:
 
 
 def check_shared(file: FleetFile, run: Mapping[str, object]) -> None:
-    """Raises InputError for a node of these keys that is not among the nodes that robots ``run``."""
+    """Raise InputError for a node of these keys that is not among the nodes that robots ``run``."""
     for key, names in (("shared_nodes", file.shared_nodes), ("own_nodes", file.own_nodes)):
         for name in (it for it in names if it not in run):
             near = did_you_mean_one_of(name, tuple(run)) or "name a node of a robot's node set"

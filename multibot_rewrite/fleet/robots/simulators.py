@@ -97,24 +97,24 @@ def _other(robot: RewrittenRobot, wrong: str) -> Finding:
 
 
 def may_be_real(robot: RewrittenRobot, evidence: RobotEvidence) -> bool:
-    """Has its description something for a simulator, and does nothing say that it runs in one?"""
+    """Return whether its description is for a simulator, and nothing says that it runs in one."""
     return evidence.unsimulated and not is_said(robot) and has_parts_for_simulator(robot.member)
 
 
 def is_simulated(robot: RewrittenRobot) -> bool:
-    """Does it run in a simulator? As the fleet file says, else by its description."""
+    """Return whether a robot runs in a simulator, by the fleet file or else its description."""
     if is_said(robot):
         return robot.spec.simulator != REAL
     return bool(robot.spec.simulated) or is_for_simulator(robot.member)
 
 
 def is_said(robot: RewrittenRobot) -> bool:
-    """Does its fleet file say whether it runs in a simulator?"""
+    """Return whether the fleet file tells if a robot runs in a simulator."""
     return bool(robot.spec.simulator or robot.spec.companions.get("bridge"))
 
 
 def note(robot: RewrittenRobot) -> Finding:
-    """That nothing says it."""
+    """Return the finding that nothing tells whether robots are simulated."""
     message = (
         "no launch file starts a simulator, and the description has plugins or sensors for one"
     )
@@ -123,7 +123,7 @@ def note(robot: RewrittenRobot) -> Finding:
 
 
 def without_mass(robot: RewrittenRobot) -> Iterator[Finding]:
-    """That nothing says it of a robot which no simulator can run."""
+    """Yield a finding for a robot that no simulator can run and of which the file does not tell."""
     root: etree._Element = robot.member.inventory.document.root
     if robot.spec.simulator or is_simulated(robot) or weighs(read_robot(root)):
         return
@@ -158,7 +158,7 @@ def unread_drives(robot: RewrittenRobot, hardware: bool) -> Iterator[Finding]:
 
 
 def _named(part: ActivePart, root: etree._Element) -> str:
-    """The joint that a plugin or class names, or the link, as a part of a sentence."""
+    """Return the joint or link that a plugin or class names, for a message."""
     inner = part.element.iterdescendants()
     texts = (text for it in inner for text in (it.text or "", *map(str, it.attrib.values())))
     words = {word.rpartition("::")[2] for text in texts for word in text.replace(",", " ").split()}
@@ -172,7 +172,7 @@ def _named(part: ActivePart, root: etree._Element) -> str:
 
 
 def _has_drive(robot: RewrittenRobot, parts: Iterable[ActivePart]) -> bool:
-    """Is there hardware that somebody has read, or a plugin that names a joint or hears commands?"""
+    """Return whether there is known hardware, or a plugin that names a joint or reads commands."""
     root: etree._Element = robot.member.source.root
     ends = (it for node in robot.member.reading.nodes for it in node.endpoints)
     topics, _ = bridged_topics({"": robot.member.inventory}, robot.topics.naming)
@@ -191,7 +191,7 @@ MOVED = declare(LEFT, "system-of-the-world", NOTE, formats=("fleet",))
 
 
 def without_world_systems(robots: Sequence[RewrittenRobot]) -> list[RewrittenRobot]:
-    """The robots without such systems, each with those that it had; the first that had one says it."""
+    """Return the robots without world systems, each with those that it had; the first has the note."""
     made = [it if it.spec.simulator == REAL else _without(it) for it in robots]
     first = next((it for it in made if it.world_systems), None)
     if first is None:
@@ -210,7 +210,7 @@ def without_world_systems(robots: Sequence[RewrittenRobot]) -> list[RewrittenRob
 
 
 def systems_of(robots: Sequence[RewrittenRobot]) -> dict[str, str]:
-    """The plugins that these robots had, by library; of two of one library that of the first robot."""
+    """Return the plugins that these robots had, by library; for one library that of the first robot."""
     found: dict[str, str] = {}
     for it in robots:
         found = {**it.world_systems, **found}

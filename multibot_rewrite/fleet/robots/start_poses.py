@@ -62,7 +62,7 @@ class StaticTransform(NamedTuple):
 
 
 class InitialPose(NamedTuple):
-    """The start pose as parameters of the localisation ``node`` (its name in the stack)."""
+    """The start pose as parameters of the localisation ``node`` (its name in the node set)."""
 
     robot: str
     node: str
@@ -78,7 +78,7 @@ class StartPoses(NamedTuple):
 
 
 def start_poses(plan: FleetPlan) -> StartPoses:
-    """A transform from the world for each robot with a pose that no other node localises."""
+    """Return a transform from the world for each robot with a pose that no other node localises."""
     found: list[object] = []
     for robot in plan.robots:
         if robot.spec.pose is not None:
@@ -91,7 +91,7 @@ def start_poses(plan: FleetPlan) -> StartPoses:
 
 
 def world_of(file: FleetFile, naming: Naming) -> str:
-    """The shared frame that poses are in."""
+    """Return the shared frame that poses are in."""
     return file.world or world_frame(naming)
 
 
@@ -149,7 +149,7 @@ def _place(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[objec
 def static_transform(
     robot: str, parent: str, child: str, pose: Pose, naming: Naming
 ) -> StaticTransform:
-    """The transform of a robot, published by a node with the robot's own name."""
+    """Return the transform of a robot, published by a node with the robot's own name."""
     namespace, node = placed(robot, NODE, naming)
     target = target_of("/tf_static", TOPIC, robot, naming)
     remaps = (("/tf_static", target),) if target else ()
@@ -157,13 +157,13 @@ def static_transform(
 
 
 def initial_pose(pose: Pose) -> dict[str, object]:
-    """The parameters for amcl's start pose; they count only with ``set_initial_pose``."""
+    """Return the parameters for amcl's start pose; they count only with ``set_initial_pose``."""
     values = {f"initial_pose.{key}": getattr(pose, key) for key in ("x", "y", "z", "yaw")}
     return {"set_initial_pose": True, **values}
 
 
 def _sent(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, list[Edge]]:
-    """The transforms of each node of a robot; the description's tree has an empty name."""
+    """Return the transforms of each node of a robot; the description's tree has an empty name."""
     name, inventory = robot.spec.namespace, robot.member.inventory
     sent = {node: [*edges] for (own, node), edges in plan.fleet.edges.items() if own == name}
     tree = robot.tree
@@ -187,8 +187,8 @@ def _sent(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, list[Edge]]:
 
 
 def _own_odometry(plan: FleetPlan, robot: RewrittenRobot) -> str:
-    """A node that nothing is known of, with the odometry frame that it is told and no known node
-    sends; empty if there is none."""
+    """Return a message's words for an unknown node with an odometry frame that no known node sends;
+    empty if there is none."""
     described = {it.name for it in plan.fleet.facts}
     own = (edges for (name, _), edges in plan.fleet.edges.items() if name == robot.spec.namespace)
     frames = {frame for edges in own for it in edges for frame in (it.parent, it.child)}
@@ -203,7 +203,7 @@ def _own_odometry(plan: FleetPlan, robot: RewrittenRobot) -> str:
 
 
 def _on_world(robot: RewrittenRobot, held: Edge) -> Finding:
-    """A simulator puts the robot at its pose, and needs the one world: only tf is not right then."""
+    """Return the finding about a pose for a link fixed to the world, which only a simulator uses."""
     simulated = robot.spec.simulator not in ("", REAL)
     what = (
         f"its pose is not used in tf: its description fixes {held.child!r} to {held.parent!r}, at the "
@@ -224,7 +224,7 @@ POSE_NODE = NodeFacts(NODE, "tf2_ros", (Endpoint(TOPIC, PUBLISHES, STATIC, TF_TY
 
 
 def with_start_pose_nodes(plan: FleetPlan) -> Fleet:
-    """The planned fleet with a static transform publisher for each robot that needs one; why a pose
+    """Return the fleet with a static transform publisher for each robot that needs one; why a pose
     is not published is among the problems of its table."""
     poses = [start_poses(one) for one in split_per_robot(plan)]
     held = [it for one in poses for it in one.transforms]

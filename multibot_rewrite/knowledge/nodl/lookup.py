@@ -53,10 +53,9 @@ NONE = Interfaces({}, ())
 
 
 def find_interfaces(paths: Sequence[str]) -> Interfaces:
-    """The documents below ``paths`` and those of installed packages, or none for ``none``.
-
-    A path is a file, a folder of files or a folder where packages are installed. Raises UsageError.
-    """
+    """Return the documents below ``paths`` and those of installed packages, or none for ``none``. A
+    path is a file, a folder of files or a folder where packages are installed. Raises
+    UsageError."""
     if tuple(paths) == (NO_DOCUMENTS,):
         return NONE
     given: dict[Identity, str] = {}
@@ -71,7 +70,7 @@ def find_interfaces(paths: Sequence[str]) -> Interfaces:
 
 
 def shown(identity: Identity) -> str:
-    """How a user names it."""
+    """Return an identity as a user writes it."""
     return "/".join(filter(None, identity))
 
 
@@ -107,7 +106,7 @@ def _in_folder(folder: str) -> Iterator[tuple[Identity, str]]:
 
 
 def _identity(path: str, folder: str) -> Identity:
-    """The node by the file's name, the folders above it, and the package that it is in."""
+    """Return the node by the file's name, the folders above it, and the package that it is in."""
     name = os.path.basename(path)
     ending = next((it for it in (*SUFFIXES, os.path.splitext(name)[1]) if name.endswith(it)), "")
     stem = name.removesuffix(ending)
@@ -122,7 +121,7 @@ def _identity(path: str, folder: str) -> Identity:
 
 
 def _package_of(path: str) -> str:
-    """The package whose folder the file is in; empty without one."""
+    """Return the package whose folder the file is in; empty without one."""
     folder = os.path.dirname(os.path.abspath(path))
     while folder != os.path.dirname(folder):
         try:
@@ -134,7 +133,7 @@ def _package_of(path: str) -> str:
 
 
 def file_of(interfaces: Interfaces, identity: Identity) -> str:
-    """The document of a node; empty if there is none."""
+    """Return the document of a node; empty if there is none."""
     for wanted in (identity, Identity("", identity.name)):
         if wanted in interfaces.given:
             return interfaces.given[wanted]
@@ -146,13 +145,13 @@ def file_of(interfaces: Interfaces, identity: Identity) -> str:
 
 
 def identities(interfaces: Interfaces) -> set[Identity]:
-    """All nodes that there is a document for."""
+    """Return all nodes that have a document."""
     folders = filter(os.path.isdir, interfaces.installed)
     return {*interfaces.given, *(it for folder in folders for it, _ in _indexed(folder))}
 
 
 def load(path: str, interfaces: Interfaces) -> Document:
-    """A document with all that it includes; raises UsageError with file and line."""
+    """Return a document with all that it includes; raises UsageError with file and line."""
     seen = {os.path.realpath(path): path}
     documents = list(_with_included(path, interfaces, seen))
     names: dict[tuple[str, str, str], str] = {}
@@ -233,17 +232,15 @@ class NodeKnowledge(NamedTuple):
 
 
 def nodes_of(known: NodeKnowledge, stack: str) -> Iterator[NodeFacts]:
-    """The nodes of a stack, each as its NoDL document says where there is one.
-
-    A name that is no stack of the library may be that of a document. Raises UsageError.
-    """
+    """Yield the nodes of a node set, each by its NoDL document if there is one. A name that is no
+    node set of the library may be that of a document. Raises UsageError."""
     library = known.library
     alone = None if stack in library.stacks or stack in library.nodes else _alone(known, stack)
     yield from [alone] if alone else (declared(known, it) for it in stack_of(library, stack))
 
 
 def declared(known: NodeKnowledge, node: NodeFacts) -> NodeFacts:
-    """The node as its NoDL document says; itself where there is none. Raises UsageError."""
+    """Return the node by its NoDL document; unchanged without one. Raises UsageError."""
     usual = node.kind
     if usual in known.own:
         return node
@@ -256,7 +253,7 @@ def declared(known: NodeKnowledge, node: NodeFacts) -> NodeFacts:
 
 
 def _alone(known: NodeKnowledge, name: str) -> NodeFacts | None:
-    """A node that only a document describes; its name may be given as ``package/name``."""
+    """Return a node that only a document describes; its name may be given as ``package/name``."""
     found = [it for it in sorted(identities(known.interfaces)) if name in (it.name, shown(it))]
     if len(found) > 1:
         both = " or ".join(map(shown, found))
@@ -285,7 +282,7 @@ def _merged(
 
 
 def _frames(node: NodeFacts, parameters: Iterable[Parameter]) -> Iterator[FrameParameter]:
-    """The frame ids in parameters: those the library names, by their names otherwise."""
+    """Yield the frame ids in parameters: those the library names, by their names otherwise."""
     given = {it.name: it.default for it in parameters if it.type == "string" and it.default}
     if node.frames or node.sends:
         yield from (it._replace(default=given.get(it.parameter, it.default)) for it in node.frames)
@@ -304,7 +301,7 @@ def _last(end: Endpoint) -> str:
 
 
 def _folded(ends: Iterable[Endpoint]) -> Iterator[Endpoint]:
-    """An image and its image_transport topics as one; tf may be heard by a helper node."""
+    """Yield the ends, an image and its image_transport topics as one; a helper node may read tf."""
     found = list(ends)
     topics = {(end.role, end.name) for end in found if end.kind == TOPIC}
     images = {
@@ -321,7 +318,7 @@ def _folded(ends: Iterable[Endpoint]) -> Iterator[Endpoint]:
 
 
 def _both(end: Endpoint, ours: Endpoint | None) -> Endpoint:
-    """The endpoint of a document with what the library knows besides of it."""
+    """Return the endpoint of a document with what the library knows beyond it."""
     if ours is None:
         return end
     # A document made from a running node has a private name in full.

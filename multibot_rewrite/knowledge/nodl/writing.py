@@ -33,14 +33,14 @@ class NodlFile(NamedTuple):
 
 
 def file_name(node: str) -> str:
-    """The file of a node below a folder; a node in its own namespace is in a folder of that name."""
+    """Return the file of a node below a folder; a namespace of the node is a folder there."""
     return f"{node}{SUFFIXES[0]}"
 
 
 def document_of(
     node: str, description: str, ends: Iterable[Endpoint], qos_of: QosOf, json: bool = False
 ) -> NodlFile:
-    """The document of a node; raises ProofError if reading it gives something else."""
+    """Return the document of a node; raises ProofError if reading it gives something else."""
     written = list(ends)
     fitting = [it for it in written if _fits(it)]
     document: dict[str, object] = {"nodl_version": 2, "description": description}
@@ -72,7 +72,7 @@ def document_of(
 
 
 def _fits(end: Endpoint) -> bool:
-    """Has NoDL a form for its name and type? Types of an action's parts have none."""
+    """Return whether NoDL has a form for its name and type. Types of an action's parts have none."""
     group = f"/{GROUP[end.kind]}/"
     return bool(_NAME.fullmatch(end.name) and _TYPE.fullmatch(end.type) and group in end.type)
 

@@ -34,7 +34,7 @@ class Entry(NamedTuple):
 
 
 def read_shard(path: str) -> dict[str, Entry]:
-    """The entries of a file; none where it is not there, damaged or no file of the cache."""
+    """Return the entries of a file; empty if it is missing, damaged or no file of the cache."""
     try:
         with open(path, "rb") as file:
             data = file.read(MOST_BYTES + 1)
@@ -54,7 +54,7 @@ def read_shard(path: str) -> dict[str, Entry]:
 
 
 def shard_bytes(entries: Mapping[str, Entry]) -> bytes:
-    """The bytes of a file; a question that several entries have is written once."""
+    """Return the bytes of a file; a question that several entries have is written once."""
     import json  # slow to import, and often nothing is new
 
     numbers: dict[tuple[Question, str], int] = {}
@@ -102,19 +102,19 @@ def bound(folder: str) -> None:
 
 
 def _as_map(value: bytes) -> dict[str, str]:
-    """Bytes, which JSON does not have."""
+    """Return a map for bytes, which JSON does not have."""
     return {_BYTES: value.decode(_BYTES)}
 
 
 def _tuples(value: Any) -> Any:
-    """Lists of JSON as the tuples that they were, and maps as bytes."""
+    """Return lists of JSON as the tuples that they were, and maps as bytes."""
     if isinstance(value, dict):
         return value[_BYTES].encode(_BYTES)
     return tuple(map(_tuples, value)) if isinstance(value, list) else value
 
 
 def cache_folder() -> str:
-    """Where the cache is: below XDG_CACHE_HOME, else ~/.cache."""
+    """Return the folder of the cache: below XDG_CACHE_HOME, else ~/.cache."""
     told = os.environ.get("XDG_CACHE_HOME", "")
     # The specification: a relative path is not valid and is ignored.
     home = told if os.path.isabs(told) else os.path.expanduser("~/.cache")
@@ -135,7 +135,7 @@ class Cache:
         self.changed: dict[str, dict[str, Entry]] = {}
 
     def recall(self, group: str, key: str) -> Any:
-        """The result that was kept, None where there is none that still holds."""
+        """Return the kept result, None if there is none that still holds."""
         path = self._path(group)
         if path not in self.shards:
             self.shards[path] = read_shard(path)
@@ -153,7 +153,7 @@ class Cache:
         return self.answers[question]
 
     def keep(self, group: str, key: str, value: Any, asked: Asked | None) -> None:
-        """Remember a result, unless it may be another one next time (``asked`` is None)."""
+        """Remember a result, unless it may change by itself (``asked`` is None)."""
         if asked is not None:
             self.changed.setdefault(self._path(group), {})[key] = Entry(value, asked)
 
@@ -176,7 +176,7 @@ class Cache:
 
 
 def findings_from(value: Any) -> list[Finding] | None:
-    """The findings; None where there are none kept, or it is something else."""
+    """Return the findings; None if none are kept, or it is something else."""
     try:
         rows = value if value is None else list(map(Finding._make, value))
         return rows and [it._replace(edits=tuple(map(Edit._make, it.edits))) for it in rows]
@@ -185,13 +185,13 @@ def findings_from(value: Any) -> list[Finding] | None:
 
 
 def among_written(settings: Settings, path: str = "") -> tuple[Any, ...]:
-    """What the settings say of the other files; with a ``path`` only what counts for that one."""
+    """Return what the settings know of the other files; with a ``path`` only what counts for it."""
     part = settings.included & {path} if path else settings.included
     return sorted(part), settings.urdfs, settings.elsewhere
 
 
 def among_from(value: Any, settings: Settings) -> Settings | None:
-    """The settings with what was kept; None where nothing is."""
+    """Return the settings with what was kept; None where nothing is."""
     from multibot_rewrite.description.sources.known_arguments import KnownArguments
 
     try:
@@ -209,7 +209,7 @@ _HERE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__
 
 
 def identity(settings: Settings) -> str:
-    """A digest of the program, the vocabulary and the settings; raises VocabularyError, OSError."""
+    """Return a digest of program, plugin definitions and settings; raises VocabularyError, OSError."""
     own = (os.uname().release, str(os.geteuid())) if hasattr(os, "uname") else ()
     where = (os.getcwd(), sys.version, *own)
     specs = filter(None, map(find_spec, LIBRARIES))
@@ -222,7 +222,7 @@ def identity(settings: Settings) -> str:
 
 
 def plain(value: object) -> object:
-    """A value with mappings and sets in order, so that the same value is written the same."""
+    """Return a value with mappings and sets in order, so that equal values are written alike."""
     if isinstance(value, Mapping):
         return [(plain(key), plain(it)) for key, it in sorted(value.items())]
     if isinstance(value, frozenset):

@@ -40,7 +40,7 @@ class Baseline(NamedTuple):
 
 
 def read_baseline(path: str) -> Baseline:
-    """The baseline in a file; raises UsageError for any other file."""
+    """Return the baseline in a file; raises UsageError for any other file."""
     try:
         content = load_json(read(path))
         if not isinstance(content, dict) or content.get(FORMAT) != VERSION:
@@ -71,11 +71,9 @@ def beyond(
     path: str,
     linted: Collection[str] | None = None,
 ) -> tuple[list[Finding], int]:
-    """The findings that the baseline at ``path`` lacks, and how many of its findings are gone.
-
-    ``linted`` are the files that were looked at, None for all: of a file that is still there and
-    was not looked at nothing is gone.
-    """
+    """Return the findings that the baseline at ``path`` lacks, and how many of its findings are
+    gone. ``linted`` are the files that were checked, None for all: findings of an existing file
+    that was not checked are not gone."""
     left = Counter(baseline.counts)
     new = []
     for finding in findings:
@@ -95,7 +93,7 @@ def beyond(
 
 
 def baseline_text(findings: Iterable[Finding], path: str) -> bytes:
-    """The baseline that holds just these findings, to be written to ``path``: sorted, a line each."""
+    """Return the text of the baseline at ``path`` with just these findings, sorted, a line each."""
     counts = Counter(_key(it, path) for it in findings)
     lines = [
         json.dumps({**key._asdict(), "count": count}, ensure_ascii=False)

@@ -39,12 +39,10 @@ class Changes(NamedTuple):
 
 
 def changed_since(rev: str, paths: Sequence[str]) -> list[str]:
-    """Those of ``paths`` that changed since HEAD and ``rev`` had a commit in common.
-
-    That is a commit since then, the working tree, a file git does not have, or a xacro file that
-    includes such a one. The repository is that of the working directory; what is outside of it, or
-    ignored, counts as changed. Raises UsageError if git fails.
-    """
+    """Return those of ``paths`` that changed since HEAD and ``rev`` had a commit in common: in a
+    commit since then or in the working tree, not in git, or a xacro that includes such a file. The
+    repository is that of the working directory; what is outside of it, or ignored, counts as
+    changed. Raises UsageError if git fails."""
     if not rev or rev.startswith("-") or "\0" in rev:
         raise UsageError(f"{rev!r} is not a revision; name a branch, a tag or a commit")
     top = os.fsdecode(_git(".", "rev-parse", "--show-toplevel").removesuffix(b"\n"))
@@ -55,8 +53,8 @@ def changed_since(rev: str, paths: Sequence[str]) -> list[str]:
 
 
 def _differing(top: str, base: str) -> tuple[frozenset[str], frozenset[str]]:
-    """What differs from a commit, in submodules as well, and what git does not have. A submodule is
-    asked by itself: git would run its filters."""
+    """Return what differs from a commit, in submodules as well, and what git does not have. A
+    submodule is asked by itself: git would run its filters."""
     diff = [
         "diff",
         "--name-only",
@@ -72,7 +70,7 @@ def _differing(top: str, base: str) -> tuple[frozenset[str], frozenset[str]]:
 
 
 def _submodules(top: str) -> Iterator[str]:
-    """Those that are checked out."""
+    """Yield the submodules that are checked out."""
     for entry in _git(top, "ls-files", "-z", "--stage").split(b"\0"):
         name = os.fsdecode(entry.partition(b"\t")[2])
         if entry.startswith(_SUBMODULE) and os.path.exists(os.path.join(top, name, ".git")):
@@ -80,7 +78,7 @@ def _submodules(top: str) -> Iterator[str]:
 
 
 def _base(rev: str) -> str:
-    """The last commit that HEAD and the revision have in common."""
+    """Return the last commit that HEAD and the revision have in common."""
     try:
         _git(".", "rev-parse", "--verify", "--quiet", f"{rev}^{{commit}}")
     except UsageError:
@@ -105,12 +103,12 @@ def _git(where: str, *words: str) -> bytes:
 
 
 def _names(listed: bytes) -> frozenset[str]:
-    """The names in a list with zeros between them; a nested repository ends in a slash."""
+    """Return the names in a list with zeros between them; a nested repository ends in a slash."""
     return frozenset(os.fsdecode(it).rstrip("/") for it in listed.split(b"\0") if it)
 
 
 def _touched(paths: Iterable[str], changes: Changes) -> dict[str, bool]:
-    """Which files changed, or read one that did; included files are looked at, too."""
+    """Return which files changed, or read one that did; included files are checked, too."""
     reads = _reads(paths, changes)
     changed_by_path = {path: _is_changed(path, changes) for path in reads}
     names = {os.path.basename(path) for path, it in changed_by_path.items() if it}
@@ -128,7 +126,7 @@ def _touched(paths: Iterable[str], changes: Changes) -> dict[str, bool]:
 
 
 def _is_changed(path: str, changes: Changes) -> bool:
-    """Did the file itself change, or the one that a link leads to?"""
+    """Return whether the file itself changed, or the one that a link leads to."""
     folder, name = os.path.split(path)
     places = {os.path.realpath(path), os.path.join(os.path.realpath(folder), name)}
     for it in places:
@@ -141,7 +139,7 @@ def _is_changed(path: str, changes: Changes) -> bool:
 
 
 def _reads(paths: Iterable[str], changes: Changes) -> dict[str, tuple[str, ...]]:
-    """For the files, and all that they include, patterns for the names of what each reads."""
+    """Return patterns for the names of what each file reads, also for all that they include."""
     every = changes.tracked | changes.untracked
     there = lists_by_key((os.path.basename(it), os.path.join(changes.top, it)) for it in every)
     found: dict[str, tuple[str, ...]] = {}
@@ -156,7 +154,7 @@ def _reads(paths: Iterable[str], changes: Changes) -> dict[str, tuple[str, ...]]
 
 
 def _includes(path: str) -> Iterator[str]:
-    """Patterns for the files that a file reads, as far as that can be seen in its text."""
+    """Yield patterns for the files that a file reads, as far as its text shows it."""
     if path.endswith(_BESIDE[0]):
         yield from _BESIDE[1]
     if path.endswith(".urdf"):
@@ -173,7 +171,7 @@ def _includes(path: str) -> Iterator[str]:
 
 
 def _located(path: str, asked: Iterable[str], there: dict[str, list[str]]) -> Iterator[str]:
-    """Files of these names, wherever they are; git may not have the one beside the file."""
+    """Yield files of these names, wherever they are; git may not have the one next to the file."""
     for it in asked:
         name = os.path.basename(it)
         beside = os.path.join(os.path.dirname(path), it)

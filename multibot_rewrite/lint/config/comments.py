@@ -46,11 +46,9 @@ def after_comments(
     sources: Mapping[str, bytes],
     settings: Settings,
 ) -> list[Finding]:
-    """The findings that no comment suppresses, and those about comments; ``codes`` are all that were
-    found.
-
-    The first of ``sources`` is the file that is linted, the others are those it includes.
-    """
+    """Return the findings that no comment suppresses, and those about comments; ``codes`` are all
+    that were found. The first of ``sources`` is the file that is linted, the others are those it
+    includes."""
     comments = [it for file, source in sources.items() for it in _comments(file, source)]
     left, used = _apply(findings, comments)
     faults = ((it, fault) for it in comments for fault in it.it.faults)
@@ -75,7 +73,7 @@ def _comments(file: str, source: bytes) -> Iterator[Comment]:
 def _apply(
     findings: Iterable[Finding], comments: Iterable[Comment]
 ) -> tuple[list[Finding], set[tuple[str, int]]]:
-    """The findings that are left, and the codes that suppressed one, by file and offset."""
+    """Return the findings that are left, and the codes that suppressed one, by file and offset."""
     by_code = lists_by_key((code.text, (it, code)) for it in comments for code in it.it.codes)
     left, used = [], set()
     for finding in findings:
@@ -87,7 +85,7 @@ def _apply(
 
 
 def _reaches(comment: Comment, finding: Finding) -> bool:
-    """A comment at a macro definition or at its call reaches findings in the macro's output."""
+    """Return whether a comment reaches a finding; a comment at a macro reaches those in its output."""
     if comment.it.word == IGNORE_FILE:
         return file_of(finding) == comment.file
     if finding.file == comment.file and _holds(comment, (finding.line, finding.column)):
@@ -139,7 +137,7 @@ def _unused(
 
 
 def _is_asked(code: str, file: str, settings: Settings) -> bool:
-    """Is a rule on in that file, with the settings that it needs and without other files?"""
+    """Return whether a rule is on in that file, with its settings and without other files."""
     rule = RULES[code]
     possible = not rule.page.beside and all(getattr(settings, it, True) for it in rule.options)
     return possible and is_on(settings, code) and not is_silent(settings, file, code)
@@ -160,7 +158,7 @@ def _removals(comment: Comment, idle: Sequence[CodeName]) -> Iterator[tuple[Edit
 
 
 def _removal(comment: Comment) -> tuple[Edit, ...]:
-    """The whole comment, with its line if nothing else is on it; none where it is inside a text."""
+    """Return the edit that removes a comment, with a line that has nothing else; none inside a text."""
     source, it = comment.source, comment.it
     start = len(source[: it.start].rstrip())
     end = len(source) - len(source[it.end :].lstrip())

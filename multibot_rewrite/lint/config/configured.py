@@ -48,11 +48,9 @@ class Configured(NamedTuple):
 
 
 def configured(near: str, file: str | None) -> Configured:
-    """The configuration in ``file`` or, without one, the nearest above ``near``.
-
-    In one folder a urdf-lint.toml comes before a pyproject.toml, which counts where it has a table
-    ``[tool.urdf-lint]``. Raises UsageError, naming the file, for anything that is wrong in it.
-    """
+    """Return the configuration in ``file`` or, without one, the nearest above ``near``. In one
+    folder a urdf-lint.toml comes before a pyproject.toml, which counts if it has a table
+    ``[tool.urdf-lint]``. Raises UsageError, naming the file, for anything that is wrong in it."""
     path = file or next(_above(near), "")
     result = _configured(path, _table(path)) if path else Configured()
     settings = result.settings
@@ -117,7 +115,7 @@ def _configured(path: str, table: Mapping[str, object]) -> Configured:
 
 
 def _named(it: Configured, naming_options: Mapping[str, Any]) -> Configured:
-    """The same with other options for the naming."""
+    """Return the configuration with other options for the naming."""
     if not naming_options:
         return it
     naming = {**it.naming, **naming_options}
@@ -126,16 +124,14 @@ def _named(it: Configured, naming_options: Mapping[str, Any]) -> Configured:
 
 
 def is_excluded(path: str, it: Configured) -> bool:
-    """Does the configuration leave out a file that was found below a folder?"""
+    """Return whether the configuration leaves out a file that was found below a folder."""
     return any(matches(path, pattern) for pattern in it.exclude)
 
 
 def with_options(it: Configured, **given: Any) -> Configured:
-    """A configuration with the options of the command line; None and empty mean not given.
-
+    """Return a configuration with the options of the command line; None and empty mean not given.
     ``ignore``, ``vocabulary``, ``roots`` and ``arguments`` (pairs) add to it; all else replaces it.
-    Codes in ``select`` are on, whatever the configuration says about exactly these codes.
-    """
+    Codes in ``select`` are on, whatever the configuration says about exactly these codes."""
     options = {name: value for name, value in given.items() if value not in (None, (), "")}
     naming_options = {name: options.pop(name) for name in NAMING if name in options}
     if "target" in options:

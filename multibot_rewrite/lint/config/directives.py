@@ -81,7 +81,7 @@ class Directive(NamedTuple):
 
 
 def read_directives(source: bytes) -> list[Directive]:
-    """The ``urdf-lint:`` comments of a file, in order."""
+    """Return the ``urdf-lint:`` comments of a file, in order."""
     parts = list(_parts(source))
     ends = _element_ends(parts)
     spans = ((parts[at], end) for at, end in ends.items())
@@ -114,7 +114,7 @@ def _parts(source: bytes) -> Iterator[TagPart]:
 
 
 def _element_ends(parts: Sequence[TagPart]) -> dict[int, int]:
-    """Number of an element's first tag -> the offset where the element ends."""
+    """Return by the number of an element's first tag the offset where the element ends."""
     ends: dict[int, int] = {}
     opened: list[int] = []
     for at, part in enumerate(parts):
@@ -149,7 +149,7 @@ def _directive(source: bytes, part: TagPart) -> Directive | None:
 
 
 def _codes(source: bytes, comment: re.Match[bytes]) -> tuple[list[CodeName], list[DirectiveFault]]:
-    """The valid codes, and what is wrong with the others."""
+    """Return the valid codes, and what is wrong with the others."""
     reason = _REASON.search(source, comment.start(3), comment.end(3))
     end = reason.start() if reason else comment.end(3)
     codes: list[CodeName] = []
@@ -201,14 +201,14 @@ def _elements_below(
 
 
 def _has_its_lines(source: bytes, comment: TagPart, last: int) -> bool:
-    """Is nothing else on the lines of a comment? ``last`` is the end of the part before it."""
+    """Return whether a comment is alone on its lines; ``last`` is the end of the part before it."""
     before = source[last : comment.start].rpartition(b"\n")
     begins = not before[2].strip() and (bool(before[1]) or last == 0)
     return begins and _LINE_END.match(source, comment.end) is not None
 
 
 def _in_place(it: Directive, tags: Sequence[TagPart]) -> Directive:
-    """An ignore-file has no effect after the root's first child."""
+    """Return the comment; an ignore-file after the root's first child has no codes but a fault."""
     if it.word != IGNORE_FILE or len(tags) < 2 or it.start < tags[1].start:
         return it
     late = DirectiveFault(
@@ -218,14 +218,14 @@ def _in_place(it: Directive, tags: Sequence[TagPart]) -> Directive:
 
 
 def _is_idle(it: Directive, tags: Sequence[TagPart], before: int) -> bool:
-    """Is there no element below the comment, and no tag or text on its lines?"""
+    """Return whether no element is below the comment, and no tag or text on its lines."""
     last = bisect_left(tags, it.lines[1], key=lambda tag: tag.start) - 1
     on_the_lines = last >= 0 and tags[last].end > it.lines[0]
     return not it.element and not on_the_lines and before != _OPEN
 
 
 def _meets(it: Directive, reached: tuple[list[int], list[int]]) -> bool:
-    """Is what the comment is about in one of the spans, in part at least?"""
+    """Return whether what the comment is about is in one of the spans, at least in part."""
     starts, ends = reached
     if it.word == IGNORE_FILE:
         return bool(starts)

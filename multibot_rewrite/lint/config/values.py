@@ -45,7 +45,7 @@ def _text(given: KeyValue) -> str:
 
 
 def _table_of(given: KeyValue) -> Iterator[tuple[str, KeyValue]]:
-    """The keys of a table and their values."""
+    """Yield the keys of a table and their values."""
     if not isinstance(given.value, dict):
         raise UsageError(f"{given.where} is {type_name(given.value)}, write a table")
     for key, value in given.value.items():
@@ -149,7 +149,7 @@ def _argument_sets(given: KeyValue) -> tuple[ArgumentSet, ...]:
 
 
 def _argument(given: KeyValue) -> str:
-    """The value as text, as on xacro's command line."""
+    """Return the value as text, as on xacro's command line."""
     value = given.value
     if isinstance(value, bool):
         return str(value).lower()
@@ -187,7 +187,7 @@ FIELDS = {"per-file-ignores": "per_file", "xacro": "arguments"}
 
 
 def anchored(pattern: str, folder: str, where: str) -> tuple[str, ...]:
-    """A pattern as one or two of whole paths; without a slash it is a name in whatever folder."""
+    """Return a pattern as one or two of whole paths; without a slash it is a name in any folder."""
     _check_pattern(pattern, where)
     if os.path.isabs(pattern):
         return (pattern,)

@@ -43,7 +43,7 @@ def included(paths: Sequence[str]) -> frozenset[str]:
 
 
 def _includes_itself(real: str) -> bool:
-    """Does a file lead back to itself? Then it is a part of no file that xacro expands."""
+    """Return whether a file leads back to itself. Then xacro expands no file with it."""
     found: set[str] = set()
     todo = [real]
     while todo and real not in found:
@@ -54,7 +54,7 @@ def _includes_itself(real: str) -> bool:
 
 
 def _included_by(path: str) -> Iterator[str]:
-    """The files that a file includes, where only packages are to be filled in."""
+    """Yield the files that a file includes, if only packages are to be filled in."""
     for name in _INCLUDE.findall(without_comments(text_of_file(path))):
         asked = name.decode("utf-8", "replace")
         text = _PACKAGE.sub(lambda it: package_folder(it[1], path, ()), asked)
@@ -63,7 +63,7 @@ def _included_by(path: str) -> Iterator[str]:
 
 
 def _beside(paths: Sequence[str]) -> Iterator[str]:
-    """The other xacro files of the packages of xacro files."""
+    """Yield the other xacro files of the packages of xacro files."""
     owners = (package_of(path) for path in paths if path.endswith(".xacro"))
     for folder in dict.fromkeys(own[1] for own in owners if own):
         yield from descriptions_below(folder)
@@ -75,7 +75,7 @@ def _is_read(path: str) -> bool:
 
 
 def _asked_for(path: str) -> Iterator[str]:
-    """The paths that a file includes, without what only xacro can fill in, and without itself."""
+    """Yield the paths that a file includes, without what only xacro can fill in, and without itself."""
     own = real_path(path)
     for found in _INCLUDE.findall(text_of_file(path)):
         name = found.decode("utf-8", "replace")
@@ -92,8 +92,8 @@ def _asked_for(path: str) -> Iterator[str]:
 
 
 def set_among(paths: Sequence[str], settings: Settings) -> Settings:
-    """The settings with what the others include, the URDFs of SRDFs, and the arguments that xacro
-    files know."""
+    """Return the settings with what the others include, the URDFs of SRDFs, and the arguments that
+    xacro files know."""
     settings = settings._replace(included=included(paths))
     if len(paths) == 1:
         return settings

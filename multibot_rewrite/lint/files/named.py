@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What files beside a description are called, and the robots in them: loaded for kept results, too."""
+"""The names of related files of a description, and the robots in them: loaded for kept results, too."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _DEEP, _MOST = 3, 60
 
 @outside
 def robot_name(path: str) -> str:
-    """The name on the root element as it is written; empty if the first bytes do not have it."""
+    """Return the name on the root element as it is written; empty if the first bytes lack it."""
     try:
         found = _NAME.search(read_start(path, HEAD))
     except (OSError, ValueError):
@@ -36,14 +36,14 @@ def robot_name(path: str) -> str:
 
 @outside
 def files_like(pattern: str) -> tuple[str, ...]:
-    """The files that a pattern names, in order."""
+    """Return the files that a pattern names, in order."""
     from glob import glob  # few descriptions come to this
 
     return tuple(sorted(glob(pattern)))
 
 
 def descriptions_below(folder: str) -> list[str]:
-    """The URDF and xacro files of a package, the first ones of many."""
+    """Return the URDF and xacro files of a package, the first ones of many."""
     return list(islice(_files(folder, _DEEP), _MOST))
 
 
@@ -59,7 +59,7 @@ def _files(folder: str, deep: int) -> Iterator[str]:
 
 
 def text_of_file(path: str) -> bytes:
-    """The bytes of a file; none of one that cannot be read: that is reported when it is linted."""
+    """Return the bytes of a file; empty if it cannot be read, which is reported when it is linted."""
     try:
         return read_file(path)
     except InputError:

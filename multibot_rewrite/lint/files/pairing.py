@@ -50,7 +50,7 @@ NO_PAIR = Pair(None, NOTHING)
 
 
 def named_urdfs(paths: Sequence[str], included: frozenset[str]) -> tuple[tuple[str, str], ...]:
-    """The robot names of the descriptions, where an SRDF or another file beside them is among them."""
+    """Return the robot names of the descriptions, if an SRDF or another related file is among them."""
     others = [it for it in paths if SRDF_MARK not in os.path.basename(it) and not is_beside(it)]
     if len(others) == len(paths):
         return ()
@@ -60,10 +60,8 @@ def named_urdfs(paths: Sequence[str], included: frozenset[str]) -> tuple[tuple[s
 
 
 def find_pair(path: str, srdf: Inventory, settings: Settings) -> Pair:
-    """The description that an SRDF belongs to: the one that has most of its names.
-
-    One that lacks more than a few of them is that of another robot or another variant.
-    """
+    """Return the description that an SRDF belongs to: the one that has most of its names. One that
+    lacks more than a few of them is that of another robot or another variant."""
     if settings.urdf:
         return _read(settings.urdf, srdf, settings)
     name = srdf.document.root.get("name", "").strip()
@@ -147,6 +145,6 @@ def reach_of(settings: Settings) -> Reach:
 
 
 def _names(srdf: Inventory) -> set[str]:
-    """The links and joints an SRDF uses, those it declares aside."""
+    """Return the links and joints an SRDF uses, without those it declares."""
     uses = (it for it in srdf.claims if it.site.role == "uses" and it.site.whole_value_kind)
     return {it.value.strip() for it in uses} - srdf.declared["joint"].keys()

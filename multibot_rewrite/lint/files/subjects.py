@@ -66,7 +66,7 @@ def read_subjects(path: str, data: bytes, settings: Settings) -> Iterator[Subjec
 
 
 def _with_models(document: Document, settings: Settings) -> Subject:
-    """The subject of a model with those that it includes, each in the line of its include."""
+    """Return the subject of a model with those that it includes, each at the line of its include."""
     from multibot_rewrite.description.sources.included_models import with_includes
 
     whole = with_includes(document.source, document.file)
@@ -100,17 +100,15 @@ def _expansions(path: str, data: bytes, settings: Settings) -> Iterator[Subject 
 
 
 def _only_defines(root: _Element) -> bool:
-    """Does a file only define what others use? Expanded alone it is an empty robot.
-
-    One that only includes may be a whole robot; one that defines macros as well is read by others.
-    """
+    """Return whether a file only defines what others use. Expanded alone it is an empty robot. One
+    that only includes may be a whole robot; one that defines macros as well is read by others."""
     parts = (str(child.tag).rpartition("}") for child in root.iterchildren("*"))
     tags = {name if "xacro" in space else "" for space, _, name in parts}
     return tags <= DEFINITIONS and ("include" not in tags or "macro" in tags)
 
 
 def make_subject(document: Document, settings: Settings) -> Subject:
-    """The subject of a document."""
+    """Return the subject of a document."""
     tree = builtin_tree(settings.vocabulary, settings.distro)
     ros = settings.ros or ros_shown(document.source, document.file, tree)
     tree = builtin_tree(settings.vocabulary, settings.distro, ros)

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Running nodes -> a file of nodes and stacks with the names in their code."""
+"""Running nodes -> a file of nodes and node sets with the names in their code."""

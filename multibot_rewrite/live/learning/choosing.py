@@ -65,7 +65,7 @@ def left_out(graph: System, chosen: Iterable[str], namespace: str) -> tuple[str,
 
 
 def namespace_prefix(namespace: str) -> str:
-    """A namespace without a slash at its end, empty for the root; UsageError if it is not valid."""
+    """Return a namespace without its last slash, empty for the root; UsageError if not valid."""
     base = namespace.rstrip("/")
     fault = check_namespace(base) if base else None
     if fault:
@@ -87,7 +87,7 @@ def _suggestion(name: str, known: Iterable[str]) -> str:
 
 
 def helpers_of(graph: System, names: Sequence[str]) -> dict[str, Helpers]:
-    """The helper nodes in the process of each node; none of ``names`` counts as a helper."""
+    """Return the helper nodes in the process of each node; none of ``names`` counts as a helper."""
     inside, mains = _nodes_by_process(graph, names)
     return {
         node.name: Helpers(tuple(sorted(inside[node.process])), mains[node.process] == 1)
@@ -97,7 +97,7 @@ def helpers_of(graph: System, names: Sequence[str]) -> dict[str, Helpers]:
 
 
 def helpers_without_owner(graph: System, names: Sequence[str]) -> tuple[str, ...]:
-    """Helper nodes that are alone in their process, so that their node is not known."""
+    """Return the helper nodes that are alone in their process, so that their node is unknown."""
     inside, mains = _nodes_by_process(graph, names)
     alone = (helpers for process, helpers in inside.items() if not mains[process])
     return tuple(sorted(name for helpers in alone for name in helpers))

@@ -128,7 +128,7 @@ def _learn_node(
 
 
 def _full_name(name: str, node: str) -> str:
-    """The full name of a name in the code of ``node``, with the robot in the root namespace."""
+    """Return the full name of a name in the code of ``node``, with the robot in the root namespace."""
     above, _, own = node.rpartition("/")
     return expand(name, f"/{above}", own)
 
@@ -142,7 +142,7 @@ def _literal_names(known: NodeFacts) -> Iterator[str]:
 
 
 def _endpoints(ends: Iterable[End], place: _SeenPlace) -> dict[_Slot, Endpoint]:
-    """A node's endpoints, by role and the name that its code may have."""
+    """Return a node's endpoints, by role and the name that its code may have."""
     seen, images = fold_images(fold_actions(_types_by_endpoint(ends)))
     found: dict[_Slot, Endpoint] = {}
     for key, types in sorted(seen.items()):
@@ -177,10 +177,9 @@ def _types_by_endpoint(ends: Iterable[End]) -> Seen:
 
 
 def _name_in_code(name: str, types: Sequence[str], place: _SeenPlace) -> str:
-    """A name that the code may have, whose remap rule is right for the other possible names too.
-
-    In the root namespace ``x`` and ``/x`` are one name, and the rule for ``/x`` remaps both.
-    """
+    """Return a name that the code may have, whose remap rule is right for the other possible names
+    too. In the root namespace ``x`` and ``/x`` are one name, and the rule for ``/x`` remaps
+    both."""
     full = f"{place.base}/{place.node}"
     above = full.rpartition("/")[0]
     level = name.removeprefix(place.base) if name.startswith(f"{place.base}/") else name
@@ -213,7 +212,7 @@ def _merge(first: Endpoint, second: Endpoint, key: EndpointId) -> Endpoint:
 def _with_helpers(
     name: str, ends: Mapping[str, Sequence[End]], helpers: Helpers, place: _SeenPlace
 ) -> dict[_Slot, Endpoint]:
-    """A node's endpoints, with those of its helper nodes."""
+    """Return a node's endpoints, with those of its helper nodes."""
     found = _endpoints(ends.get(name, ()), place)
     for helper in helpers.names:
         private = f"{helper}/"
@@ -248,7 +247,7 @@ def _signature(end: Endpoint, node: str) -> tuple[str, str, str]:
 
 
 def _pattern(end: Endpoint, node: str) -> re.Pattern[str]:
-    """A pattern for an endpoint: <...> in its name stands for anything, a leading slash too."""
+    """Return a pattern for an endpoint: <...> in its name stands for anything, a leading slash too."""
     kind, role, full = _signature(end, node)
     text = f"{kind} {role} {end.name if end.name[0] == '<' else full}"
     return re.compile(with_gaps(re.split(r"<[^<>/]+>", text), "."))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Learned nodes as a file of nodes and stacks, or as a NoDL document each, checked by reading them.
+"""Learned nodes as a file of nodes and node sets, or as a NoDL document each, checked by reading them.
 
 A NoDL document has no helper nodes, conditions or several types: helpers' endpoints are the node's own,
 two types are two entries.
@@ -35,10 +35,8 @@ _NO_WRAP = 1 << 30
 
 
 def to_yaml(learned: Sequence[LearnedNode], stack: str, library: NodeLibrary) -> str:
-    """The text of a file with the nodes and one stack of them.
-
-    Raises ProofError if reading it does not give the same nodes.
-    """
+    """Return the text of a file with the nodes and one node set of them. Raises ProofError if
+    reading it does not give the same nodes."""
     text = "".join(f"{line}\n" for line in _lines(learned, stack))
     facts = tuple(node.facts for node in learned)
     try:
@@ -78,7 +76,7 @@ def _lines(learned: Sequence[LearnedNode], stack: str) -> Iterator[str]:
 
 
 def _value(end: Endpoint) -> str:
-    """An endpoint's type alone, or all that is known of it."""
+    """Return an endpoint's type alone, or all that is known of it."""
     fields = {
         "type": end.type,
         "also": list(end.also),
@@ -117,10 +115,8 @@ KEEP_LAST = "KEEP_LAST"
 def to_nodl(
     node: LearnedNode, graph: System, namespace: str, library: NodeLibrary, json: bool = False
 ) -> NodlFile:
-    """The document of a learned node; raises ProofError if reading it gives something else.
-
-    ``namespace`` is the robot's. QoS is as seen; what a graph does not show is SYSTEM_DEFAULT.
-    """
+    """Return the document of a learned node; raises ProofError if reading it gives something else.
+    ``namespace`` is the robot's. QoS is as seen; what a graph does not show is SYSTEM_DEFAULT."""
     usual = {(it.role, it.name) for it in library.parts[EVERY_NODE]} | {("subscribes", CLOCK)}
     ends = [it for it in node.facts.endpoints if (it.role, it.name) not in usual]
     # One entry for each of its types.
@@ -139,7 +135,7 @@ class _Seen(NamedTuple):
     base: str
 
     def ends(self, end: Endpoint, suffix: str = "") -> list[End]:
-        """What the graph has of an endpoint, by the names that it may be seen under."""
+        """Return what the graph has of an endpoint, by the names that it may be seen under."""
         above, _, own = self.node.facts.name.rpartition("/")
         full = expand(end.name, f"/{above}", own) + suffix
         names = (self.base + full, full)
@@ -152,7 +148,7 @@ class _Seen(NamedTuple):
         return next((it.qos for it in self.ends(end) if it.qos), None)
 
     def transports(self, end: Endpoint) -> Iterator[Endpoint]:
-        """The topics of image_transport that an image has."""
+        """Yield the topics of image_transport that an image has."""
         for transport in TRANSPORTS:
             for found in self.ends(end, f"/{transport}")[:1]:
                 yield Endpoint(TOPIC, end.role, f"{end.name}/{transport}", found.type)

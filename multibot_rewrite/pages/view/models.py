@@ -2,7 +2,7 @@
 """What the view draws of a robot: links with shapes, joints, meshes, and a URDF as yourdfpy reads it.
 The only import of yourdfpy and trimesh.
 
-Meshes are looked for as ROS does: package://, file://, and paths beside the description. A material
+Meshes are looked for as ROS does: package://, file://, and paths next to the description. A material
 without a colour is that of its name in the robot (urdfdom urdf_parser model.cpp).
 """
 

@@ -158,7 +158,7 @@ class HeardFrame(NamedTuple):
 
 
 class HeardTree(NamedTuple):
-    """Frames below ``root`` on a tf topic, parents first. It stands where ``robot`` is planned to be,
+    """Frames below ``root`` on a tf topic, parents first. It is where ``robot`` is planned to be,
     at the world's origin for none."""
 
     topic: str

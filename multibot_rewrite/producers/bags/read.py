@@ -52,7 +52,7 @@ _NO_LIMIT_SECONDS = 9_223_372_036
 
 
 def read_bag(path: str) -> Recording:
-    """What a folder, or a file .mcap or .db3, holds; raises InputError, Unusable."""
+    """Return what a bag, a folder or a file .mcap or .db3, holds; raises InputError, Unusable."""
     from tempfile import TemporaryDirectory  # slow to import; few look at bags
 
     try:
@@ -80,7 +80,7 @@ def read_bag(path: str) -> Recording:
 
 
 def _read(folder: str, most: int, path: str) -> Recording | InputError:
-    """What a bag holds, or why not, in a process that has bounds: little may unpack to much."""
+    """Return what a bag holds, or why not, in a process with limits: little may unpack to much."""
     import tempfile
 
     from rosbags.rosbag2 import Reader
@@ -159,7 +159,7 @@ def _first(reader: Reader, connections: list[Connection], many: int) -> Iterator
 def _transforms(
     reader: Reader, topic: str, connections: list[Connection]
 ) -> tuple[Collection[Edge], bool]:
-    """The transforms on a tf topic as they were at last, and whether some could not be read."""
+    """Return the last transforms on a tf topic, and whether some could not be read."""
     found: dict[tuple[str, str], Edge] = {}
     paces: dict[tuple[str, str], Pace] = {}
     static = topic.rpartition("/")[2] == "tf_static" or "/tf_static/" in topic
@@ -178,7 +178,7 @@ def _transforms(
 def _paced(
     found: Mapping[tuple[str, str], Edge], paces: Mapping[tuple[str, str], Pace]
 ) -> Collection[Edge]:
-    """The transforms with how often each came."""
+    """Return the transforms with how often each came."""
     return [it if it.static else it._replace(rate=paces[key].rate()) for key, it in found.items()]
 
 

@@ -60,8 +60,8 @@ def is_recorded(graph: System) -> bool:
 
 
 def as_snapshot(found: Recording, plan: System | None = None) -> System:
-    """The recording as a snapshot. A transform does not say who sent it:
-    those that publish its topic by the plan."""
+    """Return the recording as a snapshot. Senders of transforms are those that publish the topic by
+    the plan: a transform does not name its own."""
     seconds = round(found.seconds, 2)
     sent = [it for it in surely(plan).ends if it.role == PUBLISHES] if plan else []
     senders = dicts_by_key((it.name, it.node, None) for it in sent)

@@ -31,8 +31,8 @@ Ids = Mapping[str, str]
 def filled(node: NodeFacts, given: Run, known: NodeFacts | None = None) -> NodeFacts:
     """``node`` with the names that its parameters set, under the name that it has there.
 
-    ``known`` is the node without what a stack makes of it: where the parameters do not say more, what
-    the stack says stays. Raises InputError for a word of a list that makes no valid name.
+    ``known`` is the node without what a node set makes of it: where the parameters do not say more,
+    what the node set says stays. Raises InputError for a word of a list that makes no valid name.
     """
     values, value_of = given.values, lookup(node, given.values)
     whole = known or node
@@ -74,7 +74,7 @@ def sent_with(node: NodeFacts, values: Mapping[str, Given]) -> Iterator[SentTran
 
 
 def lookup(node: NodeFacts, values: Mapping[str, Given]) -> Values:
-    """What conditions ask: the value of a parameter, or its default where it names a frame."""
+    """Return a look-up for conditions: a parameter's value, or its default if it names a frame."""
     defaults = {it.parameter: it.default for it in node.frames}
     return lambda name: values[name].value if name in values else defaults.get(name)
 
@@ -86,8 +86,8 @@ def _endpoint(
     values: Mapping[str, Given],
     value_of: Values,
 ) -> Iterator[Endpoint]:
-    """The endpoint once for each binding of its ids, with the names that are set; ``own`` is what the
-    stack makes of it."""
+    """Yield the endpoint once for each binding of its ids, with the names that are set; ``own`` is
+    what the node set makes of it."""
     is_made = "<" in raw.name or "*" in raw.name
     if not (raw.parameter or raw.condition or raw.when or is_made):
         yield from (_typed(it, value_of) if it.types else it for it in own)
@@ -128,7 +128,7 @@ def _sure(endpoint: Endpoint, is_there: bool | None) -> Endpoint:
 
 
 def _checked(endpoint: Endpoint, listed: Given | None) -> Endpoint:
-    """The endpoint, unless a word of a list makes a name that rcl rejects: the node does not start."""
+    """Return the endpoint; raises InputError if a word of a list makes a name that rcl rejects."""
     fault = check_name_in_code(endpoint.name) if listed else None
     if listed and fault:
         other = f", or set {endpoint.parameter}" if endpoint.parameter else ""
@@ -138,7 +138,7 @@ def _checked(endpoint: Endpoint, listed: Given | None) -> Endpoint:
 
 
 def _typed(endpoint: Endpoint, value_of: Values) -> Endpoint:
-    """The endpoint with the one type that its parameters choose."""
+    """Return the endpoint with the one type that its parameters choose."""
     chosen = chosen_type(endpoint.types, value_of)
     return endpoint._replace(type=chosen, also=(), types=()) if chosen else endpoint
 
@@ -159,12 +159,12 @@ def _is_decided(
 
 
 def _wanted(ids: Mapping[str, str], *texts: str) -> list[str]:
-    """The ids that texts have, each once."""
+    """Return the ids that texts have, each once."""
     return [it for it in dict.fromkeys(_ID.findall(" ".join(texts))) if it in ids]
 
 
 def _are_listed(lists: Iterable[str], values: Mapping[str, Given]) -> bool:
-    """Is each of these lists given?"""
+    """Return whether each of these lists is given."""
     return all(_called(it, values) for it in lists)
 
 
@@ -183,7 +183,7 @@ def _bindings(
 
 
 def _in_order(ids: Mapping[str, str], wanted: Iterable[str]) -> list[str]:
-    """The wanted ids and those that their lists need, the needed ones first."""
+    """Return the wanted ids and those that their lists need, the needed ones first."""
     order: list[str] = []
     for name in wanted:
         needed = [it for it in _ID.findall(ids[name]) if it in ids]
@@ -192,7 +192,7 @@ def _in_order(ids: Mapping[str, str], wanted: Iterable[str]) -> list[str]:
 
 
 def _words(given: Given | None) -> list[str]:
-    """The items of a list; a text is a list of its words."""
+    """Return the items of a list; a text is a list of its words."""
     if given is None:
         return []
     value = given.value
@@ -218,15 +218,15 @@ def _bound(endpoint: Endpoint, binding: Ids) -> Endpoint:
 
 
 def _ending(node: NodeFacts, raw: Endpoint) -> str:
-    """What the node puts behind the topic of a parameter, as ``_updates``: another endpoint has the
-    topic itself."""
+    """Return what the node appends to the topic of a parameter, such as ``_updates``: another
+    endpoint has the topic itself."""
     alike = (it.named_from or it.name for it in node.endpoints if it.parameter == raw.parameter)
     bases = [it for it in alike if raw.name.startswith(it)] if raw.parameter else []
     return raw.name.removeprefix(min(bases, key=len)) if bases else ""
 
 
 def _named(endpoint: Endpoint, values: Mapping[str, Given], ending: str) -> Iterator[Endpoint]:
-    """The endpoint under the names that its parameter sets; under its own where none is set."""
+    """Yield the endpoint under the names that its parameter sets; under its own if none is set."""
     names = list(_set_names(endpoint.parameter, values))
     for parameter, name in names:
         if name:
@@ -256,14 +256,14 @@ def _set_names(parameter: str, values: Mapping[str, Given]) -> Iterator[tuple[st
 
 
 def _called(parameter: str, values: Mapping[str, Given]) -> list[str]:
-    """The values that a parameter may stand for, in their order."""
+    """Return the values that a parameter may stand for, in their order."""
     if not (_is_numbered(parameter) or _GAP.search(parameter)):
         return [parameter] if parameter in values else []
     return [name for name in values if _pattern(parameter).fullmatch(name)]
 
 
 def _is_numbered(parameter: str) -> bool:
-    """Does it end with a number, as ``odomN``?"""
+    """Return whether a parameter ends with a number, as ``odomN``."""
     return parameter.endswith(_NUMBER) and parameter[:-1].islower()
 
 

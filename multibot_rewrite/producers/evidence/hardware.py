@@ -66,7 +66,7 @@ class _Plugin(NamedTuple):
 
 
 def exported(root: _Element, file: str) -> Iterator[Exported]:
-    """The interfaces of every ros2_control system of a description."""
+    """Yield the interfaces of every ros2_control system of a description."""
     for system in root.iter("ros2_control"):
         for owner in system.iterchildren(*OWNERS):
             for kind in (COMMAND, STATE):
@@ -88,10 +88,8 @@ def exported(root: _Element, file: str) -> Iterator[Exported]:
 def with_hardware(
     nodes: Iterable[NodeFacts], root: _Element, file: str, known: Mapping[str, NodeFacts]
 ) -> tuple[NodeFacts, ...]:
-    """The nodes of a robot and, beside its controller manager, those that its hardware makes.
-
-    ``known`` are the known nodes by name.
-    """
+    """Return the nodes of a robot and, with its controller manager, those that its hardware makes.
+    ``known`` are the known nodes by name."""
     own = tuple(nodes)
     manager = next((it for it in own if MANAGER in (it.name, it.known)), None)
     if manager is None:
@@ -138,8 +136,8 @@ def control_system(
     exports: Iterable[Exported],
     active: Collection[str] = (),
 ) -> System:
-    """The controllers that files declare, and all interfaces; ``active`` are those that launch files
-    start so."""
+    """Return the controllers that files declare, and all interfaces; ``active`` are those that
+    launch files start active."""
     declared = [it for it in given if it.host_name]
     own = [Interface(it.kind, it.name, f"/{MANAGER}", EXPORTS, it.place) for it in exports]
     controllers = []
@@ -182,12 +180,12 @@ class _Made(NamedTuple):
 
 
 def claims_of(claims: Iterable[Claim], node: Run) -> Iterator[Claimed]:
-    """The interfaces that a controller claims with its parameters, each once."""
+    """Yield the interfaces that a controller claims with its parameters, each once."""
     yield from claimed(claims, {**node.values, TYPE: Given(node.program, node.place)})
 
 
 def claimed(claims: Iterable[Claim], values: Mapping[str, Given]) -> Iterator[Claimed]:
-    """The interfaces that these claims make with these parameters, each once."""
+    """Yield the interfaces that these claims make with these parameters, each once."""
     found: dict[tuple[str, str], Claimed] = {}
     for claim in claims:
         for made in _names(claim.template, _Made("", claim.condition, None), values):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The nodes of a stack and what a robot's own files say of them -> the nodes that the robot runs,
-under the remap rules of a launch file or a plugin that loads them.
+"""The nodes of a node set and what a robot's own files say of them -> the nodes that the robot
+runs, under the remap rules of a launch file or a plugin that loads them.
 
-A file and a stack that disagree: the file wins, and the disagreement is a note.
+A file and a node set that disagree: the file wins, and the disagreement is a note.
 
 Of controllers that command the same joint, sensor or gpio only one can be active. Source: ros2_control
 controller_manager.cpp and resource_manager.cpp (a command interface is claimed by one active
@@ -40,7 +40,7 @@ ALWAYS: Mapping[str, str] = {}
 
 
 class RobotNodes(NamedTuple):
-    """The nodes that a robot runs, each with its origin, and where files and stacks disagree."""
+    """The nodes that a robot runs, each with its origin, and where files and node sets disagree."""
 
     nodes: tuple[NodeFacts, ...]
     findings: tuple[Finding, ...]
@@ -52,11 +52,9 @@ def nodes_of(
     known: Mapping[str, NodeFacts],
     spawned: Mapping[str, str] = ALWAYS,
 ) -> RobotNodes:
-    """The nodes of a robot: those of its stacks as its files have them, and those of its files alone.
-
-    ``known`` are the known nodes by name, ``spawned`` the conditions of controllers of which launch
-    files say whether they run.
-    """
+    """Return the nodes of a robot: those of its node sets as its files have them, and those of its
+    files alone. ``known`` are the known nodes by name, ``spawned`` the conditions of controllers of
+    which launch files say whether they run."""
     # No supported release has a node that is called as before: nothing reads its section.
     given = [it for it in given if it.node.rpartition("/")[2] not in plugin_bases()[NODE].older]
     sections = {it.name: _section_of(it, given) for it in stack}
@@ -91,7 +89,7 @@ def nodes_of(
 
 
 def _section_of(node: NodeFacts, given: Sequence[Run]) -> Run | None:
-    """What the files set for a node of a stack; its section may be below a namespace."""
+    """Return what the files set for a node of a node set, maybe below a namespace; None without."""
     exact = (it for it in given if it.node == node.name)
     below = (it for it in given if it.node.endswith(f"/{node.name}"))
     return next(exact, None) or next(below, None)
@@ -103,7 +101,7 @@ def _left_out(
     sections: Mapping[str, Run | None],
     known: Mapping[str, NodeFacts],
 ) -> tuple[list[Finding], list[NodeFacts]]:
-    """Notes of the nodes that the files contradict, and the other nodes of the stacks."""
+    """Return notes about nodes that the files contradict, and the other nodes of the node sets."""
     controllers = [it for it in given if it.host_name]
     findings: list[Finding] = []
     kept = []
@@ -121,8 +119,8 @@ def _left_out(
 
 
 def _stands_for(given: Run, node: NodeFacts, known: Mapping[str, NodeFacts]) -> bool:
-    """Does a file have a node of a stack under another name, as ekf_node for ekf_filter_node, or
-    another program of the package that sends the same, as ukf_filter_node?"""
+    """Return whether a file has a node of a node set under another name, as ekf_node for
+    ekf_filter_node, or a program of the package that sends the same, as ukf_filter_node."""
     if given.fact.known == node.name:
         return True
     entry = known.get(given.fact.known)
@@ -131,7 +129,7 @@ def _stands_for(given: Run, node: NodeFacts, known: Mapping[str, NodeFacts]) -> 
 
 
 def children_of(node: NodeFacts) -> Iterator[str]:
-    """The frames that a node sends."""
+    """Yield the frames that a node sends."""
     frames = {it.parameter: it.default for it in node.frames}
     yield from (frames[it.child] for it in node.sends)
 
@@ -143,8 +141,8 @@ def _of_stack(
     either: Mapping[str, str],
     spawned: Mapping[str, str],
 ) -> NodeFacts:
-    """A node of a stack as the files have it: a controller that the robot declares is its own, whatever
-    a stack asks for it."""
+    """Return a node of a node set as the files have it: a controller that the robot declares is its
+    own, whatever a node set requires."""
     if section is None:
         return node
     made = filled(node, section, known.get(node.known))
@@ -154,8 +152,8 @@ def _of_stack(
 
 
 def _added(given: Run, known: Mapping[str, NodeFacts], either: str) -> NodeFacts:
-    """A controller that a file declares runs, unless ``either`` says which other runs in its place;
-    another node that has parameters may run."""
+    """Return a node of a file alone. A controller runs, unless ``either`` says which other runs in
+    its place; another node with parameters may run."""
     node = known.get(given.fact.known)
     if node is None:
         package = given.program.partition("/")[0]
@@ -223,7 +221,7 @@ GUESSED = (
 
 
 def alternatives(given: Iterable[Run], known: Mapping[str, NodeFacts]) -> dict[str, str]:
-    """Controllers that command what another one commands -> the condition under which they run."""
+    """Return the condition under which each controller runs that commands what another one commands."""
     by_owner: dict[tuple[str, str], list[str]] = defaultdict(list)
     for controller in (it for it in given if it.host_name):
         # The joints, sensors and gpios that it commands.
@@ -241,8 +239,8 @@ def alternatives(given: Iterable[Run], known: Mapping[str, NodeFacts]) -> dict[s
 
 
 def remapped(node: NodeFacts, rules: Iterable[tuple[str, str]], namespace: str) -> NodeFacts:
-    """The node with the remap rules of its launch file, started in a namespace; those of tf belong to
-    the layout."""
+    """Return the node with the remap rules of its launch file, started in a namespace; those of tf
+    belong to the layout."""
     above = namespace.rstrip("/")
     below, _, name = node.name.rpartition("/")
     home = above.removesuffix(f"/{below}") if below else above
@@ -258,7 +256,7 @@ def remapped(node: NodeFacts, rules: Iterable[tuple[str, str]], namespace: str) 
 
 
 def under_plugin(node: NodeFacts, rules: Iterable[RemapRule], release: str) -> NodeFacts:
-    """A controller under the rules of the plugin that loads it, where these reach it."""
+    """Return a controller under the rules of the plugin that loads it, if these reach it."""
     if not (node.is_controller and controller_way(release).of_manager):
         return node
     own = node.name.rpartition("/")[2]
@@ -267,8 +265,8 @@ def under_plugin(node: NodeFacts, rules: Iterable[RemapRule], release: str) -> N
 
 
 def _target(new: str, above: str, home: str) -> str:
-    """The target of a rule as its robot has it, of a node in the namespace ``above`` whose robot is in
-    ``home``."""
+    """Return the target of a rule as its robot has it, for a node in the namespace ``above`` whose
+    robot is in ``home``."""
     inner = above != home and not new.startswith(("/", "~"))
     full = f"{above}/{new}" if inner else new
     mine = full.removeprefix(f"{home}/") if home else full

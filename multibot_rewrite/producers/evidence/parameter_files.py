@@ -61,12 +61,9 @@ def given_nodes(
     known: KnownNodes,
     managers: Collection[str] = (),
 ) -> list[Run]:
-    """The nodes that these files have sections for, and the controllers that they declare.
-    ``managers`` are controller managers that are not called as usual.
-
-    Raises InputError for a file that is not a parameter file, and for a controller whose name no node
-    can have.
-    """
+    """Return the nodes that these files have sections for, and the controllers that they declare.
+    ``managers`` are controller managers with unusual names. Raises InputError for a file that is
+    not a parameter file, and for a controller whose name no node can have."""
     sections = [it for document in documents for it in _sections(document)]
     controllers = {**dict(_typed(sections, known)), **dict(_controllers(sections, managers))}
     for name, it in controllers.items():
@@ -114,7 +111,7 @@ def values_for(node: str, documents: Iterable[YamlText]) -> dict[str, Given]:
 
 @lru_cache(maxsize=64)
 def _sections(document: YamlText) -> tuple[_Section, ...]:
-    """The sections of a file: each node of a launch file that gets it asks for them."""
+    """Return the sections of a file, kept: each launched node that gets the file asks for them."""
     found = []
     for it in raw_sections(document):
         tokens = [*dropwhile(ANY.__contains__, it.path.strip("/").split("/"))]
@@ -148,7 +145,7 @@ class _Controller(NamedTuple):
 def _controllers(
     sections: Sequence[_Section], managers: Collection[str]
 ) -> Iterator[tuple[str, _Controller]]:
-    """Controller -> its type, below the name of the manager's namespace."""
+    """Yield each controller with its type, below the name of the manager's namespace."""
     for section in sections:
         above, _, last = section.name.rpartition("/")
         # A renamed one is called controller_manager_robot1, for example.
@@ -166,7 +163,7 @@ def _controllers(
 
 
 def _typed(sections: Sequence[_Section], known: KnownNodes) -> Iterator[tuple[str, _Controller]]:
-    """Controllers whose own section has their type: a spawner hands it on to the manager."""
+    """Yield controllers whose own section has their type: a spawner hands it on to the manager."""
     for section in sections:
         given = section.values.get(OWN_TYPE)
         if section.name and given is not None and given.value in known.types:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What MoveIt makes of an SRDF beside its URDF (groups, passive and virtual joints), and which joints
+"""What MoveIt makes of an SRDF and its URDF (groups, passive and virtual joints), and which joints
 its controllers move.
 
 Sources: srdfdom model.cpp; moveit2 robot_model.cpp (fixed and mimic joints are no variables of a
@@ -55,7 +55,7 @@ class Semantics(NamedTuple):
 
 
 def semantics(srdf: _Element, urdf: _Element, file: str) -> Semantics:
-    """What an SRDF says of the robot of a URDF; ``file`` is the SRDF's."""
+    """Return what an SRDF declares for the robot of a URDF; ``file`` is the SRDF's."""
     virtual = []
     for it in srdf.iterchildren("virtual_joint"):
         parent, child = text_of(it, "parent_frame"), text_of(it, "child_link")
@@ -80,7 +80,7 @@ def _place(element: _Element, file: str) -> Place:
 
 
 def managers(node: yaml.Node | None) -> Iterator[yaml.Node]:
-    """The manager's map, at the top of a file or below a node's parameters."""
+    """Yield the manager's map, at the top of a file or below a node's parameters."""
     for key, value in pairs(node):
         if key.value == SIMPLE:
             yield value
@@ -89,19 +89,19 @@ def managers(node: yaml.Node | None) -> Iterator[yaml.Node]:
 
 
 def controllers_of(manager: yaml.Node) -> Iterator[tuple[yaml.ScalarNode, yaml.Node]]:
-    """The listed controllers that have a map: its key and the map."""
+    """Yield the listed controllers that have a map: its key and the map."""
     below = {key.value: (key, value) for key, value in pairs(manager)}
     yield from (below[str(it.value)] for it in listed(manager, NAMES) if it.value in below)
 
 
 def listed(holder: yaml.Node, key: str) -> list[yaml.ScalarNode]:
-    """The names that a map lists under a key: a manager's controllers, the joints of one."""
+    """Return the names that a map lists under a key: a manager's controllers, a controller's joints."""
     value = next((value for name, value in pairs(holder) if name.value == key), None)
     return [it for it in items(value) if isinstance(it, yaml.ScalarNode)]
 
 
 def planning_system(documents: Iterable[YamlText], semantics: Semantics) -> System:
-    """The joints that controllers of MoveIt move, and those that groups of the SRDF are planned for."""
+    """Return a system with the joints that MoveIt's controllers move and the SRDF's groups plan for."""
     moved = (
         Interface(
             JOINT, str(joint.value), f"/{key.value}", EXPORTS, Place(document.file, line_of(joint))

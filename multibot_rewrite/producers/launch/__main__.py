@@ -86,15 +86,15 @@ def main() -> None:
 
 
 def _included(answer: Any) -> Iterator[str]:
-    """The files that a launch file includes: what they start is known with it."""
+    """Yield the files that a launch file includes: what they start is known with it."""
     with suppress(InputError, ValueError, TypeError, LookupError, AttributeError):
         for it in graph_of(answer["graph"]).includes:
             yield os.path.realpath(it.file)
 
 
 def _answer(order: LaunchOrder, folder: str, first: str, seconds: float) -> tuple[object, float]:
-    """What a fork says of one launch file, and the time that it took, of the processor where it did not
-    wait; ``first`` has the links to packages."""
+    """Return what a fork answers for one launch file, and its time, without waiting for the
+    processor; ``first`` has the links to packages."""
     ours, theirs = socket.socketpair()
     pid = os.fork()
     if not pid:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What launched nodes have beside their ends: the transforms that they send, what they put before
-frames, the interfaces of ros2_control that managers export and spawned controllers claim."""
+"""What launched nodes have in addition to their ends: the transforms that they send, what they put
+before frames, the interfaces of ros2_control that managers export and spawned controllers claim."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ Sent = Mapping[str, Sequence[Edge]]
 
 
 def edges_of(it: Run, bound: BoundNode) -> Iterator[tuple[str, Edge]]:
-    """The transforms of a node, each with its topic."""
+    """Yield the transforms of a node, each with its topic."""
     sent = [end.name for end in it.fact.endpoints if end.role == PUBLISHES and not end.when]
     whole = publishes_a_tree(it)
     for edge in (tree_of(it) or ()) if whole else _below(prefix_of(it), sent_by(it.fact, "")):
@@ -44,7 +44,7 @@ def edges_of(it: Run, bound: BoundNode) -> Iterator[tuple[str, Edge]]:
 
 
 def passed_on(it: Run, bound: BoundNode, inside: Sent) -> Iterator[tuple[str, Edge]]:
-    """The transforms of the simulator that a bridge passes on."""
+    """Yield the transforms of the simulator that a bridge passes on."""
     for end, own in bridged_by(it):
         if (end.role, end.type) == (PUBLISHES, TF_TYPE):
             full = resolve_bound(end.name, TOPIC, bound)
@@ -56,8 +56,8 @@ def _below(prefix: str, edges: Iterable[Edge]) -> list[Edge]:
 
 
 def prefix_of(it: Run) -> str:
-    """What a node puts before its frames: robot_localization ros_filter.cpp (``tf_prefix``),
-    ros2_controllers diff_drive_controller.cpp (its namespace, where no parameter says otherwise)."""
+    """Return the prefix that a node adds to its frames: robot_localization ros_filter.cpp
+    (``tf_prefix``), ros2_controllers diff_drive_controller.cpp (its namespace by default)."""
     # What its code makes has it already.
     made = any("<tf_prefix=" in end for sent in it.fact.sends for end in sent[:2])
     prefix = None if made else it.value("tf_prefix")
@@ -69,12 +69,12 @@ def prefix_of(it: Run) -> str:
 
 
 def publishes_a_tree(it: Run) -> bool:
-    """Does it send the tree of a description?"""
+    """Return whether a node sends the tree of a description."""
     return it.fact.package == STATE_PUBLISHER
 
 
 def tree_of(it: Run) -> list[Edge] | None:
-    """The transforms of a description under ``frame_prefix``; None where that is not known."""
+    """Return the transforms of a description under ``frame_prefix``; None if they are unknown."""
     prefix = str(it.value("frame_prefix") or "")
     root = root_of(it.value(DESCRIPTION))
     return None if root is None else _below(prefix, edges_in(root))
@@ -102,7 +102,7 @@ def interfaces_of(
 
 
 def _description(it: Run, published: Mapping[str, str]) -> str:
-    """What a manager has as its parameter, else on the topic that it reads."""
+    """Return a manager's description: its parameter's, or that on the topic that it reads."""
     given = it.values.get(_DESCRIPTION)
     if given and isinstance(given.value, str) and "<robot" in given.value[:4096]:
         text = given.value

@@ -50,11 +50,9 @@ class Row(NamedTuple):
 
 
 def bridge_rows(node: LaunchedNode, words: Collection[str]) -> tuple[Endpoint, ...]:
-    """What the arguments of a bridge say that it has in ROS; nothing for another program.
-
-    The same text names the topic in Gazebo. With one of ``words`` in it, it is that of one robot: then
-    its remap rule counts, and without a rule the name is left out.
-    """
+    """Return the ROS topics in the arguments of a bridge; empty for another program. The same text
+    names the topic in Gazebo. With one of ``words`` in it, it is that of one robot: then its remap
+    rule counts, and without a rule the name is left out."""
     rules = {f"/{old.lstrip('/')}": new for old, new in node.remappings}
     rows = _told(f"{node.package}/{node.executable}", node.arguments)
     return tuple(end for it in rows for end in _for_any_robot(it.end, rules, words))
@@ -68,7 +66,7 @@ def services_in(words: Iterable[str]) -> dict[str, Row]:
 
 
 def passes_topics_on(package: str, program: str) -> bool:
-    """Is a program a bridge to a simulator, which the bridges of a build stand for?"""
+    """Return whether a program is a bridge to a simulator, which the bridges of a build replace."""
     return f"{package}/{program}" in (*_BRIDGES, *_OF_IMAGES, "ros_gz_bridge/bridge_node")
 
 
@@ -83,7 +81,7 @@ def files_in(node: LaunchedNode) -> Iterator[str]:
 
 
 def is_bridge(it: Run) -> bool:
-    """Does the node pass topics of a simulator on?"""
+    """Return whether a node passes topics of a simulator on."""
     known = it.fact.kind == "ros_gz_bridge"
     return known or it.program in (*_BRIDGES, *_OF_IMAGES)
 
@@ -104,19 +102,19 @@ def bridged_by(it: Run) -> Iterator[Row]:
 
 
 def expands(it: Run) -> bool:
-    """Does the bridge take names in the simulator as those below its namespace?"""
+    """Return whether a bridge takes simulator names as those below its namespace."""
     return it.value("expand_gz_topic_names") is True
 
 
 def told_rows(it: Run) -> str:
-    """The topics in the arguments of a bridge, as its file would have them; nothing for no such row."""
+    """Return the topics in the arguments of a bridge, as its file would have them; empty without."""
     return rows_in_words(it.program, it.arguments) if it.program in _BRIDGES else ""
 
 
 def rows_in_words(
     program: str, words: Sequence[str], rules: Sequence[tuple[str, str]] = (), above: str = ""
 ) -> str:
-    """The same for any bridge, under its remap rules and in the namespace ``above``."""
+    """Return a bridge's topics as bridge file text, with its remap rules, in namespace ``above``."""
     renamed = {expand(old, f"/{above}", ""): expand(new, f"/{above}", "") for old, new in rules}
     ways = {word: name for name, word in _WAYS.items()}
     rows = (_ROW.fullmatch(word) for word in words if program in _BRIDGES)
@@ -135,7 +133,7 @@ def rows_in_words(
 
 
 def refused_rows(it: Run) -> Iterator[str]:
-    """The arguments of a bridge that are to be a row and are none: it ends then."""
+    """Yield the arguments of a bridge that are meant as a row and are none: it ends then."""
     for word in it.arguments if it.program in _BRIDGES else ():
         row = _ROW.fullmatch(word)
         whole = row is not None and (row["way"] or "/srv/" in row["type"])

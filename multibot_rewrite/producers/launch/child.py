@@ -47,7 +47,7 @@ _KEPT_TEXT = ("pkg", "exec", "plugin", "node_name", "container")
 
 
 def read_system_model(path: str) -> LaunchGraph:
-    """The nodes of a system model; raises InputError for one that has none."""
+    """Return the nodes of a system model; raises InputError for one that has none."""
     document = read_yaml(read_file(path), path)
     lines = _lines(document.root)
     data = load_yaml(document.text, path)
@@ -69,7 +69,7 @@ def read_system_model(path: str) -> LaunchGraph:
 
 
 def _lines(root: yaml.Node | None) -> dict[str, int]:
-    """The line of each node."""
+    """Return the line of each node."""
     for part in ("structure", "nodes"):
         root = next((value for key, value in pairs(root) if key.value == part), None)
         if root is None:
@@ -120,10 +120,8 @@ _INSIDE = "MULTIBOT_READS_LAUNCH"
 
 
 def launch_graph(order: LaunchOrder) -> LaunchGraph:
-    """What a launch file or system_model.yaml starts.
-
-    Raises InputError for a file that cannot be read.
-    """
+    """Return what a launch file or system_model.yaml starts. Raises InputError for a file that
+    cannot be read."""
     refuse_others(read_file(order.file), order.file, LAUNCH)
     # A launch file in YAML has ``launch:`` in place of what a system model begins with.
     if order.file.endswith((".yaml", ".yml")) and _HEAD.search(read_file(order.file)) is not None:
@@ -148,7 +146,7 @@ def launch_graph(order: LaunchOrder) -> LaunchGraph:
 def read_launch_files(
     orders: Sequence[LaunchOrder], seconds: float
 ) -> list[LaunchGraph | InputError]:
-    """What each of some launch files starts, or why it cannot be read; each has so many seconds."""
+    """Return what each launch file starts, or why it cannot be read; each has this many seconds."""
     with tempfile.TemporaryDirectory(prefix=FOLDER) as folder:
         said = _run(json.dumps([seconds, orders]), folder)
     try:
@@ -172,7 +170,7 @@ def _read(order: LaunchOrder, answer: Mapping[str, Any]) -> LaunchGraph | InputE
 
 
 def _run(orders: str, folder: str) -> bytes:
-    """What the process says that reads launch files. What one of them starts itself ends with it, and
+    """Return the answer of the process that reads launch files. What they start ends with it, and
     what they make is in ``folder``."""
     environ = {**variables(), _INSIDE: "1", "TMPDIR": folder}
     process = subprocess.Popen(

@@ -96,11 +96,11 @@ class _Program:
         """There is nothing to wait for."""
 
     def communicate(self, *_: object, **__: object) -> tuple[Any, Any]:
-        """What it printed, and no error."""
+        """Return what it printed, and no error."""
         return self.made, self.made[:0]
 
     def wait(self, timeout: float | None = None) -> int:
-        """It has ended."""
+        """Return 0: it has ended."""
         return 0
 
     poll = kill = terminate = wait
@@ -153,7 +153,7 @@ def see_no_machine(lost: list[str]) -> None:
 
 
 def faults(context: Any) -> list[str]:
-    """What went wrong in the outputs that a launch asked for."""
+    """Return what went wrong in the outputs that a launch asked for."""
     return [*context.get_locals_as_dict().get(_FAULTS, ())]
 
 
@@ -167,7 +167,7 @@ def _performed(self: Any, context: Any, lines: list[str]) -> str:
 
 @lru_cache
 def output_of(line: str) -> Output:
-    """What a program prints, as far as that is known without it."""
+    """Return what a program prints, as far as that is known without running it."""
     try:
         program, *words = shlex.split(line)
         read = _READERS.get(os.path.basename(program))

@@ -78,7 +78,7 @@ def confine(order: LaunchOrder, folder: str, more: Sequence[str], seconds: float
 
 
 def _asked(hidden: set[str]) -> Callable[[Any, str], str]:
-    """The look-up of a variable: one that is set and hidden is not taken for one that is not."""
+    """Return the look-up of a variable; a hidden one that is set raises PermissionError."""
     look_up = type(os.environ).__getitem__
 
     def asked(environ: Any, name: str) -> str:
@@ -129,7 +129,7 @@ class Relay:
         self.children.close()
 
     def answer(self, what: str, name: str) -> bytes:
-        """The frame for a question; raises GarbageError for what is none."""
+        """Return the frame for a question; raises GarbageError for what is none."""
         ways: Mapping[str, Callable[[str], bytes]] = {
             START: self._start,
             SEND: self._send,
@@ -161,7 +161,7 @@ class Relay:
         return b""
 
     def _fenced(self, raw: bytes) -> bytes:
-        """The request, with all fences around the child."""
+        """Return the request with all fences around the child."""
         kind, length = HEAD.unpack(raw[: HEAD.size])
         if kind != REQUEST or len(raw) != HEAD.size + length:
             raise GarbageError
@@ -171,7 +171,7 @@ class Relay:
 
 
 def relayed(ask: Ask) -> Callable[[float], AbstractContextManager[Relayed]]:
-    """What stands for ``child`` of the processes of xacro where a parent is asked for it."""
+    """Return what replaces ``child`` of the xacro processes where a parent is asked for it."""
 
     @contextmanager
     def started(_: float) -> Iterator[Relayed]:
@@ -201,7 +201,7 @@ class Relayed:
             self._asked(SEND, data[at : at + _MOST].decode("latin-1"))
 
     def read(self, count: int) -> bytes:
-        """That many bytes; raises EOFError where the child has ended."""
+        """Return that many bytes; raises EOFError where the child has ended."""
         parts = bytearray()
         while len(parts) < count:
             parts += self._asked(READ, str(min(count - len(parts), _MOST)))

@@ -66,9 +66,9 @@ class Visit(NamedTuple):
     """A visit: the context, what has been found, the files that descriptions name, what an event or a
     timer starts with its visit and the locals that it keeps, the place of what is visited, arguments
     without effect, included files, the environment before the launch, the number of each action that
-    starts a process, what conditions keep out, whether conditions count, what starts it if not the
-    launch itself, after how many events and seconds, at which event of which action, and the launch
-    arguments that turn it off."""
+    starts a process, what conditions keep out, what of it is kept, whether conditions count, what
+    starts it if not the launch itself, after how many events and seconds, at which event of which
+    action, the launch arguments that turn it off, and the one that turns it on."""
 
     context: Any
     nodes: list[LaunchedNode]
@@ -81,6 +81,7 @@ class Visit(NamedTuple):
     before: Mapping[str, str]
     numbers: dict[int, tuple[Any, int]]
     idle: list[IdleAction]
+    off: list[LaunchedNode]
     every: bool = False
     later: str = ""
     events: int = 0
@@ -88,13 +89,15 @@ class Visit(NamedTuple):
     event: str = ""
     target: Any = None
     switches: tuple[tuple[str, str], ...] = ()
+    off_by: str = ""
 
     @property
     def waits(self) -> Process:
         """What is waited for; what turns that off turns this off, too."""
         after = self.numbers.get(id(self.target), (None, -1))[1]
         switches = self.nodes[after].process.switches if after >= 0 else self.switches
-        return Process(delay=self.delay, event=self.event, after=after, switches=switches)
+        made = Process(delay=self.delay, event=self.event, after=after, switches=switches)
+        return made._replace(off=self.off_by)
 
     def start(self, action: Any, it: LaunchedNode) -> None:
         """Keep what an action starts."""
@@ -108,21 +111,21 @@ class Visit(NamedTuple):
     def failed(
         self, error: BaseException, message: str = "", parameters: bool = False, fails: bool = False
     ) -> None:
-        """The same of what raised an error; ``message`` is what is said in place of its words."""
+        """Note an error; ``message`` replaces its own text."""
         missing = missing_package(error) or missing_module(error)
         known = (message or failure(error), parameters, "", fails, missing, is_unset(error))
         self.notes.append(LaunchNote(self.place, *known))
 
 
 def is_wanted(action: Any, context: Any) -> bool:
-    """Does its condition hold?"""
+    """Return whether the condition of an action holds."""
     condition = getattr(action, "condition", None)
     return condition is None or bool(condition.evaluate(context))
 
 
 def text(value: Any, context: Any) -> str:
-    """The value of substitutions; empty for none. Raises UnknownError for what is made of a package
-    that is not here."""
+    """Return the value of substitutions; empty for none. Raises UnknownError for what is made from
+    a package that is missing here."""
     if value is None:
         return ""
     utilities = of_launch("utilities")
@@ -134,7 +137,7 @@ def text(value: Any, context: Any) -> str:
 
 
 def _text(value: Any, here: Visit) -> str:
-    """The same; GONE for what is made of a package that is not here."""
+    """Return the value of substitutions; GONE for what is made from a missing package."""
     try:
         return text(value, here.context)
     except UnknownError:
@@ -142,7 +145,7 @@ def _text(value: Any, here: Visit) -> str:
 
 
 def _known(value: Any, here: Visit, what: str = "") -> str:
-    """The same; empty for what is made of such a package, and ``what`` that is is said."""
+    """Return the value of substitutions; empty for a missing package, and ``what`` is then noted."""
     made = _text(value, here)
     if made != GONE:
         return made
@@ -156,7 +159,7 @@ def _left_out(what: str, here: Visit) -> None:
 
 
 def node(action: Any, here: Visit) -> LaunchedNode:
-    """The node of launch_ros's Node, or of an action that extends it."""
+    """Return the node of launch_ros's Node, or of an action that extends it."""
     package, executable = (
         text(_kept(action, it), here.context) for it in ("package", "node_executable")
     )
@@ -186,8 +189,8 @@ def node(action: Any, here: Visit) -> LaunchedNode:
 
 
 def _environment(action: Any, here: Visit) -> tuple[tuple[str, str], ...]:
-    """What is set for a process, by the launch before it, too: launch keeps it as pairs, its stand-in
-    as it is given."""
+    """Return the environment set for a process, also by the launch before it: launch keeps it as
+    pairs, its stand-in as it is given."""
     given = getattr(action, "additional_env", None) or ()
     pairs = given.items() if isinstance(given, Mapping) else given
     own = {text(name, here.context): _text(it, here) for name, it in pairs}
@@ -198,7 +201,7 @@ def _environment(action: Any, here: Visit) -> tuple[tuple[str, str], ...]:
 
 
 def changed_environment(here: Visit) -> dict[str, str]:
-    """The variables that the launch has set by now. What it adds to one has ``:`` where the rest is."""
+    """Return the variables that the launch has set so far; ``:`` stands for their value before."""
     now = here.context.environment.items()
     changed = {name: value for name, value in now if here.before.get(name) != value}
     found = {name: _added(value, here.before.get(name, "")) for name, value in changed.items()}
@@ -214,7 +217,7 @@ def _there(found: Mapping[str, str]) -> dict[str, str]:
 
 
 def _added(value: str, before: str) -> str:
-    """A value of the environment, without what was there before."""
+    """Return a value of the environment, without what it was before."""
     if before and value.startswith(f"{before}{os.pathsep}"):
         return f":{_folders(value.removeprefix(before).strip(':'))}"
     if before and value.endswith(f"{os.pathsep}{before}"):
@@ -223,7 +226,7 @@ def _added(value: str, before: str) -> str:
 
 
 def _folders(text_: str) -> str:
-    """A list of folders as they are when the launch is over, each once; another text as it is."""
+    """Return a list of folders as they are after the launch, each once; another text as it is."""
     real = real_paths(text_)
     if real == text_ and GONE not in real:
         return text_
@@ -250,7 +253,7 @@ def how_it_runs(action: Any, here: Visit) -> Process:
 
 
 def _told(value: Any, here: Visit) -> str:
-    """A text of an action; empty where only a run tells it."""
+    """Return a text of an action; empty where only a run shows it."""
     with suppress(Exception):
         return str(value) if isinstance(value, bool | int | float) else _known(value, here)
     return ""
@@ -261,7 +264,7 @@ def _is_true(value: Any, here: Visit) -> bool:
 
 
 def seconds(value: Any, here: Visit) -> float:
-    """A time in seconds; 0 for none, and where only a run tells it."""
+    """Return a time in seconds; 0 for none, and where only a run shows it."""
     try:
         return float(_told(value, here) or 0)
     except ValueError:
@@ -269,14 +272,14 @@ def seconds(value: Any, here: Visit) -> float:
 
 
 def _described(package: str, words: tuple[str, ...]) -> Iterator[ParameterText]:
-    """The description whose file is the first word of a robot_state_publisher: it is read where no
-    parameter has one (robot_state_publisher jazzy, src/robot_state_publisher.cpp)."""
+    """Yield the description whose file is the first argument of a robot_state_publisher: it is read
+    if no parameter has one (robot_state_publisher jazzy, src/robot_state_publisher.cpp)."""
     if package == "robot_state_publisher" and words and os.path.isfile(words[0]):
         yield _values({"robot_description": read_text(words[0])})
 
 
 def component(it: Any, container: str, here: Visit) -> LaunchedNode:
-    """A component that is loaded into a container."""
+    """Return a component that is loaded into a container."""
     own = getattr(it, "parameters", None) or ()
     package, plugin = text(it.package, here.context), text(it.node_plugin, here.context)
     who = f"of {package} {plugin}"
@@ -295,7 +298,7 @@ def component(it: Any, container: str, here: Visit) -> LaunchedNode:
 
 
 def process(action: Any, here: Visit) -> Iterator[LaunchedNode]:
-    """The node of a ``ros2 run`` line, a simulator, or else the command."""
+    """Yield the node of a ``ros2 run`` line, a simulator, or else the command."""
     line = [*_told_words(getattr(action, "cmd", ()), "of a command", here)]
     words = [word for it in line for word in it.split()]
     run = ros2_run(words)
@@ -316,8 +319,8 @@ def process(action: Any, here: Visit) -> Iterator[LaunchedNode]:
 
 
 def _kept_words(package: str, executable: str, words: Iterable[str]) -> tuple[str, ...]:
-    """The own words of a program; those of a spawner each by itself, with one dash (gflags takes
-    ``--name=a``, too)."""
+    """Return the own arguments of a program; those of a spawner one by one, with one dash (gflags
+    takes ``--name=a``, too)."""
     kept: list[str] = []
     for word in words:
         flag = _FLAG.fullmatch(word) if f"{package}/{executable}" in programs().spawners else None
@@ -328,7 +331,7 @@ def _kept_words(package: str, executable: str, words: Iterable[str]) -> tuple[st
 
 
 def _kept(action: Any, name: str) -> Any:
-    """What launch_ros's Node was made with."""
+    """Return what launch_ros's Node was made with."""
     return getattr(action, f"_Node__{name}", None)
 
 
@@ -340,7 +343,7 @@ def _words(action: Any, who: str, here: Visit) -> Iterator[str]:
 
 
 def _told_words(given: Iterable[Any], who: str, here: Visit) -> Iterator[str]:
-    """The words of a program that are known; with one that is not the flag before it is left out."""
+    """Yield the known arguments of a program; the flag before an unknown one is left out, too."""
     words, lost = known_words(lasting(_text(it, here) for it in given))
     for flag in lost:
         _left_out(f"an argument {who} {flag}".rstrip(), here)
@@ -348,7 +351,7 @@ def _told_words(given: Iterable[Any], who: str, here: Visit) -> Iterator[str]:
 
 
 def namespace_of(value: Any, context: Any) -> str:
-    """The full namespace, below those that groups push."""
+    """Return the full namespace, below those that groups push."""
     utilities = of_launch_ros("utilities")
     above = context.launch_configurations.get("ros_namespace")
     own = text(value, context) if value is not None else None
@@ -385,7 +388,7 @@ def _parameters(own: Iterable[Any], here: Visit) -> Iterator[ParameterText]:
 
 
 def parameters(given: Any, here: Visit) -> Iterator[ParameterText]:
-    """A parameter file, or values, that an action gives its node."""
+    """Yield a parameter file, or values, that an action gives its node."""
     # Values one by one: one that cannot be told does not hide the others.
     for it in given.items() if isinstance(given, dict) else ():
         yield from _evaluated(dict([it]), here)

@@ -15,14 +15,14 @@ def of_launch(module: str = "") -> Any:
 
 
 def of_launch_ros(module: str) -> Any:
-    """A module of launch_ros; raises ImportError."""
+    """Return a module of launch_ros; raises ImportError."""
     import launch_ros
 
     return import_module(f"{launch_ros.__name__}.{module}")
 
 
 def is_installed(package: str) -> bool:
-    """Is a package of ROS installed? Raises ImportError."""
+    """Return whether a package of ROS is installed. Raises ImportError."""
     from ament_index_python.packages import PackageNotFoundError, get_package_prefix
 
     try:
@@ -33,7 +33,7 @@ def is_installed(package: str) -> bool:
 
 
 def is_there() -> bool:
-    """Can launch and launch_ros be imported?"""
+    """Return whether launch and launch_ros can be imported."""
     try:
         of_launch_ros("actions")
     except ImportError:

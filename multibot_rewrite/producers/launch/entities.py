@@ -29,19 +29,19 @@ class Entity:
         self.tag, self.line, self.values, self.below = tag, line, values, below
 
     def every(self) -> Iterator[Entity]:
-        """It, and all below it."""
+        """Yield this entity, and all below it."""
         yield self
         for it in self.below:
             yield from it.every()
 
     def take(self, name: str) -> Any:
-        """A value; raises AttributeError where it is not there."""
+        """Return a value and remove it; raises AttributeError without."""
         if name not in self.values:
             raise AttributeError(f"Attribute {name!r} not found in Entity {self.tag!r}")
         return self.values.pop(name)
 
     def all(self, tag: str) -> list[Entity]:
-        """The entities of a tag below this one."""
+        """Return the entities of a tag below this one, and remove them."""
         found = [it for it in self.below if it.tag == tag]
         self.below = [it for it in self.below if it.tag != tag]
         return found
@@ -121,7 +121,7 @@ def _in_list(node: yaml.Node) -> Iterator[Entity]:
 
 
 def _plain(node: yaml.Node) -> Any:
-    """The value of a node as YAML has it."""
+    """Return the value of a node as YAML has it."""
     if isinstance(node, yaml.SequenceNode):
         return [_plain(it) for it in node.value]
     if isinstance(node, yaml.MappingNode):

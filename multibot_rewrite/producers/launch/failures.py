@@ -52,7 +52,7 @@ def started_by(text: str) -> str:
 
 
 def failure(error: BaseException) -> str:
-    """What went wrong, in one line; for a package that is missing what to do."""
+    """Return what went wrong, in one line; for a missing package also what to do."""
     name = missing_package(error) or missing_module(error)
     if name:
         return not_installed(name)
@@ -75,7 +75,7 @@ def failure(error: BaseException) -> str:
 
 
 def _known(error: BaseException) -> str:
-    """What is to be done about it; empty where only Python's words say what it is."""
+    """Return what is known to be wrong and what to do; empty if only Python's words tell."""
     if variable := _variable(error):
         return f"the environment variable {variable} is not set here; set it as for ros2 launch"
     if name := _no_value(error):
@@ -92,7 +92,7 @@ def _known(error: BaseException) -> str:
 
 
 def _stopped(error: BaseException) -> str:
-    """What the fences stop, and how to lift them; empty for another fault."""
+    """Return what the fences stop, and how to lift them; empty for another fault."""
     if isinstance(error, MemoryError):
         return f"it needs more memory than it gets{_line(error)}; {_TRUST}"
     if _is_of_thread(error):
@@ -101,7 +101,7 @@ def _stopped(error: BaseException) -> str:
 
 
 def _lacking(error: BaseException) -> str:
-    """What a launch file, or what it gives launch, does not have."""
+    """Return what a launch file, or what it gives to launch, lacks; empty for another fault."""
     if isinstance(error, AttributeError) and error.name == _MAKES:
         return f"it has no function {_MAKES}(): write one that returns a LaunchDescription"
     if is_no_condition(error):
@@ -110,7 +110,7 @@ def _lacking(error: BaseException) -> str:
 
 
 def _line(error: BaseException) -> str:
-    """The line of a launch file in Python that raised it."""
+    """Return the line of a launch file in Python that raised it."""
     # launch has an error of its own around it.
     frames = reversed(_frames(error.__cause__ or error))
     last = next((it for it in frames if it.filename.endswith("launch.py")), None)
@@ -124,13 +124,13 @@ def _frames(error: BaseException) -> StackSummary:
 
 
 def lost_file(error: BaseException) -> str:
-    """What to do about a file that is not there; nothing for another error."""
+    """Return what to do about a missing file; empty for another error."""
     lost = isinstance(error.__cause__ or error, FileNotFoundError)
     return "; put it there, or source the built workspace that has it" if lost else ""
 
 
 def _variable(error: BaseException) -> str:
-    """The environment variable that os.environ has not; empty for another fault."""
+    """Return the environment variable that os.environ lacks; empty for another fault."""
     # launch has an error of its own around it.
     error = error.__cause__ or error
     frame = _frame(error)
@@ -151,24 +151,24 @@ def _is_of_thread(error: BaseException) -> bool:
 
 
 def not_installed(name: str) -> str:
-    """What is said of a package that is missing."""
+    """Return the message about a missing package."""
     return f"package {name!r} is not installed here; {ROOTS}"
 
 
 def missing_package(error: BaseException) -> str:
-    """The package of ROS that was not found; empty for another fault."""
+    """Return the package of ROS that was not found; empty for another fault."""
     found = _NOT_FOUND.search(str(error))
     return (found[1] or found[2] or "") if found else ""
 
 
 def missing_module(error: BaseException) -> str:
-    """The Python package that was not found; empty for another fault."""
+    """Return the Python package that was not found; empty for another fault."""
     found = _NOT_FOUND.search(str(error))
     return (found[3] or "") if found else ""
 
 
 def is_unset(error: BaseException) -> bool:
-    """Is a launch configuration not set, or an argument not given?"""
+    """Return whether a launch configuration is not set, or an argument not given."""
     return bool(_no_value(error))
 
 
@@ -178,8 +178,8 @@ def _no_value(error: BaseException) -> str:
 
 
 def is_of_file(error: BaseException) -> bool:
-    """Does launch not read the file either? It is no program, XML or YAML, it is of ROS 1, or it asks
-    for what is not there or what the fences refuse."""
+    """Return whether launch fails to read the file, too. It is no program, XML or YAML, it is for
+    ROS 1, or it asks for what is missing or what the fences refuse."""
     own = (
         *(SyntaxError, NameError, RecursionError, FileNotFoundError, PermissionError),
         *(SystemExit, MemoryError, InputError),
@@ -195,18 +195,18 @@ def is_of_file(error: BaseException) -> bool:
 
 
 def is_without(error: BaseException) -> bool:
-    """Has the file no function that makes a description?"""
+    """Return whether the file has no function that makes a description."""
     inner = error.__cause__ or error
     return isinstance(inner, AttributeError) and getattr(inner.obj, "__name__", "") == _MODULE
 
 
 def is_no_text(error: BaseException) -> bool:
-    """Is a path or another value given where launch takes texts and substitutions alone?"""
+    """Return whether a path or other value is given where launch takes only texts and substitutions."""
     return isinstance(error, TypeError) and _NO_TEXT in str(error)
 
 
 def is_no_condition(error: BaseException) -> bool:
-    """Is a text or a substitution given where launch takes conditions alone?"""
+    """Return whether a text or a substitution is given where launch takes only conditions."""
     if not isinstance(error, AttributeError) or error.name != "evaluate":
         return False
     is_text = hasattr(error.obj, "perform") and not hasattr(error.obj, "visit")
@@ -214,8 +214,8 @@ def is_no_condition(error: BaseException) -> bool:
 
 
 def is_certain(error: BaseException, launch_file: str) -> bool:
-    """Does the launch fail so on every machine? A file that belongs beside the launch file is missing,
-    or the launch file itself raises what names no file or device of a machine."""
+    """Return whether the launch fails so on every machine. A file that belongs next to the launch
+    file is missing, or the launch file raises what names no file or device of a machine."""
     inner = error.__cause__ or error
     if isinstance(inner, FileNotFoundError):
         folder = os.path.dirname(os.path.realpath(launch_file))

@@ -32,9 +32,9 @@ def launch_findings(
     left: Iterable[NodeFacts],
     passing: Sequence[Passing],
 ) -> Iterator[Finding]:
-    """What of launch files is not known, launched nodes that are not, by their names, with what is
-    handed on to them, and nodes of stacks that are left out; ``passing`` are launch files that are not
-    here, among others."""
+    """Yield findings about what is unknown in launch files, launched nodes that are ``unknown``, by
+    their names, with what is ``handed`` to them, and nodes of node sets that are ``left`` out;
+    ``passing`` has the launch files that are missing here, among others."""
     included = {it.node.package for it in passing if it.node.process.is_include}
     if graph.stood_in:
         place = Place(next((it.place.file for it in graph.nodes), ""), 1)
@@ -70,7 +70,7 @@ def launch_findings(
 
 
 def processes_not_known(passing: Iterable[Passing]) -> Iterator[Finding]:
-    """What is started as it is, and is no node that is known."""
+    """Yield the processes that are started as they are, and are no known nodes."""
     for one in (it for it in passing if not it.node.process.is_include):
         words = shorten([one.node.executable, *one.node.arguments])
         how = "once for all robots" if one.once else "for each robot"
@@ -88,7 +88,7 @@ def started_twice(it: LaunchedNode, other: LaunchedNode, name: str) -> Finding:
 
 
 def not_read(graph: LaunchGraph) -> Iterator[Finding]:
-    """What of a launch is not known, for those who read no lines of a terminal; each once."""
+    """Yield what is unknown of a launch, once each, for those who read no lines of a terminal."""
     first: dict[str, Place] = {}
     for note in (it for it in graph.notes if not it.fails):
         first.setdefault(note.message, note.place)

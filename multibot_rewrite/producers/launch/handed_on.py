@@ -27,7 +27,7 @@ OWN = "parameters of a launch file"
 
 @lru_cache(maxsize=64)
 def has_sections(it: ParameterText) -> bool:
-    """Is it a parameter file with sections of nodes?"""
+    """Return whether it is a parameter file with sections of nodes."""
     try:
         return any(True for _ in raw_sections(document_of(it.file, it.text)))
     except InputError:
@@ -36,7 +36,7 @@ def has_sections(it: ParameterText) -> bool:
 
 @lru_cache(maxsize=64)
 def document_of(file: str, text: str) -> YamlText:
-    """A parameter file, or with no ``file`` what a launch file sets itself; raises InputError."""
+    """Return a parameter file, or without ``file`` what a launch file sets; raises InputError."""
     return read_yaml(text.encode(), file or OWN)
 
 

@@ -14,19 +14,33 @@ from multibot_rewrite.producers.launch.records import IdleAction
 
 
 def wants(action: Any, seen: Visit) -> bool:
-    """Does the condition of an action hold, as far as conditions count? What it keeps out is kept."""
+    """Return whether an action's condition holds, as far as conditions count; a false one is kept."""
     if seen.every:
         return True
     watched = _Watched(seen.context)
     if is_wanted(action, watched):
         return True
     asked = tuple(watched.launch_configurations.asked.items())
-    seen.idle.append(IdleAction(seen.place, _called(action, seen.context), asked))
+    seen.idle.append(IdleAction(seen.place, called(action, seen.context), asked))
     return False
 
 
 # The other value of a launch argument that is on or off.
 _OTHER = {"true": "false", "false": "true", "True": "False", "False": "True"}
+
+
+def turned_on_by(action: Any, seen: Visit) -> tuple[str, str]:
+    """Return the launch argument that is on or off and whose other value alone starts an action that
+    does not start, with that value; empty for another condition."""
+    with suppress(Exception):
+        watched = _Watched(seen.context)
+        known = watched.launch_configurations
+        if getattr(action, "condition", None) is not None and not is_wanted(action, watched):
+            ((name, value),) = known.asked.items()
+            known[name] = _OTHER[value]
+            if is_wanted(action, watched):
+                return name, known[name]
+    return "", ""
 
 
 def switches_of(action: Any, seen: Visit) -> tuple[tuple[str, str], ...]:
@@ -81,11 +95,11 @@ class _Watched:
         return getattr(self.context, name)
 
 
-def _called(action: Any, context: Any) -> str:
+def called(action: Any, context: Any) -> str:
     """Return what an action starts, for people: a node by its package and program."""
     inside = getattr(action, "_GroupAction__actions", None) or getattr(action, "actions", None)
     if isinstance(inside, list | tuple):
-        return ", ".join(dict.fromkeys(_called(it, context) for it in inside))
+        return ", ".join(dict.fromkeys(called(it, context) for it in inside))
     if hasattr(action, "launch_description_source"):
         return os.path.basename(path_of(action, context)) or type(action).__name__
     program = [getattr(action, f"node_{it}", None) for it in ("package", "executable")]

@@ -56,7 +56,7 @@ def arguments_declared(text: str) -> set[str]:
 def not_among(
     given: Collection[str], declared: Collection[str], text: str = "", whole: bool = False
 ) -> Iterator[tuple[str, str]]:
-    """The same by what is declared; ``whole`` where these are all."""
+    """Yield the undeclared arguments, with a near name; ``whole``: all declared ones are known."""
     for name in given:
         if name in declared or re.search(rf"[\"'({{ ]{re.escape(name)}[\"')}}]", text):
             continue
@@ -86,8 +86,8 @@ _SHARE = re.compile(r"/share/([\w-]+)/")
 
 
 def simulator(error: BaseException, include: Any, here: Visit) -> list[LaunchedNode]:
-    """The simulator of a package that is missing here, or whose launch file only a build makes: that it
-    starts one is known without it, and with which words."""
+    """Return the simulator of a package that is missing here, or whose launch file only a build
+    makes: that it starts is known without it, and with which arguments."""
     path = path_of(include, here.context)
     of_path = _SHARE.search(path)
     package = missing_package(error) or (of_path[1] if of_path else "")
@@ -107,8 +107,8 @@ def simulator(error: BaseException, include: Any, here: Visit) -> list[LaunchedN
 
 
 def not_here(error: BaseException, include: Any, here: Visit) -> list[LaunchedNode]:
-    """A launch file of a package that is missing here, with its arguments; one that is not known has no
-    value that lasts."""
+    """Return a launch file of a package that is missing here, with its arguments; an unknown one
+    has no lasting value."""
     it, package = included(include, here), missing_package(error)
     if not package or not it.file.startswith(f"{package}/"):
         return []
@@ -121,7 +121,7 @@ def not_here(error: BaseException, include: Any, here: Visit) -> list[LaunchedNo
 
 
 def _bridge(given: Mapping[str, str], here: Visit) -> Iterator[LaunchedNode]:
-    """The bridge that starts beside a spawner (ros_gz jazzy ros_gz_bridge.launch.py)."""
+    """Yield the bridge that starts with a spawner (ros_gz jazzy ros_gz_bridge.launch.py)."""
     if path := given.get("config_file"):
         space = f"/{given.get('namespace', '').strip('/')}"
         rows = tuple(parameters({"config_file": path}, here))
@@ -130,7 +130,7 @@ def _bridge(given: Mapping[str, str], here: Visit) -> Iterator[LaunchedNode]:
 
 
 def included(include: Any, here: Visit) -> LaunchInclude:
-    """The file of an include, and its arguments."""
+    """Return the file of an include, and its arguments."""
     file = path_of(include, here.context).rpartition(f"{NOT_INSTALLED}/share/")[2]
     return LaunchInclude(here.place, file, tuple(given(include, here.context).items()))
 
@@ -142,10 +142,8 @@ def unread_of(path: str, names: Collection[str], here: Visit) -> None:
 
 
 def given(include: Any, context: Any, unknown: str = "") -> dict[str, str]:
-    """The arguments of an include with their values, ``unknown`` for one that is not known.
-
-    Raises TypeError for what is no text, as launch does.
-    """
+    """Return the arguments of an include with their values, ``unknown`` for an unknown one. Raises
+    TypeError for what is no text, as launch does."""
     found = {}
     for name, value in include.launch_arguments or ():
         # What only a run tells, or would fail in one for another reason, is passed over.
@@ -160,7 +158,7 @@ def given(include: Any, context: Any, unknown: str = "") -> dict[str, str]:
 
 
 def path_of(include: Any, context: Any) -> str:
-    """The path of the file that is included; its last part where a package of it is missing."""
+    """Return the path of the included file; its last part if a package of it is missing."""
     with suppress(Exception):
         path: Any = include.launch_description_source.location
         with suppress(LookupError):
@@ -172,14 +170,14 @@ def path_of(include: Any, context: Any) -> str:
 
 
 def _spawner_words(given: Mapping[str, str]) -> Iterator[str]:
-    """The words of the program that gz_spawn_model.launch.py starts."""
+    """Yield the arguments of the program that gz_spawn_model.launch.py starts."""
     for name, value in given.items():
         if value and name in _SPAWN_WORDS:
             yield from (_SPAWN_WORDS[name], value)
 
 
 def _simulator_words(given: Mapping[str, str]) -> Iterator[str]:
-    """The words of ``gz_args`` and ``world``, where they are known."""
+    """Yield the words of ``gz_args`` and ``world``, where they are known."""
     for value in (given.get(it, "") for it in _WORLDS):
         with suppress(ValueError):
             yield from shlex.split(value)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The share folder of a package that is there as sources: as they stand, and as a build installs them.
+"""The share folder of a package that exists as sources: as they are, and as a build installs them.
 
-By the install rules of its CMakeLists.txt (``install(DIRECTORY config/ DESTINATION share/x/params)``);
-of a package in Python the folders inside of its module are beside those of the package, too.
-"""
+By the install rules of its CMakeLists.txt (``install(DIRECTORY config/ DESTINATION
+share/x/params)``); of a package in Python the folders inside of its module are next to those of the
+package, too."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def link_share(name: str, folder: str, share: str) -> None:
 
 
 def _by_cmake(name: str, folder: str) -> Iterator[tuple[str, str]]:
-    """What is installed under another path than it has: that path, and the source."""
+    """Yield what is installed under another path than it has: that path, and the source."""
     text = ""
     with suppress(OSError, UnicodeDecodeError):
         text = Path(folder, "CMakeLists.txt").read_text("utf-8")
@@ -56,7 +56,7 @@ def _by_module(name: str, folder: str) -> Iterator[tuple[str, str]]:
 
 
 def _link(folder: str, path: list[str], source: str) -> None:
-    """A link below a folder that may be one itself: then it becomes a folder of links."""
+    """Make a link below a folder that may be one itself: then it becomes a folder of links."""
     if os.path.islink(folder):
         real = os.path.realpath(folder)
         os.unlink(folder)

@@ -28,8 +28,8 @@ _REST = r"[^\s'\"<>:;,|)]*"
 
 
 def is_made(path: str) -> bool:
-    """Is it a file of the launch itself? A text of several lines is no path: a description has
-    thousands of slashes, and each would be a folder to ask for."""
+    """Return whether it is a file of the launch itself. A text of several lines is no path: a
+    description has thousands of slashes, and each would be a folder to ask for."""
     return "\n" not in path and os.path.realpath(path).startswith(os.path.realpath(_top()) + os.sep)
 
 
@@ -54,7 +54,7 @@ def lasting(words: Iterable[str]) -> list[str]:
 
 
 def known_words(words: Iterable[str]) -> tuple[tuple[str, ...], list[str]]:
-    """The words of a program without those that are gone, each with the flag before it; these flags."""
+    """Return a program's arguments without those that are gone, each with its flag; and these flags."""
     kept: list[str] = []
     lost: list[str] = []
     for word in words:
@@ -66,13 +66,13 @@ def known_words(words: Iterable[str]) -> tuple[tuple[str, ...], list[str]]:
 
 
 def read_text(path: str) -> str:
-    """The text of a file, up to a limit."""
+    """Return the text of a file, up to a limit."""
     with open(path, encoding="utf-8", errors="replace") as file:
         return file.read(LIMIT)
 
 
 def kept_file(path: str) -> str:
-    """The real path of a file that is there when the launch is over, else nothing."""
+    """Return the real path of a file that remains after the launch; empty otherwise."""
     return os.path.realpath(path) if os.path.isfile(path) and not is_made(path) else ""
 
 
@@ -135,7 +135,7 @@ def keep_sources() -> None:
 
 
 def source_of(path: str, context: Any) -> str:
-    """The file that this one is made of; itself where a launch has not made it."""
+    """Return the file that this one is made from; itself if a launch has not made it."""
     known = getattr(context, _MADE_OF, {})
     while known.get(path, path) != path:
         path = known[path]

@@ -44,7 +44,7 @@ _COMMENTS = {
 
 
 def as_started(node: NodeFacts, executable: str, words: Collection[str]) -> NodeFacts:
-    """The node as this program has it with these arguments. A component runs in any program."""
+    """Return the node as this program has it with these arguments. A component runs in any program."""
 
     def decide(it: Condition) -> bool | None:
         if it.how == ":" and it.parameter == PROGRAM and "::" not in executable:
@@ -60,8 +60,8 @@ def as_started(node: NodeFacts, executable: str, words: Collection[str]) -> Node
 
 
 def as_named(node: NodeFacts, words: Sequence[str], values: Mapping[str, Given]) -> NodeFacts:
-    """The node as the files have it whose paths are in its arguments and parameters. A word that is
-    not there may be in a file that is included."""
+    """Return the node as the files have it whose paths are in its arguments and parameters. A word
+    that is missing may be in a file that is included."""
     options = dict(pairwise(words))
 
     def decide(it: Condition) -> bool | None:
@@ -78,7 +78,7 @@ def as_named(node: NodeFacts, words: Sequence[str], values: Mapping[str, Given])
 
 
 def as_heard(node: NodeFacts, heard: Collection[str], bound: BoundNode) -> NodeFacts:
-    """The node where these topics have a subscriber."""
+    """Return the node as it is if these topics have a subscriber."""
 
     def decide(it: Condition) -> bool | None:
         own = it.values if it.how == ":" and it.parameter == HEARD else ()
@@ -88,7 +88,7 @@ def as_heard(node: NodeFacts, heard: Collection[str], bound: BoundNode) -> NodeF
 
 
 def asks_who_listens(node: NodeFacts) -> bool:
-    """Has the node an endpoint only while somebody listens?"""
+    """Return whether the node has an endpoint only while it has subscribers."""
     return any(True for end in node.endpoints for _ in words_in(end.when, HEARD))
 
 
@@ -99,7 +99,7 @@ def _as_decided(node: NodeFacts, decide: Decide) -> NodeFacts:
 
 
 def _has(path: str, words: Sequence[str]) -> bool:
-    """Is one of the words in a file, but for its comments and how it is spaced?"""
+    """Return whether one of the words is in a file, except in comments and however it is spaced."""
     if not os.path.isfile(path):
         return False
     text = read_file(path).decode("utf-8", "replace")
@@ -112,7 +112,7 @@ _CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 
 
 def own_name(it: LaunchedNode, facts: NodeFacts | None) -> str:
-    """The name that a node has by its code; empty where it is not known."""
+    """Return the name that a node has by its code; empty if unknown."""
     return programs().names.get(f"{it.package}/{it.executable}") or (facts.name if facts else "")
 
 
@@ -134,7 +134,7 @@ def check_names(it: LaunchedNode) -> None:
 
 
 def _last_word(it: LaunchedNode) -> str:
-    """The program, or the class of a component, without its namespace."""
+    """Return the program, or the class of a component, without its namespace."""
     return it.executable.rpartition(":")[2].removesuffix(".py")
 
 
@@ -145,7 +145,7 @@ def _snake(name: str) -> str:
 def known_node(
     it: LaunchedNode, stack: Sequence[NodeFacts], known: Mapping[str, NodeFacts]
 ) -> NodeFacts | None:
-    """What is known of a node: by its name in a stack, else by its package and executable."""
+    """Return what is known of a node: by its name in a node set, or by package and executable."""
     executable = _snake(_last_word(it))
     program = f"{it.package}/{it.executable}"
     of_stack = (node for node in stack if node.name == it.name and node.package == it.package)
@@ -164,10 +164,8 @@ _FLAGS = {"--frame-id": _PARENT, "--child-frame-id": _CHILD}
 
 
 def with_static_transform(node: NodeFacts, words: Sequence[str]) -> NodeFacts:
-    """The node with the frames of its arguments, and of its parameters where these name none.
-
-    Another node stays as it is, and so does one of which a frame is not known.
-    """
+    """Return the node with the frames of its arguments, or else of its parameters. Another node
+    stays as it is, and so does one with an unknown frame."""
     if node.known != STATIC:
         return node
     named = frames_in(words)
@@ -214,9 +212,9 @@ def with_sources(
     orders: Iterable[LaunchOrder],
     release: str,
 ) -> dict[str, NodeFacts]:
-    """The known nodes and, by ``package program``, those of launched ``nodes`` that are not among them
-    and whose source is found: below the roots of the ``orders``, or beside their launch files. Raises
-    nothing."""
+    """Return the known nodes and, by ``package program``, those of launched ``nodes`` that are
+    unknown and whose source is found: below the roots of the ``orders``, or next to their launch
+    files. Raises nothing."""
     wanted = {(it.package, it.executable): it for it in nodes if not passes(it)}
     unknown = [program for program, it in wanted.items() if known_node(it, (), known) is None]
     if not unknown:

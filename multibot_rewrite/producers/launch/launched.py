@@ -88,12 +88,12 @@ class Launched(NamedTuple):
 
 
 def file_of(graph: LaunchGraph, text: str) -> str:
-    """The file that a launch read a description from; empty where that is not known."""
+    """Return the file that a launch read a description from; empty if unknown."""
     return next((it.source for _, it in graph.files if it.text == text and it.source), "")
 
 
 def models_in_simulator(models: Models, release: str) -> tuple[InSimulator, ...]:
-    """The models that a launch spawns, as far as their descriptions are known."""
+    """Return the models that a launch spawns, as far as their descriptions are known."""
     found = (_in_simulator(it, release) for it in models.found if it.spawned)
     return tuple([it for it in found if it is not None])
 
@@ -110,7 +110,7 @@ def _in_simulator(it: Model, release: str) -> InSimulator | None:
 
 
 def worlds(launched: Launched) -> Iterator[World]:
-    """The files of worlds that gz is started with."""
+    """Yield the files of worlds that gz is started with."""
     for it in launched.graph.nodes:
         for word in world_files(it) if it.package != CLASSIC else ():
             with suppress(InputError, OSError):
@@ -118,7 +118,7 @@ def worlds(launched: Launched) -> Iterator[World]:
 
 
 def world_files(it: LaunchedNode) -> list[str]:
-    """The files of worlds in the words of a simulator."""
+    """Return the files of worlds in the arguments of a simulator."""
     words: list[str] = []
     for text in it.arguments if it.executable == SIMULATOR else ():
         with suppress(ValueError):
@@ -138,7 +138,7 @@ def unread_worlds(nodes: Iterable[LaunchedNode]) -> Iterator[LaunchNote]:
 
 
 def sensors_of(models: Iterable[InSimulator], release: str) -> list[SensorFrame]:
-    """The sensors of the models."""
+    """Return the sensors of the models."""
     return [sensor for it in models for sensor in sensor_frames(it.root, it.name, release)]
 
 
@@ -146,7 +146,7 @@ NOT_WHOLE, NOT_KNOWN = "launch-not-whole", "node-not-known"
 
 
 def of_simulator(graph: LaunchGraph, models: Models) -> Iterator[Caveat]:
-    """What makes the view of a simulator incomplete."""
+    """Yield what makes the view of a simulator incomplete."""
     # Plugins of a spawned model are nodes, which a robot brings with it.
     for it in models.lost[:1]:
         text = "nodes that plugins of a spawned model make are not known: its description is not"

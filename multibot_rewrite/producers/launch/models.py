@@ -73,7 +73,7 @@ class Models(NamedTuple):
 def models_of(
     started: Iterable[LaunchedNode], published: Iterable[Published], release: str
 ) -> Models:
-    """What spawners put into a simulator, and what is only published."""
+    """Return what spawners put into a simulator, and what is only published."""
     spawners = [it for it in started if program_of(it) in programs().spawners]
     texts = {it.topic: it for it in published}
     found, lost, taken = [], [], set()
@@ -94,7 +94,7 @@ def models_of(
 
 
 def _of_parameters(it: LaunchedNode) -> Iterator[str]:
-    """The words of a spawner that are parameters (ros_gz jazzy ros_gz_sim/src/create.cpp)."""
+    """Yield the arguments of a spawner that are parameters (ros_gz jazzy ros_gz_sim/src/create.cpp)."""
     for given in it.parameters:
         found = load_yaml(given.text, given.file or it.place.file)
         own = found.get("/**", {}) if isinstance(found, dict) else {}
@@ -104,7 +104,7 @@ def _of_parameters(it: LaunchedNode) -> Iterator[str]:
 
 
 def _moved(text: str, namespace: str) -> str:
-    """The description with the namespace that Classic gives all plugins in it
+    """Return the description with the namespace that Classic gives all plugins in it
     (gazebo_ros_pkgs ros2 gazebo_ros/src/gazebo_ros_factory.cpp, AddNamespace)."""
     if not namespace or not text:
         return text
@@ -134,7 +134,7 @@ def _read(name: str, text: str, place: Place, release: str, spawned: bool) -> Mo
 
 
 def managers(model: Model, files: Mapping[str, ParameterText]) -> Iterator[LaunchedNode]:
-    """The controller managers that plugins make, as nodes that a launch starts; ``files`` are
+    """Yield the controller managers that plugins make, as nodes that a launch starts; ``files`` are
     those that descriptions name."""
     plugins = [*read_xml(model.text.encode(), model.place.file).iter("plugin")]
     for node in (it for it in model.reading.nodes if it.manager):
@@ -147,13 +147,13 @@ def managers(model: Model, files: Mapping[str, ParameterText]) -> Iterator[Launc
 
 
 def rules_of(node: ReadNode) -> Iterator[tuple[str, str]]:
-    """The remap rules of a plugin."""
+    """Yield the remap rules of a plugin."""
     for rule in (it.rule for it in node.rules):
         yield f"{rule.node}:{rule.source}".lstrip(":"), rule.target
 
 
 def frames_of_plugins(models: Iterable[Model]) -> dict[str, str]:
-    """The frame of what the node of a plugin measures, by the node, where the description says it
+    """Return the frame of a plugin node's sensor data, by the node, if the description has it
     (gazebo_ros_pkgs ros2 gazebo_ros/src/utils.cpp, SensorFrameID)."""
     found = {}
     for reading in (it.reading for it in models if it.spawned):
@@ -178,7 +178,7 @@ def sent_by_plugins(models: Iterable[Model]) -> dict[str, list[tuple[str, Edge]]
 
 
 def sent_in_simulator(models: Iterable[Model]) -> dict[str, list[Edge]]:
-    """The transforms that systems of gz send, by the topic in the simulator."""
+    """Return the transforms that systems of gz send, by the topic in the simulator."""
     return lists_by_key(sent for it in models if it.spawned for sent in _sent(it))
 
 

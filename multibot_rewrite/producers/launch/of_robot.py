@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The nodes of a robot's stacks and what its launch files start -> the nodes that it runs.
+"""The nodes of a robot's node sets and what its launch files start -> the nodes that it runs.
 
-A node that is launched runs: that is the surest evidence there is. What a stack has and no launch file
-starts is left out, if all of the launch files is known.
-"""
+A node that is launched runs: that is the surest evidence there is. What a node set has and no
+launch file starts is left out, if all of the launch files is known."""
 
 from __future__ import annotations
 
@@ -73,11 +72,11 @@ _SPAWNED = "{} spawns something in addition to the robot, which is not started; 
 
 
 class Launched(NamedTuple):
-    """The nodes of stacks and launch files, what these set for nodes, what each launched node is by
-    its name, the controllers that are spawned by theirs, if that is all that runs, findings, if they
-    start a simulator, or what is for one, what each of them is given by its name, and the processes
-    that are no nodes. ``environment`` is what all processes have, ``placing`` is what puts the robot
-    into its simulator, ``qos`` what parameters of bridges to it set for topics."""
+    """The nodes of node sets and launch files, what these set for nodes, what each launched node is
+    by its name, the controllers that are spawned by theirs, if that is all that runs, findings, if
+    they start a simulator, or what is for one, what each of them is given by its name, and the
+    processes that are no nodes. ``environment`` is what all processes have, ``placing`` is what
+    puts the robot into its simulator, ``qos`` what parameters of bridges to it set for topics."""
 
     nodes: tuple[NodeFacts, ...]
     given: tuple[Run, ...]
@@ -109,7 +108,7 @@ def with_launched(
     parameters: KnownNodes,
     release: str,
 ) -> Launched:
-    """The nodes of a robot before its files are asked; ``words`` stand for it in namespaces."""
+    """Return the nodes of a robot before its files are asked; ``words`` stand for it in namespaces."""
     spawned, notes = spawned_in(graph.nodes)
     notes = (*graph.notes, *notes, *unread_worlds(graph.nodes))
     graph = _lasting(graph._replace(notes=notes))
@@ -161,15 +160,15 @@ def with_launched(
 
 
 def _may_spawn(it: _Pair, handed: Mapping[str, HandedOn], release: str) -> bool:
-    """Is a program of the vendor's own called a spawner, and given the robot's description?"""
+    """Return whether a vendor's program is named as a spawner and gets the robot's description."""
     own = handed[it.facts.name]
     called = "spawn" in it.node.executable.lower() and _is_own(it, release)
     return called and _DESCRIPTION in (*own.texts, *own.arguments)
 
 
 def _lasting(graph: LaunchGraph) -> LaunchGraph:
-    """What launch files start, without the words that name what only a launch makes; without launch
-    files that are not here and of which an argument is such: they do not start without it."""
+    """Return what launch files start, without arguments that name what only a launch makes; without
+    missing launch files that have such an argument: they do not start without it."""
     nodes: list[LaunchedNode] = []
     notes: list[LaunchNote] = []
     for it in graph.nodes:
@@ -186,11 +185,9 @@ def _lasting(graph: LaunchGraph) -> LaunchGraph:
 
 
 def _each_once(pairs: Iterable[_Pair]) -> tuple[list[_Pair], list[Finding]]:
-    """The nodes, of which each has a name of its own, and findings about those that are started twice.
-
-    Of two that are alike the later one counts. Another one without a name, or of another program, is
-    called otherwise.
-    """
+    """Return the nodes, each with a name of its own, and findings about those that are started
+    twice. Of two equal ones the later counts. Another one without a name, or of another program,
+    gets a new name."""
     found: dict[str, _Pair] = {}
     findings: list[Finding] = []
     for it in pairs:
@@ -209,12 +206,12 @@ def _each_once(pairs: Iterable[_Pair]) -> tuple[list[_Pair], list[Finding]]:
 
 
 def _given_to(it: LaunchedNode) -> tuple[object, ...]:
-    """What a launch file says of a node, but for where."""
+    """Return what a launch file sets for a node, except where it is."""
     return it.package, it.executable, it.remappings, it.parameters, it.arguments
 
 
 def _is_own(it: _Pair, release: str) -> bool:
-    """Does nobody know the node, or a file of nodes of the user's own alone?"""
+    """Return whether a node is unknown, or known by a file of the user's nodes alone."""
     known = it.facts.known
     return known not in built_in(release).nodes if known else not it.facts.is_known
 
@@ -222,7 +219,7 @@ def _is_own(it: _Pair, release: str) -> bool:
 def _handed(
     it: _Pair, of_all: Collection[tuple[str, str]], publisher: str, is_own: bool
 ) -> HandedOn:
-    """What its launch file gives a node; what is built gives a known one its name. What publishes
+    """Return what its launch file gives a node; a build gives a known one its name. A publisher of
     another description than the robot's ``publisher`` keeps it."""
     found = handed_on(it.node, it.facts.name, of_all, it.number)
     if it.facts.known == STATIC:
@@ -235,7 +232,7 @@ def _handed(
 
 
 def _is_built(it: LaunchedNode) -> bool:
-    """Is it what a build makes of the robot's own files: a spawner, or of a simulator?"""
+    """Return whether a build makes it from the robot's own files: a spawner, or of a simulator."""
     is_simulator = it.package in SIMULATORS and it.executable == SIMULATOR
     return is_simulator or is_spawner(it) or _is_spawner_of_robot(it)
 
@@ -245,7 +242,7 @@ def _is_spawner_of_robot(it: LaunchedNode) -> bool:
 
 
 def _stands(include: LaunchedNode, stack: Iterable[NodeFacts]) -> bool:
-    """Does the robot's stack have the nodes of a launch file that is not here?"""
+    """Return whether the robot's node set has the nodes of a missing launch file."""
     family = _FAMILIES.get(include.package, include.package)
     own = (it.package for it in stack if it.origin != NO_ORIGIN)
     return any(it == family or (family[-1] == "_" and it.startswith(family)) for it in own)
@@ -254,7 +251,7 @@ def _stands(include: LaunchedNode, stack: Iterable[NodeFacts]) -> bool:
 def _passing(
     it: LaunchedNode, words: Collection[str], of_all: Collection[tuple[str, str]]
 ) -> Passing:
-    """A process with its own environment, and its namespace below the robot's."""
+    """Return a process with its own environment, and its namespace below the robot's."""
     own = it._replace(environment=tuple(pair for pair in it.environment if pair not in of_all))
     once = bool(once_for_all(it)) and not is_of_robot(it.namespace, words)
     below = own if once else own._replace(namespace=f"/{_below(it.namespace, '', words)}")
@@ -264,7 +261,7 @@ def _passing(
 def _under_manager(
     spawned: Iterable[Spawned], pairs: Iterable[_Pair], words: Collection[str], release: str
 ) -> Iterator[tuple[str, Spawned]]:
-    """The controllers by name, under the rules of their manager, too, where these reach them."""
+    """Yield the controllers by name, also under the rules of their manager, if these reach them."""
     reached = controller_way(release).of_manager
     wide = {it.facts.name: it.node.remappings for it in pairs if reached}
     for it in spawned:
@@ -289,7 +286,7 @@ def without_bridges(launched: Launched) -> Launched:
 
 
 def as_launched(nodes: Iterable[NodeFacts], launched: Launched) -> Iterator[NodeFacts]:
-    """The nodes under rules and arguments of launch files, without those with parameters alone."""
+    """Yield the nodes under rules and arguments of launch files, without those with only parameters."""
     origins = {it.name: it.origin for it in launched.nodes}
     for it in nodes:
         if it.name in launched.started:
@@ -340,7 +337,7 @@ def _pair(
 
 
 def _unknown(it: LaunchedNode, name: str) -> NodeFacts:
-    """What a launch file says of a node that nobody knows: what runs it, and its rules."""
+    """Return an unknown node by its launch file: what runs it, and its rules."""
     run = {"component": it.executable} if it.container else {"programs": (it.executable,)}
     # Its rules name topics, as far as anybody can say.
     own = (old for old, _ in it.remappings if not check_topic_name(old))
@@ -351,7 +348,7 @@ def _unknown(it: LaunchedNode, name: str) -> NodeFacts:
 
 
 def _only_named(it: LaunchedNode, facts: NodeFacts, name: str) -> Iterator[Endpoint]:
-    """What the rules of a known node name besides its own topics: the program may have more."""
+    """Yield topics of a known node that only its rules name: the program may have more than known."""
     there = {expand(end.name, it.namespace, name) for end in facts.endpoints}
     there |= {f"/{topic}" for topic in TF_TOPICS}
     for old in dict.fromkeys(old for old, _ in it.remappings if not check_topic_name(old)):
@@ -360,19 +357,19 @@ def _only_named(it: LaunchedNode, facts: NodeFacts, name: str) -> Iterator[Endpo
 
 
 def is_of_robot(namespace: str, words: Collection[str]) -> bool:
-    """Is a namespace that of a robot, or below it?"""
+    """Return whether a namespace is that of a robot, or below it."""
     return namespace.strip("/").partition("/")[0] in words
 
 
 def _below(namespace: str, name: str, words: Collection[str]) -> str:
-    """The name of a node as a stack has it: without the robot's namespace."""
+    """Return the name of a node as a node set has it: without the robot's namespace."""
     tokens = [*(it for it in namespace.split("/") if it), *([name] if name else [])]
     return "/".join(tokens[1:] if len(tokens) > 1 and tokens[0] in words else tokens)
 
 
 def _is_left(node: NodeFacts, launched: Mapping[str, NodeFacts]) -> bool:
-    """Should a launch file have started it? What has no process of its own is not launched, and what
-    no stack is named for is added to every robot."""
+    """Return whether a launch file should have started a node. What has no process of its own is
+    not launched, and what no node set is named for is added to every robot."""
     own = not node.host and not node.plugin and node.name != MANAGER
     return own and node.name not in launched and node.origin != NO_ORIGIN
 
@@ -380,7 +377,7 @@ def _is_left(node: NodeFacts, launched: Mapping[str, NodeFacts]) -> bool:
 def _hosted(
     pairs: Iterable[_Pair], known: Mapping[str, NodeFacts], there: Collection[str]
 ) -> Iterator[NodeFacts]:
-    """The nodes that run inside of launched ones, such as costmaps."""
+    """Yield the nodes that run inside launched ones, such as costmaps."""
     origins = {it.facts.known: it.facts.origin for it in pairs}
     for node in known.values():
         if node.host and node.host in origins and node.host != MANAGER and node.name not in there:
@@ -395,7 +392,7 @@ def _controllers(
     words: Collection[str],
     parameters: KnownNodes,
 ) -> Iterator[Run]:
-    """What the launch files set for the controllers that they spawn."""
+    """Yield what the launch files set for the controllers that they spawn."""
     own = {_full_name(it.node, it.facts): it.node.parameters for it in pairs}
     places = {_stripped(it.full_name.strip("/"), words): it.place for it in spawned}
     for manager, texts in texts_of(spawned, own):
@@ -419,7 +416,7 @@ def _full_name(node: LaunchedNode, facts: NodeFacts) -> str:
 def _given(
     pair: _Pair, inside: Iterable[NodeFacts], words: Collection[str], parameters: KnownNodes
 ) -> Iterator[Run]:
-    """What the launch file's parameters set for a node, the nodes in it and its controllers."""
+    """Yield what the launch file's parameters set for a node, the nodes in it and its controllers."""
     # Sections for any node count, too, so each node gets one of its own.
     first = ParameterText("", f"{_full_name(pair.node, pair.facts)}:\n  ros__parameters: {{}}\n")
     # launch_ros gives a component the values of a file without such a key; it names no node.
@@ -446,7 +443,7 @@ def _of_any_robot(given: Run, namespace: str, words: Collection[str]) -> Run:
 
 
 def _placed(given: Run, place: Place) -> Run:
-    """What a launch file gives itself is where that starts the node."""
+    """Return the settings; those of the launch file itself get the place that starts the node."""
     values = {
         name: it if it.place.file != OWN else it._replace(place=place)
         for name, it in given.values.items()
@@ -455,7 +452,7 @@ def _placed(given: Run, place: Place) -> Run:
 
 
 def without_robot(given: Run, words: Collection[str]) -> Run:
-    """A node of a file that is for one robot, without the namespace of that robot."""
+    """Return a node of a file that is for one robot, without the namespace of that robot."""
     name, manager = (_stripped(it, words) for it in (given.node, given.host_name))
     return given._replace(node=name, host_name=manager)
 
@@ -466,7 +463,7 @@ def _stripped(name: str, words: Collection[str]) -> str:
 
 
 def _in_process(node: NodeFacts, host: LaunchedNode) -> NodeFacts:
-    """The rules of a launch file are for all nodes of a process; controllers have their own."""
+    """Return the node under its process's rules, which are for all its nodes but controllers."""
     if node.host == MANAGER:
         return node
     below = node.name.rpartition("/")[0]

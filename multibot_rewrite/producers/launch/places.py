@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where an action of a launch file stands: kept when it is made."""
+"""The line of an action in a launch file: kept when it is made."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def place_of(action: Any, file: str, what: tuple[str, str] | None = None) -> Pla
 
 
 def _maker(frame: FrameType | None) -> Place | None:
-    """The line of the launch file that made an action; None for a file that a parser reads."""
+    """Return the line of the launch file that made an action; None for a file that a parser reads."""
     while frame is not None:
         module = str(frame.f_globals.get("__name__", ""))
         if module in _READERS:
@@ -65,7 +65,7 @@ def _maker(frame: FrameType | None) -> Place | None:
 
 @lru_cache
 def _lines(file: str) -> dict[tuple[str, str], int]:
-    """The first line with each package and program, in a file in XML or YAML."""
+    """Return the first line with each package and program, in a file in XML or YAML."""
     if not os.path.isfile(file):
         return {}
     try:

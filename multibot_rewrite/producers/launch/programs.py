@@ -36,6 +36,7 @@ def programs() -> Programs:
     return Programs(**{**data, **sets})
 
 
+_OWN = ("robot_state_publisher", "ros2_control_node", "rviz2", "static_transform_publisher")
 _EXTRA = "it spawns something in addition to the robots, in the one simulator"
 _LOOKS = "it only shows data or forwards an operator's commands"
 
@@ -58,10 +59,17 @@ def once_for_all(node: LaunchedNode) -> str:
 
 
 def passes(it: LaunchedNode) -> bool:
-    """Is it no node of a robot: a program that does its work and ends, a simulator, a command, or a
-    launch file?"""
+    """Return whether it is no node of a robot: a program that ends, a simulator, a command or a
+    launch file."""
     is_none = not it.package or it.process.is_include
     return is_none or is_spawner(it) or program_of(it) in programs().passing
+
+
+def may_be_off(it: LaunchedNode) -> bool:
+    """May a launch argument of a fleet start it? Not what is in the process of another one, nor what
+    the fleet starts by itself: the robot's description and controllers, simulators and windows."""
+    own = is_spawner(it) or it.executable in _OWN or it.package in programs().simulators
+    return not (own or it.container or it.executable.startswith("component_container"))
 
 
 def program_of(it: LaunchedNode) -> str:

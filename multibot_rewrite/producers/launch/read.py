@@ -48,8 +48,9 @@ from multibot_rewrite.producers.launch.source_packages import (
     add_sources,
 )
 from multibot_rewrite.producers.launch.stand_in import contents, standing_in
+from multibot_rewrite.producers.launch.stand_in.names import names
 from multibot_rewrite.producers.launch.stand_in.packages import FindPackageShare
-from multibot_rewrite.producers.launch.unknown_modules import add_unknown
+from multibot_rewrite.producers.launch.unknown_modules import add_unknown, imported
 from multibot_rewrite.producers.launch.visit import ASKED, visit_all
 from multibot_rewrite.system.records import Place
 
@@ -84,18 +85,21 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
         pass
     files = (*graph.files, *descriptions_in(reads.paths))
     # What the launch files of these start is known without them.
-    said = (*_lost(graph.notes), *SIMULATORS)
+    off = {it.package for it in graph.off} - graph.packages
+    said = (*_lost(graph.notes), *SIMULATORS, *off)
     unsaid = [it for it in missing if it not in said]
     place = Place(os.path.abspath(order.file), 1)
     more = (*map(not_installed, unsaid), *dict.fromkeys(unsure))
     own = (LaunchNote(place, it, parameters=it in unsure) for it in more)
     notes = (*graph.notes, *own)
-    whole = graph._replace(notes=notes, files=files, read=files_read(lines, reads))
+    imports = tuple(it for it in imported() if it not in names().parameters.split())
+    read = files_read(lines, reads)
+    whole = graph._replace(notes=notes, files=files, read=read, imports=imports)
     return with_real_paths(whole)  # type: ignore[no-any-return]
 
 
 def _tried(order: LaunchOrder, folder: str, missing: list[str]) -> LaunchGraph | None:
-    """The graph; None where something was ``missing`` that is stood in for now."""
+    """Return the graph; None if something was ``missing`` that now has a stand-in."""
     try:
         graph = _visited(_described(order), order)
     except UnreadableError:
@@ -132,13 +136,13 @@ def _stand_in_for(error: BaseException, folder: str, missing: list[str]) -> None
 
 
 def _lost(notes: Iterable[LaunchNote]) -> list[str]:
-    """The packages that are missing where something was started."""
+    """Return the packages that are missing where something was started."""
     return list(dict.fromkeys(it.missing for it in notes if it.missing))
 
 
 def read_own(file: str, folder: str) -> LaunchGraph:
-    """The same of a launch file that ``build`` wrote, read by the stand-in in this process; ``folder``
-    is for temporary files. Raises as ``read_graph``."""
+    """Return the graph of a launch file that ``build`` wrote, read by the stand-in in this process;
+    ``folder`` is for temporary files. Raises as ``read_graph``."""
     before, order = tempfile.tempdir, LaunchOrder(file)
     name = "launch_ros.substitutions"
     with standing_in(**{name: {**contents()[name], "FindPackageShare": _Share}}):
@@ -175,7 +179,7 @@ def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:
     context.extend_locals({"current_launch_file_path": path, **folder})
     context.launch_configurations.update(order.arguments)
     before = dict(context.environment)
-    seen = Visit(context, [], [], {}, [], Place(path, 1), [], [], before, {}, [], order.every)
+    seen = Visit(context, [], [], {}, [], Place(path, 1), [], [], before, {}, [], [], order.every)
     unread_of(path, dict(order.arguments), seen)
     visit_all(description, seen)
     declared = _declared(description)
@@ -196,11 +200,12 @@ def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:
         environment=own,
         declared=declared,
         idle=tuple(dict.fromkeys(seen.idle)),
+        off=tuple(seen.off),
     )
 
 
 def _lost_variables(seen: Visit, path: str) -> tuple[LaunchNote, ...]:
-    """What is said of variables with folders that are there only while launch files are read."""
+    """Return notes on variables with folders that exist only while launch files are read."""
     before, now = seen.before, seen.context.environment.items()
     new = (name for name, it in now if before.get(name) != it and GONE in real_paths(it))
     said = (f"the environment variable {it} has a folder of installed packages" for it in new)
@@ -209,8 +214,8 @@ def _lost_variables(seen: Visit, path: str) -> tuple[LaunchNote, ...]:
 
 
 def _declared(description: Any) -> tuple[LaunchArgument, ...]:
-    """The arguments of a launch file and of what it includes, each once; a default that is made of
-    others is not known."""
+    """Return the arguments of a launch file and of what it includes, each once; a default made from
+    others is unknown."""
     found: dict[str, LaunchArgument] = {}
     for it, _ in getattr(description, ASKED)():
         given = it.default_value
@@ -223,8 +228,8 @@ def _declared(description: Any) -> tuple[LaunchArgument, ...]:
 
 
 def _with_unset(notes: Iterable[LaunchNote], path: str) -> Iterator[LaunchNote]:
-    """An included file fails without a launch configuration that nothing before it sets. That of the
-    file itself may be given to it, and what is not known may set one."""
+    """Yield the notes; an included file fails without a launch configuration that nothing before it
+    sets. The file itself may be given one, and what is unknown may set one."""
     known = True
     for it in notes:
         unset = it.unset and it.place.file != path
@@ -234,7 +239,7 @@ def _with_unset(notes: Iterable[LaunchNote], path: str) -> Iterator[LaunchNote]:
 
 
 def _described(order: LaunchOrder) -> Any:
-    """The description that the file makes."""
+    """Return the launch description that the file makes."""
     sources = of_launch("launch_description_sources")
     source = sources.AnyLaunchDescriptionSource(os.path.abspath(order.file))
     made = source.get_launch_description(of_launch().LaunchContext(noninteractive=True))

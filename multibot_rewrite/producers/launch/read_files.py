@@ -80,8 +80,8 @@ class _Xacro:
 
 
 def files_read(lines: Iterable[str], reads: Reads) -> tuple[FileRead, ...]:
-    """The xacros that ``lines`` of programs and the launch file expand, with their arguments, and other
-    files that it reads, or that a line gives a program of the vendor's."""
+    """Return the xacros that ``lines`` of programs and the launch file expand, with their
+    arguments, and other files that it reads, or that a line gives to a vendor's program."""
     expanded = {it: xacro_of(it) for it in lines}
     xacros = (*filter(None, expanded.values()), *reads.xacros)
     words = (word for line, it in expanded.items() if it is None for word in line.split())
@@ -92,7 +92,7 @@ def files_read(lines: Iterable[str], reads: Reads) -> tuple[FileRead, ...]:
 
 
 def descriptions_in(paths: Iterable[str]) -> Iterator[tuple[str, ParameterText]]:
-    """The text of each of these files that a node may get for its description."""
+    """Yield the text of each of these files that a node may get for its description."""
     plain = (it for it in paths if it.endswith(_ENDINGS))
     for path in dict.fromkeys(map(os.path.realpath, plain)):
         if os.path.isfile(path) and os.path.getsize(path) < _LIMIT:

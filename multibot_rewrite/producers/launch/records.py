@@ -117,11 +117,13 @@ class LaunchInclude(NamedTuple):
 
 class IdleAction(NamedTuple):
     """Something that a launch file does not start, since its condition does not hold: ``what`` it is,
-    and the launch arguments that the condition asks for, as they are."""
+    and the launch arguments that the condition asks for, as they are. ``is_off`` is true where what it
+    would start is kept."""
 
     place: Place
     what: str
     asked: tuple[tuple[str, str], ...]
+    is_off: bool = False
 
     @property
     def why(self) -> str:
@@ -151,8 +153,10 @@ class LaunchGraph(NamedTuple):
     the path that they have there, and descriptions that launch files read. ``stood_in`` is true where
     launch is not installed and its stand-in read them. ``unread`` are arguments without effect,
     ``environment`` is what they set for all processes. ``declared`` are the arguments that there are,
-    ``read`` is what the launch files themselves read, ``idle`` is what conditions keep out. ``robots``
-    are the names of several that are started: the nodes are those of the first, without its name."""
+    ``read`` is what the launch files themselves read, ``idle`` is what conditions keep out, ``off`` the
+    nodes of it that one launch argument turns on. ``robots``
+    are the names of several that are started: the nodes are those of the first, without its name.
+    ``imports`` are Python packages that the launch files import and that are not here."""
 
     nodes: tuple[LaunchedNode, ...] = ()
     notes: tuple[LaunchNote, ...] = ()
@@ -164,7 +168,9 @@ class LaunchGraph(NamedTuple):
     declared: tuple[LaunchArgument, ...] = ()
     read: tuple[FileRead, ...] = ()
     idle: tuple[IdleAction, ...] = ()
+    off: tuple[LaunchedNode, ...] = ()
     robots: tuple[str, ...] = ()
+    imports: tuple[str, ...] = ()
 
     @property
     def whole(self) -> bool:
@@ -184,11 +190,9 @@ class LaunchGraph(NamedTuple):
 
 
 def launch_order(text: str, roots: Sequence[str] = ()) -> LaunchOrder:
-    """The order of what follows ``ros2 launch``: a file, or a package and a file in it, and
-    ``NAME:=VALUE`` words.
-
-    Raises UsageError for other words, and for a package or file that is not there.
-    """
+    """Return the order for arguments of ``ros2 launch``: a file, or a package and a file in it, and
+    ``NAME:=VALUE`` words. Raises UsageError for other words, and for a package or file that does
+    not exist."""
     try:
         words = shlex.split(text)
     except ValueError:
@@ -197,7 +201,7 @@ def launch_order(text: str, roots: Sequence[str] = ()) -> LaunchOrder:
 
 
 def order_in_words(words: Sequence[str], text: str, roots: Sequence[str] = ()) -> LaunchOrder:
-    """The same of words that a shell has split already; ``text`` stands for them in an error."""
+    """Return the order for words that a shell has split; ``text`` stands for them in an error."""
     named = list(takewhile(lambda it: "=" not in it, words))
     if not 0 < len(named) < 3:
         raise UsageError(f"launch {text!r}: write FILE NAME:=VALUE ..., or PACKAGE FILE ...")
@@ -215,7 +219,7 @@ def order_in_words(words: Sequence[str], text: str, roots: Sequence[str] = ()) -
 def orders_in_words(
     words: Sequence[str], text: str, roots: Sequence[str] = ()
 ) -> list[LaunchOrder]:
-    """The same of several launch files, which all get the arguments."""
+    """Return the orders for several launch files, which all get the arguments."""
     named = list(takewhile(lambda it: "=" not in it, words))
     if len(named) < 2 or not all(map(os.path.isfile, named)):
         return [order_in_words(words, text, roots)]
@@ -224,7 +228,7 @@ def orders_in_words(
 
 
 def joined(graphs: Sequence[LaunchGraph]) -> LaunchGraph:
-    """What several launch files start, as one."""
+    """Return what several launch files start, as one."""
     listed = (name for name, it in LaunchGraph._field_defaults.items() if it == ())
     every = {name: tuple(one for it in graphs for one in getattr(it, name)) for name in listed}
     every["environment"] = tuple(dict.fromkeys(every["environment"]))
@@ -233,7 +237,7 @@ def joined(graphs: Sequence[LaunchGraph]) -> LaunchGraph:
 
 
 def _joined_nodes(graphs: Sequence[LaunchGraph]) -> Iterator[LaunchedNode]:
-    """The nodes of all, with the numbers of those that they wait for among all."""
+    """Yield the nodes of all, with the numbers of those that they wait for among all."""
     first = 0
     for graph in graphs:
         for it in graph.nodes:
@@ -244,19 +248,19 @@ def _joined_nodes(graphs: Sequence[LaunchGraph]) -> Iterator[LaunchedNode]:
 
 
 def orders_of(text: str) -> tuple[float, list[LaunchOrder]]:
-    """The seconds for each of some orders, and these, from JSON."""
+    """Return the seconds for each of some orders, and these, from JSON."""
     seconds, orders = json.loads(text)
     return seconds, [_read(LaunchOrder, it) for it in orders]
 
 
 def graph_of(values: Any) -> LaunchGraph:
-    """The graph that is this in JSON; raises what an unexpected value does."""
+    """Return the graph from JSON; raises what an unexpected value does."""
     graph: LaunchGraph = _read(LaunchGraph, values)
     return graph
 
 
 def _read(kind: Any, value: Any) -> Any:
-    """A value of JSON as its type: records and pairs are lists there."""
+    """Return a value of JSON as its type: records and pairs are lists there."""
     if hasattr(kind, "_fields"):
         types = _hints(kind).values()
         return kind(*(_read(*it) for it in zip(types, value, strict=True)))

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The words behind a program's name -> what rcl makes of them.
 
-Source: rcl arguments.c (what stands between ``--ros-args`` and ``--`` is ROS's own).
-"""
+Source: rcl arguments.c (what is between ``--ros-args`` and ``--`` is ROS's own)."""
 
 from __future__ import annotations
 
@@ -26,7 +25,7 @@ class RosArguments(NamedTuple):
 
 
 def ros_arguments(words: Sequence[str]) -> RosArguments:
-    """What rcl reads in these words."""
+    """Return what rcl reads in these words."""
     own: list[str] = []
     given: list[str] = []
     inside = False
@@ -65,6 +64,6 @@ def _pair(text: str) -> tuple[str, str]:
 
 
 def params_text(values: Iterable[tuple[str, str]]) -> str:
-    """A parameter file for any node with these values, each as YAML has it."""
+    """Return a parameter file for any node with these values, each as YAML has it."""
     lines = "".join(f"    {name}: {value}\n" for name, value in values)
     return f"/**:\n  ros__parameters:\n{lines}" if lines else ""

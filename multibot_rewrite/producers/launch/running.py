@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a launch starts -> its nodes as they run, with their parameters and remap rules.
 
-Every launched node stands for itself: nothing is known here of robots, stacks and layouts. A launch
-file that is wrong is to be seen as it is.
-"""
+Every launched node is taken as it is: nothing is known here of robots, node sets and layouts. A
+launch file that is wrong is to be seen as it is."""
 
 from __future__ import annotations
 
@@ -136,7 +135,7 @@ def _apart(found: Sequence[Run], unsure: Collection[str]) -> Iterator[Run]:
 
 
 def _descriptions(nodes: Iterable[Run]) -> Iterator[Published]:
-    """The descriptions that launched nodes have as parameters."""
+    """Yield the descriptions that launched nodes have as parameters."""
     for it in nodes:
         given = it.values.get(DESCRIPTION)
         if given and isinstance(given.value, str):
@@ -146,7 +145,7 @@ def _descriptions(nodes: Iterable[Run]) -> Iterator[Published]:
 
 
 def bound_of(name: str, namespace: str, rules: Rules) -> BoundNode:
-    """A node under its rules; raises UsageError for one that rcl refuses."""
+    """Return a node under its rules; raises UsageError for one that rcl refuses."""
     found: list[RemapRule] = []
     for text in (f"{old}:={new}" for old, new in rules):
         rule = read_remap(text)
@@ -157,7 +156,7 @@ def bound_of(name: str, namespace: str, rules: Rules) -> BoundNode:
 
 
 def _plugins(model: Model) -> Iterator[Run]:
-    """The nodes of plugins in the simulator."""
+    """Yield the nodes of plugins in the simulator."""
     # Of gz the manager is the node of the plugin.
     nodes = [it for it in model.reading.nodes if it.manager != it.full_name]
     facts = {it.node: it.fact for it in plugin_nodes(model.reading, model.name)}
@@ -171,7 +170,7 @@ def _plugins(model: Model) -> Iterator[Run]:
 
 
 def _helpers(model: Model, known: Knowledge) -> Iterator[Run]:
-    """The nodes that plugins make for themselves, without rules, beside the one that they load."""
+    """Yield the nodes that plugins make for themselves, without rules, next to the one they load."""
     for it in (it for it in model.reading.nodes if it.helper):
         above, _, name = it.helper.rpartition("/")
         fact = known.nodes.get(name, UNKNOWN)
@@ -179,7 +178,7 @@ def _helpers(model: Model, known: Knowledge) -> Iterator[Run]:
 
 
 def _simulated(name: str, home: str, fact: NodeFacts, program: str, place: Place) -> Run:
-    """A node in the process of the simulator."""
+    """Return a node in the process of the simulator."""
     own = Run("", name, home, name, (), fact, process=SIMULATED, process_namespace=home)
     return own._replace(program=program, place=place)
 
@@ -226,7 +225,7 @@ def _clock(graph: LaunchGraph) -> Iterator[Run]:
 
 
 def full_name(it: LaunchedNode, facts: NodeFacts | None) -> str:
-    """The full name of a launched node; by its code where the launch file has none."""
+    """Return the full name of a launched node; by its code if the launch file has none."""
     own = own_name(it, facts) or guessed_name(it)
     # A rule for the one node of the process that its code calls so.
     return expand(it.name or dict(it.remappings).get(f"{own}:__node", own), it.namespace, "")
@@ -235,7 +234,7 @@ def full_name(it: LaunchedNode, facts: NodeFacts | None) -> str:
 def _started(
     it: LaunchedNode, container: LaunchedNode | None, process: str, known: Knowledge
 ) -> Iterator[Run]:
-    """A launched node, and the nodes that its code makes in its process."""
+    """Yield a launched node, and the nodes that its code makes in its process."""
     facts = known_node(it, (), known.nodes)
     name = full_name(it, facts)
     if not it.name and facts and facts.kind == STATIC:
@@ -282,7 +281,7 @@ def _controllers(
     started: Iterable[LaunchedNode],
     known: Knowledge,
 ) -> Iterator[Run]:
-    """The controllers that spawners load into launched managers, where they are activated."""
+    """Yield the controllers that spawners load into launched managers, if they are activated."""
     if not spawned:
         return
     facts = ((it, None if it.name else known_node(it, (), known.nodes)) for it in started)
@@ -314,8 +313,8 @@ def _controllers(
 
 
 def _given_to(controller: Spawned, given: Sequence[Run]) -> Run:
-    """What the files set for a controller; a manager of any namespace may have its type. A type in its
-    own section counts, though nobody knows it."""
+    """Return what the files set for a controller; a manager of any namespace may have its type. A
+    type in its own section counts, though nobody knows it."""
     mine = next(it for it in given if f"/{it.node}" == controller.full_name)
     own = mine.values.get(OWN_TYPE)
     if not mine.program and own and isinstance(own.value, str):

@@ -127,8 +127,8 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
 
 
 def _parts(nodes: Sequence[Run], inside: Sent) -> tuple[list[_Part], list[str]]:
-    """What each node adds, and the nodes that rcl refuses. Some listen only where somebody listens to
-    them: they are asked again until no topic has a new subscriber."""
+    """Return what each node adds, and the nodes that rcl refuses. Some nodes subscribe only while
+    they have subscribers: they are asked again until no topic has a new one."""
     parts, refused = [], []
     for it in nodes:
         try:
@@ -149,13 +149,13 @@ def _parts(nodes: Sequence[Run], inside: Sent) -> tuple[list[_Part], list[str]]:
 
 
 def _read(parts: Iterable[_Part]) -> Iterator[str]:
-    """The topics that somebody subscribes to."""
+    """Yield the topics that somebody subscribes to."""
     ends = (it for part in parts for it in part.endpoints if it.sure == RUNS)
     yield from (it.name for it in ends if it.role == SUBSCRIBES)
 
 
 def _heard(nodes: Iterable[Run], sensors: Sequence[SensorFrame]) -> Iterator[Heard]:
-    """The frames of what bridges bring from sensors in the simulator."""
+    """Yield the frames of what bridges bring from sensors in the simulator."""
     for it in nodes:
         for end, inside in bridged_by(it):
             sensor = sensor_on(inside, sensors)
@@ -168,15 +168,15 @@ def _heard(nodes: Iterable[Run], sensors: Sequence[SensorFrame]) -> Iterator[Hea
 
 
 def _measured(parts: Iterable[_Part], frames: Mapping[str, str]) -> Iterator[Heard]:
-    """The frames of what nodes of plugins measure."""
+    """Yield the frames of sensor data from nodes of plugins."""
     for end in (it for part in parts if part.name in frames for it in part.endpoints):
         if end.sure == RUNS and end.role == PUBLISHES and end.type.startswith("sensor_msgs/"):
             yield Heard(end.name, frames[end.node])
 
 
 def _addresses(it: Run, known: Knowledge, models: Models) -> Iterator[Address]:
-    """What a node has alone: by its parameters, and by the hardware of its description, if that is no
-    model in a simulator."""
+    """Yield what a node alone can have: by its parameters, and by the hardware of its description,
+    unless that is a simulated model."""
     node = known.parameters.nodes.get(it.fact.known)
     params = node.params if node else {}
     # One file is often given to all nodes; what these read is known, but for that of their plugins.
@@ -190,7 +190,7 @@ def _addresses(it: Run, known: Knowledge, models: Models) -> Iterator[Address]:
 
 
 def _nodes(running: Iterable[Run], parts: Iterable[_Part]) -> Iterator[Node]:
-    """The nodes, each with those that its code makes beside it (``Endpoint.by``)."""
+    """Yield the nodes, each with those that its code makes (``Endpoint.by``)."""
     for it, part in zip(running, parts, strict=True):
         known, untold = it.fact.kind, tuple(one.text for one in it.fact.untold)
         yield Node(part.name, it.process, place=it.place, known=known, untold=untold)
@@ -272,9 +272,9 @@ def _frames(parts: Sequence[_Part]) -> Iterator[Edge]:
 
 
 def _clocks(nodes: Iterable[Run], notes: Iterable[LaunchNote]) -> Iterator[Parameter]:
-    """Simulated time by parameter; the default is false (rclcpp time_source.cpp), where all parameters
-    are known; a value that only a run tells is untold. What sends transforms that hold for ever needs
-    no time, and a bridge passes on the time that is in the data."""
+    """Yield simulated time by parameter; the default is false (rclcpp time_source.cpp), if all
+    parameters are known; a value that only a run shows is unknown. What sends lasting transforms
+    needs no time, and a bridge passes on the time that is in the data."""
     notes = [it for it in notes if it.parameters]
     # A file that is lost is told where components are loaded, not at each of them.
     unknown, lost = {it.place for it in notes}, {it.place.file for it in notes if it.file}

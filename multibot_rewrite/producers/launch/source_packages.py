@@ -36,7 +36,7 @@ NOT_INSTALLED = "not_installed"
 
 
 def link_sources(file: str, roots: Iterable[str], folder: str) -> None:
-    """Fill a folder with links to the packages below ``roots``, and to those beside the one of the
+    """Fill a folder with links to the packages below ``roots``, and to those next to the one of the
     launch ``file``."""
     for name, path in packages_for(file, roots).items():
         link_share(name, path, _shared(name, os.path.join(folder, SOURCES)))
@@ -54,7 +54,7 @@ def add_sources(file: str, roots: Iterable[str], folder: str) -> None:
 
 @cache
 def _has_python(name: str, folder: str) -> bool:
-    """Has it a Python package of its own name, or does its CMakeLists.txt install another one?"""
+    """Return whether it has a Python package of its own name, or CMakeLists.txt installs another."""
     if os.path.isfile(os.path.join(folder, name, "__init__.py")):
         return True
     with suppress(OSError, UnicodeDecodeError):
@@ -113,10 +113,8 @@ ROOTS = "source its workspace, or give the folder of its sources with --roots (l
 
 
 def file_of_package(package: str, name: str, roots: tuple[str, ...]) -> str:
-    """The path of a file in a package that is installed or, as sources, below ``roots``.
-
-    Raises UsageError where there is no such package, and not one file of that name in it.
-    """
+    """Return the path of a file in a package that is installed or, as sources, below ``roots``.
+    Raises UsageError unless the package is found and has exactly one file of that name."""
     # What is installed counts first, as for the includes of a launch.
     folders = package_folders(package, os.sep, ()) or package_folders(package, os.sep, roots)
     if not folders:

@@ -19,9 +19,9 @@ NO_MANAGER = declare("MG723", "no-controller-manager", ERROR, formats=("fleet",)
 def under_managers(
     spawned: Iterable[Spawned], started: Collection[str]
 ) -> tuple[list[Spawned], list[Finding]]:
-    """The controllers, those of a manager that is not among the ``started`` ones under the one that
-    is meant; as they are where there is none, or more than one. With it findings of spawners that ask
-    for another manager than the one that runs."""
+    """Return the controllers; those of a manager that is not among the ``started`` ones get the one
+    that is meant, if there is just one. With it findings of spawners that ask for another manager
+    than the one that runs."""
     meant = next(iter(started)) if len(started) == 1 else ""
     every = tuple(spawned)
     lost = [it for it in every if meant and it.manager not in started]

@@ -56,7 +56,7 @@ class _Parser(argparse.ArgumentParser):
 
 
 def is_spawner(node: LaunchedNode) -> bool:
-    """Does it load controllers and end?"""
+    """Return whether a node loads controllers and ends."""
     return _is_spawner(f"{node.package}/{node.executable}")
 
 
@@ -65,7 +65,7 @@ def _is_spawner(program: str) -> bool:
 
 
 def spawned_in(nodes: Iterable[LaunchedNode]) -> tuple[tuple[Spawned, ...], tuple[LaunchNote, ...]]:
-    """The controllers that these spawners load, and notes of those whose arguments are not right."""
+    """Return the controllers that these spawners load, and notes on wrong arguments of spawners."""
     found: list[Spawned] = []
     notes: list[LaunchNote] = []
     for number, node in enumerate(nodes):
@@ -78,13 +78,13 @@ def spawned_in(nodes: Iterable[LaunchedNode]) -> tuple[tuple[Spawned, ...], tupl
 
 
 def active(spawned: Mapping[str, Spawned]) -> set[str]:
-    """The names of those that are active as soon as all is started, whatever happens."""
+    """Return the controllers that are active as soon as all is started, whatever happens."""
     return {name for name, it in spawned.items() if not (it.inactive or it.later)}
 
 
 def controller_files(program: str, words: Sequence[str]) -> tuple[str, ...]:
-    """The files with parameters of controllers that a program (``package/executable``) gets with these
-    arguments; none if it is no spawner."""
+    """Return the files with parameters of controllers that a program (``package/executable``) gets
+    with these arguments; empty if it is no spawner."""
     if not _is_spawner(program):
         return ()
     try:
@@ -125,7 +125,7 @@ def _spawned(node: LaunchedNode) -> Iterator[Spawned]:
 
 
 def _each(words: Sequence[str]) -> Iterator[argparse.Namespace]:
-    """What is said of the controllers; raises ValueError for words that the spawner refuses."""
+    """Yield the options of each controller; raises ValueError for words that the spawner refuses."""
     if _ONE not in words:
         yield _parser(names="+").parse_args(list(words))
         return
@@ -138,7 +138,7 @@ def _each(words: Sequence[str]) -> Iterator[argparse.Namespace]:
 
 
 def _further(given: argparse.Namespace) -> Iterator[str]:
-    """The words that say how a controller is loaded; ``--inactive`` has a meaning of its own."""
+    """Yield the words for how a controller is loaded; ``--inactive`` has its own field."""
     for flag in _TIMES:
         if value := getattr(given, flag[2:].replace("-", "_"), None):
             yield from (flag, value)

@@ -26,8 +26,13 @@ def add_unknown(name: str) -> None:
 
 
 def is_unknown(value: object) -> bool:
-    """Is it such a package, or something taken of it?"""
+    """Return whether it is such a package, or something taken from it."""
     return isinstance(value, Unknown | _Module)
+
+
+def imported() -> list[str]:
+    """Return those of such packages that a launch file has imported."""
+    return [it.asked for it in sys.meta_path if isinstance(it, _Finder) and it.asked]
 
 
 # How it is called in a text that is made of it.
@@ -54,7 +59,7 @@ class Unknown:
         return found
 
     def __mro_entries__(self, _: tuple[object, ...]) -> tuple[type]:
-        """A class that has it for its base: what it takes of the base is unknown."""
+        """Return a base class for one that extends this: what it takes from the base is unknown."""
         own = {"_multibot_module": self._multibot_module, "__init__": lambda *_, **__: None}
         return (type("Base", (Unknown,), own),)
 
@@ -106,17 +111,18 @@ class _Finder:
     """Finds and loads; importlib.abc, which has the classes for that, is slow to import."""
 
     def __init__(self, name: str) -> None:
-        self._name = name
+        self._name, self.asked = name, ""
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """The module itself, and whatever is below it."""
+        """Return the module itself, and whatever is below it."""
         mine = fullname == self._name or fullname.startswith(f"{self._name}.")
         return ModuleSpec(fullname, cast(Any, self), is_package=True) if mine else None
 
     def create_module(self, spec: ModuleSpec) -> ModuleType:
         """One that has everything."""
+        self.asked = self._name
         return _Module(spec.name)
 
     def exec_module(self, module: ModuleType) -> None:

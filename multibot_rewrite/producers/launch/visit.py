@@ -25,7 +25,7 @@ from multibot_rewrite.producers.launch.describe import (
     text,
 )
 from multibot_rewrite.producers.launch.failures import failure, is_certain, is_unset, started_by
-from multibot_rewrite.producers.launch.idle import switches_of, wants
+from multibot_rewrite.producers.launch.idle import called, switches_of, turned_on_by, wants
 from multibot_rewrite.producers.launch.includes import (
     included,
     not_here,
@@ -34,6 +34,8 @@ from multibot_rewrite.producers.launch.includes import (
     unread_of,
 )
 from multibot_rewrite.producers.launch.places import place_of
+from multibot_rewrite.producers.launch.programs import may_be_off
+from multibot_rewrite.producers.launch.records import IdleAction
 from multibot_rewrite.producers.launch.stand_in.names import names
 from multibot_rewrite.producers.launch.unknown_modules import is_unknown
 
@@ -67,6 +69,9 @@ def visit(entity: Any, seen: Visit) -> None:
     switches = () if seen.every else switches_of(entity, seen)
     switches = tuple(dict.fromkeys((*seen.switches, *switches)))
     here = seen._replace(place=place_of(entity, file), switches=switches)
+    on = ("", "") if seen.every or seen.off_by or seen.event else turned_on_by(entity, here)
+    if on[0] and _is_kept_off(entity, here, on):
+        return
     # An include has the path of its file for what is below it; other actions may leave theirs.
     own = _is(entity, _INCLUDE)
     if not own and _is(entity, *_GIVING):
@@ -97,6 +102,35 @@ def visit(entity: Any, seen: Visit) -> None:
             seen.context._pop_launch_configurations()
         if own:
             seen.context._pop_locals()
+
+
+def _is_kept_off(entity: Any, here: Visit, on: tuple[str, str]) -> bool:
+    """Keep what an action would start with the value of an argument that turns it ``on``, if that is
+    known whole, and is nothing that a fleet starts by itself."""
+    name, value = on
+    apart = here._replace(nodes=[], notes=[], waiting=[], unread=[], includes=[], idle=[])
+    apart = apart._replace(numbers={**here.numbers}, switches=(*here.switches, on), off_by=name)
+    context, before = here.context, here.context.launch_configurations[name]
+    context._push_launch_configurations()
+    context._push_environment()
+    try:
+        context.launch_configurations[name] = value
+        visit(entity, apart)
+    except RecursionError:
+        return False
+    finally:
+        context._pop_environment()
+        context._pop_launch_configurations()
+    packages = {it.package for it in apart.nodes}
+    whole = not apart.waiting and all(it.parameters or it.missing in packages for it in apart.notes)
+    if not (whole and apart.nodes and all(map(may_be_off, apart.nodes))):
+        # Once they are known to be missing, their launch files are known by name.
+        here.notes.extend(it._replace(parameters=True) for it in apart.notes if it.missing)
+        return False
+    here.off.extend(apart.nodes)
+    what = called(entity, context)
+    here.idle.append(IdleAction(here.place, what, ((name, before),), is_off=True))
+    return True
 
 
 def _failed(entity: Any, error: BaseException, here: Visit) -> None:
@@ -208,7 +242,7 @@ def _process(entity: Any, seen: Visit) -> Iterable[Any] | None:
 
 
 def _later(entity: Any, seen: Visit) -> Iterable[Any] | None:
-    """The actions of a timer or an event handler wait for the end of the description."""
+    """Keep the actions of a timer or an event handler for the end of the description."""
     if not wants(entity, seen):
         return None
     timer = _is(entity, "TimerAction")
@@ -231,7 +265,7 @@ def _later(entity: Any, seen: Visit) -> Iterable[Any] | None:
 
 
 def _wait(actions: Iterable[Any], word: str, seen: Visit, timer: bool = False) -> None:
-    """A timer keeps the locals of the context; what is ours is kept by event handlers, too
+    """Keep actions with their context's locals: all for a timer, ours for an event handler, too
     (launch/context.py)."""
     actions, known = [*actions], seen.context.get_locals_as_dict()
     kept = {key: it for key, it in known.items() if timer or key.startswith(_OURS)}
@@ -243,7 +277,7 @@ def _wait(actions: Iterable[Any], word: str, seen: Visit, timer: bool = False) -
 
 
 def _ended(entity: Any, seen: Visit) -> None:
-    """What ``on_exit`` of a program starts."""
+    """Keep what ``on_exit`` of a program starts."""
     actions = getattr(entity, "_ExecuteLocal__on_exit", None)
     if not callable(actions):
         seen = seen._replace(delay=0.0, event="OnProcessExit", target=entity)

@@ -58,7 +58,7 @@ def ask_nodes(
     seconds: float,
     stop: threading.Event,
 ) -> tuple[Answer, ...]:
-    """The answers that come within ``seconds``, or until ``stop``, by the names of nodes."""
+    """Return the answers that come within ``seconds``, or until ``stop``, by the names of nodes."""
     clients: dict[str, Any] = {}
     try:
         found = _ask(session, node, asked, clients, time.monotonic() + seconds, stop)
@@ -94,8 +94,8 @@ def _ask(
 
 
 def listed(asked: Question, answer: Any) -> list[Question]:
-    """The parameters of a node, to hold robots against each other; QoS is seen in the graph, and what
-    nobody is to know is not asked."""
+    """Return the question for a node's parameters, to compare robots; not for QoS, which the graph
+    shows, nor for what is private."""
     names = sorted(it for it in map(str, answer.result.names) if not _UNASKED.search(it))
     service = asked.service.removesuffix("list_parameters") + "get_parameters"
     own = asked._replace(service=service, type=GET_PARAMETERS, parameters=tuple(names[:MOST]))
@@ -103,7 +103,7 @@ def listed(asked: Question, answer: Any) -> list[Question]:
 
 
 def halves(asked: Question, answer: Any) -> list[Question]:
-    """What is asked again: for a parameter that it does not have, a node of rclcpp gives none."""
+    """Return what is asked again: with one parameter that it lacks, a node of rclcpp gives none."""
     names = asked.parameters
     if len(names) < 2 or len(answer.values) == len(names):
         return []
@@ -145,7 +145,7 @@ def _with_answer(state: Answer, asked: Question, answer: Any) -> Answer:
 
 
 def _plain(value: Any) -> str | None:
-    """The value as the records have it; None for a parameter that is not set."""
+    """Return the value as the records have it; None for a parameter that is not set."""
     field = _FIELDS.get(value.type)
     if field is None:
         return None

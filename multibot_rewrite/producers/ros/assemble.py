@@ -84,19 +84,20 @@ class ObservationClock(NamedTuple):
     delayed: float = 0.0
 
     def after(self, now: float, planned: float) -> ObservationClock:
-        """The clock at a poll that was planned for ``planned`` seconds after the last one."""
+        """Return the clock at a poll that was planned for ``planned`` seconds after the last one."""
         passed = now - self.last
         late = min(max(0.0, passed - planned), DELAY_SECONDS)
         return ObservationClock(self.observed + min(passed, planned), now, self.delayed + late)
 
     def since(self, other: ObservationClock) -> ObservationClock:
-        """What was observed, and delayed, after ``other``."""
+        """Return what was observed, and delayed, after ``other``."""
         return ObservationClock(
             self.observed - other.observed, self.last, self.delayed - other.delayed
         )
 
     def starved(self) -> Iterator[Caveat]:
-        """Where a look waited for a processor so long that nodes may have come too late."""
+        """Yield a limitation if a snapshot waited for a processor so long that nodes may have come
+        too late."""
         part = self.delayed / max(self.observed + self.delayed, DELAY_SECONDS)
         if part > STARVED:
             text = (
@@ -107,7 +108,7 @@ class ObservationClock(NamedTuple):
 
 
 def so_far(names: Sequence[str]) -> str:
-    """What is seen of a graph that may not be whole yet: its nodes, and where they are."""
+    """Return what is seen of a graph that may be incomplete yet: its nodes, and where they are."""
     spaces = sorted({name.split("/")[1] for name in names if name.count("/") > 1})
     where = f" in {shorten(spaces, SEVERAL)}" if spaces else ""
     return f"{plural(len(names), 'node')}{where} so far"
@@ -124,7 +125,7 @@ def cut_short(names: Sequence[str], endpoints: Iterable[End]) -> Iterator[Caveat
 
 
 def unannounced(announced: int, here: int, nodes: int, lost: int) -> Iterator[Caveat]:
-    """Yield a caveat where fewer participants of this machine ``announced`` themselves than are
+    """Yield a limitation if fewer participants of this machine ``announced`` themselves than are
     ``here`` by their ports (both with the observer's); ``nodes`` were seen, datagrams ``lost``."""
     silent = here - announced
     if silent <= 0:
@@ -140,7 +141,7 @@ def unannounced(announced: int, here: int, nodes: int, lost: int) -> Iterator[Ca
 
 
 def seen_by_one(nodes: Sequence[str]) -> Iterator[Caveat]:
-    """Yield a caveat where two participants of this process see different ends of these nodes."""
+    """Yield a limitation if two participants of this process see different ends of these nodes."""
     if nodes:
         text = (
             f"two participants of this look see different topics or services of"
@@ -184,11 +185,9 @@ def topics_to_query(
     topics: Mapping[str, Sequence[str]],
     requested: Collection[str],
 ) -> list[str]:
-    """The topics to query for endpoints with QoS and process, which is slow.
-
-    ``topics`` are all topics of the graph with their types. Two nodes with one name hide each
-    other's topics, so then all topics are queried.
-    """
+    """Return the topics to query for endpoints with QoS and process, which is slow. ``topics`` are
+    all topics of the graph with their types. Two nodes with one name hide each other's topics, so
+    then all topics are queried."""
     if len(set(names)) < len(names):
         return sorted(topics)
     sides = sets_by_key((end.name, end.role) for end in endpoints if end.kind == TOPIC)
@@ -202,13 +201,13 @@ def topics_to_query(
 
 
 def merged(by_node: Iterable[End], by_topic: Mapping[str, Iterable[End]]) -> list[End]:
-    """The endpoints by node; those of topics that were queried are replaced by the better answer."""
+    """Return the endpoints by node; for queried topics those of the query, which know more."""
     kept = [end for end in by_node if end.kind != TOPIC or end.name not in by_topic]
     return kept + [end for ends in by_topic.values() for end in ends]
 
 
 def processes_by_node(endpoints: Iterable[End]) -> dict[str, list[str]]:
-    """The processes seen for each node name."""
+    """Return the processes seen for each node name."""
     found = sets_by_key((end.node, end.process) for end in endpoints if end.process)
     return {node: sorted(own) for node, own in found.items()}
 
@@ -240,7 +239,7 @@ def endpoints_with_process(
 
 
 def numbers_of(transform: Any) -> tuple[float, ...]:
-    """A geometry_msgs/Transform as a snapshot keeps it: inf where a number is none (NaN)."""
+    """Return a geometry_msgs/Transform as a snapshot keeps it: inf where a number is none (NaN)."""
     at, turn = transform.translation, transform.rotation
     numbers = at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w
     return tuple(round(it, _DIGITS) if abs(it) < FARTHEST else math.inf for it in numbers)
@@ -262,11 +261,9 @@ def frames(
     rates: Mapping[ReceivedTransform, float] = NO_RATES,
     ages: Mapping[ReceivedTransform, float] = NO_RATES,
 ) -> Iterator[Edge]:
-    """The transforms received, each once a topic; static if it came from a latched subscription.
-
-    ``of_several`` are those that more than one publisher sends, ``last`` what each was at last,
-    ``rates`` how often it came, ``ages`` how old it was.
-    """
+    """Yield the transforms received, each once a topic; static if it came from a latched
+    subscription. ``of_several`` are those that more than one publisher sends, ``last`` what each
+    was at last, ``rates`` how often it came, ``ages`` how old it was."""
     publishers = sets_by_key(
         (end.name, end.node) for end in endpoints if end.kind == TOPIC and end.role == PUBLISHES
     )

@@ -53,7 +53,7 @@ class RosProcess(NamedTuple):
     environ: Mapping[str, str]
 
     def next_message(self) -> bytes | None:
-        """The next message, or None at the end; raises Unusable if the process failed."""
+        """Return the next message, or None at the end; raises Unusable if the process failed."""
         assert self.process.stdout is not None
         length = self.process.stdout.readline()
         data = self.process.stdout.read(int(length)) if length else b""
@@ -72,12 +72,9 @@ def observe(
     environ: Mapping[str, str],
     tell: Callable[[str | System], None] = lambda _: None,
 ) -> System:
-    """A snapshot of the graph with the variables of ``environ``; raises Unusable.
-
-    ``tell`` gets what is seen while the graph is waited for, in words, and as a view that may not be
-    whole. No process is left running, however this
-    call ends.
-    """
+    """Return a snapshot of the graph with the variables of ``environ``; raises Unusable. ``tell``
+    gets what is seen while the graph is waited for, in words, and as a view that may be incomplete.
+    No process is left running, however this call ends."""
     began = time.monotonic()
     seen = _observe_once(request, environ, tell)
     names = [node.name for node in seen.nodes]
@@ -144,7 +141,7 @@ def watch(
 def _pass_on(
     child: RosProcess, at: int, put: Callable[[tuple[int, bytes | Unusable | None]], None]
 ) -> None:
-    """What a process says, with its number; None at its end."""
+    """Pass on what a process sends, with its number; None at its end."""
     try:
         while (data := child.next_message()) is not None:
             put((at, data))
@@ -156,7 +153,7 @@ def _pass_on(
 def ask(
     asked: Iterable[Question], seconds: float, environ: Mapping[str, str]
 ) -> tuple[Answer, ...]:
-    """What nodes answer within ``seconds``, all asked at once; raises Unusable."""
+    """Return what nodes answer within ``seconds``, all asked at once; raises Unusable."""
     order = json.dumps((seconds, list(asked)))
     with running(ASK, order, environ, seconds + SLACK_SECONDS) as child:
         data = child.next_message()

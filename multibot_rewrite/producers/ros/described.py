@@ -45,12 +45,12 @@ class DescriptionSamples:
             self._open.pop(topic)()
 
     def found(self) -> tuple[Description, ...]:
-        """What has come, by topic."""
+        """Return what has come, by topic."""
         return tuple(self._found[it] for it in sorted(self._found))
 
 
 def described(topic: str, text: str) -> Description:
-    """What a URDF names; nothing where the text is none."""
+    """Return what a URDF names; an empty description for no URDF."""
     from lxml import etree  # takes longer than the rest of a look's start
 
     parser = etree.XMLParser(resolve_entities=False, no_network=True)

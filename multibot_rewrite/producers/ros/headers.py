@@ -108,7 +108,7 @@ class _Span(NamedTuple):
 
 
 def sensor_topics(endpoints: Iterable[End]) -> Iterator[SensorTopic]:
-    """The topics worth a subscription, sensors first."""
+    """Yield the topics worth a subscription, sensors first."""
     sent = (it for it in endpoints if (it.kind, it.role) == (TOPIC, PUBLISHES))
     # The clock of all: its time is where others have their stamp.
     clock = CLOCK, CLOCK_TYPE
@@ -133,7 +133,7 @@ def _names_a_frame(end: End) -> bool:
 
 
 def pose_in(type_: str, data: bytes) -> tuple[float, ...]:
-    """The pose in a message of this type, as a snapshot keeps a transform; empty where it has none."""
+    """Return the pose in a message of this type, as a snapshot keeps a transform; or empty."""
     found = read_pose(data, POSED[type_]) if type_ in POSED else None
     return numbers_of(found) if found else ()
 
@@ -207,12 +207,12 @@ class HeaderSamples:
         return any(now - self._since[it] < ONE_SECONDS for it in once)
 
     def silent(self) -> Set[str]:
-        """The topics on which nothing has come."""
+        """Return the topics on which nothing has come."""
         runs = {CLOCK} if self._clock and self._clock.between else set()
         return self._open.keys() - self._heard.keys() - runs
 
     def heard(self) -> tuple[Heard, ...]:
-        """What was heard by topic; several of a topic that several nodes publish."""
+        """Return what was heard by topic; several for a topic that several nodes publish."""
         now = time.monotonic()
         rates = {it: own.rate() or self._at_most(it, now) for it, own in self._spans.items()}
         heard = [it for own in self._heard.values() for it in own.values()]

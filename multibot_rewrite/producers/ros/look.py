@@ -46,7 +46,7 @@ class GraphSession(NamedTuple):
         return time.monotonic() - self.started
 
     def domain(self) -> int:
-        """The ROS_DOMAIN_ID that is observed."""
+        """Return the ROS_DOMAIN_ID that is observed."""
         return int(self.ros.context.get_domain_id())
 
     def over(self) -> bool:
@@ -104,7 +104,7 @@ def receive(session: GraphSession, seconds: float) -> None:
 
 
 def overview(session: GraphSession) -> tuple[list[str], list[End]]:
-    """The nodes and their endpoints: enough to see whether anything changed."""
+    """Return the nodes and their endpoints: enough to see whether anything changed."""
     names = queries.node_names(session.node)
     found = queries.endpoints_by_node(
         session.node, names, queries.NODE_QUERIES, ros.node_gone_error()
@@ -124,7 +124,7 @@ def complete_view(session: GraphSession, cache: queries.TopicCache) -> tuple[lis
 
 
 def own_ends(session: ros.Session) -> list[tuple[str, str, str]]:
-    """Node, role and name of each end that the nodes of this process have, as a look gives them."""
+    """Node, role and name of each end that the nodes of this process have, as a snapshot has them."""
     nodes = list(session.executor.get_nodes())
     names = [it.get_fully_qualified_name() for it in nodes]
     found = [
@@ -158,7 +158,7 @@ HEADER_SECONDS = 1.5
 
 
 class Ears:
-    """What is received while the graph is looked at: transforms, and headers if they are asked for."""
+    """What is received while the graph is observed: transforms, and headers if they are asked for."""
 
     def __init__(self, session: GraphSession) -> None:
         self._request = session.request
@@ -174,7 +174,7 @@ class Ears:
             self.descriptions.update(endpoints)
 
     def silent(self) -> list[str]:
-        """The topics on which nothing has come."""
+        """Return the topics on which nothing has come."""
         return sorted({*self.tf.silent(), *self.headers.silent()})
 
     def keep_waiting(self) -> bool:

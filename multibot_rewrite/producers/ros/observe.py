@@ -101,7 +101,7 @@ def _open_session(
 
 
 def take_snapshot(session: GraphSession) -> System:
-    """A snapshot, once the graph is settled; not usable if ``stop`` was set meanwhile."""
+    """Return a snapshot, once the graph is settled; not usable if ``stop`` was set meanwhile."""
     cache: queries.TopicCache = {}
     ears = Ears(session)
     with ExitStack() as stack:
@@ -122,7 +122,7 @@ def take_snapshot(session: GraphSession) -> System:
 
 
 def _unannounced(session: GraphSession, names: Sequence[str]) -> Iterator[Caveat]:
-    """Yield a caveat where programs of this machine have ports of the domain and announce nothing."""
+    """Yield a limitation if programs of this machine have ports of the domain and announce nothing."""
     here, node = participants_here(session.domain()) or 0, session.node
     if here and here > len(queries.on_this_machine(node, queries.participants(node))):
         # What is no ROS program says on no topic of the middleware what it has, and may have topics.
@@ -133,7 +133,7 @@ def _unannounced(session: GraphSession, names: Sequence[str]) -> Iterator[Caveat
 
 
 def watch(session: GraphSession) -> Iterator[System]:
-    """A snapshot after each change, and one when nothing has changed for a while."""
+    """Yield a snapshot after each change, and one when nothing has changed for a while."""
     ears = Ears(session)
     cache: queries.TopicCache = {}
     before: object = None
@@ -230,7 +230,7 @@ class _Losses:
         self._domain, self._lost, self._at = session.domain(), session.lost, -inf
 
     def last(self, now: float) -> float:
-        """The same, with what was lost until ``now``; fewer are told where a process has ended."""
+        """Return when something was last lost until ``now``; a count may fall when a process ends."""
         lost = lost_here(self._domain)
         if lost != self._lost:
             self._lost, self._at = lost, now
@@ -266,7 +266,7 @@ class _ChangeTimes:
     def update(
         self, now: float, view: tuple[list[str], list[End]], request: Request
     ) -> assemble.LastChange:
-        """The times after a poll at ``now``."""
+        """Return the times after a poll at ``now``."""
         parts = (view, [end for end in view[1] if request.expects(end)])
         times = zip(self._changed, self._before, parts, strict=True)
         self._changed = assemble.LastChange(

@@ -44,8 +44,8 @@ def node_names(node: Any) -> list[str]:
 
 
 def participants(node: Any) -> frozenset[str]:
-    """The participants that have announced themselves, this process's own among them: each writes on a
-    topic of the middleware which nodes it has."""
+    """Return the participants that have announced themselves, with this process's own: each writes
+    on a topic of the middleware which nodes it has."""
     return _participants_of(node.get_publishers_info_by_topic(_OF_PARTICIPANTS, no_mangle=True))
 
 
@@ -69,7 +69,7 @@ def _participants_of(infos: Iterable[Any]) -> frozenset[str]:
 
 
 def enclaves(node: Any) -> dict[str, str]:
-    """The enclave of each node by its full name; a node in the enclave ``/`` is in none."""
+    """Return the enclave of each node by its full name; a node in the enclave ``/`` is in none."""
     found = node.get_node_names_and_namespaces_with_enclaves()
     return {_full_name(name, space): enclave.rstrip("/") for name, space, enclave in found}
 
@@ -93,10 +93,8 @@ NODE_QUERIES: tuple[NodeQuery, ...] = (
 def endpoints_by_node(
     node: Any, names: Iterable[str], queries: Iterable[NodeQuery], gone: type[Exception]
 ) -> Iterator[End]:
-    """The endpoints of each node; of two nodes with one name rcl shows only the first.
-
-    ``gone`` is the exception for a node that is not in the graph.
-    """
+    """Yield the endpoints of each node; of two nodes with one name rcl shows only the first.
+    ``gone`` is the exception for a node that is not in the graph."""
     for name in sorted(set(names)):
         space, _, own = name.rpartition("/")
         # The node may leave the graph between two queries.
@@ -126,7 +124,7 @@ class TopicQueries(NamedTuple):
 def with_topic_details(
     node: Any, names: list[str], found: list[End], asked: TopicQueries
 ) -> list[End]:
-    """The endpoints ``found`` by node, with QoS and process for topics that are worth a query."""
+    """Return the endpoints ``found`` by node, with QoS and process for topics worth a query."""
     topics = dict(node.get_topic_names_and_types())
     wanted = assemble.topics_to_query(names, found, topics, asked.requested)
     if len(set(names)) < len(names):
@@ -181,7 +179,7 @@ def _topic_endpoints(node: Any, topic: str) -> list[End]:
 
 
 def _service_endpoints(node: Any, end: End) -> list[End]:
-    """The DDS endpoints of a service: a server reads requests, a client writes them."""
+    """Return the DDS endpoints of a service: a server reads requests, a client writes them."""
     side = "publishers" if end.role == CALLS else "subscriptions"
     query = getattr(node, f"get_{side}_info_by_topic")
     infos = query(f"rq{end.name}Request", no_mangle=True)

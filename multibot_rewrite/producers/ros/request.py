@@ -61,7 +61,7 @@ class Request(NamedTuple):
 
 
 def to_text(order: tuple[Any, ...]) -> str:
-    """An order, a record of plain values, as one line."""
+    """Return an order, a record of plain values, as one line."""
     return json.dumps(order)
 
 
@@ -72,7 +72,7 @@ def from_text(text: str) -> Request:
 
 
 def framed(data: bytes) -> bytes:
-    """A message with its length before it, so that several can follow one another in a pipe."""
+    """Return a message with its length before it, so that several can follow in a pipe."""
     return b"%d" % len(data) + _LINE + data
 
 
@@ -106,7 +106,7 @@ def run_worker(run: Worker) -> int:
 
 
 def _read_order() -> str:
-    """The first line of standard input; reads no more than was sent with it."""
+    """Return the first line of standard input; reads no more than was sent with it."""
     data = b""
     while _LINE not in data:
         more = os.read(0, 1 << 16)

@@ -51,7 +51,7 @@ def missing() -> str:
 
 @contextmanager
 def opened() -> Iterator[Session]:
-    """A session; at the end of the block its nodes leave the graph at once."""
+    """Yield a session; at the end of the block its nodes leave the graph at once."""
     import rclpy
     from rclpy.context import Context
     from rclpy.executors import SingleThreadedExecutor
@@ -100,7 +100,7 @@ def spin(session: Session, seconds: float) -> None:
 
 
 def node_gone_error() -> type[Exception]:
-    """The exception for a query about a node that is not in the graph."""
+    """Return the exception for a query about a node that is not in the graph."""
     from rclpy.node import NodeNameNonExistentError
 
     error: type[Exception] = NodeNameNonExistentError
@@ -119,7 +119,7 @@ def action_clients(node: Node, name: str, namespace: str) -> Any:
 
 # rclpy.action.graph asks the same, and imports all of rclpy.action, which needs numpy.
 def _actions(node: Node, query: Callable[..., Any], name: str, namespace: str) -> Any:
-    """Queries for actions raise a plain RCLError for a node that left the graph."""
+    """Return a query's answer about actions; raises ``node_gone_error`` if the node left the graph."""
     from rclpy.impl.implementation_singleton import rclpy_implementation
 
     try:
@@ -132,7 +132,7 @@ def _actions(node: Node, query: Callable[..., Any], name: str, namespace: str) -
 
 
 def message_class(type_: str) -> tuple[Any, str]:
-    """The class of a type such as ``std_msgs/msg/String``, or None and why there is none."""
+    """Return the class of a type such as ``std_msgs/msg/String``, or None and why there is none."""
     from rclpy.exceptions import NoTypeSupportImportedException
     from rosidl_generator_py.import_type_support_impl import UnsupportedTypeSupport
 
@@ -149,8 +149,8 @@ def message_class(type_: str) -> tuple[Any, str]:
 
 
 def raw_message_class(type_: str) -> tuple[Any, str]:
-    """The same for messages that are received serialized: the C type support and nothing of Python,
-    which imports numpy for most packages, as long as all the rest takes."""
+    """Return the class for messages received serialized: the C type support without Python's, which
+    imports numpy for most packages and takes as long as all the rest."""
     from rosidl_generator_py import import_type_support
     from rosidl_generator_py.import_type_support_impl import UnsupportedTypeSupport
 
@@ -174,8 +174,8 @@ def _file_name(name: str) -> str:
 
 
 def begins_with_header(type_: str) -> bool:
-    """Whether the first field of an installed message type is a header: read in its source, beside
-    which nothing is imported."""
+    """Whether the first field of an installed message type is a header: read in its source, without
+    importing anything else."""
     package, kind, name = type_.split("/")
     spec = find_spec(package)
     folders = (spec and spec.submodule_search_locations) or ()
@@ -246,24 +246,24 @@ def _take(subscription: Any) -> tuple[bytes, Any] | None:
 
 
 def publish(node: Node, type_: Any, topic: str, latched: bool) -> Any:
-    """A reliable publisher; with ``latched`` later subscribers receive its messages too."""
+    """Return a reliable publisher; with ``latched`` later subscribers receive its messages too."""
     return node.create_publisher(type_, topic, _qos(latched, True))
 
 
 def subscribe_and_drop(node: Node, type_: Any, topic: str) -> None:
-    """A subscription with the usual QoS that ignores its messages."""
+    """Subscribe with the usual QoS and ignore the messages."""
     node.create_subscription(type_, topic, lambda _: None, _qos(False, True))
 
 
 def serve_action(node: Node, type_: Any, name: str) -> None:
-    """An action server whose goals never succeed."""
+    """Make an action server whose goals never succeed."""
     from rclpy.action import ActionServer
 
     ActionServer(node, type_, name, lambda goal: type_.Result())
 
 
 def call_action(node: Node, type_: Any, name: str) -> None:
-    """A client of an action."""
+    """Make a client of an action."""
     from rclpy.action import ActionClient
 
     ActionClient(node, type_, name)
@@ -280,7 +280,7 @@ def _qos(latched: bool, reliable: bool) -> Any:
 
 
 def middleware() -> str:
-    """The name of the RMW in use."""
+    """Return the name of the RMW in use."""
     from rclpy.utilities import get_rmw_implementation_identifier
 
     return str(get_rmw_implementation_identifier())

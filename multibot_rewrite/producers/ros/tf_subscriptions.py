@@ -136,7 +136,7 @@ class TfSubscriptions:
             self.last[edge] = () if differ else now_at
 
     def transforms(self) -> tuple[ReceivedTransform, ...]:
-        """The transforms that are still valid; latched ones always are."""
+        """Return the transforms that are still valid; latched ones always are."""
         limit = time.monotonic() - FORGET_SECONDS
         return tuple(sorted(it for it, at in self._received.items() if it.latched or at >= limit))
 
@@ -147,7 +147,7 @@ class TfSubscriptions:
         return {it: rate for it, rate in found.items() if rate}
 
     def of_several(self) -> frozenset[ReceivedTransform]:
-        """The transforms that more than one publisher sends."""
+        """Return the transforms that more than one publisher sends."""
         return frozenset(it for it, heard in self._voices.items() if heard.several(it.latched))
 
     def keep_waiting(self, first: float, last: float) -> bool:
@@ -156,12 +156,12 @@ class TfSubscriptions:
         return bool(self._open) and passed < (last if self.silent() else first)
 
     def silent(self) -> list[str]:
-        """The topics on which nothing has come."""
+        """Return the topics on which nothing has come."""
         received = {(it.topic, it.latched) for it in self._received}
         return [name for name, _, latched in self._open if (name, latched) not in received]
 
     def caveats(self) -> Iterator[Caveat]:
-        """The topics that it could not subscribe to."""
+        """Yield a limitation for the topics that it could not subscribe to."""
         if self._failed:
             topics = shorten(sorted(self._failed), SEVERAL)
             reason = next(iter(self._failed.values()))

@@ -55,14 +55,14 @@ ONLY_TOPICS = Caveat("topics-only", True, _NO_SERVICE)
 
 
 def is_message(value: object) -> bool:
-    """Is it a message and not a snapshot of ours, which has a schema?"""
+    """Return whether it is a message and not a snapshot of ours, which has a schema."""
     return (
         isinstance(value, dict) and "nodes" in value and not value.keys() & {"schema", "endpoints"}
     )
 
 
 def from_message(value: dict[str, Any], file: str) -> System:
-    """The snapshot that a message describes; raises InputError with file and key."""
+    """Return the snapshot that a message describes; raises InputError with file and key."""
     graph = cast(Graph, record_from(Graph, _without_parameters(value), file))
     nodes, ends = [], []
     for node in graph.nodes:
@@ -130,7 +130,7 @@ def _service(service: Service, role: str, node: str) -> End:
 
 
 def _action(action: Action, role: str, node: str, file: str) -> Iterator[End]:
-    """The action, and the services and topics that it is made of, as a snapshot has them."""
+    """Yield the action, and the services and topics that it is made of, as a snapshot has them."""
     parts = [_service(it, role, node) for it in action[1:4] if isinstance(it, Service) and it.name]
     sent = PUBLISHES if role == SERVES else SUBSCRIBES
     parts += [

@@ -38,14 +38,14 @@ _CANCEL, _STATUS = "action_msgs/srv/CancelGoal", "action_msgs/msg/GoalStatusArra
 
 
 def to_yaml(snapshot: System) -> bytes:
-    """The snapshot as a message in YAML."""
+    """Return the snapshot as a message in YAML."""
     import yaml
 
     return str(yaml.safe_dump(to_message(snapshot), sort_keys=False)).encode() + b"---\n"
 
 
 def to_message(snapshot: System) -> dict[str, object]:
-    """The snapshot as the fields of a message; what a message cannot hold is left out."""
+    """Return the snapshot as the fields of a message; what a message cannot hold is left out."""
     ends = lists_by_key((end.node, end) for end in snapshot.ends)
     # Of two nodes with a name the first gets all: a message does not say whose an endpoint is.
     return {"nodes": [_node(it.name, ends.pop(it.name, [])) for it in snapshot.nodes]}

@@ -36,5 +36,5 @@ def apis() -> Mapping[str, tuple[Api, ...]]:
 
 @cache
 def harmless() -> frozenset[str]:
-    """The functions that use nothing of a node that others see."""
+    """Return the functions that use nothing of a node that others see."""
     return frozenset(own_text(__file__, "harmless.txt").partition("\n")[2].split())

@@ -59,7 +59,7 @@ _MACRO = re.compile(r"\b[A-Z][A-Z0-9_]*_(?:PUBLIC|EXPORT|LOCAL)\b")
 
 
 def read_cpp(text: str, place: Place) -> Source:
-    """What a C++ file declares and calls."""
+    """Return what a C++ file declares and calls."""
     clean = _MACRO.sub(lambda found: " " * len(found[0]), text)
     found: dict[type, list[Any]] = {kind: [] for kind in _COLUMNS}
     for node in nodes_of(clean, tuple(HANDLERS)):
@@ -84,7 +84,7 @@ def _up(node: Node, *types: str) -> Node | None:
 
 
 def _declarator(node: Node) -> Node | None:
-    """The function's declarator, below pointers and references."""
+    """Return the function's declarator, below pointers and references."""
     found = node.child_by_field_name("declarator")
     while found is not None and found.type != "function_declarator":
         found = found.child_by_field_name("declarator") or next(iter(found.named_children), None)
@@ -92,7 +92,7 @@ def _declarator(node: Node) -> Node | None:
 
 
 def _around(node: Node) -> tuple[str, str]:
-    """The class and function that something is in."""
+    """Return the class and function that something is in."""
     function = node if node.type == "function_definition" else _up(node, "function_definition")
     name = ""
     if function is not None and (declarator := _declarator(function)) is not None:
@@ -105,7 +105,7 @@ def _around(node: Node) -> tuple[str, str]:
 
 
 def _condition(node: Node) -> str:
-    """The text of the nearest ``if`` around it, in its function."""
+    """Return the text of the nearest ``if`` around it, in its function."""
     above = node
     while above.parent is not None and above.parent.type not in ("function_definition",):
         below, above = above, above.parent
@@ -136,7 +136,7 @@ def _asked(node: Node) -> str:
 
 
 def _is_built_sometimes(node: Node) -> bool:
-    """Is a function only there as its code was built? That of ``#ifndef`` is what guards a header."""
+    """Return whether a function exists only as its code was built, header guards aside."""
     above = node.parent
     while above is not None:
         if above.type.startswith("preproc_") and not text_of(above)[:60].startswith("#ifndef"):
@@ -146,7 +146,7 @@ def _is_built_sometimes(node: Node) -> bool:
 
 
 def _test(node: Node | None) -> str:
-    """A condition as a text: ``<debug_>``, ``!<debug_>``, or that it is another one."""
+    """Return a condition as a text: ``<debug_>``, ``!<debug_>``, or that it is another one."""
     while node is not None and node.type in ("condition_clause", "parenthesized_expression"):
         node = node.child_by_field_name("value") or next(iter(node.named_children), None)
     if node is not None and node.type == "unary_expression" and text_of(node)[:1] == "!":
@@ -280,13 +280,13 @@ def _assigned(node: Node, place: Place) -> Iterator[Value]:
 
 
 def _each(node: Node, place: Place) -> Iterator[Value]:
-    """The variable of a loop over a range."""
+    """Yield the variable of a loop over a range."""
     name = text_of(node.child_by_field_name("declarator")).strip("& ")
     yield Value(*_around(node), name, ANY, place)
 
 
 def _default(node: Node, place: Place) -> Iterator[Value]:
-    """The default of a function's parameter, or of each member of a declaration."""
+    """Yield the default of a function's parameter, or of each member of a declaration."""
     owner, inside = _around(node)
     name = ""
     for at, it in enumerate(node.children):
@@ -311,14 +311,14 @@ def _macro(node: Node, place: Place) -> Iterator[Value]:
 
 
 def _used(node: Node, place: Place) -> Iterator[Alias]:
-    """``using a_msgs::msg::Scan;``; not of a namespace."""
+    """Yield the alias of ``using a_msgs::msg::Scan;``; none of a namespace."""
     name = text_of(node.named_children[-1])
     if MESSAGE.search(name):
         yield Alias(_around(node)[0], last(name), name)
 
 
 def _taking(node: Node, place: Place) -> Iterator[Constructor]:
-    """The names of a function's parameters."""
+    """Yield the names of a function's parameters."""
     parameters = node.child_by_field_name("parameters")
     full = text_of(node.child_by_field_name("declarator"))
     if parameters is None:

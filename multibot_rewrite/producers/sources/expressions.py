@@ -40,7 +40,7 @@ _NODE = re.compile(
 
 
 def text_of(node: Node | None) -> str:
-    """The source text, on one line."""
+    """Return the source text, on one line."""
     return " ".join((node.text or b"").decode("utf-8", "replace").split()) if node else ""
 
 
@@ -62,12 +62,12 @@ def template_arguments(type_: str) -> tuple[str, ...]:
 
 
 def is_node(text: str) -> bool:
-    """Is this argument a node, or a part of one?"""
+    """Return whether this argument is a node, or a part of one."""
     return _NODE.fullmatch(text) is not None
 
 
 def evaluated(node: Node | None) -> str:
-    """An expression as a text; what is not known is in <>."""
+    """Return an expression as a text; unknown parts are in <>."""
     if node is None:
         return "<?>"
     if node.type in TEXTS:
@@ -77,7 +77,7 @@ def evaluated(node: Node | None) -> str:
 
 
 def arguments_of(node: Node | None) -> tuple[str, ...]:
-    """What a call is given, each as a text."""
+    """Return the arguments of a call, each as a text."""
     if node is None:
         return ()
     return tuple(evaluated(it) for it in node.named_children if it.type != "comment")
@@ -164,14 +164,14 @@ INSTALL = "pip install 'multibot_rewrite[sources]'"
 
 
 def or_read() -> str:
-    """What reads more nodes, as the rest of a hint; empty where nodes in C++ are read already."""
+    """Return the end of a hint on how to read more nodes; empty if C++ can be read already."""
     here = find_spec("tree_sitter") and find_spec("tree_sitter_cpp")
     return "" if here else f", or read those in C++ from their source: {INSTALL}"
 
 
 def nodes_of(text: str, kinds: tuple[str, ...]) -> list[Node]:
-    """The nodes of these kinds, in the order of the text, an inner one before the one around it that
-    begins with it; raises UsageError without tree-sitter."""
+    """Return the nodes of these kinds, in the order of the text, an inner one before the one around
+    it that begins with it; raises UsageError without tree-sitter."""
     parser, query = _tools(kinds)
     tree = parser.parse(text.encode())
     found = query.captures(tree.root_node).get("found", ())
@@ -180,7 +180,7 @@ def nodes_of(text: str, kinds: tuple[str, ...]) -> list[Node]:
 
 @cache
 def _tools(kinds: tuple[str, ...]) -> tuple[Parser, QueryCursor]:
-    """The parser, and the query for these kinds."""
+    """Return the parser, and the query for these kinds."""
     try:
         import tree_sitter
         import tree_sitter_cpp

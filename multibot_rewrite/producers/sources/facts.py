@@ -90,9 +90,9 @@ class NodeSource(NamedTuple):
 def node_of_program(
     folder: str, package: str, program: str, packages: Packages, release: str
 ) -> NodeSource | None:
-    """What a program of a package, or a component by its class, does by its source below ``folder``;
-    None where there is none. ``packages`` are those whose files may be followed. Raises UsageError
-    where C++ cannot be read here."""
+    """Return what a program of a package, or a component by its class, does by its source below
+    ``folder``; None without one. ``packages`` are those whose files may be followed. Raises
+    UsageError where C++ cannot be read here."""
     start = start_of(folder, program)
     if start is None:
         return None
@@ -213,7 +213,7 @@ def _endpoints(names: Names, it: Declared, release: str) -> Iterator[Endpoint]:
 
 
 def _each(text: str) -> Iterator[str]:
-    """A name in each round of its loop."""
+    """Yield a name in each round of its loop."""
     _, mark, rest = text.partition(f"<{EACH}{LIST}")
     words, _, _ = rest.partition(">")
     if not mark:
@@ -224,7 +224,7 @@ def _each(text: str) -> Iterator[str]:
 
 
 def _spelled(names: Names, spot: Spot, text: str) -> Iterator[tuple[str, str, str]]:
-    """A name, the parameter that sets it, and a condition: by the default, and as it is set."""
+    """Yield a name, the parameter that sets it, and a condition: by the default, and as it is set."""
     parts = text.split("<")
     params = [it.partition(">")[0] for it in parts[1:]]
     asked = list(dict.fromkeys(it[1:] for it in params if it.startswith("@") and "{" not in it))
@@ -259,7 +259,7 @@ def _unknown(text: str) -> str:
 
 
 def _condition(names: Names, spot: Spot, asked: str) -> str:
-    """The condition that an entry would have; what nothing can tell is open."""
+    """Return the condition that an entry would have; what nothing shows is open."""
     found = [_flag(names, spot, it) for it in filter(None, asked.split("&"))]
     either = [it for it in found if OR in it]
     if PERHAPS in found or len(either) > 1:
@@ -285,7 +285,7 @@ def _flag(names: Names, spot: Spot, text: str) -> str:
 
 
 def _params(names: Names, events: Sequence[Event], values: Iterable[Value]) -> Iterator[Param]:
-    """The parameters that are declared where the program comes along."""
+    """Yield the parameters that are declared where the program passes."""
     kinds: dict[str, str] = {}
     for it in events:
         if isinstance(it, Declared) and (name := parameter_in(it.name)):
@@ -318,8 +318,8 @@ def _frames(names: Names, events: Iterable[Event]) -> Iterator[FrameParameter]:
 def _sends(
     names: Names, events: Sequence[Event]
 ) -> tuple[tuple[SentTransform, ...], tuple[FrameParameter, ...]]:
-    """The transforms that it sends: of a message that it sends, the two frames that are written into
-    it. A frame of the code has no parameter: it stands for itself, in quotes."""
+    """Return the transforms that it sends, by the two frames written into a message that it sends,
+    and their parameters. A frame of the code has no parameter: its name is quoted."""
     frames_of = (it for it in events if isinstance(it, Looked) and it.role != LOOKED_UP)
     messages = ((it.variable.removesuffix(it.role).rstrip("."), it) for it in frames_of)
     written = lists_by_key(
@@ -357,7 +357,7 @@ def _untold(
     events: Iterable[Event],
     ends: Iterable[Endpoint],
 ) -> Iterator[Untold]:
-    """What is not known before it runs."""
+    """Yield what is unknown before it runs."""
     if len(plain) > 1:
         yield Untold(f"it makes several nodes: {', '.join(plain)}")
     if not plain:

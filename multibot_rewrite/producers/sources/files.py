@@ -31,7 +31,7 @@ class Read(NamedTuple):
 
 
 def read_program(files: Sequence[str], packages: Packages) -> Read:
-    """What files say with all that they import or include of these packages."""
+    """Return what files declare, with all that they import or include of these packages."""
     found: dict[str, Source] = {}
     waiting = [*files]
     while waiting and len(found) < MOST_FILES:
@@ -70,7 +70,7 @@ def _parsed(path: str, data: bytes, changed: int) -> Source:
 
 
 def _imported(path: str, module: str, packages: Packages) -> Iterator[str]:
-    """The file of a module: beside the one that imports it, or of a package that is here."""
+    """Yield the file of a module: next to the one that imports it, or of a package that is found."""
     bare = module.lstrip(".")
     level = len(module) - len(bare)
     steps = bare.split(".") if bare else []
@@ -85,14 +85,14 @@ def _imported(path: str, module: str, packages: Packages) -> Iterator[str]:
 
 
 def module_files(root: str, steps: Sequence[str]) -> Iterator[str]:
-    """The file of a Python module below a folder, if it is there."""
+    """Yield the file of a Python module below a folder, if it exists."""
     base = os.path.join(root, *steps)
     both = (f"{base}.py", os.path.join(base, "__init__.py")) if steps else ()
     yield from (it for it in both if os.path.isfile(it))
 
 
 def _included(path: str, name: str, packages: Packages) -> Iterator[str]:
-    """A header that is included, and the unit of the same name in its package."""
+    """Yield a header that is included, and the unit of the same name in its package."""
     head = name.partition("/")[0]
     own = _package_of(path, packages)
     near = [packages[head]] if head in packages else []
@@ -118,7 +118,7 @@ def _package_of(path: str, packages: Packages) -> str:
 
 
 def start_of_file(*path: str) -> str:
-    """The text of a file, as far as it is read; empty for what is none."""
+    """Return the text of a file, as far as it is read; empty for what is none."""
     file = os.path.join(*path)
     try:
         with open(file if os.path.isfile(file) else os.devnull, "rb") as opened:
@@ -129,7 +129,7 @@ def start_of_file(*path: str) -> str:
 
 @lru_cache(maxsize=64)
 def sources_in(folder: str) -> tuple[str, ...]:
-    """The files of a package that can be read, but for its tests."""
+    """Return the files of a package that can be read, except its tests."""
     found: list[str] = []
     for above, folders, names in os.walk(folder):
         folders[:] = sorted(it for it in folders if it[0] != "." and it not in NOT_RUN)

@@ -38,13 +38,13 @@ class CmakeCall(NamedTuple):
     folder: str
 
     def after(self, word: str) -> str:
-        """The word behind this one; empty for none."""
+        """Return the word behind this one; empty for none."""
         return self.words[self.words.index(word) + 1] if word in self.words[:-1] else ""
 
 
 @lru_cache(maxsize=64)
 def cmake_calls(folder: str) -> tuple[CmakeCall, ...]:
-    """The calls of the CMakeLists.txt of a package, and those of the folders that it adds."""
+    """Return the calls of the CMakeLists.txt of a package, and of the folders that it adds."""
     own = package_of(os.path.join(folder, LIST))
     known = {**dict.fromkeys(_HERE, folder), **dict.fromkeys(_NAMES, own[0] if own else "")}
     return tuple(_of_file(folder, known, 0))[:MOST_CALLS]
@@ -73,7 +73,7 @@ def _of_file(folder: str, known: dict[str, str], depth: int) -> Iterator[CmakeCa
 
 
 def _set_by(call: CmakeCall) -> Iterator[tuple[str, str]]:
-    """The variables that a call sets."""
+    """Yield the variables that a call sets."""
     name, words = call.name, call.words
     if name == "set" and words:
         yield words[0], ";".join(words[1:])
@@ -112,8 +112,8 @@ class Start(NamedTuple):
 
 
 def start_of(folder: str, program: str) -> Start | None:
-    """The start of an executable, or of a component by its class, of the package in a folder; None
-    where its source is not found."""
+    """Return the start of an executable, or of a component by its class, of the package in a
+    folder; None if its source is not found."""
     if "::" in program:
         return _component(folder, program)
     calls = (_by_call(folder, it, program) for it in cmake_calls(folder))
@@ -148,7 +148,7 @@ def _entries(folder: str) -> tuple[tuple[str, str, str], ...]:
 
 
 def _strings(text: str) -> Iterator[str]:
-    """The texts of a setup.py, with its constants put in."""
+    """Yield the texts of a setup.py, with its constants filled in."""
     try:
         tree = ast.parse(text)
         sets = [it for it in ast.walk(tree) if isinstance(it, ast.Assign)]
@@ -172,7 +172,7 @@ def _said(node: ast.AST, known: dict[str, str]) -> str:
 
 
 def _by_call(folder: str, call: CmakeCall, program: str) -> Start | None:
-    """What a call says of where this program starts."""
+    """Return where this program starts by a call; None if the call is about something else."""
     if call.name.endswith("add_executable") and call.words[:1] == (program,):
         files = [*_existing(call.folder, call.words[1:])]
         files.sort(key=lambda it: _MAIN.search(start_of_file(it)) is None)
@@ -194,7 +194,7 @@ def _existing(folder: str, words: tuple[str, ...], any_end: bool = False) -> Ite
 
 
 def _component(folder: str, class_: str) -> Start | None:
-    """The class of a component, and the file that registers it."""
+    """Return the class of a component, and the file that registers it."""
     last = class_.rpartition("::")[2]
     for path in sources_in(folder):
         names = () if path.endswith(".py") else COMPONENT.findall(start_of_file(path))

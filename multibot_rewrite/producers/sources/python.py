@@ -63,7 +63,7 @@ class _Part(NamedTuple):
 
 
 def read_python(text: str, place: Place) -> Source:
-    """What a Python file declares and calls; of one that does not parse only the fault."""
+    """Return what a Python file declares and calls; for one that does not parse only the fault."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -92,8 +92,8 @@ def _imported(tree: ast.AST) -> Iterator[tuple[str, str]]:
 
 
 def _modules(tree: ast.AST) -> Iterator[str]:
-    """What is imported; of a module also its parts, which may be modules. What is beside the file
-    starts with a point."""
+    """Yield what is imported, also the parts of a module, which may be modules. What is next to the
+    file starts with a dot."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             yield from (it.name for it in node.names)
@@ -161,7 +161,7 @@ def _bound(node: ast.AST) -> Iterator[tuple[str, str]]:
 
 
 def _of_loop(node: ast.For | ast.comprehension) -> Iterator[tuple[str, str]]:
-    """The variable of a loop over a list; behind a number where it is enumerated."""
+    """Yield the variable of a loop over a list; behind a number if it is enumerated."""
     target, over = node.target, _over(node.iter)
     pair = isinstance(target, ast.Tuple) and len(target.elts) == 2
     if isinstance(target, ast.Tuple) and pair and _text(node.iter) == ENUMERATED:
@@ -222,7 +222,7 @@ def _under(part: _Part, test: ast.expr, wrong: bool) -> _Part:
 
 
 def _each(nodes: list[Any], part: _Part) -> Iterator[_Part]:
-    """What is in a list of statements; behind one that may return, it may not be reached."""
+    """Yield what is in a list of statements; behind one that may return, it may not be reached."""
     for it in nodes:
         if not isinstance(it, ast.AST):
             continue
@@ -237,7 +237,7 @@ def _each(nodes: list[Any], part: _Part) -> Iterator[_Part]:
 
 
 def _may_leave(node: ast.AST) -> bool:
-    """May a function end in this statement, without an error?"""
+    """Return whether a function may end in this statement, without an error."""
     inner = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda, ast.ClassDef)
     if isinstance(node, (ast.Return, ast.Continue, ast.Break)):
         return True
@@ -310,7 +310,7 @@ def _called_name(node: ast.Call) -> str:
 
 
 def _text(node: ast.AST) -> str:
-    """An expression as a text; what is not known is in <>."""
+    """Return an expression as a text; unknown parts are in <>."""
     return TEXTS.get(type(node), lambda _: ANY)(node)
 
 
@@ -337,7 +337,7 @@ def _sum(node: ast.BinOp) -> str:
 
 
 def _put_in(text: str, words: list[ast.expr]) -> str:
-    """A text with these words in its places; each place has one."""
+    """Return a text with these words in its places; each place has one."""
     parts = _PLACE.split(text)
     if len(parts) != len(words) + 1 or "%" in "".join(parts):
         return ANY
@@ -371,7 +371,7 @@ def _method(name: str, node: ast.Call) -> str:
 
 
 def _range(node: ast.Call) -> str:
-    """A range of a few numbers as their list."""
+    """Return a range of a few numbers as their list."""
     ends = [it.value for it in node.args if isinstance(it, ast.Constant)]
     whole = [it for it in ends if isinstance(it, int)]
     if not 0 < len(whole) == len(node.args) < 3:
@@ -381,7 +381,7 @@ def _range(node: ast.Call) -> str:
 
 
 def _list(node: ast.List | ast.Tuple) -> str:
-    """A list of texts or numbers."""
+    """Return a list of texts or numbers."""
     words = [str(it.value) for it in node.elts if isinstance(it, ast.Constant)]
     plain = 0 < len(words) == len(node.elts) <= MOST_ROUNDS and not {*"<>|{}"} & {*"".join(words)}
     return f"<list:{'|'.join(words)}>" if plain else ANY

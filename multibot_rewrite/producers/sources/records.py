@@ -16,19 +16,19 @@ ANY, OTHERWISE = "<?>", "?"
 
 
 def braced(text: str) -> str:
-    """The text inside another name in <>."""
+    """Return the text inside another name in <>."""
     return text.replace("<", "{").replace(">", "}")
 
 
 def negated(condition: str) -> str:
-    """The opposite of a condition, as ``Call`` has it."""
+    """Return the opposite of a condition, as ``Call`` has it."""
     if condition == OTHERWISE:
         return OTHERWISE
     return condition[1:] if condition[:1] == "!" else f"!{condition}"
 
 
 def parameter_in(text: str) -> str:
-    """The parameter whose value a text is, and nothing else; empty for another text."""
+    """Return the parameter of which a text is the value alone; empty for another text."""
     return text[2:-1] if text.startswith("<@") and text.count("<") == 1 else ""
 
 

@@ -86,7 +86,7 @@ class Spot(NamedTuple):
 
 
 def names_of(source: Source) -> Names:
-    """What was read, by name."""
+    """Return what was read, by name."""
     outside = (it for it in source.values if not it.function and not it.variable.startswith("@"))
     return Names(
         _by(source.classes, lambda it: it.name),
@@ -101,7 +101,7 @@ def names_of(source: Source) -> Names:
 
 
 def frame_in(it: Value) -> str:
-    """The end of a variable that is a frame of a message; empty for another one."""
+    """Return the end of a variable that is a frame of a message; empty for another one."""
     return next((end for end in FRAMES if it.variable.endswith(end)), "")
 
 
@@ -111,7 +111,7 @@ def _by(items: Iterable[Item], key: Callable[[Item], Key]) -> dict[Key, tuple[It
 
 
 def text_in(names: Names, spot: Spot, text: str, without: str = "", depth: int = 0) -> str:
-    """A text with what its names stand for; ``without`` is a parameter that is not asked."""
+    """Return a text with the values of its names; ``without`` is a parameter that is not looked up."""
     if depth > DEEPEST:
         return ANY
     return _PART.sub(lambda it: _value(names, spot, it[1], without, depth + 1), text)
@@ -148,7 +148,7 @@ def _value(names: Names, spot: Spot, name: str, without: str, depth: int) -> str
 
 
 def _candidates(names: Names, spot: Spot, name: str, depth: int) -> Iterator[tuple[Spot, str]]:
-    """What a name is set to, each with where that is read."""
+    """Yield what a name is set to, each with where that is read."""
     if name in spot.given:
         yield spot._replace(given=NO_WORDS), spot.given[name]
     inside = _rows_inside(names, spot, name)
@@ -180,7 +180,7 @@ def _candidates(names: Names, spot: Spot, name: str, depth: int) -> Iterator[tup
 
 
 def _rows_inside(names: Names, spot: Spot, name: str) -> tuple[Value, ...]:
-    """What the function sets the name to, or the function around it."""
+    """Return what the function sets the name to, or the function around it."""
     function = spot.function
     while function:
         rows = names.setting.get((spot.owner, function, name), ())
@@ -197,14 +197,14 @@ def _is_member(made: Made, name: str) -> bool:
 
 
 def _where(spot: Spot, row: Value) -> Spot:
-    """The function that sets a member; of a constructor it is known what it is given."""
+    """Return the function that sets a member; for a constructor with its known arguments."""
     makes = row.function in ("__init__", row.owner)
     given = spot.made.given.get(row.owner, NO_WORDS) if makes else NO_WORDS
     return spot._replace(owner=row.owner, function=row.function, given=given, path=row.place.path)
 
 
 def default_of(names: Names, spot: Spot, parameter: str) -> str | None:
-    """The default of a parameter; None where it is not known."""
+    """Return the default of a parameter; None if it is unknown."""
     wanted = f"@{parameter}"
     for owner in (*spot.made.owners, ""):
         rows = names.members.get((owner, wanted), ())
@@ -218,7 +218,7 @@ def default_of(names: Names, spot: Spot, parameter: str) -> str | None:
 
 
 def type_in(names: Names, spot: Spot, type_: str) -> str:
-    """A type as ROS writes it, by the names that it has where it is used; empty for another one."""
+    """Return a type as ROS writes it, by the names that it has where it is used; empty for others."""
     if type_.isidentifier():
         # A type may be given, as a name may.
         type_ = text_in(names, spot, f"<{type_}>").strip("<>") or type_

@@ -165,7 +165,7 @@ def _rest(walk: _Walk, made: Made) -> Iterator[Event]:
 
 
 def _function(walk: _Walk, spot: Spot) -> Iterator[Event]:
-    """What a function does, with what it is given."""
+    """Yield what a function does, with what it is given."""
     own = (spot.made.owners[0] if spot.made.chain else spot.path, spot.owner, spot.function)
     key = (*own, tuple(sorted(spot.given.items())), spot.asked, id(spot.made.given))
     walk.budget[0] -= 1
@@ -225,7 +225,7 @@ def _call(walk: _Walk, spot: Spot, call: Call) -> Iterator[Event]:
 
 
 def _is_new_node(names: Names, text: str) -> bool:
-    """Is it a node that the program has made?"""
+    """Return whether it is a node that the program has made."""
     if text.startswith("<Node:") or text in ("<new Node>", "<new LifecycleNode>"):
         return True
     rows = names.classes.get(text[5:-1], ()) if text.startswith("<new ") else ()
@@ -248,7 +248,7 @@ OF_TF: dict[tuple[str, ...], Callable[[Names, Spot, Call], Iterator[Event]]] = {
 
 
 def _behind_aliases(names: Names, spot: Spot, call: Call) -> tuple[str, tuple[str, ...]]:
-    """What is called or made, and its template arguments, behind other names of types."""
+    """Return what is called or made, and its template arguments, behind other names of types."""
     for it in names.aliases.get(call.name, ()):
         if it.owner in (*spot.made.owners, ""):
             return last(it.type), template_arguments(it.type)
@@ -259,7 +259,7 @@ def _behind_aliases(names: Names, spot: Spot, call: Call) -> tuple[str, tuple[st
 
 
 def _inner(type_: str) -> tuple[str, tuple[str, ...]]:
-    """The class that a type is of, behind its pointers."""
+    """Return the class of a type, behind its pointers, with its template arguments."""
     inner = template_arguments(type_)
     if last(type_) in ("shared_ptr", "unique_ptr", "optional") and inner:
         return _inner(inner[0])
@@ -267,7 +267,7 @@ def _inner(type_: str) -> tuple[str, tuple[str, ...]]:
 
 
 def _class(names: Names, name: str, place: Place) -> Class | None:
-    """The class of this name: of the same file, or the only one."""
+    """Return the class of this name: of the same file, or the only one."""
     rows = names.classes.get(name, ())
     own = [it for it in rows if it.place.path == place.path]
     return own[0] if len(own) == 1 else rows[0] if len(rows) == 1 else None
@@ -281,7 +281,7 @@ def _object(
     spot: Spot,
     named: tuple[tuple[str, str], ...] = (),
 ) -> Iterator[Event]:
-    """What making an object does."""
+    """Yield what making an object does."""
     names = walk.names
     words = tuple(text_in(names, spot, it) for it in given)
     kept = tuple((key, text_in(names, spot, it)) for key, it in named)
@@ -337,7 +337,7 @@ def _taken(
     words: tuple[str, ...],
     named: tuple[tuple[str, str], ...],
 ) -> dict[str, str]:
-    """What a function is given, by the names of its parameters, with their defaults."""
+    """Return the arguments of a function, by the names of its parameters, with their defaults."""
     rows = names.takers.get((owner, function), ())
     fitting = [it for it in rows if len(it.names) >= len(words)]
     best: Constructor | None = min(fitting, key=lambda it: len(it.names), default=None)
@@ -348,7 +348,7 @@ def _taken(
 
 
 def _is_base(spot: Spot, call: Call, name: str) -> bool:
-    """Is it the constructor of a base that its class calls?"""
+    """Return whether it is the constructor of a base that its class calls."""
     if name == "__init__":
         return True
     inside = spot.function in ("", spot.owner) and not call.on
@@ -357,7 +357,7 @@ def _is_base(spot: Spot, call: Call, name: str) -> bool:
 
 
 def _base(walk: _Walk, spot: Spot, call: Call, name: str) -> Iterator[Event]:
-    """The constructor of a base, or a node that is made."""
+    """Yield what the constructor of a base does, or a node that is made."""
     names, made = walk.names, spot.made
     words = tuple(text_in(names, spot, it) for it in call.given)
     if name == "__init__" and call.on != "<new super>" and words[:1] == ("<this>",):
@@ -387,7 +387,7 @@ def _base(walk: _Walk, spot: Spot, call: Call, name: str) -> Iterator[Event]:
 
 
 def _above(spot: Spot, call: Call, name: str) -> Class | None:
-    """The base whose constructor is called, if it is here."""
+    """Return the base whose constructor is called, if its source is here."""
     chain, owners = spot.made.chain, spot.made.owners
     if name != "__init__":
         return next((it for it in chain if it.name == name and name != spot.owner), None)
@@ -440,7 +440,7 @@ def _type(names: Names, spot: Spot, api: Api, types: tuple[str, ...]) -> str:
 
 
 def _followed(walk: _Walk, spot: Spot, call: Call, name: str, on: str) -> list[Spot]:
-    """The functions that a call runs, if their text is here."""
+    """Return the functions that a call runs, if their text is here."""
     names = walk.names
     words = tuple(text_in(names, spot, it) for it in call.given)
     named = tuple((key, text_in(names, spot, it)) for key, it in call.named)

@@ -59,27 +59,27 @@ class TfMessage(NamedTuple):
 
 
 def read_tf(data: bytes) -> TfMessage | None:
-    """The message in these bytes, or None if it is cut short or no plain CDR."""
+    """Return the message in these bytes, or None if it is cut short or no plain CDR."""
     return _read(data, lambda it: TfMessage(tuple(_stamped(it) for _ in range(it.number()))), None)
 
 
 def read_transform(data: bytes) -> TfMessage | None:
-    """The same for a single TransformStamped."""
+    """Return the message with a single TransformStamped in these bytes, or None as above."""
     return _read(data, lambda it: TfMessage((_stamped(it),)), None)
 
 
 def read_header_frame(data: bytes) -> str | None:
-    """The ``header.frame_id`` of a message that begins with a header, or None as above."""
+    """Return the ``header.frame_id`` of a message that begins with a header, or None as above."""
     return _read(data, lambda it: _texts(it, 1)[0], None)
 
 
 def read_text(data: bytes) -> str | None:
-    """The text of a ``std_msgs/msg/String``, or None as above."""
+    """Return the text of a ``std_msgs/msg/String``, or None as above."""
     return _read(data, lambda it: it.text(), None)
 
 
 def read_child_frame(data: bytes) -> str | None:
-    """The ``child_frame_id`` of an Odometry, which comes after its header, or None as above."""
+    """Return the ``child_frame_id`` of an Odometry, which comes after its header, or None as above."""
     return _read(data, lambda it: _texts(it, 2)[1], None)
 
 
@@ -89,7 +89,7 @@ def read_pose(data: bytes, texts: int) -> Transform | None:
 
 
 def read_joint_names(data: bytes) -> tuple[str, ...]:
-    """The names in a JointState or JointTrajectory, which come after its header; none as above."""
+    """Return the names in a JointState or JointTrajectory, after its header; empty as above."""
 
     def names(reader: _Reader) -> tuple[str, ...]:
         _texts(reader, 1)
@@ -109,13 +109,13 @@ def _read(data: bytes, read: Callable[[_Reader], _T], without: _T) -> _T:
 
 
 def _texts(reader: _Reader, many: int) -> list[str]:
-    """The first texts after the stamp."""
+    """Return the first texts after the stamp."""
     reader.skip(_STAMP)
     return [reader.text() for _ in range(many)]
 
 
 def read_stamp(data: bytes) -> float | None:
-    """The ``header.stamp`` of such a message in seconds, or None as above."""
+    """Return the ``header.stamp`` of such a message in seconds, or None as above."""
     mark = _ENDS.get(data[:2])
     if mark is None or len(data) < _HEADER + _STAMP:
         return None
@@ -146,7 +146,7 @@ class _Reader:
         self._at += -self._at % size
 
     def skip(self, size: int) -> None:
-        """Raises IndexError behind the end."""
+        """Skip so many bytes; raises IndexError behind the end."""
         self._at += size
         if self._at > len(self._data):
             raise IndexError
@@ -158,14 +158,14 @@ class _Reader:
         return values
 
     def number(self) -> int:
-        """The next uint32; raises struct.error behind the end."""
+        """Return the next uint32; raises struct.error behind the end."""
         self.align(4)
         (value,) = self._number.unpack_from(self._data, self._at)
         self._at += 4
         return int(value)
 
     def text(self) -> str:
-        """The next string; its length counts the zero at its end."""
+        """Return the next string; its length counts the zero at its end."""
         length, start = self.number(), self._at
         self.skip(length)
         return self._data[start : self._at].removesuffix(b"\x00").decode()

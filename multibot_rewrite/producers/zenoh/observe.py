@@ -47,16 +47,14 @@ class Router(NamedTuple):
     domain: int
 
     def key(self) -> str:
-        """What the tokens of the domain match: rmw_zenoh ``subscription_token``."""
+        """Return what the tokens of the domain match: rmw_zenoh ``subscription_token``."""
         return f"{SPACE}/{self.domain}/**"
 
 
 def look(request: Request, router: Router) -> System:
-    """A snapshot of what the router knows now, or once all of ``request.expected`` is there.
-
-    Raises Unusable without zenoh, InputError for a bad configuration. Where no router answers the
-    snapshot is empty and says so.
-    """
+    """Return a snapshot of what the router knows now, or once all of ``request.expected`` exists.
+    Raises Unusable without zenoh, InputError for a bad configuration. If no router answers, the
+    snapshot is empty and says so."""
     started = time.monotonic()
     try:
         with opened(router.address, request.timeout) as session:
@@ -123,7 +121,7 @@ def _read(keys: Iterable[str]) -> _Seen:
 
 
 def _names(found: Iterable[Token]) -> set[str]:
-    """The nodes, and what they have ends of."""
+    """Return the nodes, and the names of their ends."""
     return {name for it in found for name in (it.node, it.end.name if it.end else it.node)}
 
 
@@ -266,7 +264,7 @@ class ZenohTf:
         return self._session.subscribe(key, latched, received)
 
     def caveats(self) -> Iterator[Caveat]:
-        """What was not heard, or is no TFMessage."""
+        """Yield a limitation for what was not heard, or is no TFMessage."""
         if self._unread:
             topics = shorten(sorted(self._unread), SEVERAL)
             yield Caveat("frames-not-read", True, f"messages on {topics} are no TFMessage in CDR")

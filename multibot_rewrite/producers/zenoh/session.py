@@ -48,7 +48,7 @@ class RouterSession(NamedTuple):
         return bool([*info.routers_zid(), *info.peers_zid()])
 
     def tokens(self, key: str) -> tuple[list[str], bool]:
-        """The key expressions of all tokens that match, and whether the answer is complete."""
+        """Return the key expressions of all tokens that match, and whether the answer is complete."""
         found, complete = [], True
         for reply in self.session.liveliness().get(key, timeout=ANSWER_SECONDS):
             if reply.ok is None:
@@ -58,7 +58,7 @@ class RouterSession(NamedTuple):
         return found, complete
 
     def follow_tokens(self, key: str, changed: Callable[[str, bool], None]) -> Callable[[], None]:
-        """``changed`` gets each token that comes or goes; returns what ends it."""
+        """Call ``changed`` with each token that comes or goes; returns what ends it."""
 
         def arrived(sample: Any) -> None:
             there = sample.kind == self.zenoh.SampleKind.PUT
@@ -98,7 +98,7 @@ class RouterSession(NamedTuple):
 
 @contextmanager
 def opened(router: str, seconds: float) -> Iterator[RouterSession]:
-    """A session as a client of the router; raises Unusable, NoRouter, InputError."""
+    """Yield a session as a client of the router; raises Unusable, NoRouter, InputError."""
     zenoh = _zenoh()
     config = _config(zenoh, router, min(seconds, CONNECT_SECONDS))
     declared: list[Any] = []
@@ -123,7 +123,7 @@ def _zenoh() -> Any:
 
 
 def _config(zenoh: Any, router: str, seconds: float) -> Any:
-    """The configuration of a client: of its own, or as the file has it."""
+    """Return the configuration of a client: its own, or that of the file."""
     named = router.endswith((".json5", ".json"))
     try:
         config = zenoh.Config.from_file(router) if named else zenoh.Config()
@@ -141,5 +141,5 @@ def _config(zenoh: Any, router: str, seconds: float) -> Any:
 
 
 def _reason(error: Exception) -> str:
-    """What zenoh says, without the source locations behind it."""
+    """Return what zenoh says, without the source locations behind it."""
     return str(error).partition(" at /")[0].strip().rstrip(".!")

@@ -68,7 +68,7 @@ class _Malformed(Exception):
 
 
 def read_token(key: str) -> Token | None:
-    """The token with this key expression; None for what rmw_zenoh would not take either."""
+    """Return the token with this key expression; None for what rmw_zenoh would not take either."""
     try:
         parts = key.split("/")
         if len(parts) < _NODE_PARTS or parts[0] != SPACE or "" in parts:
@@ -113,11 +113,9 @@ def ros_type(name: str) -> str:
 # A fleet has thousands of endpoints and a handful of profiles.
 @lru_cache(maxsize=256)
 def read_qos(text: str) -> Qos:
-    """The QoS that a token ends in.
-
-    It is ``reliability:durability:history,depth:deadline:lifespan:liveliness,lease``; the times are
-    ``seconds,nanoseconds``.
-    """
+    """Return the QoS that a token ends in. It is
+    ``reliability:durability:history,depth:deadline:lifespan:liveliness,lease``; the times are
+    ``seconds,nanoseconds``."""
     parts = [part.split(",") for part in text.split(":")]
     if [len(part) for part in parts[2:6]] != [2, 2, 2, 3]:
         raise _Malformed
@@ -168,7 +166,7 @@ def nodes(tokens: Iterable[Token]) -> list[Node]:
 
 
 def endpoints(tokens: Iterable[Token]) -> list[End]:
-    """The endpoints in order, with the actions that topics of theirs belong to."""
+    """Return the endpoints in order, with the actions that topics of theirs belong to."""
     ends = [it.end for it in tokens if it.end]
     for end in [it for it in ends if it.kind == TOPIC]:
         if end.name.endswith(_FEEDBACK) and end.type.endswith(_FEEDBACK_TYPE):

@@ -100,7 +100,7 @@ def link_and_joint_alike(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB309", "names-differ-by-case", NOTE)
 def names_differ_by_case(subject: Subject) -> Iterator[Problem]:
-    """The second of each pair."""
+    """Yield a problem for the second name of each pair that differs only by case."""
     links = {it.name: it.element for it in subject.robot.links}
     joints = {it.name: it.element for it in subject.robot.joints}
     for kind, parts in (("link", links), ("joint", joints)):
@@ -116,7 +116,7 @@ def names_differ_by_case(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB310", "name-not-ascii", NOTE)
 def name_not_ascii(subject: Subject) -> Iterator[Problem]:
-    """The message names the letter, which may look like another one."""
+    """Yield a problem for each name with a letter outside ASCII; its code is in the message."""
     for kind, name, element in named(subject):
         if not name.isascii():
             letter = next(it for it in name if not it.isascii())
@@ -142,7 +142,7 @@ def named(subject: Subject) -> list[tuple[str, str, _Element]]:
 
 
 def name_of_robot(subject: Subject) -> str | None:
-    """The robot's own name; None where it has none, or a substitution."""
+    """Return the robot's own name; None where it has none, or a substitution."""
     root = subject.document.root
     name = root.get("name") if root.tag == "robot" else None
     return None if name is None or SUBSTITUTION in name else name
@@ -212,7 +212,7 @@ def invalid_ros_name(subject: Subject) -> Iterator[Problem]:
 
 
 def _ros_names(claim: Claim) -> list[str]:
-    """The names in a value: itself, or both sides of a remap rule."""
+    """Return the names in a value: the value itself, or both sides of a remap rule."""
     sides = [claim.value] if claim.site.form == "whole" else []
     if claim.site.form in ("remap", "argument"):
         rule = split_remap(claim.value)
@@ -241,5 +241,5 @@ def odd_interface(subject: Subject) -> Iterator[Problem]:
 
 
 def _is_odd(tag: str, words: Collection[str]) -> bool:
-    """Is white space inside a name a slip, not the way a driver calls its registers?"""
+    """Return whether white space inside a name is a slip, not the way a driver names its registers."""
     return len(words) > 1 and (not tag.endswith("_interface") or not STANDARD.isdisjoint(words))

@@ -38,7 +38,7 @@ Audit = Callable[[Inventory, Tree], Iterator[Problem]]
 
 
 def _audit(audit: Audit, subject: Subject) -> Iterator[Problem]:
-    """What an audit of the vocabulary finds in a document."""
+    """Yield what a check of the plugin definitions finds in a document."""
     return audit(subject.inventory, subject.tree)
 
 
@@ -48,7 +48,7 @@ def _unknown_parts(subject: Subject) -> tuple[Problem, ...]:
 
 
 def _unknown(code: str, subject: Subject) -> Iterator[Problem]:
-    """What runs in a document and is not known, of one code."""
+    """Yield the unknown plugins and hardware of a document that have this code."""
     return (it for it in _unknown_parts(subject) if it.code == code)
 
 

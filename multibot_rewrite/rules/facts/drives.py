@@ -108,7 +108,7 @@ class Drive(NamedTuple):
 
 @memoized
 def drives(subject: Subject) -> list[Drive]:
-    """The drives of a robot that name wheels on both sides."""
+    """Return the drives of a robot that name wheels on both sides."""
     found = (
         _drive(subject, plugin, TAGS[name])
         for plugin, section in subject.inventory.served
@@ -162,7 +162,7 @@ def _wheels(
 
 
 def wheel_of(subject: Subject, name: str, named: object) -> Wheel | None:
-    """The wheel on a joint; None where it is not known where that is, or about which axis it turns."""
+    """Return the wheel on a joint; None if its place or its axis is unknown."""
     joint = subject.robot.joint.get(name)
     axis = None if joint is None else axis_of(joint)
     pose = None if joint is None else link_poses(subject).get(joint.child)
@@ -172,7 +172,7 @@ def wheel_of(subject: Subject, name: str, named: object) -> Wheel | None:
 
 
 def size_of(drive: Drive, name: str, default: float) -> float | None:
-    """A size as the plugin reads it; None where it is no number."""
+    """Return a size as the plugin reads it; None where it is no number."""
     element = drive.sizes[name]
     return default if element is None else number(text_of(element))
 
@@ -185,7 +185,7 @@ class Measured(NamedTuple):
     best: float
 
     def holds(self, value: float) -> bool:
-        """Is a size one of these?"""
+        """Return whether a size is one of these."""
         return self.low <= value <= self.high
 
 
@@ -208,7 +208,7 @@ def separation(robot: Robot, left: Wheel, right: Wheel, several: bool) -> Measur
 
 
 def radius(robot: Robot, wheels: Iterable[Wheel]) -> Measured | None:
-    """The radius of round shapes of all wheels; None where none has a round shape."""
+    """Return the radius of the round shapes of all wheels; None where none has one."""
     found = [it for wheel in wheels for it in radii(robot, wheel)]
     if not found:
         return None
@@ -255,7 +255,7 @@ def rolling_faults(robot: Robot, left: Wheel, right: Wheel) -> Iterator[str]:
 
 
 def lies_flat(robot: Robot, wheel: Wheel) -> bool:
-    """Is a wheel that touches the ground nothing but cylinders across its axis?"""
+    """Return whether a wheel that touches the ground is nothing but cylinders across its axis."""
     link = robot.link.get(wheel.joint.child)
     shapes = list(shapes_of(link.element, "collision")) if link else []
     across = [
@@ -267,8 +267,8 @@ def lies_flat(robot: Robot, wheel: Wheel) -> bool:
 
 
 def radii(robot: Robot, wheel: Wheel) -> list[float]:
-    """The radii of the round shapes that turn with a wheel about its axis: of those that touch the
-    ground, else of those that are seen."""
+    """Return the radii of round shapes that turn with a wheel about its axis, of its collisions.
+    Without collisions they are those of its visuals."""
     for tag in ("collision", "visual"):
         found = []
         for shape, pose in _shapes(robot, wheel, tag):
@@ -282,7 +282,7 @@ def radii(robot: Robot, wheel: Wheel) -> list[float]:
 
 
 def _shapes(robot: Robot, wheel: Wheel, tag: str) -> Iterator[tuple[_Element, Pose]]:
-    """The shapes of all that turns with a wheel, each at its place."""
+    """Yield the shapes of all that turns with a wheel, each with its pose."""
     # The links fixed to a wheel, itself first, with their poses in the root.
     found = [(wheel.joint.child, wheel.pose)]
     for name, pose in found:  # grows
@@ -299,7 +299,7 @@ def _shapes(robot: Robot, wheel: Wheel, tag: str) -> Iterator[tuple[_Element, Po
 
 
 def middles(robot: Robot, wheel: Wheel) -> list[Vector]:
-    """Where a wheel may be said to stand: at its joint, in the middle of its shapes."""
+    """Return where a wheel may be: at its joint, in the middle of its shapes."""
     found = [wheel.pose.at]
     for tag in ("collision", "visual"):
         extents = (extent_of(shape, pose) for shape, pose in _shapes(robot, wheel, tag))

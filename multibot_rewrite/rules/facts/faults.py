@@ -15,13 +15,13 @@ from multibot_rewrite.rules.subject import Subject
 
 
 def faults(kind: str, subject: Subject) -> Iterator[Problem]:
-    """The faults of one kind, which a rule reports."""
+    """Yield the faults of one kind, which a rule reports."""
     yield from _by_kind(subject).get(kind, ())
 
 
 @memoized
 def urdf_faults(subject: Subject) -> tuple[Problem, ...]:
-    """The faults of a URDF; the source of a xacro file has none yet."""
+    """Return the faults of a URDF; empty for the source of a xacro file."""
     return read_faults(subject.document) if subject.format == URDF else ()
 
 
@@ -40,7 +40,7 @@ def _of_srdf(subject: Subject) -> Iterable[Problem]:
 
 
 def _in_blocks(subject: Subject) -> Iterable[Problem]:
-    """What is wrong below ``<gazebo>``, or in the models of an SDF file."""
+    """Return the faults below ``<gazebo>``, or in the models of an SDF file."""
     root, release = subject.document.root, subject.settings.distro
     blocks = subject.elements.tops("gazebo")
     if not blocks and root.tag != "sdf":
@@ -52,7 +52,7 @@ def _in_blocks(subject: Subject) -> Iterable[Problem]:
 
 
 def _of_parameters(subject: Subject) -> Iterator[Problem]:
-    """What is wrong with the parameters of plugins and of hardware."""
+    """Yield the faults in the parameters of plugins and of hardware."""
     vocabulary, systems = subject.tree.vocabulary, subject.elements.tops("ros2_control")
     plugins = simulator_plugins(subject)
     if not plugins and not systems:

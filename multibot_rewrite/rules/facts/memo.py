@@ -27,7 +27,7 @@ _Made = TypeVar("_Made")
 
 
 def memoized(make: Callable[[Subject], _Made]) -> Callable[[Subject], _Made]:
-    """Decorates a function of a subject: it runs once for each, ``subject.memo`` has the result."""
+    """Decorate a function of a subject: it runs once for each, ``subject.memo`` keeps the result."""
 
     @wraps(make)
     def look_up(subject: Subject) -> _Made:
@@ -49,7 +49,7 @@ def link_poses(subject: Subject) -> Mapping[str, Pose]:
 
 @memoized
 def driven_joints(subject: Subject) -> frozenset[str]:
-    """The joints that ``<ros2_control>``, transmissions and plugins name."""
+    """Return the joints that ``<ros2_control>``, transmissions and plugins name."""
     uses = (it for it in subject.inventory.claims if it.site.role == "uses")
     joints = (it for it in uses if it.site.whole_value_kind == "joint")
     return frozenset(it.value for it in joints if it.site.section != "element joint")
@@ -79,7 +79,7 @@ def parts(subject: Subject) -> list[LinkPart]:
 
 
 def _first(geometry: _Element) -> _Element | None:
-    """The first element in it. Mostly there is no comment before it, and that is quick to see."""
+    """Return the first element inside; quick where no comment is before it."""
     if not len(geometry):
         return None
     first = geometry[0]
@@ -97,14 +97,14 @@ def level_of_absence(subject: Subject) -> str:
 
 
 def lacking(subject: Subject, found: Iterable[Problem]) -> Iterator[Problem]:
-    """What a description lacks, no louder than that it does may be told."""
+    """Yield the problems of what a description lacks, at most at the level that its kind allows."""
     level = level_of_absence(subject)
     for it in found:
         yield it if level == ERROR or (it.level and level == WARNING) else it._replace(level=level)
 
 
 def since_jazzy(subject: Subject) -> str:
-    """The level of what ros2_control refuses since Jazzy: in Humble it goes on without."""
+    """Return the level of what ros2_control refuses since Jazzy: a warning for Humble, else empty."""
     return WARNING if subject.settings.distro == OF_OLD else ""
 
 
@@ -127,7 +127,7 @@ class Sensor(NamedTuple):
 
 @memoized
 def sensors(subject: Subject) -> list[Sensor]:
-    """The sensors in the blocks of declared links whose poses are numbers in the link's frame."""
+    """Return the sensors in blocks of declared links whose poses are numbers in the link's frame."""
     found = []
     for element in subject.elements.every("sensor"):
         block = element.getparent()
@@ -144,5 +144,5 @@ def sensors(subject: Subject) -> list[Sensor]:
 
 
 def number_at(element: _Element, path: str) -> float | None:
-    """The number at a path; None where there is none."""
+    """Return the number at a path; None where there is none."""
     return number(text_at(element, path) or None)

@@ -2,9 +2,8 @@
 """What a description has for a simulator: hardware, plugins that load it, plugins that drive joints.
 
 Sources: gz_hardware_plugins.xml and gz_system.cpp:326 of gz_ros2_control (jazzy), the same of
-ign_ros2_control (humble), gazebo_hardware_plugins.xml and gazebo_system.cpp of gazebo_ros2_control; for
-the plugins the vocabulary.
-"""
+ign_ros2_control (humble), gazebo_hardware_plugins.xml and gazebo_system.cpp of gazebo_ros2_control;
+for the plugins the plugin definitions."""
 
 from __future__ import annotations
 
@@ -47,7 +46,7 @@ SIMULATORS = (GAZEBO, CLASSIC)
 
 @memoized
 def simulator_plugins(subject: Subject) -> list[_Element]:
-    """The plugins of Gazebo: in blocks of a robot that it reads, or anywhere in an SDF."""
+    """Return the plugins of Gazebo: in blocks of a robot that it reads, or anywhere in an SDF."""
     if subject.document.root.tag == "sdf":
         # A model may have its <ros2_control> in it, where <plugin> is a class.
         plugins = subject.elements.every("plugin")
@@ -60,13 +59,13 @@ def simulator_plugins(subject: Subject) -> list[_Element]:
 
 @memoized
 def manager_plugins(subject: Subject) -> list[_Element]:
-    """The plugins that make a controller manager in a simulator, those of vendors too."""
+    """Return the plugins that make a controller manager in a simulator, those of vendors too."""
     return [it for it in simulator_plugins(subject) if "ros2_control" in library_of(it)]
 
 
 @memoized
 def simulated(subject: Subject) -> list[tuple[_Element, _Element, Simulator]]:
-    """The systems of simulators: the element, the ``<plugin>`` of its hardware, which simulator."""
+    """Return the simulated systems of ros2_control: element, the hardware's ``<plugin>``, simulator."""
     return [
         (system, it, simulator)
         for system in subject.elements.tops("ros2_control")
@@ -78,7 +77,7 @@ def simulated(subject: Subject) -> list[tuple[_Element, _Element, Simulator]]:
 
 @memoized
 def commanded(subject: Subject) -> frozenset[str]:
-    """The joints that a simulator commands: by its hardware, or a plugin that drives."""
+    """Return the joints that a simulator commands: by its hardware, or by a plugin that drives."""
     held = (
         it.get("name", "")
         for system, _, _ in simulated(subject)
@@ -89,25 +88,25 @@ def commanded(subject: Subject) -> frozenset[str]:
 
 
 def driving(subject: Subject) -> Iterator[tuple[_Element, _Element]]:
-    """The parameters that name a joint which a plugin commands, and the plugin."""
+    """Yield the parameters that name a joint which a plugin commands, with the plugin."""
     for plugin in simulator_plugins(subject):
         for tag in DRIVES.get(library_of(plugin), ()):
             yield from ((it, plugin) for it in plugin.iterchildren(tag) if text_of(it))
 
 
 def simulator_of(plugin: _Element) -> Simulator:
-    """The simulator that loads a plugin of ``DRIVES``."""
+    """Return the simulator that loads a plugin of ``DRIVES``."""
     return GAZEBO if library_of(plugin).startswith("gz-sim-") else CLASSIC
 
 
 def library_of(plugin: _Element) -> str:
-    """The library of a plugin without version and ending."""
+    """Return the library of a plugin without version and ending."""
     return library_key(plugin.get("filename", "").strip().rpartition("/")[2])
 
 
 def needed_systems(models: Iterable[tuple[str, _Element]]) -> Iterator[tuple[str, str]]:
-    """The systems that a world of Gazebo needs for models, by name and description: each once, with
-    the reason. Source: user_commands of gz-sim8 spawns entities."""
+    """Yield the systems that a Gazebo world needs for these models, each once, with the reason.
+    Source: user_commands of gz-sim8 spawns entities."""
     every = list(models)
     if every:
         yield "user-commands", f"{every[0][0]} is not spawned"

@@ -29,7 +29,7 @@ _OF_ARGUMENT = lazy_compile(
 
 
 def claim_is_fixed(subject: Subject, claim: Claim) -> bool:
-    """Is a claimed value the same for every robot, whatever xacro is given?"""
+    """Return whether a claimed value is the same for every robot, whatever xacro is given."""
     return is_fixed(subject, claim.start, claim.attribute)
 
 
@@ -41,11 +41,9 @@ def starts_of(subject: Subject, elements: Collection[_Element]) -> Mapping[_Elem
 
 
 def is_fixed(subject: Subject, start: int, attribute: str, *, constants: bool = True) -> bool:
-    """The same for a value by the start of its element's tag; ``attribute`` is empty for text.
-
-    False where that cannot be known. With ``constants`` $(find ...) and the like, which are the same
-    for every robot on a machine, count as text.
-    """
+    """Return whether no caller of xacro can set another value. ``start`` is that of the element's
+    tag; ``attribute`` is empty for text. False where that cannot be known. With ``constants``
+    $(find ...) and the like count as text."""
     if not subject.origins:
         return True
     origin = subject.origins.of(bisect_left(subject.document.starts, start))
@@ -62,7 +60,7 @@ def is_fixed(subject: Subject, start: int, attribute: str, *, constants: bool = 
 
 
 def is_argument(sources: Mapping[str, bytes], origin: WrittenAt, attribute: str) -> bool:
-    """Is a value in part what a caller of xacro gives: $(arg ...), or a property that is made of it?"""
+    """Return whether a value comes in part from a caller of xacro, as $(arg ...)."""
     raw = _raw(sources[origin.file], origin.start, attribute) or b""
     for call in origin.calls:
         if b"$(arg" in raw:
@@ -86,7 +84,7 @@ def _raw(source: bytes, start: int, attribute: str) -> bytes | None:
 
 
 def _given(raw: bytes, call: Mapping[bytes, bytes]) -> bytes | None:
-    """What a macro's call passes for the names in ``raw``; None if it does not pass one of them."""
+    """Return what a macro's call passes for the names in ``raw``; None if it does not pass one."""
     if b"$(" in raw:
         return None
     names = _names_in(raw)

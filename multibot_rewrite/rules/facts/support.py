@@ -22,7 +22,7 @@ LEVEL = 0.05
 
 
 def ground_of(subject: Subject) -> float | None:
-    """The height on which the wheels of all drives stand; None where it is unknown."""
+    """Return the height of the ground below the wheels of all drives; None where it is unknown."""
     heights = [
         wheel.pose.at[2] - max(found)
         for drive in drives(subject)
@@ -68,7 +68,7 @@ def _touching(shape: _Element, pose: Pose, height: float) -> Iterator[Point]:
 
 
 def hull(points: Sequence[Point]) -> list[Point]:
-    """The corners of the smallest convex area around points, counter-clockwise."""
+    """Return the corners of the smallest convex area around points, counter-clockwise."""
     ordered = sorted(set(points))
     lower, upper = _chain(ordered), _chain(ordered[::-1])
     return lower[:-1] + upper[:-1]
@@ -89,6 +89,6 @@ def side(start: Point, end: Point, point: Point) -> float:
 
 
 def beyond(corners: Sequence[Point], point: Point) -> float:
-    """How far a point is outside of a convex area, or beside a line; below 0 inside of it."""
+    """Return how far a point is outside of a convex area, or from a line; below 0 inside of it."""
     edges = zip(corners, [*corners[1:], corners[0]], strict=True)
     return max(-side(a, b, point) / hypot(b[0] - a[0], b[1] - a[1]) for a, b in edges)

@@ -90,7 +90,7 @@ def _square(side: Any, value: Any) -> str:
 
 
 def _polygon(_: Any, value: Any) -> str:
-    """What nav2_util parseVVF reads, with three points."""
+    """Return what a footprint has to be and is not, as nav2_util parseVVF reads it; empty if right."""
     if not isinstance(value, str) or value in ("", "[]"):
         return ""
     points = polygon_of(value)
@@ -100,7 +100,7 @@ def _polygon(_: Any, value: Any) -> str:
 
 
 def polygon_of(text: str) -> list[tuple[float, float]] | None:
-    """The points of a footprint; None for a text that is none."""
+    """Return the points of a footprint; None for a text that is none."""
     inner = text.strip()
     if not (inner.startswith("[") and inner.endswith("]") and inner.count("[") == inner.count("]")):
         return None
@@ -139,5 +139,5 @@ _SHAPES: dict[str, Callable[[Any, Any], str]] = {
 
 
 def is_number(value: Any) -> TypeGuard[float]:
-    """Is it a number, and no truth value?"""
+    """Return whether it is a number, and no truth value."""
     return isinstance(value, int | float) and not isinstance(value, bool)

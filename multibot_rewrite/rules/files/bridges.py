@@ -68,7 +68,7 @@ def not_converted(file: NamedFile) -> Iterator[Finding]:
     known: Mapping[str, list[str]] = bridge_data()["pairs"]
     for node in _rows(file):
         ros, gz = (text_in(row_of(node), key) for key in TYPES)
-        bare, belongs = _bare(gz), known.get(ros, ())
+        bare, belongs = _without_package(gz), known.get(ros, ())
         others = [it for it, types in known.items() if bare in types]
         cased = (it for it in known if it.lower() == ros.lower())
         alike = "" if ros in known else next(cased, nearest(ros, known, SLIP))
@@ -142,7 +142,7 @@ def no_gz_topic(file: NamedFile) -> Iterator[Finding]:
 
 def _of_row(node: yaml.Node, row: Row, topics: Mapping[str, GzTopic]) -> Iterator[Finding]:
     topic = f"/{str(node.value).lstrip('/')}"
-    way, type_ = text_in(row, "direction") or _BOTH_WAYS, _bare(text_in(row, TYPES[1]))
+    way, type_ = text_in(row, "direction") or _BOTH_WAYS, _without_package(text_in(row, TYPES[1]))
     own = topics.get(topic)
     if own is None:
         incoming = [
@@ -150,7 +150,7 @@ def _of_row(node: yaml.Node, row: Row, topics: Mapping[str, GzTopic]) -> Iterato
             for it, its in topics.items()
             if its.direction == _IN == way and it.startswith(_WORLD) == topic.startswith(_WORLD)
         ]
-        alike = [it for it in incoming if _bare(topics[it].type) == type_]
+        alike = [it for it in incoming if _without_package(topics[it].type) == type_]
         near = alike[0] if len(alike) == 1 else nearest(topic, alike)
         hint = did_you_mean_at(near, topics[near].place) if near else "name one that is there"
         if alike:
@@ -158,7 +158,7 @@ def _of_row(node: yaml.Node, row: Row, topics: Mapping[str, GzTopic]) -> Iterato
     elif own.direction and way not in (own.direction, _BOTH_WAYS):
         message = f"gz topic {topic} is in the other direction in the description"
         yield remark_at(node, message, _write(own.direction, own))
-    elif type_ and own.type and type_ != _bare(own.type):
+    elif type_ and own.type and type_ != _without_package(own.type):
         message = f"gz topic {topic} has another type in the description"
         yield remark_at(node, message, _write(own.type, own))
 
@@ -167,6 +167,6 @@ def _write(word: str, topic: GzTopic) -> str:
     return f"write {word}" + (f", see {topic.place}" if topic.place != NOWHERE else "")
 
 
-def _bare(type_: str) -> str:
-    """The type without its package, which had another name before Garden."""
+def _without_package(type_: str) -> str:
+    """Return the message type without its package, which had another name before Garden."""
     return type_.rpartition("msgs.")[2]

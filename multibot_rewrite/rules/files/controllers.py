@@ -28,9 +28,9 @@ from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import ACTION, SERVES, Place
 
 
-@rule("MB857", "undeclared-controller-beside", WARNING, formats=(MOVEIT, PARAMS))
+@rule("MB857", "undeclared-controller-in-file", WARNING, formats=(MOVEIT, PARAMS))
 def undeclared_controller(file: NamedFile) -> Iterator[Finding]:
-    """Controllers of ``moveit_simple_controller_manager``; nothing where no file declares any."""
+    """Yield the controllers of ``moveit_simple_controller_manager`` that none of the files declares."""
     found = [*managers(file.document.root)] if file.document else []
     given = beside(file).given if found else ()
     declared = {it.node.rpartition("/")[2]: it for it in given if it.host_name}
@@ -76,7 +76,7 @@ def _of_one(
 def _action(
     key: yaml.ScalarNode, body: yaml.Node, controller: Run, facts: NodeFacts
 ) -> Iterator[Finding]:
-    """The action that MoveIt calls, if the controller serves others alone."""
+    """Yield a finding if MoveIt calls an action that the controller does not serve."""
     ends = (it for it in facts.endpoints if (it.kind, it.role) == (ACTION, SERVES))
     served = {it.name.removeprefix("~/"): it.type.rpartition("/")[2] for it in ends}
     row = {it.value: value for it, value in pairs(body) if isinstance(value, yaml.ScalarNode)}

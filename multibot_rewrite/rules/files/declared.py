@@ -91,7 +91,7 @@ def _renamed(name: str) -> str:
 
 
 def _beside(above: str, paths: Sequence[str]) -> Iterator[str]:
-    """What may be in a group by a pattern: ``joint_limits.<joint>.max_velocity``."""
+    """Yield the names that a pattern (``joint_limits.<joint>.max_velocity``) allows in a group."""
     for path in paths:
         pattern, _, last = path.rpartition(".")
         stand = stands_for(pattern, above) if "<" in pattern and "<" not in last else {}
@@ -100,7 +100,7 @@ def _beside(above: str, paths: Sequence[str]) -> Iterator[str]:
 
 
 def _is_known(section: Section, it: Setting) -> bool:
-    """Has every node such a parameter, or does it hold names?"""
+    """Return whether every node has such a parameter, or it holds names."""
     of_node = section.node is not None and bool(params_at(section.node, it.name, it.key))
     return of_node or _EVERYWHERE.fullmatch(it.name) is not None
 
@@ -108,7 +108,7 @@ def _is_known(section: Section, it: Setting) -> bool:
 def _meant(
     name: str, known: Sequence[str], groups: Mapping[str, Mapping[str, str]], guesses: Guesses
 ) -> str:
-    """The parameter in the same place, or the same one in another, that differs by little."""
+    """Return the known parameter that was meant: a near name in its place, or the same elsewhere."""
     above, _, last = name.rpartition(".")
     beside = groups.get(above, {})
     if RENAMED.get(last) in beside:
@@ -118,7 +118,7 @@ def _meant(
 
 
 def _cut(name: str, known: Iterable[str]) -> str:
-    """The one name that goes on where this one ends: ``has_jerk`` of ``has_jerk_limits``."""
+    """Return the one known name that continues this one, as ``has_jerk_limits`` does ``has_jerk``."""
     longer = [it for it in known if "_" in name and it.startswith(f"{name}_")]
     return longer[0] if len(longer) == 1 else ""
 
@@ -136,8 +136,8 @@ def wrong_types(file: NamedFile) -> Iterator[Finding]:
 
 
 def _is_refused(file: NamedFile, section: Section, it: Setting, known: Sequence[Declared]) -> bool:
-    """Does every release refuse the value, and is the node's package none of the repository's own? What
-    is for a release before Humble is another matter, and what no node gets: a costmap's parameters
+    """Return whether every release refuses a value that its node gets. It is False for a package of
+    the same repository, for values of a release before Humble, and for a costmap's parameters
     without the namespace that its code gives it."""
     package, around = section.node.package if section.node else "", sources_around(file.file)
     reached = package != "nav2_costmap_2d" or "/" in section.title.partition(":")[0]
@@ -150,7 +150,7 @@ def _is_refused(file: NamedFile, section: Section, it: Setting, known: Sequence[
 
 
 def _wrong_type(it: Setting, known: Sequence[Declared]) -> str:
-    """The type that a value has to be and is not."""
+    """Return the type that a value must have and has not; empty if it is right or unknown."""
     if it.value is None or it.value == [] or _is_filled_in(it.value):
         return ""
     read = [fact for fact in known if fact.how != READ]
@@ -247,7 +247,7 @@ def out_of_bounds(file: NamedFile) -> Iterator[Finding]:
 
 
 def _is_filled_in(value: Value | None) -> bool:
-    """Is it a word in capitals, which a launch file of Nav2 puts a value in place of?"""
+    """Return whether it is a word in capitals, which a launch file of Nav2 replaces by a value."""
     return isinstance(value, str) and _CAPITALS.fullmatch(value) is not None
 
 
@@ -261,13 +261,13 @@ def _declared(section: Section, release: str) -> Iterator[tuple[Setting, list[De
 
 
 def _is_misspelt(value: Value | None, facts: Sequence[Declared]) -> bool:
-    """Is a word in capitals nearly one of those that there are?"""
+    """Return whether a word in capitals is nearly one of the known ones."""
     words = (word for fact in facts for check in fact.checks for word in _WORD.findall(check[1]))
     return isinstance(value, str) and nearest(value, words, MISTYPED) not in ("", value)
 
 
 def _is_of(fact: Declared, it: Setting) -> bool:
-    """Has a value the type of a declaration? An empty list is one of any."""
+    """Return whether a value has the type of a declaration. An empty list is one of any."""
     type_ = _expected(fact.type)
     if it.value == []:
         return type_.endswith("_array")
@@ -281,7 +281,7 @@ def _type_of(value: Value) -> str:
 
 
 def _expected(type_: str) -> str:
-    """The type that rclcpp compares; empty where any is taken."""
+    """Return the type that rclcpp compares; empty where any is taken."""
     array = _ARRAY.fullmatch(type_)
     word = f"{array[1]}_array" if array else type_.partition("_fixed")[0]
     return word if word.removesuffix("_array") in _WORDS.values() else ""

@@ -41,7 +41,7 @@ class Demand(NamedTuple):
 
 
 def demands(file: NamedFile, *checks: str) -> Iterator[Demand]:
-    """The demands of these kinds on the parameters of a file."""
+    """Yield the demands of these kinds on the parameters of a file."""
     for section in sections(file):
         for it, known in section.known:
             here = of_release(known, file.context.distro) if it.value is not None else []
@@ -70,7 +70,7 @@ def _is_size(value: Value | None) -> bool:
 
 
 def value_of(section: Section, name: str) -> Value | None:
-    """The value of another parameter of the same node or plugin."""
+    """Return the value of another parameter of the same node or plugin."""
     found = section.whole.get(section.at + name)
     return found.value if found else None
 
@@ -102,7 +102,7 @@ def contradictions(file: NamedFile) -> Iterator[Finding]:
 
 
 def _to_itself(section: Section, node: NodeFacts) -> Iterator[Finding]:
-    """A transform that a node sends from a frame to itself: buffer_core.cpp of tf2 refuses it."""
+    """Yield transforms that a node sends from a frame to itself: tf2's buffer_core.cpp refuses them."""
     defaults: dict[str, Value | None] = {it.parameter: it.default for it in node.frames}
     values = {**defaults, **{name: it.value for name, it in section.whole.items()}}
     for parent, child, condition, _ in node.sends:
@@ -154,7 +154,7 @@ def _among(it: Demand) -> str:
 
 
 def _foreign(it: Demand) -> str:
-    """The libraries of Nav2's own nodes are loaded anyway, and a second registration throws."""
+    """Return the fault of a list with a library that Nav2's nodes register anyway; empty if none."""
     own = [str(word) for word in _items(it) if _OWN.fullmatch(str(word))]
     return f"lists {own[0]}, which is loaded without it, so it is registered twice" if own else ""
 
@@ -170,7 +170,7 @@ def _as_many(it: Demand) -> str:
 
 
 def _instead(it: Demand) -> str:
-    """A value that is the default of the new one does no harm."""
+    """Return the fault of a parameter that is not read any more; empty if its value does no harm."""
     there = it.words[0] in it.section.whole or it.given.value in it.words[1:]
     return "" if there else f"is not read; the node reads {it.words[0]}"
 
@@ -197,7 +197,7 @@ def _alone(it: Demand) -> str:
 
 
 def _period(it: Demand) -> str:
-    """What the node is told counts for all its plugins."""
+    """Return the fault of a plugin's period below that of its node; empty if it is long enough."""
     other, default = it.words
     given = it.section.whole.get(other)
     rate = given.value if given else float(default)
@@ -223,7 +223,7 @@ def _renamed(it: Demand) -> str:
 
 
 def _bonded(it: Demand) -> str:
-    """A node's bond has its name alone: LifecycleNode::createBond of nav2_util."""
+    """Return the fault of a listed name with a slash: a bond has the node's name alone (nav2_util)."""
     words = [str(word) for word in _items(it) if "/" in str(word)]
     bond = value_of(it.section, it.words[0])
     kept = bond is None or (is_number(bond) and bond > 0)
@@ -231,7 +231,7 @@ def _bonded(it: Demand) -> str:
 
 
 def _listed(it: Demand) -> str:
-    """The list is one of the node, the words may be those of a plugin."""
+    """Return the fault of a value that is missing in the list of another parameter; empty if none."""
     other = it.section.whole.get(it.words[0])
     known = other.value if other else None
     value = it.given.value
@@ -244,7 +244,7 @@ def _listed(it: Demand) -> str:
 
 
 def _items(it: Demand) -> list[Any]:
-    """The items of a list; none of another value."""
+    """Return the items of a list; empty for another value."""
     return it.given.value if isinstance(it.given.value, list) else []
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A file beside a description -> what the rules for its kind find in it."""
+"""A related file of a description -> what the rules for its kind find in it."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from multibot_rewrite.rules.system import clocks
 def _of_files(
     asked: Rule, *finders: Callable[[NamedFile], Iterator[Finding]], **changed: Any
 ) -> Rule:
-    """A rule of descriptions, asked of a file: it finds what any of the finders does."""
+    """Return a rule of descriptions as one of files: it finds what any of the finders does."""
 
     def found(file: NamedFile) -> Iterator[Finding]:
         for find in finders:
@@ -68,13 +68,13 @@ _COMMENT = lazy_compile(r"(?:#|--)\s*urdf-lint:\s*ignore\s+((?:MB\d+[,\s]*)+)(?:
 
 @cache
 def rules_for(kind: str) -> tuple[Rule, ...]:
-    """The rules for files of a kind, by their codes."""
+    """Return the rules for files of a kind, by their codes."""
     return tuple(sorted((it for it in _every() if kind in it.formats), key=lambda it: it.code))
 
 
 @cache
 def codes() -> frozenset[str]:
-    """The codes of all rules for files."""
+    """Return the codes of all rules for files."""
     return frozenset(it.code for it in _every())
 
 
@@ -83,7 +83,7 @@ def _every() -> Iterator[Rule]:
 
 
 def judged(file: NamedFile, rules: Iterable[Rule]) -> Iterator[Finding]:
-    """What rules find in a file, without what a comment at the end of its line silences."""
+    """Yield what rules find in a file, without what a comment at the end of a line silences."""
     lines = file.text.split("\n")
     for rule in rules:
         for it in rule.check(file) if rule.check else ():
@@ -97,7 +97,7 @@ def judged(file: NamedFile, rules: Iterable[Rule]) -> Iterator[Finding]:
 
 
 def judged_once(file: NamedFile) -> list[Finding]:
-    """What all rules find in a file, at its first place, in the order of the places."""
+    """Return what all rules find in a file, each finding at its first place, ordered by place."""
     first: dict[tuple[str, str], Finding] = {}
     for it in sorted(judged(file, rules_for(file.kind)), key=lambda it: (it.line, it.column)):
         first.setdefault((it.code, it.message), it)

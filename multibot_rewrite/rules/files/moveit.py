@@ -44,7 +44,7 @@ _GROUP = lazy_compile(rb"<group\s[^<>]*?name\s*=\s*[\"']([^\"'<]*)[\"']")
 
 @rule("MB898", "limits-beyond-the-joint", WARNING, formats=(MOVEIT,))
 def limits_beyond_the_joint(file: NamedFile) -> Iterator[Finding]:
-    """What no description of the package with this joint allows."""
+    """Yield MoveIt limits that no description of the package with this joint allows."""
     robots: Robots | None = file.memo.get(Robots)
     subjects = robots.subjects if robots and file.kind == MOVEIT else ()
     for section in sections(file) if robots else ():
@@ -90,7 +90,7 @@ def _of_none(file: NamedFile, section: Section, subjects: Sequence[Subject]) -> 
 
 
 def _beyond(joint: Joint, what: str, value: object) -> float | None:
-    """The limit of a joint that a value is beyond; None where it is not, or has no limit."""
+    """Return the joint's limit that a value exceeds; None if it exceeds none."""
     attribute, side = _OF_URDF[what]
     limit = joint.parts.get("limit")
     own = value_of(limit, attribute) if limit is not None else None
@@ -127,7 +127,7 @@ def _groups(file: str) -> frozenset[str]:
 
 
 def _srdfs(file: str) -> list[bytes]:
-    """The SRDFs in the folder of a file, as they are."""
+    """Return the contents of the SRDF files in the folder of a file."""
     folder = os.path.dirname(os.path.abspath(file))
     names = sorted(it for it in entries(folder) if ".srdf" in it)
     return [read_file(os.path.join(folder, name)) for name in names]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names in files beside a description that the description does not have, whose use is not known, or
-that are in another file."""
+"""Names in related files that their description does not have, whose use is not known, or that are
+in another file."""
 
 from __future__ import annotations
 
@@ -51,13 +51,13 @@ _FEWEST = 3
 WORLD = "world"
 
 
-@rule("MB853", "undeclared-frame-beside", WARNING, formats=EVERY)
+@rule("MB853", "undeclared-frame-in-file", WARNING, formats=EVERY)
 def undeclared_frame(file: NamedFile) -> Iterator[Finding]:
     """Frames and links."""
     return _undeclared(file, _FRAMES)
 
 
-@rule("MB854", "undeclared-joint-beside", NOTE, formats=EVERY)
+@rule("MB854", "undeclared-joint-in-file", NOTE, formats=EVERY)
 def undeclared_joint(file: NamedFile) -> Iterator[Finding]:
     """Joints, sensors and groups."""
     return _undeclared(file, _PARTS)
@@ -89,7 +89,7 @@ def _kind_of(site: Site) -> str:
 
 
 def _is_sure(file: NamedFile, site: Site) -> bool:
-    """Is what the description lacks wrong, whatever it is near to? RViz shows frames of drivers."""
+    """Return whether what the description lacks is surely wrong; RViz shows frames of drivers."""
     return file.is_certain and not (file.kind == RVIZ and site.kind == "frame")
 
 
@@ -101,7 +101,7 @@ def _near(file: NamedFile, site: Site, name: str, known: Iterable[str]) -> str:
 
 
 def _missing(file: NamedFile, site: Site) -> str:
-    """The name that the description should have and has not; empty for any other."""
+    """Return the name that the description should have and has not; empty for any other."""
     if " " in site.text or not is_plain(site.text) or site.own:
         return ""
     # RViz keeps links and frames that it has seen once, as keys.
@@ -142,7 +142,7 @@ def of_another_robot(file: NamedFile) -> Iterator[Finding]:
 
 
 def _foreign(file: NamedFile) -> tuple[list[tuple[str, str]], int, Site | None]:
-    """The names that are missing where most are, how many there are in all, and the first."""
+    """Return the missing names, the number of all names and the first site, if most are missing."""
     if file.kind != MOVEIT or not file.is_certain:
         return [], 0, None
     closed: dict[tuple[str, str], Site] = {}
@@ -162,7 +162,7 @@ def unknown_uses(file: NamedFile) -> Iterator[Finding]:
         return
     level = "" if file.is_certain else NOTE
     known, renamed = _robots_names(file), _renamed(file)
-    said = [(site, _said(file, site, known, renamed)) for site in file.others]
+    said = [(site, _mention(file, site, known, renamed)) for site in file.others]
     said = [(site, found) for site, found in said if found]
     misspelt = {it.line for it in unknown_parameters(file)} if said else set()
     for site, found in said:
@@ -200,15 +200,15 @@ def _unknown(site: Site, node: str, told: str) -> Finding:
 
 
 def _renamed(file: NamedFile) -> frozenset[str]:
-    """The names that a rewrite makes others: none is known where the file alone is looked at."""
+    """Return the names that a rewrite renames; empty where the file alone is checked."""
     names, kinds = file.context.names, [it for it in _MENTIONED if it in KINDS]
     every = ((kind, it) for kind in kinds for it in file.declared.get(kind, ()))
     kept = (it for kind, it in every if not file.is_certain or spell(names, kind, it) != it)
     return frozenset(kept) if file.kind in _LOOSE else frozenset()
 
 
-def _said(file: NamedFile, site: Site, known: Mapping[str, str], renamed: frozenset[str]) -> str:
-    """What a text says of the robot; empty for nothing."""
+def _mention(file: NamedFile, site: Site, known: Mapping[str, str], renamed: frozenset[str]) -> str:
+    """Return how a text names something of the robot, for a message; empty if it does not."""
     text = site.text
     apart = file.is_certain and file.context.names.naming.layout.tf_per_robot
     if apart and not site.in_key and text.removeprefix("/") in TF_TOPICS and text[0] == "/":
@@ -235,7 +235,7 @@ def _begins_all(file: NamedFile, text: str) -> bool:
 
 
 def _robots_names(file: NamedFile) -> dict[str, str]:
-    """The links and joints; in parameters also the frames and absolute topics of known ones."""
+    """Return the links and joints by name; in parameters also the frames and absolute topics."""
     declared = {it: kind for kind in ("link", "joint") for it in file.declared.get(kind, ())}
     if file.kind != PARAMS:
         return declared
@@ -244,7 +244,7 @@ def _robots_names(file: NamedFile) -> dict[str, str]:
 
 
 def _is_claimed(file: NamedFile, site: Site) -> bool:
-    """A frame or absolute topic of the robot; relative topics are common words."""
+    """Return whether it is a frame or absolute topic of the robot; relative topics are common words."""
     if site.in_key or not is_plain(site.text):
         return False
     if site.kind == "frame":
@@ -254,8 +254,8 @@ def _is_claimed(file: NamedFile, site: Site) -> bool:
 
 
 def _is_interface(file: NamedFile, value: str) -> bool:
-    """Is it ``elbow/position``? ``imu/data`` is more likely a topic than an interface of a sensor,
-    ``imu/orientation.x`` can be no topic."""
+    """Return whether it is an interface like ``elbow/position``. ``imu/data`` is more likely a
+    topic than an interface of a sensor, ``imu/orientation.x`` can be no topic."""
     *chain, interface = value.split("/")
     kinds = ("joint", "gpio", "sensor") if "." in interface else ("joint", "gpio")
     names = file.context.names

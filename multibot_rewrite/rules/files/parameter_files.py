@@ -52,7 +52,7 @@ class FileParameter(NamedTuple):
 
 
 def file_parameters(text: str) -> tuple[FileParameter, ...]:
-    """The parameters of a file; none if it is another kind of YAML."""
+    """Return the parameters of a file; empty if it is another kind of YAML."""
     try:
         root = compose_yaml(text, "")
     except InputError:
@@ -93,7 +93,7 @@ def _bounds(validation: object) -> str:
 
 
 def text_of(value: object) -> str:
-    """A default as it is written in tables."""
+    """Return a default as it is written in tables."""
     if value is None:
         return NO_DEFAULT
     if isinstance(value, bool):
@@ -112,8 +112,8 @@ _CALLED = lazy_compile(r".*param(?!.*?param)\w*\.ya?ml")
 def facts_of_node(
     node: NodeParameters | None, type_: str, file: str, roots: tuple[str, ...]
 ) -> tuple[Declared, ...]:
-    """What the packages of a node declare: its own sources if they are there; ``type_`` is a
-    controller's."""
+    """Return what the packages of a node declare, from its own sources if they are there. ``type_``
+    is that of a controller."""
     named = type_.partition("/")[0] if "/" in type_ else ""
     package = node.package if node else named
     own = _in_sources(package, file, roots) if package else ()
@@ -146,7 +146,7 @@ def nodl_parameters(package: str, node: str) -> tuple[tuple[str, str], ...]:
 
 
 def _in_sources(package: str, file: str, roots: tuple[str, ...]) -> tuple[Declared, ...]:
-    """What the files of generate_parameter_library of a package declare, where its sources are."""
+    """Return the parameters in generate_parameter_library files of a package's sources, if found."""
     folder = package_folder(package, file, roots)
     found: list[Declared] = []
     places = [os.path.join(folder, it) for it in _FOLDERS] if folder else []
@@ -171,7 +171,7 @@ def of_release(facts: Sequence[Declared], release: str) -> list[Declared]:
 
 
 def of_parameter(facts: Sequence[Declared], release: str) -> list[Declared]:
-    """The same of one parameter: what is demanded of it counts where the release declares it at all."""
+    """Return the facts about one parameter in a release; demands count only where it is declared."""
     found = of_release(facts, release)
     elsewhere = any(it.how != DEMANDED for it in facts)
     return [] if elsewhere and all(it.how == DEMANDED for it in found) else found

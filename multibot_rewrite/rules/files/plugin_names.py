@@ -76,7 +76,7 @@ def classes_of_other_releases(file: NamedFile) -> list[str]:
 
 
 def _named_classes(file: NamedFile) -> Iterator[tuple[Demand, Setting, str]]:
-    """The classes that a file names for pluginlib, each with its place and what asks for it."""
+    """Yield the pluginlib classes that a file names, each with the demand and the setting it is in."""
     for it in demands(file, "class", "classes"):
         # NAME.plugin of each word of a list.
         plugins = (f"{it.section.at}{word}.plugin" for word in words_of(it.given))
@@ -94,7 +94,7 @@ def _package(class_: str) -> str:
 
 
 def words_of(given: Setting) -> list[str]:
-    """The words of a list, or of a text."""
+    """Return the words of a list, or of a text."""
     value = given.value
     return [str(word) for word in value] if isinstance(value, list) else str(value or "").split()
 
@@ -103,14 +103,14 @@ def _of_class(node: yaml.Node, where: str, name: str, base: str, release: str) -
     known = plugin_bases()[base]
     if name in known.classes and has_release(known.classes[name], release):
         return
-    said, hint, level = _said(name, base, known, release)
+    said, hint, level = _class_fault(name, base, known, release)
     if said:
         yield remark_at(node, f"{where} is {name!r}, {said}", hint, level)
 
 
-def _said(name: str, base: str, known: Base, release: str) -> tuple[str, str, str]:
-    """What is wrong with a class that the release has not, what is to do, and how bad it is; nothing
-    where a package that is not known may have it."""
+def _class_fault(name: str, base: str, known: Base, release: str) -> tuple[str, str, str]:
+    """Return what is wrong with a class that the release lacks, what to do, and the level; all
+    empty where an unknown package may have it."""
     there = [it for it, words in known.classes.items() if has_release(words, release)]
     if alike := next((it for it in there if canonical(it) == canonical(name)), ""):
         return f"which is written with other signs in {release}", f"write {alike}", WARNING
@@ -191,7 +191,7 @@ def without_plugin(file: NamedFile) -> Iterator[Finding]:
 
 
 def _is_misspelt(it: Demand, word: str, words: Sequence[str]) -> bool:
-    """Has nearly that name parameters, which MB877 says?"""
+    """Return whether nearly that name has parameters, which MB877 reports."""
     own = {name.removeprefix(it.section.at).partition(".")[0] for name in it.section.whole}
     return bool(nearest(word, own - set(words)))
 
@@ -235,7 +235,7 @@ def older_nodes(file: NamedFile) -> Iterator[tuple[str, ParamSection]]:
 
 
 def missing_parameters(file: NamedFile) -> Iterator[Finding]:
-    """What a node asks for and has no default: by itself, in a block, or with another parameter."""
+    """Yield the required parameters that are not set: always, in a block, or with another parameter."""
     for section in sections(file):
         facts = of_release(section.facts, file.context.distro)
         needed = [(it, words) for it in facts for check, words in it.checks if check == "required"]

@@ -43,8 +43,8 @@ Values = Mapping[str, Value | None]
 
 
 def plugins_in(values: Values) -> dict[str, tuple[str, tuple[Declared, ...]]]:
-    """The name of each plugin of a section -> its class and what it declares: nothing for one that is
-    not known, or loads one that is not known."""
+    """Return by plugin name its class and the parameters that the class declares. They are empty
+    for a class that is unknown, or that loads an unknown one."""
     found: dict[str, tuple[str, tuple[Declared, ...]]] = {}
     for name, class_ in (*_listed(values), *_classes(values), *_filters(values)):
         facts = declared_by(class_)
@@ -55,7 +55,7 @@ def plugins_in(values: Values) -> dict[str, tuple[str, tuple[Declared, ...]]]:
 
 
 def _listed(values: Values) -> Iterator[tuple[str, str]]:
-    """The polygons and sources of a collision monitor, which is told by having both."""
+    """Yield the polygons and sources of a collision monitor, recognized by having both lists."""
     if all(it in values for it in LISTED):
         for path, class_ in LISTED.items():
             yield from ((it, class_) for it in _list(values, path))
@@ -76,14 +76,14 @@ def _classes(values: Values) -> Iterator[tuple[str, str]]:
 
 
 def _filters(values: Values) -> Iterator[tuple[str, str]]:
-    """The parameters of each filter of a chain, whose class is in ``filterN.type``."""
+    """Yield the parameters of each filter of a chain, whose class is in ``filterN.type``."""
     for path, value in values.items():
         if isinstance(value, str) and (found := FILTER.fullmatch(path)) and found["word"] == "type":
             yield f"{found['filter']}.params", value.replace("/", "::")
 
 
 def _with_primary(facts: tuple[Declared, ...], values: Values, name: str) -> tuple[Declared, ...]:
-    """What a controller around another one declares, and what that one does below the same name."""
+    """Return the parameters of a controller and of the one that it wraps under the same name."""
     class_ = _text(values, name + _PRIMARY)
     if not class_:  # it has a name of its own, or the file does not say it
         return facts if name + _PRIMARY + _PLUGIN in values else ()

@@ -51,7 +51,7 @@ _TIME = "use_sim_time"
 
 
 def rejected_values(file: NamedFile) -> Iterator[Finding]:
-    """Lists of several types, of lists or of maps."""
+    """Yield the values that rcl rejects: lists of several types, of lists or of maps."""
     document = file.document
     if document is None:
         return
@@ -77,7 +77,7 @@ def outside_of_marks(file: NamedFile) -> Iterator[Finding]:
 
 
 def _outside(key: yaml.ScalarNode, node: yaml.Node) -> Iterator[yaml.ScalarNode]:
-    """The keys of such values; what is below another spelling of the mark is told there."""
+    """Yield the keys of values outside of ``ros__parameters``; a misspelt mark has its own finding."""
     if key.value == PARAMETERS or _is_nearly_mark(key):
         return
     if not isinstance(node, yaml.MappingNode):
@@ -95,7 +95,7 @@ def _lists(node: yaml.Node) -> Iterator[yaml.Node]:
 
 
 def _is_read(node: yaml.Node) -> bool:
-    """Is it one of values? rcl 9.2 takes ``- key: [a]``, and rejects maps of two keys."""
+    """Return whether it is a list of values; rcl 9.2 takes ``- key: [a]``, and no maps of two keys."""
     maps = [it for it in node.value if isinstance(it, yaml.MappingNode)]
     return not maps or any(len(it.value) > 1 for it in maps)
 
@@ -173,7 +173,7 @@ def repeated_section(file: NamedFile) -> Iterator[Finding]:
 
 @rule("MB867", "wildcard-overrides-section", WARNING, formats=(PARAMS,))
 def overridden(file: NamedFile) -> Iterator[Finding]:
-    """What a wildcard section sets after the section of a node that it matches."""
+    """Yield the values that a later wildcard section overrides in a section that it matches."""
     sections = [section for section, _ in file.pages]
     for at, section in enumerate(sections):
         if not section.wild:
@@ -227,7 +227,7 @@ def listed_without_parameters(file: NamedFile) -> Iterator[Finding]:
 
 
 def _words(given: Given) -> list[str]:
-    """The names of a list; some lists are texts of words."""
+    """Return the names of a list; some lists are texts of words."""
     value = given.value
     words = value if isinstance(value, list) else [value]
     return [part for it in words if isinstance(it, str) for part in it.split()]

@@ -75,7 +75,7 @@ def of_another_release(file: NamedFile) -> Iterator[Finding]:
 
 
 def elsewhere(file: NamedFile) -> Iterator[Finding]:
-    """The nodes and parameters of a file that its release does not have and another one has."""
+    """Yield the nodes and parameters of a file that its release lacks and another one has."""
     release = file.context.distro
     for section, node in ((it, it.node) for it, _ in file.pages if not it.wild):
         if node is None:

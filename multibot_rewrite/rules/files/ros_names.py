@@ -46,8 +46,8 @@ def invalid_names(file: NamedFile) -> Iterator[Finding]:
 
 
 def _section_fault(site: Site) -> str:
-    """What is wrong with the key of a section, which may be a pattern; ``in_key`` where there is a key
-    above it."""
+    """Return what is wrong with the key of a section, which may be a pattern; ``in_key``: it is
+    below another key."""
     if _IN_VALUE.search(site.text) or "<" in site.text or "$" in site.text or "{" in site.text:
         return ""
     if site.in_key and site.text.startswith("/"):
@@ -69,7 +69,7 @@ def text_block(file: NamedFile) -> Iterator[Finding]:
 
 
 def placeholders(file: NamedFile) -> Iterator[Finding]:
-    """The first placeholder of each name."""
+    """Yield the first placeholder of each name."""
     level = "" if file.is_certain else NOTE
     for site in file.names:
         if is_plain(site.text) or is_robot(site.text) or site.text == _FIXED:
@@ -81,7 +81,7 @@ def placeholders(file: NamedFile) -> Iterator[Finding]:
 
 
 def unfilled(file: NamedFile) -> Iterator[Finding]:
-    """What stands for the robot, once each, where a description is held against the file as it is."""
+    """Yield each placeholder for the robot once, in a file that is checked with a description."""
     told: set[str] = set()
     for site in file.names if file.is_certain and file.memo.get(Robots) else ():
         found = _IN_VALUE.search(site.slot.value)
@@ -134,7 +134,7 @@ _NOT_A_NAME = lazy_compile(
 
 @rule("MB863", "robot-in-name-beside", ERROR, formats=EVERY, options=OF_TWO)
 def robot_in_name(file: NamedFile) -> Iterator[Finding]:
-    """The first name that holds one of the robots."""
+    """Yield the first name that contains the name of one of the robots."""
     if not file.robots:
         return
     known = declared_names(file.declared)
@@ -148,7 +148,7 @@ def robot_in_name(file: NamedFile) -> Iterator[Finding]:
 def in_description(
     root: _Element, words: Collection[str], declared: Mapping[str, Collection[str]]
 ) -> Iterator[Problem]:
-    """The first value of a description that is for another robot."""
+    """Yield a problem for the first value of a description that is for another robot."""
     known = declared_names(declared)
     for element in root.iter("*") if words else ():
         for attribute, text in (*element.items(), ("", (element.text or "").strip())):
@@ -164,7 +164,7 @@ def declared_names(declared: Mapping[str, Collection[str]]) -> frozenset[str]:
 
 
 def _in_site(file: NamedFile, site: Site, declared: frozenset[str]) -> tuple[str, str] | None:
-    """The name of a site, and the robot in it."""
+    """Return the name at a site and the robot in it; None for a name without a robot."""
     # In a topic of gz the model is the robot, whatever it is called; a planning group has any name; a
     # prefix is told itself.
     if site.kind in (GZ_TOPIC, "group", *RUN_TIME):
@@ -182,7 +182,7 @@ def _in_site(file: NamedFile, site: Site, declared: frozenset[str]) -> tuple[str
 
 
 def in_value(text: str, words: Collection[str], declared: frozenset[str]) -> tuple[str, str] | None:
-    """The first name in a value of unknown use that is a robot's, and that robot."""
+    """Return the first name in a value of unknown use that is a robot's, and that robot, or None."""
     if not any(it in text for it in words) or _NOT_A_NAME.search(text):
         return None
     for token in _TOKEN.findall(text):
@@ -193,7 +193,7 @@ def in_value(text: str, words: Collection[str], declared: frozenset[str]) -> tup
 
 
 def _at_an_end(token: str, words: Iterable[str]) -> str:
-    """The robot that a name begins or ends with, or that is its model; empty for none."""
+    """Return the robot that a name begins or ends with, or that is its model; empty for none."""
     name = token.strip("/")
     told = (it for it in sorted(words) if _tells(it, name))
     ends = ((f"{it}/", f"/{it}", f"model/{it}/") for it in told)
@@ -204,13 +204,13 @@ def _at_an_end(token: str, words: Iterable[str]) -> str:
 
 
 def _tells(word: str, name: str) -> bool:
-    """Does a robot's word that is a segment of a name tell of the robot? A word for parts of any robot
-    does where it is there twice: camera/image is a topic of every camera."""
+    """Return whether a robot's name as a segment of a name means the robot. One that also names a
+    part does if it is there twice: camera/image is a topic of every camera."""
     return word not in PARTS or f"/{word}/{word}/" in f"/{name.strip('/')}/"
 
 
 def _glued(token: str, words: Iterable[str], declared: frozenset[str]) -> str:
-    """The robot that a declared name has before or behind it, as in robot1_odom; empty for none."""
+    """Return the robot's name before or after a declared name, as in robot1_odom; empty for none."""
     name = token.strip("/")
     if name in declared:
         return ""
@@ -218,7 +218,7 @@ def _glued(token: str, words: Iterable[str], declared: frozenset[str]) -> str:
 
 
 def _without(name: str, word: str) -> Iterator[str]:
-    """A name without a robot's word in front, and without it behind, however often it is there."""
+    """Yield a name without any robot's name in front, and without any behind."""
     front = back = name
     while front.startswith(word):
         front = front.removeprefix(word).lstrip(_BETWEEN)

@@ -24,7 +24,7 @@ def ros1_property(file: NamedFile) -> Iterator[Finding]:
 
 @rule("MB873", "rviz-description-volatile", WARNING, formats=(RVIZ,))
 def volatile_description(file: NamedFile) -> Iterator[Finding]:
-    """Reported once: nearly every saved config has it."""
+    """Yield one finding for all volatile description topics: nearly every saved config has one."""
     found = [
         one
         for one in file.shown

@@ -112,7 +112,7 @@ def robot_twice(file: NamedFile) -> Iterator[Finding]:
 
 
 def prefix_twice(key: str, value: str) -> str:
-    """The message about a prefix; raises nothing."""
+    """Return the message about a prefix for frames that have the robot's name already."""
     return f"{key} {value!r} adds a prefix to frames that already have the robot's name"
 
 
@@ -144,7 +144,7 @@ _SCHEMES = ("file://", "package://")
 
 
 def one_device(file: NamedFile) -> Iterator[Finding]:
-    """What only one node can have, and calibrations of cameras."""
+    """Yield devices that only one node can open, and calibrations of cameras."""
     yield from _exclusive(file)
     # Each calibration that all robots of a file read; a file for one robot has its own.
     # Source: image_common, camera_info_manager.cpp (humble to rolling). A camera_info_url is file:///,
@@ -162,7 +162,7 @@ def one_device(file: NamedFile) -> Iterator[Finding]:
 
 @robots_rule("MB883", "section-of-one-robot", ERROR, PARAMS)
 def section_of_one_robot(file: NamedFile) -> Iterator[Finding]:
-    """A namespace in a section's name: that of one robot, or one below each robot's."""
+    """Yield the sections whose name has a namespace: of one robot, or placed below each robot's."""
     context = file.context
     for section in (it for it, _ in file.pages if not it.shared):
         tokens = section.path.split("/")
@@ -222,7 +222,7 @@ def source_without_topic(file: NamedFile) -> Iterator[Finding]:
 
 
 def _resolves_below(section: ParamSection, context: Context) -> bool:
-    """Is the id of a source another name than that of the robot's topic?"""
+    """Return whether the id of a source is another name than that of the robot's topic."""
     param = section.node.params.get("<id>.<id>.topic") if section.node else None
     namespaced = context.topics.naming.topics == NAMESPACE
     return param is not None and (not namespaced or is_absolute(param, context.distro))

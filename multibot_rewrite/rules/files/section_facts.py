@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a file, and the parameter files of the same robot, set for each node and plugin, beside what
-declares it: of a parameter file, and of a file of MoveIt as the parameters that it becomes.
-"""
+"""What a file, and the parameter files of the same robot, set for each node and plugin, and what
+declares it: of a parameter file, and of a file of MoveIt as the parameters that it becomes."""
 
 from __future__ import annotations
 
@@ -54,32 +53,32 @@ def beside(file: NamedFile) -> Beside:
 
 
 def given_in(file: NamedFile) -> tuple[Run, ...]:
-    """What is set for nodes where the file is for a certain robot, else what the file sets."""
+    """Return the settings of nodes by all files of a certain robot, otherwise by the file alone."""
     if file.is_certain:
         return beside(file).given
     return _given_by(file, [file.document] if file.document else [])
 
 
 def is_set_beside(file: NamedFile, title: str, name: str) -> bool:
-    """Does a parameter file of the robot have it for the node of a section, or of its plugin?"""
+    """Return whether a parameter file of the robot sets a name for the node of a section or plugin."""
     node = last_word(title.partition(":")[0])
     return any(name in it.values for it in beside(file).given if last_word(it.node) == node)
 
 
 def is_in(file: NamedFile, place: Place) -> bool:
-    """Is the place in this file?"""
+    """Return whether the place is in this file."""
     return os.path.abspath(place.file) == os.path.abspath(file.file)
 
 
 def did_you_mean_at(near: str, place: Place) -> str:
-    """The hint: the name that is there, and its place."""
+    """Return the hint that asks whether a name was meant, with its place."""
     if place == NOWHERE:
         return f"did you mean {near}?"
     return f"did you mean {near} ({shown(place)})?" if near else f"see {shown(place)}"
 
 
 def shown(place: Place) -> str:
-    """A place of a file below the current folder by its path from there."""
+    """Return a place as text; a file below the current folder by its path from there."""
     return str(place._replace(file=alike(place.file, os.curdir)))
 
 
@@ -127,7 +126,7 @@ class Section(NamedTuple):
 
 
 def sections(file: NamedFile) -> tuple[Section, ...]:
-    """The sections of a parameter file, or the parameters of a file of MoveIt."""
+    """Return the sections of a parameter file, or the parameters of a file of MoveIt."""
     if sections not in file.memo:
         read = _of_moveit if file.kind == MOVEIT else _sections
         file.memo[sections] = tuple(read(file))
@@ -202,7 +201,7 @@ def _is_read(fact: Declared, name: str, whole: Mapping[str, Setting], at: str) -
 
 
 def filled(text: str, path: str, name: str) -> tuple[str, ...]:
-    """The words of a check's arguments, with what the words in brackets of a path are in a name."""
+    """Return the words of a check, with the parts of a name that stand for ``<...>`` in a path."""
     words = text.split()
     for word, part in (stands_for(path, name) if "<" in text else {}).items():
         words = [it.replace(word, part) for it in words]
@@ -218,8 +217,8 @@ def _matching(wild: Sequence[tuple[str, Declared]], name: str) -> Iterator[Decla
 def _of_plugins(
     title: str, given: Sequence[Setting], whole: Mapping[str, Setting]
 ) -> tuple[list[Section], tuple[Setting, ...]]:
-    """A section for each known plugin, with names below its own; and what is no plugin's. Nobody knows
-    what an unknown plugin declares."""
+    """Return a section for each known plugin, with its names below it, and the settings of no
+    plugin. What an unknown plugin declares is unknown."""
     plugins = plugins_in({it.name: it.value for it in given})
     of: dict[str, list[Setting]] = {}
     for it in given:
@@ -235,7 +234,7 @@ def _of_plugins(
 
 
 def _is_surely(node: NodeParameters, name: str, type_: str, given: Sequence[Setting]) -> bool:
-    """Is it this controller, not another one that is often called the same?"""
+    """Return whether it is this controller, not another one that often has the same name."""
     if not node.types or type_ in node.types:
         return True
     words = {it.name.partition(".")[0] for it in given}

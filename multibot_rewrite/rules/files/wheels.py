@@ -46,7 +46,7 @@ _Values = Mapping[str, Setting]
 
 
 def with_description(file: NamedFile, description: Document) -> NamedFile:
-    """The file beside the one description that it is for, which is read for wheels and limits."""
+    """Return the file with its one description, which is read if the file has wheels or limits."""
     if LEFT not in file.text and not (file.kind == MOVEIT and "joint_limits" in file.text):
         return file
     release = file.context.distro
@@ -58,7 +58,7 @@ def with_description(file: NamedFile, description: Document) -> NamedFile:
 
 @rule("MB856", "controller-wheels", WARNING, formats=(PARAMS,))
 def controller_sizes_of(file: NamedFile) -> Iterator[Finding]:
-    """What no description of the package with these wheels fits."""
+    """Yield the sizes of a controller that fit no description of the package with these wheels."""
     for section in sections(file):
         if section.node is None or section.node.name != CONTROLLER:
             continue
@@ -70,7 +70,7 @@ def controller_sizes_of(file: NamedFile) -> Iterator[Finding]:
 
 
 def _faults(subject: Subject, section: Section) -> list[Finding] | None:
-    """What one description does not fit; None if it has not all of the wheels."""
+    """Return where a description differs from a section; None if it lacks some of the wheels."""
     values = {it.name: it for it in section.given}
     left, right = (_wheels(subject, values.get(it)) for it in (LEFT, _RIGHT))
     if not left or not right:

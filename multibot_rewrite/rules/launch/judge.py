@@ -28,8 +28,8 @@ RULES = tuple(sorted(_DECLARED, key=lambda it: it.code))
 
 
 def as_sure(it: Finding, launched: Launched, seen: Index) -> Finding:
-    """A finding about the system of a launch. A claim that no hardware meets is an error, since all
-    that is started is known; a tree in pieces is a warning where more may be started."""
+    """Return a finding about a launched system at its certain level: an unmet claim becomes an
+    error, since all that starts is known; a tree in pieces a warning if more may be started."""
     if it.code in CLAIMS and it.level == WARNING:
         return it._replace(level=ERROR)
     cut = it.code == tf_tree_in_pieces.code and it.level == ERROR
@@ -39,8 +39,8 @@ def as_sure(it: Finding, launched: Launched, seen: Index) -> Finding:
 
 
 def _is_moved(it: Finding, launched: Launched, seen: Index) -> bool:
-    """Does a plugin of the model move the robot whose frames a finding names? Of a robot that is
-    spawned from another text than it publishes any such model may be the one."""
+    """Return whether a plugin of the model moves the robot whose frames a finding names. If a robot
+    is spawned from another text than it publishes, any such model may be its own."""
     models = [one for one in launched.models.found if one.spawned]
     edges = (one for one in seen.system.edges if not {one.parent, one.child}.isdisjoint(it.names))
     senders = [name for one in edges for name in one.publishers]
@@ -54,8 +54,8 @@ def _is_moved(it: Finding, launched: Launched, seen: Index) -> bool:
 
 
 def _moves(model: Model, launched: Launched, seen: Index) -> bool:
-    """Has a model a plugin that is known to move it: one that takes velocities, sends odometry or has
-    controllers? A sensor does not; of a plugin that is not known nobody can say."""
+    """Return whether a model has a plugin that is known to move it: one that takes velocities,
+    sends odometry or has controllers. A sensor does not; an unknown plugin may."""
     nodes = model.reading.nodes
     inside = (one for it in launched.simulated if it.text == model.text for one in it.topics)
     orders = [(f"/{one.ros.lstrip('/')}", one.ros_type) for one in inside]
@@ -66,8 +66,8 @@ def _moves(model: Model, launched: Launched, seen: Index) -> bool:
 
 
 def as_one_of_several(found: Iterable[Finding], plan: System, seen: System) -> Iterator[Finding]:
-    """What is missing by a plan: a stack or parameter file of which the launch file starts no node for
-    any robot is left to another one, as a vendor's bringup starts its own nodes."""
+    """Yield the findings; a missing node is inconclusive if the launch file starts no node of its
+    node set or parameter file, which another launch file may do."""
     sources = {it.name: it.stack or it.place.file for it in plan.nodes}
     begun = {"", *(sources.get(it.name, "") for it in seen.nodes)}
     for it in found:
@@ -76,8 +76,8 @@ def as_one_of_several(found: Iterable[Finding], plan: System, seen: System) -> I
 
 
 def _source(node: str, sources: Mapping[str, str]) -> str:
-    """Return the stack or file of a planned node. One that a node makes for itself has that of its
-    maker, with whose name its own begins: /move_group_private_*."""
+    """Return the node set or file of a planned node. One that a node makes for itself has that of
+    its maker, with whose name its own begins: /move_group_private_*."""
     if source := sources.get(node, ""):
         return source
     makers = (it for it in sources if it != node and node.startswith(it))
@@ -102,5 +102,5 @@ def placed(findings: Iterable[Finding], launched: Launched) -> Iterator[Finding]
 
 
 def judge_launch(launched: Launched) -> list[Finding]:
-    """What is wrong with what a launch file starts; empty for one that is as it should be."""
+    """Return what is wrong with what a launch file starts; empty if nothing is."""
     return [it for rule in RULES if rule.check for it in rule.check(launched)]

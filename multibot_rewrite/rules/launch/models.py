@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is wrong with the models that a launch spawns: two of one name, at one place, on one topic,
-and in a world that does not run what they need; and with the rows of the bridges beside them.
+and in a world that does not run what they need; and with the rows of their bridges.
 
 Source: ros_gz_sim jazzy create.cpp (``-name``, ``-x`` ... and ``-allow_renaming``); gz-sim8
 src/systems/user_commands/UserCommands.cpp (an entity of a name that is there is not created);
@@ -93,7 +93,7 @@ def shared_topic(launched: Launched) -> Iterator[Finding]:
 
 @launch_rule("MG704", "command-not-bridged")
 def not_bridged(launched: Launched) -> Iterator[Finding]:
-    """What only one of the models gets may be meant; that its like gets nothing is not."""
+    """Yield the gz topics that a model reads and no bridge fills, if another model's is bridged."""
     for it, gz in _lacking(launched, inwards=True):
         message = f"{it.name} reads gz topic {gz}, and no bridge passes anything on to it"
         hint = "add a row to Gazebo for it, as another model has one"
@@ -133,7 +133,7 @@ def _plain(model: InSimulator, topic: tuple[str, str]) -> tuple[str, str]:
 
 @launch_rule("MG706", "world-without-system")
 def without_system(launched: Launched) -> Iterator[Finding]:
-    """A robot may bring a system itself."""
+    """Yield the systems that a world does not load and no robot brings."""
     models = launched.simulated
     roots = [it.root for it in models]
     brought = {_system(it.get("filename", "")) for root in roots for it in root.iter("plugin")}
@@ -199,6 +199,6 @@ def to_another_robot(launched: Launched) -> Iterator[Finding]:
 
 
 def _plain_row(row: _Row, own: str) -> tuple[str, str]:
-    """The row without the robot's name."""
+    """Return the names of a row without the robot's name."""
     ros, gz = ("/".join(w for w in it.split("/") if w != own) for it in (row.ros, row.gz))
     return ros, gz

@@ -48,7 +48,7 @@ _ELSEWHERE = "name the launch file that starts it in addition to this one, if th
 
 @launch_rule("MG721", "launch-fails")
 def fails(launched: Launched) -> Iterator[Finding]:
-    """What the file itself raises, and files of it that are not there."""
+    """Yield what ends the launch: an exception of the file, or a file that is missing."""
     for it in launched.graph.notes:
         if it.fails:
             yield at(fails, it.place, f"the launch ends here: {it.message}", "correct it")
@@ -66,9 +66,9 @@ def spawned_twice(launched: Launched) -> Iterator[Finding]:
 
 
 def _no_manager(launched: Launched) -> Iterator[Finding]:
-    """An error where another manager is there, or all is known: the nodes and the description. A launch
-    file without a description may be one of several. Its ``names`` are the manager that is missing, and
-    the one that may be meant."""
+    """Yield the spawners whose manager nothing starts: an error if another manager is there, or if
+    nodes and description are known. ``names`` are the missing manager and the one that may be
+    meant."""
     there = [it.full_name for it in launched.nodes if _is(it, MANAGER)]
     described = bool(launched.models.found) and not launched.models.lost
     for manager in dict.fromkeys(it.manager for it in launched.spawned):
@@ -94,7 +94,7 @@ no_manager = spawner_managers.NO_MANAGER._replace(
 
 @launch_rule("MG730", "name-of-a-whole-process", distro="humble")
 def names_all(launched: Launched) -> Iterator[Finding]:
-    """A manager that gets a name, where it loads controllers."""
+    """Yield the managers that load controllers and get a name, which renames all of them."""
     given = {(it.place, it.name) for it in launched.graph.nodes}
     for run in (it for it in launched.nodes if (it.place, it.name) in given):
         others = {it.name for it in launched.spawned if it.manager == run.full_name}
@@ -110,14 +110,14 @@ def _is(it: Run, known: str) -> bool:
 
 
 def _is_known(launched: Launched) -> bool:
-    """Are all nodes of the launch known?"""
+    """Return whether all nodes of the launch are known."""
     nodes = all(it.is_known for it in launched.nodes)
     return nodes and all(it.parameters or it.fails for it in launched.graph.notes)
 
 
 @launch_rule("MG724", "model-without-description")
 def no_description(launched: Launched) -> Iterator[Finding]:
-    """An error where a description has another topic; without any, another launch file may send it."""
+    """Yield the spawners whose description nothing sends; inconclusive if nothing sends any."""
     names = (it.name for it in launched.system.ends if it.role == PUBLISHES)
     sent = [it for it in names if it.endswith("robot_description")]
     level = {} if sent else {"level": INCONCLUSIVE}
@@ -170,8 +170,8 @@ def no_joints(launched: Launched) -> Iterator[Finding]:
 
 
 def moves_nothing(facts: NodeFacts, given: Run) -> bool:
-    """Does a controller command the joints that its parameters name, and do these name none? A joint
-    without an interface is named."""
+    """Return whether a controller commands the joints of its parameters, and these name none. A
+    joint without an interface counts as named."""
     commands = [claim for claim in facts.claims if claim.kind == COMMAND]
     by_joint = bool(commands) and all(claim.template.startswith("<") for claim in commands)
     owners = (it._replace(template=it.template.partition("/")[0], condition="") for it in commands)
@@ -204,14 +204,15 @@ def not_listed(launched: Launched) -> Iterator[Finding]:
 
 
 def keeps_no_bond(node: NodeFacts) -> bool:
-    """Has it a life cycle, and no bond with its manager, by its parameters? nav2_lifecycle_manager
-    jazzy, lifecycle_manager.cpp: without one it aborts after ``bond_timeout``."""
+    """Return whether it has a life cycle, and no bond with its manager, by its parameters.
+    nav2_lifecycle_manager jazzy, lifecycle_manager.cpp: without one it aborts after
+    ``bond_timeout``."""
     names = [it.name for it in node.endpoints]
     return f"~{_CHANGE}" in names and _BOND not in names
 
 
 def said_of_bond(manager: str, name: str) -> tuple[str, str]:
-    """That a manager waits for the bond of a node, and what to set."""
+    """Return the message that a manager waits for the bond of a node, and the hint."""
     hint = "set use_lifecycle_manager: true for the node, or bond_timeout: 0.0 for the manager"
     return f"{manager} waits for a bond with {name}, which keeps none", hint
 
@@ -221,12 +222,12 @@ _SELF = (LIFECYCLE_MANAGER, "slam_toolbox", "map_saver", "costmap_filter_info_se
 
 
 def is_managed(kind: str) -> bool:
-    """Does it come up by a lifecycle manager of Nav2 alone?"""
+    """Return whether a lifecycle manager of Nav2 alone activates a node of this kind."""
     return kind in NAV2 and kind not in _SELF
 
 
 def _listed(it: Run) -> Iterator[str]:
-    """The nodes whose services a manager calls, which its rules may say
+    """Yield the nodes whose services a manager calls, after its remap rules
     (nav2_lifecycle_manager, lifecycle_service_client.cpp)."""
     names = it.value("node_names")
     bound = bound_of(it.name, it.namespace, it.rules)
@@ -245,7 +246,7 @@ def waits(launched: Launched) -> Iterator[Finding]:
 
 
 def read_by_joints(launched: Launched) -> Iterator[tuple[Run, str]]:
-    """What each joint_state_publisher subscribes to."""
+    """Yield each joint_state_publisher with the topics that it subscribes to."""
     kinds = ("joint_state_publisher", "joint_state_publisher_gui")
     known = {it.full_name: it for it in launched.nodes if it.fact.kind in kinds}
     for end in launched.system.ends:
@@ -289,7 +290,7 @@ def ends(launched: Launched) -> Iterator[Finding]:
 
 
 def _described(it: Run) -> Iterator[Finding]:
-    """An empty text is the output of a program that is not run here (producers/launch/commands.py)."""
+    """Yield robot_state_publishers without a description, or with one that is no XML."""
     is_one = it.fact.known == STATE_PUBLISHER
     if not is_one or it.arguments or it.is_untold("robot_description"):
         return

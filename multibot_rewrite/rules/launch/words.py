@@ -227,7 +227,7 @@ _TEMPORARY = ("/tmp", "/var/tmp", "/dev/shm")
 
 
 def _is_ours(path: str) -> bool:
-    """May it be judged here? What another machine has, or a program makes, may not."""
+    """Return whether it may be judged here. What another machine has, or a program makes, may not."""
     folder = os.path.dirname(path)
     return os.path.isdir(folder) and folder not in _TEMPORARY
 
@@ -259,7 +259,7 @@ def misspelt(launched: Launched) -> Iterator[Finding]:
 
 
 def _package_meant(it: LaunchedNode, known: Mapping[str, Collection[str]]) -> str:
-    """The package that has the program, where the name is nearly that of it and of none around."""
+    """Return the package that was meant by a nearly equal name and has the program; empty for none."""
     near = "" if it.package in known else nearest(it.package, sorted(known), SLIP)
     if it.executable not in known.get(near, ()) or differ_in_numbers(near, it.package):
         return ""

@@ -46,7 +46,7 @@ class SdfPart(NamedTuple):
 
 @lru_cache
 def chunks() -> Mapping[str, str]:
-    """The text of every section by each of its names; nothing is read of it yet."""
+    """Return the unparsed text of every section by each of its names."""
     found: dict[str, str] = {}
     _, *parts = table_text("sdf.schema").split("\n[")
     for part in parts:
@@ -58,7 +58,7 @@ def chunks() -> Mapping[str, str]:
 
 @lru_cache(maxsize=512)
 def described(name: str) -> SdfPart | None:
-    """The section of that name."""
+    """Return the section of that name, parsed; None without one."""
     text = chunks().get(name)
     if text is None:
         return None
@@ -75,7 +75,7 @@ def described(name: str) -> SdfPart | None:
 
 
 def _with(row: SdfRow, word: str) -> SdfRow:
-    """A row with what one word behind its line says: a range of numbers or of versions."""
+    """Return a row with what one word of its line says: a section, a range of numbers or versions."""
     if word[0] == ">":
         return row._replace(section=word[1:])
     if word == "required":
@@ -97,6 +97,6 @@ _FOLDER = os.path.dirname(__file__)
 
 
 def table_text(file: str) -> str:
-    """A table as it is written; ``pathlib`` would be loaded for it alone."""
+    """Return the text of a table; ``pathlib`` would be loaded for it alone."""
     with open(os.path.join(_FOLDER, file), encoding="utf-8") as table:
         return table.read()

@@ -97,7 +97,7 @@ def _sorted_children(
 def _to_check(
     known: Schema, name: str, elements: Iterable[etree._Element]
 ) -> Iterable[etree._Element]:
-    """The elements whose attributes may have a fault."""
+    """Return the elements whose attributes may have a fault."""
     kinds: dict[tuple[str, ...], list[etree._Element]] = defaultdict(list)
     for element in elements:
         kinds[tuple(element.keys())].append(element)  # type: ignore[arg-type]
@@ -114,7 +114,7 @@ def _to_check(
 def _with_odd_values(
     alike: Sequence[etree._Element], typed: Iterable[tuple[int, Kind]]
 ) -> Iterable[etree._Element]:
-    """Elements of the same attributes, looked at by columns: most values come again and again."""
+    """Elements of the same attributes, checked by columns: most values come again and again."""
     columns = list(zip(*[it.values() for it in alike], strict=True))
     found: dict[etree._Element, None] = {}
     for at, kind in typed:
@@ -211,7 +211,7 @@ def _children(element: etree._Element, section: UrdfPart, schema: Schema) -> Ite
 def _unknown_child(
     element: etree._Element, child: etree._Element, section: UrdfPart, schema: Schema, meant: str
 ) -> Iterator[Problem]:
-    """A child that the schema does not have in its parent."""
+    """Yield the fault of a child that the schema does not have in its parent."""
     message = f"no parser reads <{child.tag}> inside <{element.tag}>"
     hint = f"did you mean <{meant}>?" if meant else ""
     if section.name == "ros2_control":
@@ -233,12 +233,12 @@ def _unknown_child(
 
 
 def canonical(element: etree._Element) -> bytes:
-    """An element as all that mean the same are written."""
+    """Return an element in the form that all equal elements share."""
     return etree.tostring(element, method="c14n", with_tail=False)
 
 
 def _near(name: str, known: Collection[str]) -> str:
-    """The known name that is most like another: the same letters, or nearly all of them."""
+    """Return the known name that is most like another: the same letters, or nearly all of them."""
     low = name.lower()
     letters = sorted(low)
     same = next((it for it in known if sorted(it.lower()) == letters), "")
@@ -248,7 +248,7 @@ def _near(name: str, known: Collection[str]) -> str:
 def _value(
     element: etree._Element, kind: Kind, attribute: str, version: Version
 ) -> Iterator[Problem]:
-    """What is wrong with a value."""
+    """Yield what is wrong with a value."""
     value = element.get(attribute, "")
     where = f"{element.tag}@{attribute} is {shortened(value)!r}"
     if kind.type == "one":
@@ -274,7 +274,7 @@ def _value(
 
 
 def _is_unread(element: etree._Element) -> bool:
-    """Is it the axis of a joint whose axis is not read?"""
+    """Return whether it is the axis of a joint whose axis is not read."""
     joint = element.getparent()
     return element.tag == "axis" and joint is not None and joint.get("type") in _AXIS_FREE
 

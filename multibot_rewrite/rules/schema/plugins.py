@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The parameters of a ``<plugin>`` and of ros2_control hardware against what their code reads.
 
-What it reads is in the rows of the vocabulary. A parameter counts as known where any release reads
-it: what only other releases read is a fault of its own.
-"""
+What it reads is in the rows of the plugin definitions. A parameter counts as known where any
+release reads it: what only other releases read is a fault of its own."""
 
 from __future__ import annotations
 
@@ -31,7 +30,7 @@ CLASSIC = "Plugin"
 def plugin_faults(
     element: _Element, vocabulary: Vocabulary, of_ros_1: bool = False
 ) -> Iterator[Problem]:
-    """The faults of a plugin's parameters; none where the plugin is not known."""
+    """Yield the faults of a plugin's parameters; nothing for an unknown plugin."""
     section = values_of_plugin(element, vocabulary, of_ros_1)
     if section is None:
         return
@@ -43,7 +42,7 @@ def plugin_faults(
 def _children(
     element: _Element, above: str, section: Values, vocabulary: Vocabulary
 ) -> Iterator[Problem]:
-    """The faults of what is in a plugin, or in the parameter ``above`` of it."""
+    """Yield the faults of what is in a plugin, or in its parameter ``above``."""
     for child in element.iterchildren("*"):
         if not is_own(child.tag):
             continue
@@ -54,7 +53,7 @@ def _children(
 
 
 def hardware_faults(hardware: _Element, vocabulary: Vocabulary) -> Iterator[Problem]:
-    """The faults of the parameters in a ``<hardware>``."""
+    """Yield the faults of the parameters in a ``<hardware>``."""
     section = vocabulary.values(text_at(hardware, "plugin"))
     if section is None:
         return
@@ -94,11 +93,14 @@ def _parameter(
 
 
 def _measure(child: _Element, row: Value, text: str, where: str) -> Iterator[Problem]:
-    """A number outside of what makes sense, or an angle of more than a turn."""
+    """Yield a fault for a number outside its sensible range, or an angle of more than a turn."""
     value = number_in(text)
     if value is None:
         return
-    if row.low is not None and (value < row.low or (row.is_open and value == row.low)):
+    if row.unit == "nonzero" and not any(map(number_in, text.split())):
+        message = f"{where} has to be other than 0{_in(row.checked)}"
+        yield fault("range", child, "", message, "", WARNING)
+    elif row.low is not None and (value < row.low or (row.is_open and value == row.low)):
         limit = f"has to be {'above' if row.is_open else 'at least'} {row.low:g}"
         yield fault("range", child, "", f"{where} {limit}{_in(row.checked)}", "", WARNING)
     elif row.high is not None and value > row.high:
@@ -112,8 +114,8 @@ def _measure(child: _Element, row: Value, text: str, where: str) -> Iterator[Pro
 def _unread(
     child: _Element, above: str, name: str, section: Values, vocabulary: Vocabulary
 ) -> Iterator[Problem]:
-    """What is not read where it is. Code may ask for it through a function that is given an element,
-    so what is read anywhere counts as read, unless the block that it belongs to is there."""
+    """Yield a fault for a parameter that is not read where it is. Code may read it by a function
+    that gets an element, so one read anywhere is fine, unless its block is there."""
     blocks = section.blocks_of.get(name)
     if blocks is None:
         yield from _unknown(child, above, name, section, vocabulary)
@@ -145,7 +147,7 @@ def _unknown(
 
 
 def _of_another(name: str, section: Values, vocabulary: Vocabulary) -> str:
-    """The plugin of the other ROS or simulator that does the same and has this parameter."""
+    """Return the counterpart for the other ROS or simulator that has this parameter, or empty."""
     for other, of_ros_1 in _counterparts(section.names[0], section.of_ros_1, vocabulary):
         found = vocabulary.values(other, of_ros_1)
         # A block is no parameter that was taken from there: <imu> is an element of SDF as well.
@@ -160,7 +162,7 @@ def _counterparts(
 ) -> tuple[tuple[str, bool], ...]:
     """Those of the same name or subject: in the other ROS, in Gazebo for one of Classic, and the
     reverse."""
-    own = _subject(library)
+    own = _topic_of_library(library)
     of_gz = library.startswith(GZ)
     start = GAZEBO_ROS if of_gz else GZ
     found = [
@@ -168,12 +170,12 @@ def _counterparts(
         for it, of in vocabulary.valued()
         if (it.startswith(start) or (of_gz and it.endswith(CLASSIC))) and "::" not in it
     ]
-    same = sorted((of, it) for of, it in found if own and _subject(it) == own)
+    same = sorted((of, it) for of, it in found if own and _topic_of_library(it) == own)
     return ((library, not of_ros_1), *((it, of) for of, it in same))
 
 
-def _subject(library: str) -> str:
-    """What a plugin is about by the words of its library."""
+def _topic_of_library(library: str) -> str:
+    """Return what a plugin is about, from the words of its library."""
     bare = fold(library.removeprefix(GZ).removeprefix(GAZEBO_ROS).removesuffix("-system"))
     return bare.removesuffix(CLASSIC.casefold()).removesuffix("_sensor").replace("_", "")
 
@@ -193,5 +195,5 @@ def _in(place: str) -> str:
 
 
 def title(section: Values) -> str:
-    """What a section is about, as a message has it."""
+    """Return the plugin of a section, as a message names it."""
     return section.names[0] + " of ROS 1" * section.of_ros_1

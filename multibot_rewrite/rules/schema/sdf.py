@@ -48,7 +48,7 @@ CLASSIC = (1, 9)
 
 
 def version_of_release(release: str) -> Version:
-    """The version of SDF that Gazebo reads in a release."""
+    """Return the version of SDF that Gazebo reads in a release."""
     found = versions.read_version(versions.reader_of(release, versions.SDFORMAT).reads)
     assert found
     return tuple(found)
@@ -93,7 +93,7 @@ def _block(block: _Element, robot: Robot, version: Version, taken: SdfPart) -> I
 
 
 def _taken(child: _Element, row: SdfRow, home: str) -> Iterator[Problem]:
-    """A tag that the converter itself reads."""
+    """Yield the fault of a tag that the converter itself reads."""
     at = "value" if child.get("value") else ""
     text = child.get("value") or text_of(child)
     if not text or "$" in text:
@@ -167,7 +167,7 @@ def _element(element: _Element, section: str, version: Version) -> Iterator[Prob
 
 
 def _of_version(rows: tuple[SdfRow, ...], version: Version) -> SdfRow:
-    """The row of a version; one of an older version that is converted; else the first later one."""
+    """Return the row of a version, or one of an older version, or the first later one."""
     if len(rows) == 1:
         return rows[0]
     older = [it for it in rows if it.first <= version]
@@ -177,7 +177,7 @@ def _of_version(rows: tuple[SdfRow, ...], version: Version) -> SdfRow:
 def _value(
     element: _Element, at: str, row: SdfRow, text: str, known: SdfPart, version: Version
 ) -> Iterator[Problem]:
-    """What is wrong with a value: of the attribute ``at``, or the text."""
+    """Yield what is wrong with a value: of the attribute ``at``, or the text."""
     text = text.strip()
     if not text or "$" in text:
         return
@@ -204,7 +204,7 @@ def _named(element: _Element, at: str) -> str:
 
 
 def _degrees(element: _Element, at: str, row: SdfRow, text: str) -> Iterator[Problem]:
-    """An angle of more than a turn; a pose may say that its are in degrees, or be a quaternion."""
+    """Yield a fault for an angle of more than a turn, unless it is in degrees or a quaternion."""
     if element.get("degrees", "").lower() in ("true", "1") or element.get("rotation_format"):
         return
     angles = [number_in(it) or 0.0 for it in (text.split()[3:] if row.type == "pose" else [text])]
@@ -230,7 +230,7 @@ def _range(element: _Element, at: str, row: SdfRow, text: str) -> Iterator[Probl
 
 
 def _word(element: _Element, at: str, name: str, text: str, version: Version) -> Iterator[Problem]:
-    """A word that has to be one of those that the library knows."""
+    """Yield a fault for a word that the library does not know."""
     known, row = words(name), described(f"{WORDS} {name}")
     folded = row is not None and "folded" in row.words
     if not known or text in known or (folded and text.lower() in known):
@@ -246,7 +246,7 @@ def _word(element: _Element, at: str, name: str, text: str, version: Version) ->
 
 
 def _is_for_classic(element: _Element) -> bool:
-    """Has the sensor of a value a plugin of Gazebo Classic?"""
+    """Return whether the sensor of a value has a plugin of Gazebo Classic."""
     sensor = next(element.iterancestors("sensor"), None)
     plugins = sensor.iterchildren("plugin") if sensor is not None else ()
     return any("gazebo_ros_" in it.get("filename", "") for it in plugins)
@@ -254,7 +254,7 @@ def _is_for_classic(element: _Element) -> bool:
 
 @lru_cache
 def words(name: str) -> tuple[str, ...]:
-    """The words that the library knows for a value, ``sensor/@type``; none where it takes any."""
+    """Return the words that the library knows for ``sensor/@type``; empty where it takes any."""
     found = described(f"{WORDS} {name}")
     return tuple(found.rows) if found else ()
 
@@ -279,7 +279,7 @@ def _unknown(
 
 
 def _beside(child: _Element, known: SdfPart) -> tuple[str, ...]:
-    """The elements beside it that have such a child."""
+    """Return the sibling elements that have such a child."""
     parent, found = child.getparent(), []
     for it in parent.iterchildren("*") if parent is not None else ():
         inner = [described(row.section) for row in known.rows.get(str(it.tag), ()) if row.section]
@@ -290,7 +290,7 @@ def _beside(child: _Element, known: SdfPart) -> tuple[str, ...]:
 
 @lru_cache
 def _homes(tag: str) -> tuple[str, ...]:
-    """The elements of SDF that have such a child, where there are few."""
+    """Return the elements of SDF that have such a child, if there are few."""
     found = {
         part.partition("]")[0].rpartition(".")[2].partition("_shape")[0]
         for part in chunks().values()

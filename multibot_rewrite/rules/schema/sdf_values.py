@@ -41,10 +41,8 @@ class Misread(NamedTuple):
 
 @lru_cache(maxsize=4096)  # values come again
 def misread(type_: str, text: str) -> Misread | None:
-    """What is wrong with a text for that type, None where it is read as it stands.
-
-    Nothing is said of an empty text, which counts as the default, or of a type without a rule.
-    """
+    """Return what is wrong with a text for that type; None where it is read as it is. Empty texts,
+    which mean the default, and types without a rule are always right."""
     check = CHECKS.get(type_)
     return check(text) if check and text else None
 
@@ -86,7 +84,7 @@ def _truth(text: str) -> Misread | None:
 
 
 def _numbers(text: str, *, count: int) -> Misread | None:
-    """A stream stops at the first word that is no number."""
+    """Return what is wrong with a text of ``count`` numbers: a stream stops at the first other word."""
     read = 0
     for word in text.split():
         found = _REAL.match(word)
@@ -128,6 +126,6 @@ CHECKS: dict[str, Callable[[str], Misread | None]] = {
 
 
 def number_in(text: str) -> float | None:
-    """The number that a text begins with, as stod reads it."""
+    """Return the number that a text begins with, as stod reads it; None for any other."""
     found = _REAL.match(text)
     return float(found[0]) if found and "x" not in found[0].lower() else None

@@ -31,9 +31,8 @@ NO_LATER: Mapping[str, Version] = {}
 class Kind(NamedTuple):
     """What an attribute must hold: a type of ``urdf.schema``, or one of ``choices``.
 
-    It is read from version ``since`` on, and not beside the attribute ``instead_of``. A number out of
-    range is refused from version ``refused`` on.
-    """
+    It is read from version ``since`` on, and not with the attribute ``instead_of``. A number out of
+    range is refused from version ``refused`` on."""
 
     type: str
     required: bool
@@ -79,7 +78,7 @@ class Schema(NamedTuple):
 
 @lru_cache
 def schema(version: Version) -> Schema:
-    """The schema of a version."""
+    """Return the schema of a version."""
     sections = {name: _of_version(it, version) for name, it in _all_sections().items()}
     tags = frozenset(tag for it in sections.values() for tag in it.children)
     kinds = ((name, child.times) for name, it in sections.items() for child in it.children.values())
@@ -111,7 +110,7 @@ def _all_sections() -> Mapping[str, UrdfPart]:
 
 
 def _of_version(section: UrdfPart, version: Version) -> UrdfPart:
-    """A section as a version has it: what comes later has no type, nothing in it is checked."""
+    """Return a section as a version has it: later parts have no type and are not checked."""
     attributes = {
         key: it if it.since <= version else it._replace(type="", instead_of="")
         for key, it in section.attributes.items()
@@ -147,12 +146,12 @@ def _version_behind(start: str, words: Sequence[str]) -> Version:
 
 
 def is_own(name: object) -> bool:
-    """Is it a tag or attribute of URDF: no comment, nothing in another program's namespace?"""
+    """Return whether it is a tag or attribute of URDF: no comment, nothing in another's namespace."""
     return isinstance(name, str) and "{" not in name and ":" not in name
 
 
 def section_of(element: etree._Element, known: Schema) -> UrdfPart | None:
-    """The section of a schema that an element of a document belongs to."""
+    """Return the schema's section for an element of a document; None for an unknown one."""
     parent = element.getparent()
     path = [element]
     while parent is not None:
@@ -189,7 +188,7 @@ def typed_attributes(
 
 @lru_cache(maxsize=2048)
 def sections_below(version: Version, name: str, tags: tuple[str, ...]) -> tuple[str, ...] | None:
-    """The sections of children, empty where not checked; None where the children have a fault."""
+    """Return the sections of children, empty where not checked; None if the children have a fault."""
     section = schema(version).sections[name]
     known = section.children
     if any(tag in section.later for tag in tags):
@@ -208,7 +207,7 @@ def sections_below(version: Version, name: str, tags: tuple[str, ...]) -> tuple[
 
 
 def sections_once(version: Version, name: str, tags: tuple[str, ...]) -> tuple[str, ...]:
-    """The section of each child; empty from the second one on where one is read."""
+    """Return the section of each child; empty for repetitions of a child that is read once."""
     known = schema(version).sections[name].children
     seen: set[str] = set()
     found: list[str] = []
@@ -221,7 +220,7 @@ def sections_once(version: Version, name: str, tags: tuple[str, ...]) -> tuple[s
 
 
 def _slot(tag: str, child: Child) -> str:
-    """The place that a child which is read once takes: all shapes share one."""
+    """Return the slot of a child that is read once: all shapes share one."""
     return child.times if child.times == "either" else tag
 
 
@@ -251,7 +250,7 @@ _UNITS = lazy_compile(r"[-+.\deE]*\d\.?\s*[A-Za-z°%]+", re.ASCII)
 
 
 def is_fine(kind: str, value: str) -> bool:
-    """Does a value look like most correct ones? (Others may be correct as well.)"""
+    """Return whether a value looks like most correct ones; others may be correct as well."""
     if len(value) > _LONG or kind not in FINE or FINE[kind].fullmatch(value) is None:
         return False
     if kind == "unsigned":
@@ -261,7 +260,7 @@ def is_fine(kind: str, value: str) -> bool:
 
 
 def shortened(text: str) -> str:
-    """A text that fits into a message."""
+    """Return a text short enough for a message."""
     return text if len(text) < 60 else f"{text[:56]} ..."
 
 
@@ -280,7 +279,7 @@ def wrong_numbers(value: str, kind: str) -> tuple[str, str, str]:
 
 
 def _miscounted(value: str, numbers: Sequence[float], kind: str) -> tuple[str, str, str]:
-    """The same for a value of nothing but numbers."""
+    """Return kind, end of the message and hint for a value of numbers alone; empty if it is right."""
     wanted = COUNTS[kind]
     if len(numbers) != wanted:
         count = f"{len(numbers)} numbers" if len(numbers) != 1 else "1 number"

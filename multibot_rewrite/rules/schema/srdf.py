@@ -59,7 +59,7 @@ def srdf_faults(root: _Element, robot: Robot | None) -> Iterator[Problem]:
 
 
 def _elements(root: _Element) -> Iterator[tuple[_Element, str]]:
-    """The elements that srdfdom reads and their places in ``ELEMENTS``."""
+    """Yield the elements that srdfdom reads, with their places in ``ELEMENTS``."""
     for top in root.iterchildren(*_TOP):
         tag = str(top.tag)
         yield top, tag
@@ -85,7 +85,7 @@ def _misspelt(
 def _word(
     it: _Element, attribute: str, word: str, known: tuple[str, ...], level: str
 ) -> Iterator[Problem]:
-    """A word that MoveIt does not know; a type is read as fixed then, a property is left out."""
+    """Yield a fault for a word unknown to MoveIt, which takes a type as fixed and skips a property."""
     if attribute in it.attrib and word not in known:
         near = nearest(word, known)
         hint = f"did you mean {near!r}?" if near else f"use one of {', '.join(known)}"
@@ -94,7 +94,7 @@ def _word(
 
 
 def numbers_in(text: str) -> list[float] | None:
-    """The numbers of a value; None where one of them is not a number."""
+    """Return the numbers of a value; None where one of them is not a number."""
     try:
         numbers = [float(word) for word in text.split()]
     except ValueError:

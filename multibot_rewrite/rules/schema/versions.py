@@ -36,7 +36,7 @@ OLDEST = KNOWN[0]
 
 @lru_cache(maxsize=64)  # a dozen rules ask
 def read_version(text: str) -> Version | None:
-    """The version that a text names; None where urdfdom takes it for none."""
+    """Return the version that a text names; None where urdfdom reads none."""
     pieces = text.split(".")
     if len(pieces) == 3 and not pieces[2]:
         del pieces[2]
@@ -47,12 +47,12 @@ def read_version(text: str) -> Version | None:
 
 
 def is_known(text: str) -> bool:
-    """Does the newest urdfdom read a file that declares this?"""
+    """Return whether the newest urdfdom reads a file that declares this version."""
     return read_version(text) in KNOWN
 
 
 def version_of(root: _Element) -> Version:
-    """The version that a robot is read as: 1.0 where it declares none, or one that is not read."""
+    """Return the version that a robot is read as: 1.0 without one that is known."""
     declared = read_version(root.get("version", str(OLDEST)))
     return declared if declared in KNOWN else OLDEST
 
@@ -63,8 +63,9 @@ _SYSTEMS = ("ignition-gazebo", "gz-sim", "ign_ros2_control", "gz_ros2_control")
 
 
 def may_be_classics(root: _Element, release: str) -> bool:
-    """May Gazebo Classic read it? Its libsdformat 9 has no ranges and reads what it can of poses and
-    colours (src/Param.cc), and it goes on with a model that it has errors about."""
+    """Return whether Gazebo Classic may read it. Its libsdformat 9 has no ranges and reads what it
+    can of poses and colours (src/Param.cc), and it goes on with a model that it has errors
+    about."""
     version = read_version(root.get("version", "")) if root.tag == "sdf" else None
     if release != OF_OLD and not (version and version <= _NEWEST):
         return False
@@ -96,10 +97,10 @@ def readers() -> tuple[Reader, ...]:
 
 
 def reader_of(release: str, name: str) -> Reader:
-    """A program as a release has it."""
+    """Return a program as a release has it."""
     return next(it for it in readers() if (it.release, it.name) == (release, name))
 
 
 def highest_version(release: str) -> Version:
-    """The highest version of URDF that the urdfdom of a release reads."""
+    """Return the highest version of URDF that the urdfdom of a release reads."""
     return read_version(reader_of(release, URDFDOM).reads) or OLDEST

@@ -59,13 +59,13 @@ def names_another(robot: str, owner: str, remaps: Sequence[Remap] = ()) -> Cause
 
 
 def caused(hint: str, place: str) -> Cause:
-    """The cause that is written at ``place``, which is ``file:line`` or something else."""
+    """Return the cause at ``place``, which is ``file:line`` or something else."""
     found = _PLACE.fullmatch(place)
     return Cause(hint, found[1], int(found[2])) if found else Cause(hint)
 
 
 def plugin_of(plan: Index | None, node: str) -> tuple[str, str]:
-    """The plugin that starts a planned node, and its place in the description; both empty without."""
+    """Return the plugin that starts a planned node, and its place; both empty without one."""
     place = str(plan.node[node].plugin) if plan and node in plan.node else ""
     if not (plan and place):
         return "", ""
@@ -74,7 +74,7 @@ def plugin_of(plan: Index | None, node: str) -> tuple[str, str]:
 
 
 def remap_rule(planned: End) -> str:
-    """The remap rule that gives the node's name its planned form; empty where none is needed."""
+    """Return the remap rule that gives an end its planned name; empty where none is needed."""
     if not planned.code_name or name_without_rules(planned) == planned.name:
         return ""
     namespace = planned.node.rpartition("/")[0] + "/"
@@ -82,7 +82,7 @@ def remap_rule(planned: End) -> str:
 
 
 def name_without_rules(planned: End) -> str:
-    """The full name that the name in the node's code has without any remap rule."""
+    """Return the full name that the name in the node's code has without any remap rule."""
     if check_topic_name(planned.code_name):
         return ""
     namespace, _, node = planned.node.rpartition("/")
@@ -90,7 +90,7 @@ def name_without_rules(planned: End) -> str:
 
 
 def names_without_rules(plan: Index, planned: End) -> tuple[str, ...]:
-    """The names an endpoint may have where no remap rule and no namespace is applied."""
+    """Return the names that an end may have without its remap rules or its namespace."""
     in_root = f"/{planned.code_name.strip('/').removeprefix('~/')}"
     robot = plan.robot_of.get(planned.node) or plan.robot(planned.name)
     plain = plan.of_names.without_robot(planned.name, robot)
@@ -99,7 +99,7 @@ def names_without_rules(plan: Index, planned: End) -> tuple[str, ...]:
 
 
 def use_absolute(name: str) -> str:
-    """What to do about a relative name below the node's own namespace."""
+    """Return the hint about a relative name in the node's own namespace."""
     return f"the node resolves a relative name in its own namespace: write {name} in its parameters"
 
 
@@ -118,7 +118,7 @@ def why_not_remapped(plan: Index, planned: End) -> Cause:
 
 
 def how_to_remap(plan: Index, planned: End) -> str:
-    """How to pass the rule to a node of the stack; empty for a plugin's node, which has a file."""
+    """How to pass the rule to a node of the node set; empty for a plugin's node, which has a file."""
     rule = remap_rule(planned)
     if not rule or plugin_of(plan, planned.node)[1]:
         return ""
@@ -127,7 +127,7 @@ def how_to_remap(plan: Index, planned: End) -> str:
 
 
 def how_to_pass(plan: Index, node: str, rule: str, what: str = "") -> str:
-    """Where a rule for a node stands, and how it is written there; ``what`` is what to call it."""
+    """Return where a rule for a node goes, and how it is written there; ``what`` is what to call it."""
     way, taker = _way(plan, node)
     what = what or rule
     if way == PLUGIN:
@@ -193,7 +193,7 @@ _Rest = tuple[int | str, ...]
 
 
 class Spelled:
-    """Known names by how they are spelled: no name is held against all."""
+    """Known names by how they are written: no name is compared with all."""
 
     def __init__(self, names: Iterable[str]) -> None:
         self.by_letters: dict[str, list[str]] = defaultdict(list)
@@ -213,11 +213,9 @@ NONE = Spelled(())
 def alike(
     name: str, known: Spelled, type_: str, may_be: Callable[[str], bool] = lambda _: True
 ) -> str:
-    """The known name that is the same but for case, dashes or a misspelled word, of those that it may
-    be; empty for none.
-
-    Names that differ in their numbers alone are two things.
-    """
+    """Return the known name that is the same but for case, dashes or a misspelled word, among those
+    that ``may_be`` allows; empty for none. Names that differ in their numbers alone are two
+    things."""
     same = known.by_letters.get(_letters(name), ())
     folded = next((it for it in same if it != name and may_be(it)), "")
     if folded or type_.startswith(COMMON):
@@ -235,7 +233,7 @@ def alike(
 
 
 def _with_other_word(parts: list[str], at: int, known: Spelled) -> Iterator[tuple[str, str]]:
-    """The names that differ in the word at one place alone, by that word; not by its number."""
+    """Yield known names that differ in the word at one place alone, with it; not in its number."""
     own, words = _DIGITS.sub("", parts[at]), known.beside.get(_rest(parts, at), {})
     found = (it for bare, others in words.items() if bare != own for it in others)
     return islice(found, COMPARED)
@@ -246,8 +244,8 @@ def _rest(parts: list[str], at: int) -> _Rest:
 
 
 def _is_slip(one: str, other: str) -> bool:
-    """Is no part between underscores another word? `cmd_vel_out` is no slip of `cmd_vel_ui`, nor is
-    `lidar_l` of `lidar_r`."""
+    """Return whether no part between underscores is another word. `cmd_vel_out` is no slip of
+    `cmd_vel_ui`, nor is `lidar_l` of `lidar_r`."""
     parts = list(zip_longest(one.split("_"), other.split("_"), fillvalue=""))
     return all(here == there or nearest(here, (there,), CHOICE) for here, there in parts)
 

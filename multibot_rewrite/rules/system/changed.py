@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A system held against an earlier look at it: what is new, gone or other in ends, transforms, frames
-of messages and parameters. Which nodes came and went is asked by the rules of a plan."""
+"""A system compared with an earlier snapshot of it: what is new, gone or other in ends, transforms,
+frames of messages and parameters. Which nodes came and went is asked by the rules of a plan."""
 
 from __future__ import annotations
 
@@ -50,8 +50,8 @@ def changed_since(plan: Index, seen: Index) -> Iterator[Finding]:
 
 
 def untold(found: Iterable[Finding]) -> list[Finding]:
-    """The findings without those of changes that others are about: of a name, of a node that came or
-    went, of a robot that is gone. A warning about an error is one."""
+    """Return the findings without changes that another one explains, of a name, a node or a robot.
+    A warning about the names of an error becomes an error."""
     every = [*found]
     errors = {
         name
@@ -101,7 +101,7 @@ def _changes(before: System, seen: Index) -> Iterator[_Change]:
 
 
 def _by_key(ends: Iterable[End]) -> Mapping[tuple[str, str, str, str], End]:
-    """The ends without those of every node, of tf's plumbing and hidden ones."""
+    """Return the ends by key, without those of every node, of tf and hidden ones."""
     return {
         (it.node, it.kind, it.role, it.name): it
         for it in ends
@@ -172,7 +172,7 @@ def _is_moved(old: Edge, new: Edge) -> bool:
 
 
 def _frames(before: System, seen: Index) -> Iterator[_Change]:
-    """The frames that messages name, of topics from which some came both times."""
+    """Yield changes of the frames in messages, for topics with messages both times."""
     old, new = (
         sets_by_key(
             (it.topic, " -> ".join(filter(None, (it.frame, it.child))) or shorten(it.joints))

@@ -40,7 +40,7 @@ _SENT = (TOPIC, PUBLISHES, CLOCK)
 
 @system_rule("MG501", "no-clock", ERROR, absence=True)
 def no_clock(seen: Index) -> Iterator[Finding]:
-    """A finding for each robot; tools subscribe to whatever there is."""
+    """Yield a finding for each robot on simulated time without a clock."""
     by_robot = _on_simulated_time(seen)
     if _clocks(seen):
         return
@@ -69,7 +69,7 @@ def _clocks(seen: Index) -> tuple[str, ...]:
 
 
 def _on_simulated_time(seen: Index) -> dict[str, list[str]]:
-    """The nodes that surely subscribe to the clock, by robot."""
+    """Return the nodes that surely subscribe to the clock, by robot; no tools, which read anything."""
     readers = at_work(it for it in seen.ends_at(TOPIC, CLOCK).subscribers if it.sure == RUNS)
     nodes = (it for it in nodes_of(readers) if not seen.is_tool(it))
     return lists_by_key((seen.robot(it), it) for it in nodes)
@@ -104,7 +104,7 @@ def _times(seen: Index, node: str) -> int:
 
 @once
 def _processes(seen: Index) -> Mapping[str, Set[str]]:
-    """The processes of all nodes of a name."""
+    """Return the processes of all nodes by name."""
     return sets_by_key((it.name, it.process) for it in seen.system.nodes)
 
 
@@ -130,7 +130,7 @@ def clocks_mixed(seen: Index) -> Iterator[Finding]:
 
 
 def mixed_clocks(seen: Index) -> Iterator[Finding]:
-    """The findings of MG503."""
+    """Yield the findings of MG503."""
     yield from _not_as_planned(seen)
     simulated = {node for nodes in _on_simulated_time(seen).values() for node in nodes}
     if not simulated or not _clocks(seen):
@@ -188,7 +188,7 @@ def _not_as_planned(seen: Index) -> Iterator[Finding]:
 
 
 def compares_times(name: str) -> bool:
-    """Does a node of this name, without its namespace, compare the time of messages with its own?"""
+    """Return whether a node of this name compares the time of messages with its own."""
     return bool(_IS_TIMED.fullmatch(name))
 
 
@@ -259,7 +259,7 @@ def _other_clock(senders: Sequence[str], what: str) -> Cause:
 
 
 def _wrong(age: float, clock: bool) -> str:
-    """What is wrong with a message of this age; with a simulated clock the machine's time is."""
+    """Return what is wrong with a message of this age; with simulated time, the machine's is wrong."""
     if isinf(age):
         return _ZERO
     other = abs(age) > _YEAR

@@ -71,7 +71,7 @@ def command_for_several_robots(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG308", "command-without-reader", ERROR, absence=True, drawn="leak")
 def command_to_nobody(seen: Index) -> Iterator[Finding]:
-    """Where the other name has no sender, its reader is the finding, but for the drive beside a
+    """Where the other name has no sender, its reader is the finding, but for the drive past a
     twist_mux: what it chooses is meant for the drive. What RViz offers is a note."""
     obeyed, plainly = defaultdict(list), defaultdict(list)
     unread: dict[str, Ends] = {}
@@ -118,8 +118,8 @@ def _alike(seen: Index, ends: Ends, known: Spelled) -> str:
 
 
 def _of_a_mux(seen: Index, ends: Ends) -> str:
-    """What the drive reads, where the velocities that twist_mux or Nav2 sends are unread; of Nav2 else
-    the input of its robot's mux that nobody sends."""
+    """Return what the drive reads where twist_mux or Nav2 sends velocities that nobody reads; for
+    Nav2 otherwise the input of its robot's mux that nobody sends."""
     robot, kinds = seen.robot(ends.name), _kinds(ends)
     # MoveIt's nodes have drives of their own kind, and each its own goal.
     chosen = any(map(chooses, nodes_of(ends.publishers)))
@@ -161,7 +161,7 @@ def _moving(seen: Index) -> tuple[set[str], set[str], Mapping[str, Sequence[Ends
 
 @once
 def _goals(seen: Index) -> Mapping[tuple[str, str], Sequence[str]]:
-    """The orders that somebody obeys, by type and robot."""
+    """Return the obeyed commands by type and robot."""
     return lists_by_key(
         ((it.type, seen.robot(it.name)), it.name) for it in seen.orders.values() if _obeyed(it)
     )
@@ -173,7 +173,7 @@ def _kinds(ends: Ends) -> set[str]:
 
 
 def _of_a_person(seen: Index, ends: Ends, same: Sequence[str]) -> str:
-    """The one goal, or velocity, that the same robot obeys, where a person sends another one."""
+    """Return the one goal or velocity that the robot obeys, where a person sends another one."""
     robot = seen.robot(ends.name)
     if words.moves(seen.plain(ends.name), ends.type):
         if not any(_BY_HAND.search(it) for it in nodes_of(ends.publishers)):
@@ -252,13 +252,13 @@ def command_from_another_robot(seen: Index) -> Iterator[Finding]:
 
 
 def _of_others(seen: Index, owner: str, ends: Iterable[End]) -> list[End]:
-    """The ends of other robots' nodes."""
+    """Return the ends of nodes of other robots."""
     return [it for it in ends if seen.robot(it.node) not in ("", owner)]
 
 
 def _is_waited_for(seen: Index, ends: Ends) -> bool:
-    """Has the robot of a sender the same topic, with readers and nobody who sends? As an emergency stop
-    with the other robot's name."""
+    """Return whether the robot of a sender has the same topic, with readers and no sender. As an
+    emergency stop with the other robot's name."""
     plain = seen.plain(ends.name)
     if ends.kind != TOPIC or ends.name in EVERYBODYS or ends.type == TF:
         return False
@@ -268,8 +268,8 @@ def _is_waited_for(seen: Index, ends: Ends) -> bool:
 
 @system_rule("MG312", "several-command-senders", WARNING, meant=(PUBLISHES,))
 def several_command_senders(seen: Index) -> Iterator[Finding]:
-    """The nodes of Nav2, and those of MoveIt, send one after another: they are one sender. Past what
-    chooses or limits it is an error."""
+    """Yield command topics with several senders. Nodes of Nav2, and those of MoveIt, send in turn
+    and are one sender. Past a node that chooses or limits commands it is an error."""
     for ends in seen.orders.values():
         if not words.moves(seen.plain(ends.name), ends.type):
             continue
@@ -305,7 +305,7 @@ def several_command_senders(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG313", "bag-beside-a-robot", ERROR)
 def bag_beside_a_robot(seen: Index) -> Iterator[Finding]:
-    """A bag that is played to nodes which only read is what bags are for."""
+    """Yield bags that are played to topics with other senders, or that a robot obeys."""
     mixed: dict[str, list[str]] = defaultdict(list)
     played = {end.name for end in seen.system.ends if words.PLAYER in end.node}
     for ends in seen.by_name.values() if played else ():

@@ -31,7 +31,7 @@ def description_does_not_fit(seen: Index) -> Iterator[Finding]:
 
 
 def _wrong(seen: Index, it: Description, robot: str) -> tuple[str, str] | None:
-    """What is wrong and what to do; None for nothing."""
+    """Return what is wrong with a description and what to do; None for nothing."""
     if not it.links:
         ends = seen.by_name[TOPIC, it.topic]
         readers = nodes_of(at_work(ends.subscribers))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Robots with the same nodes held against each other: parameters, types, QoS and fixed transforms."""
+"""Robots with the same nodes compared with each other: parameters, types, QoS and fixed transforms."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ BETWEEN_ROBOTS = (*COMPARED, driver_missing.code)
 
 
 def unexplained(found: Sequence[Finding]) -> list[Finding]:
-    """The findings without those of robots compared about what another one is about."""
+    """Return the findings without comparisons of robots that another finding explains."""
     told = {it for one in found if one.code not in BETWEEN_ROBOTS for it in one.names}
     found = [it for it in found if it.code != driver_missing.code or told.isdisjoint(it.names)]
     others = [one for one in found if one.code not in COMPARED]
@@ -146,7 +146,7 @@ def _qualities(seen: Index) -> _Values:
 
 
 def _edges_of(seen: Index) -> Iterator[tuple[str, Edge]]:
-    """The fixed transforms of robots: one sender each, so that they do not change."""
+    """Yield the fixed transforms of robots that have one sender each, with the robot."""
     for tree in seen.trees:
         for it in tree.edges:
             robot = seen.frame_robot(it.child) or seen.robot(it.topic)

@@ -58,7 +58,7 @@ def frame_id_of_another_robot(seen: Index) -> Iterator[Finding]:
 
 
 def _with_frame(messages: Iterable[_Message], frame: str) -> tuple[Setting, ...]:
-    """The settings that give messages of one sender each this frame; none without one."""
+    """Return the settings that give messages of one sender each this frame; none without one."""
     own = (it for it in messages if frame and len(it.senders) == 1)
     return tuple(Setting(it.senders[0], it.field, frame, it.topic) for it in own)
 
@@ -85,7 +85,7 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
         meant = sorted(it for it in own if seen.plain_frame(it) in (frame, last) or it == last)
         alike = [*filter(None, [nearest(frame, own, MISTYPED)])]
         likely = meant or alike or _of_its_kind(messages, own)
-        elsewhere = _where(seen).get(frame, ())
+        elsewhere = _topics_of_frames(seen).get(frame, ())
         topics, link = shorten([it.topic for it in messages]), messages[0].link
         # Of no use to their readers without a place; filters turn that of an IMU. Next to what a launch
         # file starts there may be what sends the transform.
@@ -124,7 +124,7 @@ def joints_of_another_robot(seen: Index) -> Iterator[Finding]:
 
 
 def _robot_of_joint(seen: Index, joint: str) -> str:
-    """The robot whose name a joint has, as its frames have it, or as its own messages do."""
+    """Return the robot whose name is in a joint's, as in its frames or in its own messages."""
     if found := seen.frame_robot(joint):
         return found
     named = [
@@ -137,7 +137,7 @@ def _robot_of_joint(seen: Index, joint: str) -> str:
 
 @once
 def _that_send(seen: Index) -> Mapping[str, Set[str]]:
-    """The robots on whose topics each joint is."""
+    """Return the robots on whose topics each joint is."""
     return sets_by_key(
         (joint, seen.robot(it.topic)) for it in seen.system.heard for joint in it.joints
     )
@@ -145,7 +145,7 @@ def _that_send(seen: Index) -> Mapping[str, Set[str]]:
 
 @once
 def _by_topic(seen: Index) -> Mapping[str, Mapping[str, Set[str]]]:
-    """The frames of each tree, by their robot."""
+    """Return the frames of each tree by their robot."""
     found: dict[str, dict[str, set[str]]] = {}
     for tree in seen.trees:
         own = found.setdefault(tree.topic, defaultdict(set))
@@ -155,28 +155,28 @@ def _by_topic(seen: Index) -> Mapping[str, Mapping[str, Set[str]]]:
 
 
 @once
-def _where(seen: Index) -> Mapping[str, Sequence[str]]:
-    """The topics that each frame is on."""
+def _topics_of_frames(seen: Index) -> Mapping[str, Sequence[str]]:
+    """Return the topics of each frame."""
     return lists_by_key((it, tree.topic) for tree in seen.trees for it in frames_in(tree.edges))
 
 
 @once
 @once
 def _senders_of(seen: Index) -> Mapping[str, str]:
-    """The node that sends a frame, of the first tree in which one alone does."""
+    """Return the node that sends a frame, of the first tree in which only one does."""
     edges = [it for tree in seen.trees for it in tree.edges if len(it.publishers) == 1]
     return {it.child: it.publishers[0] for it in reversed(edges)}
 
 
 @once
 def _nodes_by_robot(seen: Index) -> Mapping[tuple[str, str], str]:
-    """The first node of a robot and name without the robot's."""
+    """Return the first node by its robot and its name without the robot's."""
     return {(seen.robot(it), seen.plain(it)): it for it in reversed([*seen.nodes])}
 
 
 def _nameless(seen: Index) -> Iterator[Finding]:
-    """What a sensor or odometry sends without a frame: tf2 refuses an empty frame_id; whose speed it is
-    readers guess (robot_localization ros_filter.cpp: the base's)."""
+    """Yield sensor and odometry messages without a frame: tf2 refuses an empty frame_id; for a
+    speed readers guess one (robot_localization ros_filter.cpp: the base's)."""
     for it in seen.system.heard:
         type_, senders = sent_on(seen, it.topic)
         # Of odometry: its pose is known where all of the message was read.
@@ -234,7 +234,7 @@ def _sent_there(seen: Index, frame: str, robot: str, elsewhere: Sequence[str]) -
 
 
 def _of_its_kind(messages: Sequence[_Message], own: Sequence[str]) -> list[str]:
-    """The one frame of the robot that is called as such a sensor's is."""
+    """Return the robot's frame that is named like one of such a sensor, if it has just one."""
     called = {word for it in messages for word in FRAMES_OF_SENSORS.get(it.type, ())}
     found = sorted(it for it in own if any(word in it for word in called))
     return found if len(found) == 1 else []
@@ -256,7 +256,7 @@ def _by_sender(seen: Index) -> dict[tuple[str, str, tuple[str, ...]], list[_Mess
 
 
 def trees_of(seen: Index, robot: str) -> list[Tree]:
-    """The trees that a robot gets: on its own topic, on one of all robots, where its nodes are."""
+    """Return the trees that a robot receives: on its own topic, on a shared one, at its nodes."""
     if not robot:
         return list(seen.trees)
     found = _trees_by_robot(seen)
@@ -265,7 +265,7 @@ def trees_of(seen: Index, robot: str) -> list[Tree]:
 
 @once
 def _trees_by_robot(seen: Index) -> Mapping[str, Set[int]]:
-    """The places of the trees on a robot's own topic or at its nodes; of those of all by ""."""
+    """Return the numbers of the trees on each robot's topic or at its nodes; under "" those of all."""
     return sets_by_key(
         (robot, at)
         for at, it in enumerate(seen.trees)
@@ -274,7 +274,7 @@ def _trees_by_robot(seen: Index) -> Mapping[str, Set[int]]:
 
 
 def frames_in(edges: Iterable[Edge]) -> set[str]:
-    """The frames of some transforms, without a slash in front."""
+    """Return the frames of some transforms, without a slash in front."""
     return {it.removeprefix("/") for edge in edges for it in (edge.parent, edge.child)}
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What nodes wait for in vain while their robot has it under another name: by what it is, not by how
-it is spelled."""
+"""What nodes wait for in vain while their robot has it under another name: by what it is, not by
+how it is written."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ _TRIGGERS = "std_srvs/"
 
 
 def sent_instead(seen: Index, end: End) -> Ends | None:
-    """The topic or service of the end's robot that its node may have meant; None for none, and of an
-    end that only may be there."""
+    """Return the topic or service of its robot that a node may have meant by an end; None for none,
+    and for an end that only may exist."""
     if end.sure != RUNS:
         return None
     if known := meant(seen, end):
@@ -54,8 +54,8 @@ def sent_instead(seen: Index, end: End) -> Ends | None:
 
 
 def _orphan(seen: Index, end: End) -> Ends | None:
-    """What is sent of its very type and read by no node, where that is one topic, or one of them has a
-    word in common with it: of a plain type, and of what a person may send, always."""
+    """Return a topic of the same type that no node reads, if there is one such topic or one with a
+    word in common. Plain types and topics that a person may send always need a common word."""
     robot = seen.robot(end.name)
     # Does its node read the same of another robot, from which it comes?
     merges = _has_another(seen, end) and not any(
@@ -80,8 +80,8 @@ def _orphan(seen: Index, end: End) -> Ends | None:
 
 
 def _waits_itself(seen: Index, ends: Ends, end: End) -> bool:
-    """Is it made of what is missing, as slam_toolbox shows the scan that it reads, or by way of others
-    of its type, as an image is rectified of one that is debayered?"""
+    """Return whether it is made from what is missing, as slam_toolbox shows the scan that it reads,
+    or by way of others of its type, as an image is rectified from one that is debayered."""
     readers = _readers(seen)(end.name, end.type)
     return bool(ends.publishers) and readers.issuperset(it.node for it in ends.publishers)
 
@@ -104,7 +104,7 @@ def _waiting(seen: Index, name: str, type_: str) -> frozenset[str]:
 
 
 def _is_costmap(ends: Ends) -> bool:
-    """What a costmap of Nav2 shows is no map that another node wants (nav2_costmap_2d's names)."""
+    """Return whether costmaps of Nav2 publish it: no map for another node (nav2_costmap_2d's names)."""
     made = {last_word(one.node) for one in ends.publishers} <= {"local_costmap", "global_costmap"}
     return made and ends.type == "nav_msgs/msg/OccupancyGrid"
 
@@ -122,18 +122,18 @@ def _unread(seen: Index) -> Mapping[tuple[str, str], Sequence[Ends]]:
 
 
 def _begin_alike(one: str, other: str) -> bool:
-    """Is the last word of one the beginning of the other's: joy, joystick?"""
+    """Return whether the last word of one is the beginning of the other's: joy, joystick."""
     short, long = sorted((last_word(one), last_word(other)), key=len)
     return long.startswith(short)
 
 
 def _words(seen: Index, name: str) -> set[str]:
-    """The words of a name that say what it is."""
+    """Return the words of a name that say what it is."""
     return {it for it in re.split(r"[/_]", seen.plain(name)) if len(it) >= _SAYING} - _OF_ALL
 
 
 def _data(seen: Index, end: End) -> Ends | None:
-    """What no node reads; of what a body measures also what others read."""
+    """Return the topic with an end's data: an unread one; for sensor data also one that others read."""
     # Such as a footprint, which a person may send.
     by_hand = "teleop" in last_word(end.name) or not words.moves(end.name, end.type)
     outside = is_from_outside(end.name) and by_hand
@@ -159,13 +159,13 @@ def _data(seen: Index, end: End) -> Ends | None:
 
 
 def _has_another(seen: Index, end: End) -> bool:
-    """Does its node read something else of that type, which is sent?"""
+    """Return whether a node reads another topic of that type which is sent."""
     return bool(_read(seen).get((end.node, end.kind, end.type), set()) - {end.name})
 
 
 @once
 def _read(seen: Index) -> Mapping[tuple[str, str, str], Set[str]]:
-    """What a node reads of a kind and type, and somebody sends."""
+    """Return the names of a kind and type that a node reads and somebody sends."""
     found: dict[tuple[str, str, str], set[str]] = defaultdict(set)
     for ends in seen.by_name.values():
         for it in ends.subscribers if ends.publishers else ():
@@ -174,13 +174,13 @@ def _read(seen: Index) -> Mapping[tuple[str, str, str], Set[str]]:
 
 
 def _only(given: Sequence[Ends]) -> Ends | None:
-    """The one that there is: of two that fit none is surely meant."""
+    """Return the only item; None unless there is just one."""
     return given[0] if len(given) == 1 else None
 
 
 def _is_offered(seen: Index, ends: Ends, end: End) -> bool:
-    """Does another node of its robot send it, and does its own not read it already? What the nodes of
-    Nav2 and MoveIt show is no sensor; a twist_mux that no node reads is a finding of its own."""
+    """Return whether another node of its robot sends it, and its own does not read it yet. Displays
+    of Nav2 and MoveIt are no sensors; an unread twist_mux has its own finding."""
     if any(it.node == end.node for it in ends.subscribers) or _waits_itself(seen, ends, end):
         return False
     robot = seen.robot(end.node) or seen.robot(end.name)
@@ -195,7 +195,7 @@ def _is_offered(seen: Index, ends: Ends, end: End) -> bool:
 
 @once
 def _sent(seen: Index) -> Mapping[tuple[str, str], Sequence[Ends]]:
-    """The topics with a publisher, by the kind of their data and the robots of these."""
+    """Return the topics with a publisher, by kind of data and the publishers' robots."""
     found: dict[tuple[str, str], list[Ends]] = defaultdict(list)
     for it in seen.topics:
         kind = words.kind_of_data(it.name, it.type) if it.publishers else ""
@@ -219,7 +219,7 @@ def _served(seen: Index, end: End) -> Iterator[Ends]:
 
 @once
 def _servers(seen: Index) -> Mapping[tuple[str, str, str], Sequence[Ends]]:
-    """What is served, by its kind, its type and the robots of its servers."""
+    """Return what is served, by kind, type and the servers' robots."""
     found: dict[tuple[str, str, str], list[Ends]] = defaultdict(list)
     for it in seen.by_name.values():
         for robot in {seen.robot(one.node) for one in it.servers}:
@@ -229,7 +229,7 @@ def _servers(seen: Index) -> Mapping[tuple[str, str, str], Sequence[Ends]]:
 
 @once
 def _nobodys(seen: Index) -> Mapping[tuple[str, str, str], Sequence[Ends]]:
-    """What is served under a name without a robot, by its kind, its type and its last word."""
+    """Return what is served under a name without a robot, by kind, type and last word."""
     found: dict[tuple[str, str, str], list[Ends]] = defaultdict(list)
     for it in seen.by_name.values():
         if it.servers and not seen.robot(it.name):
@@ -238,8 +238,8 @@ def _nobodys(seen: Index) -> Mapping[tuple[str, str, str], Sequence[Ends]]:
 
 
 def in_other_namespace(seen: Index, end: End) -> str:
-    """What a robot without a name serves, where the client has a namespace too many or lacks one that
-    has no node; empty for none."""
+    """Return the service without a robot's name that a client misses by a namespace too many, or by
+    one too few; empty for none."""
     known = _nobodys(seen).get((end.kind, end.type, last_word(end.name)), ())
     for it in () if seen.robot(end.name) else known:
         short, long = sorted((it.name, end.name), key=len)
@@ -250,14 +250,14 @@ def in_other_namespace(seen: Index, end: End) -> str:
 
 
 def listed_in_vain(seen: Index, end: End) -> str:
-    """The node that a lifecycle manager has in its list and nothing starts; empty for none."""
+    """Return the node that a lifecycle manager lists and nothing starts; empty for none."""
     node = end.name.rpartition("/")[0]
     manager = end.kind == SERVICE and last_word(end.node).startswith(MANAGER)
     return node if manager and end.name.endswith(_CHANGE) and node not in seen.nodes else ""
 
 
 def is_needed(end: End) -> bool:
-    """Must something of the robot give it, as far as is known? What chooses seldom has all inputs."""
+    """Return whether something of the robot must give it; a chooser seldom has all inputs."""
     by_code = end.role in (SUBSCRIBES, CALLS) and end.code_name and end.sure == RUNS
     outside = is_from_outside(end.name) or is_from_outside(end.code_name)
     idle = is_viewer(end.node) or (end.role == SUBSCRIBES and chooses(end.node))
@@ -265,8 +265,8 @@ def is_needed(end: End) -> bool:
 
 
 def meant(seen: Index, end: End) -> Ends | None:
-    """What may be meant by an end: what is sent of the same type, with the same last word or the likest
-    name; nothing for one of which it is not known what the code calls it."""
+    """Return what was meant by an end: something sent with the same type and the same last word or
+    the likest name. It is None if the end's name in the code is unknown."""
     mux = end.role == SUBSCRIBES and chooses(end.node)
     if not (is_needed(end) or (mux and end.code_name)) or not end.type:
         return None
@@ -293,8 +293,8 @@ def meant(seen: Index, end: End) -> Ends | None:
 
 @once
 def _given(seen: Index) -> Mapping[tuple[str, str, str], list[tuple[int, Ends]]]:
-    """What is sent or served, by its kind, its type and the robot that does, each with its place among
-    all: a look at all names for each end takes the square of the robots."""
+    """Return what is sent or served by kind, type and sending robot, each with its number.
+    Searching all names for each end would take the square of the robots."""
     found: dict[tuple[str, str, str], list[tuple[int, Ends]]] = defaultdict(list)
     for at, it in enumerate(seen.by_name.values()):
         for robot in {seen.robot(one.node) for one in _givers(it)}:
@@ -303,8 +303,8 @@ def _given(seen: Index) -> Mapping[tuple[str, str, str], list[tuple[int, Ends]]]
 
 
 def _may_be(seen: Index, ends: Ends, end: End) -> bool:
-    """Does a node of another name, of its robot or of none, send it, and is it not read already? What
-    the nodes of Nav2 and MoveIt show is no sensor."""
+    """Return whether another node, of its robot or of none, sends it, and it is not read already.
+    Displays of Nav2 and MoveIt are no sensors."""
     if any(it.node == end.node for it in (*ends.subscribers, *ends.clients)):
         return False
     own, twin = ("", seen.robot(end.node)), last_word(end.node)

@@ -50,7 +50,7 @@ class MadeOf(NamedTuple):
 
 @system_rule("MG327", "lacks-what-its-likes-have", WARNING, absence=True)
 def lacks_what_its_likes_have(seen: Index) -> Iterator[Finding]:
-    """What another finding is about as well is left to that one (``unexplained``)."""
+    """Yield what one robot lacks and equal ones have; another finding about it replaces this one."""
     made = made_of(seen)
     for likes in alike(nodes_of_each(seen)):
         others = len(likes) - 1
@@ -79,7 +79,7 @@ def made_of(seen: Index) -> Mapping[str, MadeOf]:
 
 @once
 def nodes_of_each(seen: Index) -> Mapping[str, Mapping[str, str]]:
-    """The nodes of each robot by their names without its own."""
+    """Return the nodes of each robot by their names without the robot's."""
     own: dict[str, dict[str, str]] = {it: {} for it in seen.robots}
     for name in seen.nodes:
         if (robot := seen.robot(name)) not in own:
@@ -101,7 +101,7 @@ def _ends(seen: Index, nodes: Mapping[str, str]) -> Mapping[_Key, End]:
 
 
 def alike(nodes: Mapping[str, Mapping[str, str]]) -> Iterator[Sequence[str]]:
-    """Groups of robots of which more than half of all nodes are the same, and enough of them."""
+    """Yield groups of robots that share more than half of all nodes, and enough of them."""
     left = [it for it in nodes if len(nodes[it]) >= _ENOUGH]
     while left:
         first = nodes[left[0]].keys()
@@ -159,7 +159,7 @@ def _lost_ends(
 def _waiting(
     seen: Index, made: Mapping[str, MadeOf], robot: str, keys: Sequence[_Key]
 ) -> tuple[str, ...]:
-    """The names of the robot whose other side is in it, and has nobody but what it lacks."""
+    """Return the robot's names that a node waits for and only what the robot lacks would serve."""
     sides = {(kind, _OTHER_SIDE[role], name): role for _, kind, role, name in keys}
     found: dict[str, None] = {}
     for (_, kind, role, name), it in made[robot].ends.items():
@@ -171,8 +171,9 @@ def _waiting(
 
 
 def _is_needy(end: End) -> bool:
-    """Is it useless alone? A reader and a client are, a managed node, joints, and who drives; a server
-    or a sensor of which one robot's program makes use is not, nor what seldom has all its inputs."""
+    """Return whether it is useless alone. A reader and a client are, a managed node, joints, and
+    who drives; a server or a sensor of which one robot's program makes use is not, nor what seldom
+    has all its inputs."""
     if end.role == SUBSCRIBES and chooses(end.node):
         return False
     wants = end.role in (SUBSCRIBES, CALLS) or end.name.endswith(words.CHANGE_STATE)
@@ -322,8 +323,8 @@ def driver_missing(seen: Index) -> Iterator[Finding]:
 
 @once
 def _first_to_do(seen: Index) -> Mapping[tuple[str, str, str, str], str]:
-    """The first node that does something with a name of its own robot: by kind, the name without the
-    robot's, type and role."""
+    """Return the first node for what is done with a name of its own robot: by kind, name without
+    the robot's, type and role."""
     first: dict[tuple[str, str, str, str], str] = {}
     for ends in seen.by_name.values():
         robot = seen.robot(ends.name) if ends.kind in (TOPIC, ACTION) else ""
@@ -334,8 +335,8 @@ def _first_to_do(seen: Index) -> Mapping[tuple[str, str, str, str], str]:
 
 
 def _missed_side(seen: Index, ends: Ends) -> str:
-    """What nobody does with a name of a robot, and a node of this robot waits for: sends what its body
-    measures, or obeys its velocities; or serves an action, whoever has goals for it; else empty."""
+    """Return the role that nobody has at a robot's name although one of its nodes waits for it: to
+    send sensor data, to obey velocities, to serve an action; empty for none."""
     if ends.kind == ACTION:
         return SERVES if at_work(ends.clients) and not ends.servers else ""
     kind, own = words.kind_of_data(ends.name, ends.type), seen.robot(ends.name)

@@ -60,7 +60,7 @@ def _starts_at(seen: Index, node: str) -> End | None:
 
 
 def _body(seen: Index, tree: Tree, robot: str) -> _Body | None:
-    """The robot's part of a tree, if nothing joins it with the map."""
+    """Return the robot's part of a tree if nothing joins it with the map; None otherwise."""
     above: dict[str, str] = {it.child: it.parent for it in tree.edges}
     if len({(it.child, it.parent) for it in tree.edges}) > len(above):
         return None
@@ -82,12 +82,12 @@ def _is_of(seen: Index, frame: str, robot: str) -> bool:
 
 @once
 def _told_not_to(seen: Index) -> Set[str]:
-    """The nodes that a parameter forbids to send a transform."""
+    """Return the nodes that a parameter forbids to send a transform."""
     return {node for it in seen.system.edges if it.sure == OFF for node in it.publishers}
 
 
 def _why(seen: Index, tree: Tree, node: str, body: _Body, start: str) -> Cause:
-    """The first thing that it lacks."""
+    """Return the first reason why a node does not send map -> odom."""
     state = seen.node[node].lifecycle if node in seen.node else ""
     if state not in ("", ACTIVE):
         return Cause(f"it is {state}: see the log of its lifecycle manager")
@@ -113,7 +113,7 @@ def _why(seen: Index, tree: Tree, node: str, body: _Body, start: str) -> Cause:
 
 @system_rule("MG414", "odometry-of-another-robot", ERROR)
 def odometry_of_another(seen: Index) -> Iterator[Finding]:
-    """A robot that stands on another one is below its links, not below its odometry."""
+    """Yield frames below the odometry of another robot; on its links a robot may be."""
     for tree in seen.trees:
         for edge in tree.edges:
             owner, robot = seen.frame_robot(edge.parent), seen.frame_robot(edge.child)
@@ -194,7 +194,7 @@ def part_far_away(seen: Index) -> Iterator[Finding]:
 
 
 def _is_of_a_body(seen: Index, frame: str, above: Mapping[str, str]) -> bool:
-    """Is it the base of a robot, or below it?"""
+    """Return whether it is the base of a robot, or below it."""
     way = [frame]
     while way[-1] in above and above[way[-1]] not in way:
         way.append(above[way[-1]])

@@ -60,7 +60,7 @@ def types_differ(seen: Index) -> Iterator[Finding]:
 
 @once
 def planned_types(seen: Index) -> Mapping[tuple[str, str], Set[str]]:
-    """The types that the plan has for each name, where they are known."""
+    """Return the planned types of each name, where they are known."""
     found: dict[tuple[str, str], set[str]] = defaultdict(set)
     for end in seen.expected.by_key.values() if seen.expected else ():
         types = found[end.kind, end.name]
@@ -126,7 +126,7 @@ def _not_as_planned(seen: Index, ends: Ends, own: Sequence[End], planned: Set[st
 
 
 def _all_types(ends: Iterable[End]) -> set[tuple[str, str]]:
-    """The types of some ends; nothing where one of them is not known."""
+    """Return the types of some ends; empty if one of them is unknown."""
     known = [*ends]
     return {it for end in known for it in _types(end)} if all(end.type for end in known) else set()
 
@@ -149,7 +149,7 @@ def _apart(ends: Iterable[End], given: set[tuple[str, str]]) -> Mapping[str, Seq
 
 
 def _types(end: End) -> Iterator[tuple[str, str]]:
-    """The type of an end with its hash, if that is valid, and the others that it may have."""
+    """Yield the type of an end with its hash, if that is valid, and the other possible types."""
     if end.type:
         yield end.type, end.type_hash if end.type_hash.startswith(HASH) else ""
     yield from ((it, "") for it in end.also)
@@ -158,7 +158,7 @@ def _types(end: End) -> Iterator[tuple[str, str]]:
 def _difference(
     name: str, giver: str, asked: Mapping[str, str], given: Mapping[str, str]
 ) -> tuple[str, str]:
-    """What is different, and what to do; of each type one hash."""
+    """Return how two sides' types (each with one hash) differ, and what to do."""
     wanted, there = (", ".join(sorted(it)) for it in (asked, given))
     if asked.keys() & given.keys():
         return (
@@ -170,7 +170,7 @@ def _difference(
 
 
 def _by_a_switch(some: Set[str], others: Set[str]) -> bool:
-    """Is one side stamped and the other not?"""
+    """Return whether one side is stamped and the other not."""
     return any({f"{it}{STAMPED}" for it in a} & b for a, b in ((some, others), (others, some)))
 
 
@@ -196,7 +196,7 @@ def qos_never_meets(seen: Index) -> Iterator[Finding]:
 
 
 def _refuses(ends: Ends) -> bool:
-    """Does any QoS that is offered not do for one that is asked for?"""
+    """Return whether an offered QoS conflicts with a requested one."""
     offered = {it.qos for it in ends.publishers if it.qos}
     asked = {it.qos for it in ends.subscribers if it.qos} if offered else ()
     return any(qos_conflicts(one, other) for one in offered for other in asked)
@@ -332,7 +332,7 @@ def qos_conflicts(offered: Qos, requested: Qos) -> tuple[tuple[str, str], ...]:
 
 
 def qos_words(end: End) -> list[str]:
-    """What an end's QoS says, without what is as usual; nothing where it is not known."""
+    """Return the policies of an end's QoS that are not the usual ones; empty for an unknown QoS."""
     own = end.qos._asdict() if end.qos else {}
     policies = ("reliability", "durability", "deadline", "liveliness")
     told = (str(own.get(it, "")) for it in policies)

@@ -47,8 +47,8 @@ ABSENT = "is that robot started, and is its name right?"
 
 @system_rule("MG303", "topic-names-miss", ERROR, absence=True, drawn="leak")
 def topic_names_miss(seen: Index) -> Iterator[Finding]:
-    """What a person may click in RViz, and what only tools read, is a note; what has the type alone in
-    common, a warning: something else may send it."""
+    """Yield subscribers whose topic is sent under another name. What tools alone read is a note;
+    one with only the type in common a warning, since something else may send it."""
     topics = {name: it for (kind, name), it in seen.by_name.items() if kind == TOPIC}
     unsent = [it for it in topics.values() if not it.publishers and it.type != TF]
     unsent = [it for it in unsent if it.name not in EVERYBODYS]
@@ -86,8 +86,8 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
 
 
 def _of_robots(seen: Index, end: End) -> Sequence[str]:
-    """What robots send under the name that a node outside of them reads, whoever else reads it: data of
-    sensors, odometry, a map."""
+    """Return the robots' topics of a name that a node outside of them reads: sensor data, odometry,
+    a map."""
     kind = words.kind_of_data(end.name, end.type)
     outside = not (seen.robot(end.node) or seen.robot(end.name) or seen.is_tool(end.node))
     if not (outside and kind) or is_from_outside(end.name) or words.moves(end.name, end.type):
@@ -119,7 +119,7 @@ def _each_node(ends: Iterable[End]) -> Iterator[End]:
 def _published_instead(
     seen: Index, end: End, published: dict[str, Ends], unheard: dict[str, Ends]
 ) -> str:
-    """The published topic that was probably meant; empty for none."""
+    """Return the published topic that was probably meant; empty for none."""
     robot, owner = seen.robot(end.node), seen.robot(end.name)
     own = {"", robot or owner}
     above = (it for it in _written_out(end.node, end.name) if it in published)
@@ -152,19 +152,19 @@ def _published_instead(
 
 
 def _is_of_other_robot(seen: Index, name: str, other: str) -> bool:
-    """Are these names of two robots? Robots ``left_arm`` and ``arm_left`` are two, however alike."""
+    """Return whether these are names of two robots, such as ``left_arm`` and ``arm_left``."""
     robot, another = seen.robot(name), seen.robot(other)
     return bool(robot and another) and robot != another
 
 
 @once
 def _spelled(seen: Index) -> Mapping[str, Spelled]:
-    """The published topics by their type, to be found by a name that is nearly theirs."""
+    """Return the published topics by type, for a search by similar name."""
     return {type_: Spelled(it.name for it in own) for type_, own in _published(seen).items()}
 
 
 def _of_a_robot_without(seen: Index, end: End, published: Mapping[str, Ends]) -> str:
-    """The topic of the one robot that lacks a node of this name, which runs without a namespace."""
+    """Return the topic of the one robot that lacks the node, which then has no namespace; or empty."""
     there = _with_node(seen).get(end.node, set())
     without = [it for it in seen.robots if it not in there] if len(there) > 1 else []
     name = f"/{without[0]}{end.name}" if len(without) == 1 else ""
@@ -173,13 +173,13 @@ def _of_a_robot_without(seen: Index, end: End, published: Mapping[str, Ends]) ->
 
 @once
 def _with_node(seen: Index) -> Mapping[str, Set[str]]:
-    """The robots that have a node, by its name without theirs."""
+    """Return the robots that have a node, by its name without theirs."""
     return sets_by_key((seen.plain(it), seen.robot(it)) for it in seen.nodes)
 
 
 @once
 def _by_plain(seen: Index) -> Mapping[tuple[str, str], Sequence[str]]:
-    """The published topics of each robot, by their name without it."""
+    """Return the published topics of each robot, by robot and name without it."""
     return lists_by_key(
         ((seen.robot(it.name), seen.plain(it.name)), it.name)
         for it in (one for own in _published(seen).values() for one in own)
@@ -188,15 +188,15 @@ def _by_plain(seen: Index) -> Mapping[tuple[str, str], Sequence[str]]:
 
 @once
 def _published(seen: Index) -> Mapping[str, Sequence[Ends]]:
-    """The topics with a publisher, by their type."""
+    """Return the topics with a publisher, by type."""
     return lists_by_key(
         (it.type, it) for (kind, _), it in seen.by_name.items() if kind == TOPIC and it.publishers
     )
 
 
 def _written_out(node: str, name: str) -> Iterator[str]:
-    """What a relative name may have been meant as: one of a namespace above, or one with its namespace
-    written out: ``/robot1/costmap/robot1/scan`` of ``robot1/scan``."""
+    """Yield what a relative name may have meant: one in a namespace above, or one written out with
+    its namespace: ``/robot1/costmap/robot1/scan`` for ``robot1/scan``."""
     yield from in_namespaces_above(node, name)
     space = node
     while space := space.rpartition("/")[0]:
@@ -205,7 +205,7 @@ def _written_out(node: str, name: str) -> Iterator[str]:
 
 
 def _hiding(seen: Index, meant: str) -> Iterator[str]:
-    """What the name may be called below its publisher's own name, or with its namespace twice."""
+    """Yield what a name becomes below its publisher's own name, or with its namespace twice."""
     space, _, last = meant.rpartition("/")
     yield from _below_senders(seen).get((space, last), ())
     yield from (meant[:at] + meant for at in range(1, len(meant)) if meant[at] == "/")
@@ -224,7 +224,7 @@ def _below_senders(seen: Index) -> Mapping[tuple[str, str], Sequence[str]]:
 
 
 def _without_own_name(end: End) -> str:
-    """What ``cmd_vel`` is for others that the node has as ``~/cmd_vel``; empty for other names."""
+    """Return the usual name of ``~/cmd_vel``, without the node's name; empty for other names."""
     last = last_word(end.name)
     return f"{end.node.rpartition('/')[0]}/{last}" if end.name == f"{end.node}/{last}" else ""
 
@@ -266,7 +266,7 @@ def _missed_topic(
 
 @system_rule("MG304", "server-names-miss", ERROR, absence=True)
 def server_names_miss(seen: Index) -> Iterator[Finding]:
-    """A service that is nowhere to be found may be optional: it is no finding."""
+    """Yield clients whose server has another name. A service that nobody serves may be optional."""
     for ends in seen.by_name.values():
         if ends.kind != TOPIC and not ends.servers:
             for end in filter(_runs, _each_node(ends.clients)):
@@ -343,9 +343,9 @@ def _unserved(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
 
 
 def _waits(seen: Index, end: End) -> bool:
-    """Is it an own program that calls what nobody serves? Nav2's and MoveIt's nodes, tools and what
-    every node serves are left out, and a view in which nodes are missing. What is known by code alone
-    is told by ``nothing_known_sends``."""
+    """Return whether it is an own program that calls what nobody serves. Nav2's and MoveIt's nodes,
+    tools and what every node serves are left out, and a view in which nodes are missing.
+    ``nothing_known_sends`` reports what is known by code alone."""
     theirs = is_viewer(end.node) or seen.is_tool(end.node) or team(end.node) != end.node
     usual = end.type.startswith(COMMON) or is_from_outside(end.name)
     # Beside other robots it may be one that is not started yet, if it is not its own.
@@ -420,7 +420,7 @@ def nobody_in(seen: Index, name: str, known: Collection[str]) -> str:
 
 @once
 def _named_by_robots(seen: Index) -> Mapping[str, Sequence[str]]:
-    """The names of robots, by their name without a robot's."""
+    """Return the names of robots, by their name without a robot's."""
     return lists_by_key((seen.plain(name), name) for _, name in seen.by_name if seen.robot(name))
 
 

@@ -51,7 +51,7 @@ MOST_CANDIDATES = 50
 
 @once
 def missing(plan: Index, seen: Index) -> Mapping[EndKey, End]:
-    """The planned ends that are not there, without those that only may be."""
+    """Return the planned ends that are missing, without optional ones."""
     there = seen.by_key
     return {key: end for key, end in plan.sure.by_key.items() if key not in there}
 
@@ -72,7 +72,7 @@ def unplanned_ends(plan: Index, seen: Index) -> Mapping[str, Sequence[End]]:
 
 @once
 def unplanned_nodes(plan: Index, seen: Index) -> Sequence[str]:
-    """The nodes that are not planned, without those that come and go."""
+    """Return the nodes that are not planned, without tools, which come and go."""
     return [node for node in _not_in_plan(plan, seen) if not seen.is_tool(node)]
 
 
@@ -84,7 +84,7 @@ def _not_in_plan(plan: Index, seen: Index) -> Set[str]:
 
 @once
 def matches(plan: Index, seen: Index) -> Mapping[str, str]:
-    """The running node that each missing node probably is."""
+    """Return for each missing node the running node that it probably is."""
     gone = {node: robot for node, robot in plan.robot_of.items() if node not in seen.nodes}
     return probable_matches(
         gone, _not_in_plan(plan, seen), unplanned_nodes(plan, seen), plan.of_names
@@ -97,11 +97,9 @@ def probable_matches(
     unplanned: Iterable[str],
     ownership: NameOwnership,
 ) -> dict[str, str]:
-    """The running node that each missing node (node -> robot) probably is, where there is one.
-
+    """Return for each missing node (node -> robot) the running node that it probably is, if any.
     ``others`` are all running nodes that are not in the plan, ``unplanned`` those of them that are
-    no tools: only these are compared by similar name.
-    """
+    no tools: only these are compared by similar name."""
     by_robot: dict[str, list[str]] = defaultdict(list)
     for node in unplanned if missing else ():
         by_robot[ownership.robot(node)].append(node)
@@ -124,7 +122,7 @@ def _letters(name: str) -> str:
 
 
 def similar(name: str, known: Collection[str]) -> str:
-    """The known name that extends ``name``, is its beginning or is nearly the same; or ""."""
+    """Return the known name that extends ``name``, is its beginning or is nearly the same; or ""."""
     if len(known) > MOST_CANDIDATES:
         return ""
     extended = [other for other in known if other.startswith(name) or name.startswith(other)]
@@ -178,7 +176,7 @@ def missing_endpoint(plan: Index, seen: Index) -> Iterator[Finding]:
 
 
 def _planned_for_several(plan: Index, seen: Index) -> Iterator[Finding]:
-    """A name that the plan itself has for several robots, because no remap rule changes it."""
+    """Yield names that the plan has for several robots, because no remap rule changes them."""
     users: dict[str, list[End]] = defaultdict(list)
     relays, there, robot_of = copying_nodes(plan.system), seen.by_key, plan.robot_of
     of_one = plan.of_names.exact
@@ -199,8 +197,7 @@ def _planned_for_several(plan: Index, seen: Index) -> Iterator[Finding]:
 
 
 def _of_wrong_robot(plan: Index, end: End, robot: str) -> Rule | None:
-    """What it is to other robots that a node of ``robot`` has an end which is not planned; None for
-    nothing."""
+    """Return the rule that an unplanned end of a robot's node breaks towards other robots, or None."""
     other = plan.robot(end.name)
     planned = (end.node, end.kind, end.role, end.name) in plan.by_key
     if planned or not robot or other == robot:
@@ -211,8 +208,8 @@ def _of_wrong_robot(plan: Index, end: End, robot: str) -> Rule | None:
 
 
 def _rule_of(plan: Index, end: End) -> Rule | None:
-    """What it is to use a name together with other robots; None where it is to be so. Whose tf is where
-    is a rule of its own."""
+    """Return the rule that sharing a name with other robots breaks; None if sharing is meant.
+    Sharing tf has rules of its own."""
     if end.name in plan.system.shared_topics or end.name in EVERYBODYS or end.type == TF:
         return None
     if end.kind != TOPIC:
@@ -273,7 +270,7 @@ def _why_remapped(plan: Index, planned: End, used: str, instead: str) -> Cause:
 
 
 def _used_instead(plan: Index, seen: Index, planned: End) -> str:
-    """The name that the node probably uses in place of a planned one, or an empty string."""
+    """Return the name that a node probably uses in place of a planned one; empty for none."""
     unplanned = [it.name for it in _unplanned(plan, seen, planned)]
     likely = [name for name in names_without_rules(plan, planned) if name in unplanned]
     # A relative name that was resolved below the node's own namespace.
@@ -298,7 +295,7 @@ def _of_its_type(plan: Index, seen: Index, planned: End) -> list[str]:
 
 
 def _unplanned(plan: Index, seen: Index, planned: End) -> list[End]:
-    """What the node has in the role of a planned endpoint without being planned."""
+    """Return the unplanned ends that a node has in the role of a planned one."""
     node, kind, role = planned.node, planned.kind, planned.role
     return [
         it

@@ -66,7 +66,7 @@ def frame_without_robot_name(plan: Index, seen: Index) -> Iterator[Finding]:
 
 
 def _why_bare(plan: Index, tree: Tree, robot: Robot, bare: Sequence[Stray]) -> Cause:
-    """The node that sends all of them by the plan, besides the description; else the description."""
+    """Return the cause of names without the robot's: a sender by the plan, or else the description."""
     expected = {it.meant for it in bare}
     sent = next((it for it in sent_by_robot(plan)[robot.name] if expected <= {*it[1:]}), None)
     first = f"expected {bare[0].meant}"
@@ -81,8 +81,8 @@ def _why_bare(plan: Index, tree: Tree, robot: Robot, bare: Sequence[Stray]) -> C
 
 @planned_rule("MG204", "undeclared-frame", WARNING, nodes=False)
 def undeclared_frame(plan: Index, seen: Index) -> Iterator[Finding]:
-    """A frame that a driver adds below its sensor's link is none. It is an error where it is there in
-    place of a planned one."""
+    """Yield unplanned frames, except those that a driver adds below its sensor's link. It is an
+    error if a planned frame is missing for it."""
     for tree, robot, found in _of_each(plan, seen):
         children = by_child(seen)[tree.topic]
         others = [
@@ -109,8 +109,8 @@ def _frames(names: Sequence[str]) -> str:
 
 
 def _of_a_sensor(plan: Index, robot: str, name: str, children: Mapping[str, Edge]) -> bool:
-    """Is it a frame that a driver adds below its sensor's link? Its name begins like the link's:
-    camera_depth_frame is below camera_link."""
+    """Return whether it is a frame that a driver adds below its sensor's link. Its name begins like
+    the link's: camera_depth_frame is below camera_link."""
     above, passed = name, set()
     while above in children and children[above].static and above not in passed:
         passed.add(above)
@@ -149,7 +149,7 @@ def with_more_names(
 
 
 def misnamed(plan: Index, seen: Index) -> Set[str]:
-    """The robots of which frames are sent under other names, or on another tf topic than theirs."""
+    """Return the robots whose frames are sent under other names, or on another tf topic."""
     strays = set()
     for tree, robot, found in _of_each(plan, seen):
         sent = by_child(seen)[tree.topic]
@@ -175,7 +175,7 @@ def _strays(plan: Index, seen: Index) -> Sequence[tuple[Tree, Strays]]:
 
 
 def _strays_of(plan: Index, tree: Tree, present: Set[str]) -> Strays:
-    """The frames of a tree that belong to a robot by name or topic, and are not planned."""
+    """Return the unplanned frames of a tree that belong to a robot by name or topic."""
     found: dict[str, list[Stray]] = defaultdict(list)
     names: dict[str, list[str]] = defaultdict(list)
     # A moving frame on a robot's own topic may be anything that it detects.
@@ -210,7 +210,7 @@ def _known(plan: Index) -> Set[str]:
 
 @once
 def _planned(plan: Index) -> Mapping[str, Mapping[str, str]]:
-    """The frames of each robot by name without its own; the same where the layout adds none."""
+    """Return the frames of each robot by name without its own, or by name if the layout adds none."""
     found = {}
     for robot in plan.system.robots:
         plain = {plan.of_frames.without_robot(it, robot.name): it for it in robot.frames}
@@ -231,8 +231,8 @@ def _meant_by(plan: Index) -> Mapping[str, Mapping[str, str]]:
 
 
 def _with_meanings(plan: Index, robot: str, names: Sequence[str]) -> Iterator[Stray]:
-    """One frame may be another one of its own (``front_laser`` beside ``laser``): a prefix is in front
-    of both ends of a transform, and of all that a robot_state_publisher sends."""
+    """One frame may be another one of its own (``front_laser`` next to ``laser``): a prefix is in
+    front of both ends of a transform, and of all that a robot_state_publisher sends."""
     declared, whose = plan.declared[robot], plan.of_frames
     frames, tag = (*declared.frames, *declared.other_frames), whose.tag(robot)
     plain = {**{whose.without_robot(it, robot): it for it in frames}, **_planned(plan)[robot]}
@@ -255,7 +255,7 @@ def _with_meanings(plan: Index, robot: str, names: Sequence[str]) -> Iterator[St
 
 
 def _in_front(frames: Sequence[str], name: str) -> str:
-    """What is in front of the longest planned frame that the name ends with."""
+    """Return what is in front of the longest planned frame that the name ends with."""
     ends = [frame for frame in frames if name.endswith(frame) and name != frame]
     return name.removesuffix(max(ends, key=len)) if ends else ""
 
@@ -263,7 +263,7 @@ def _in_front(frames: Sequence[str], name: str) -> str:
 @planned_rule("MG208", "frame-not-received", ERROR, absence=True, drawn="missing")
 def frame_not_received(plan: Index, seen: Index) -> Iterator[Finding]:
     """One finding for a robot whose senders all run. Where no transform was received at all, tf may
-    not have been looked at. A frame under another name has a finding of its own."""
+    not have been observed. A frame under another name has a finding of its own."""
     senders = _senders(plan) if seen.system.edges else {}
     heard: dict[str, set[str]] = defaultdict(set)
     for tree, strays in _strays(plan, seen):
@@ -287,8 +287,8 @@ def frame_not_received(plan: Index, seen: Index) -> Iterator[Finding]:
 
 
 def _left_to_others(plan: Index, seen: Index, robot: Robot) -> Set[str]:
-    """The frames that only nodes send which may be missing by the plan, and are. A link without joints
-    comes with the odometry, or not at all."""
+    """Return the missing frames that only missing optional nodes send. A link without joints comes
+    with the odometry, or not at all."""
     sent = sent_by_robot(plan)[robot.name]
     absent = plan.may_miss - seen.nodes.keys()
     left = {name for it in sent if it.node in absent for name in it[1:]}

@@ -52,7 +52,7 @@ def missing_node(plan: Index, seen: Index) -> Iterator[Finding]:
 
 
 def _groups(plan: Index) -> Iterator[tuple[tuple[str, ...], str]]:
-    """The groups of nodes of which one runs, each with its robot."""
+    """Yield the groups of nodes of which one runs, each with its robot."""
     for group in alternatives(plan.system):
         yield group, next((plan.robot_of[it] for it in group if it in plan.robot_of), "")
 
@@ -71,7 +71,7 @@ def _waiting(plan: Index, seen: Index, node: str) -> str:
 
 
 def _missing(plan: Index, seen: Index, robot: Robot) -> list[str]:
-    """An optional node is missing only where it runs under another name."""
+    """Return the missing nodes; an optional one is missing only if it runs under another name."""
     return [
         node
         for node in plan.own[robot.name]
@@ -80,7 +80,7 @@ def _missing(plan: Index, seen: Index, robot: Robot) -> list[str]:
 
 
 def is_absent(plan: Index, seen: Index, robot: str) -> bool:
-    """Does no node of the robot run?"""
+    """Return whether no node of the robot runs."""
     return seen.nodes.keys().isdisjoint(plan.own[robot])
 
 
@@ -234,7 +234,7 @@ def sender_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
 
 
 def _publishers(index: Index, name: str) -> list[str]:
-    """The node of each publisher of a topic."""
+    """Return the node of each publisher of a topic."""
     return [it.node for it in index.ends_at(TOPIC, name).publishers]
 
 
@@ -292,7 +292,7 @@ def _not_carried(
 
 @once
 def _bridges(plan: Index, seen: Index) -> Mapping[str, Sequence[str]]:
-    """The bridges that run, by their robot."""
+    """Return the running bridges by robot."""
     return lists_by_key(
         (plan.robot(it), it) for it in seen.nodes if it.rpartition("/")[2].endswith(_BRIDGES)
     )

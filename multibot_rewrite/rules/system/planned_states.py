@@ -72,7 +72,7 @@ def _is_serious(plan: Index, it: Parameter) -> bool:
 
 @once
 def _having(plan: Index) -> Mapping[tuple[str, str, str], Mapping[str, None]]:
-    """The robots, in their order, whose node of a plain name is planned to have a parameter so."""
+    """Return the robots whose node of a plain name is planned with a parameter's value, in order."""
     found: dict[tuple[str, str, str], dict[str, None]] = defaultdict(dict)
     for it in plan.system.parameters:
         if robot := plan.robot_of.get(it.node, ""):
@@ -83,7 +83,7 @@ def _having(plan: Index) -> Mapping[tuple[str, str, str], Mapping[str, None]]:
 
 @planned_rule("MG133", "host-not-planned", ERROR)
 def host_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
-    """A snapshot tells machines apart, and has no names: a host is where most of its nodes are."""
+    """Yield nodes that run away from most nodes of their host: snapshots know machines, not names."""
     machine_of = {node: it for it, nodes in machines(seen.system).items() for node in nodes}
     # Host of the plan -> machine -> the nodes that run there.
     hosts: dict[str, dict[str, list[str]]] = {}

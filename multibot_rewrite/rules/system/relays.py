@@ -44,7 +44,7 @@ def relayed_to_another_robot(seen: Index) -> Iterator[Finding]:
 
 @once
 def _of_bodies(seen: Index) -> Sequence[Ends]:
-    """The robots' topics with commands, and with what a body measures."""
+    """Return the robots' topics for commands and for sensor data."""
     return [
         it
         for it in seen.by_name.values()
@@ -56,7 +56,7 @@ def _of_bodies(seen: Index) -> Sequence[Ends]:
 
 @system_rule("MG315", "limits-left-out", ERROR, meant=(PUBLISHES, SUBSCRIBES))
 def limits_left_out(seen: Index) -> Iterator[Finding]:
-    """docking_server sends beside collision_monitor, as it is made."""
+    """Yield nodes that send past what limits commands, except docking_server: it is meant to."""
     yield from _mux_left_out(seen)
     for ends in _velocities(seen):
         nodes = nodes_of(ends.publishers)
@@ -72,7 +72,7 @@ def limits_left_out(seen: Index) -> Iterator[Finding]:
 
 
 def _mux_left_out(seen: Index) -> Iterator[Finding]:
-    """A driver that reads an input of a mux whose output no node reads."""
+    """Yield drivers that read an input of a mux whose output no node reads."""
     chosen = [it for it in _velocities(seen) if not at_work(it.subscribers)]
     for ends in chosen:
         for mux in filter(chooses, nodes_of(ends.publishers)):
@@ -98,7 +98,7 @@ def _velocities(seen: Index) -> Iterator[Ends]:
 
 @system_rule("MG329", "data-in-a-circle", ERROR, meant=(PUBLISHES, SUBSCRIBES))
 def data_in_a_circle(seen: Index) -> Iterator[Finding]:
-    """A bridge reads and sends each of its topics, as it is made. Joints come from several."""
+    """Yield nodes that read what they send, alone or as a pair; bridges and joint states excepted."""
     passed: dict[tuple[str, str], tuple[str, Ends]] = {}
     for node, (read, sent) in _passing(seen).items():
         both = [it for it in read if it in sent]
@@ -123,7 +123,7 @@ def data_in_a_circle(seen: Index) -> Iterator[Finding]:
 
 
 def _passing(seen: Index) -> Mapping[str, tuple[list[Ends], list[Ends]]]:
-    """The topics of such data that each node reads and sends, of nodes that do both."""
+    """Return the command and sensor topics that each node reads and sends, for nodes that do both."""
     found: dict[str, tuple[list[Ends], list[Ends]]] = defaultdict(lambda: ([], []))
     for ends in seen.topics:
         body = words.is_of_a_body(ends.type) and ends.type != words.JOINTS

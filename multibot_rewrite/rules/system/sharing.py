@@ -56,7 +56,7 @@ def outsiders(seen: Index, ends: Iterable[End]) -> list[str]:
 
 @system_rule("MG320", "topic-of-several-robots", ERROR, drawn="leak", meant=(PUBLISHES, SUBSCRIBES))
 def topic_of_several_robots(seen: Index) -> Iterator[Finding]:
-    """Reports and orders of a fleet are none: only what belongs to one robot."""
+    """Yield topics of one robot that several publish or read; reports and orders of fleets are fine."""
     for ends in seen.topics:
         plain, owner = seen.plain(ends.name), seen.robot(ends.name)
         # Who sends commands to another robot is a rule of its own.
@@ -80,7 +80,7 @@ def topic_of_several_robots(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG321", "data-of-another-robot", ERROR, drawn="cross-talk", meant=(SUBSCRIBES,))
 def data_of_another_robot(seen: Index) -> Iterator[Finding]:
-    """A node that reads both robots' topics is meant to: it compares or follows."""
+    """Yield nodes that read another robot's data and not their own robot's; both is meant."""
     # What each robot publishes, by the name without the robot's.
     own = {
         (robot, seen.plain(ends.name)): ends
@@ -136,8 +136,8 @@ def joint_states_twice(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG325", "sensor-twice", ERROR, meant=(PUBLISHES,))
 def sensor_twice(seen: Index) -> Iterator[Finding]:
-    """A bag that is played is one as well, and so are relays and bridges in both directions: who reads
-    what it sends passes it on."""
+    """Yield sensor topics with two publishers. Played bags are no fault, nor are relays and bridges
+    in both directions, which read what they send."""
     for ends in seen.topics:
         described = last_word(ends.name) == words.DESCRIPTION
         if len(ends.publishers) < 2 or not (described or words.is_of_one_sensor(ends.type)):
@@ -157,7 +157,7 @@ def sensor_twice(seen: Index) -> Iterator[Finding]:
 
 
 def _passes_on(seen: Index, node: str, ends: Ends) -> bool:
-    """Does it read what it sends, or data of that kind? A filter makes its own of others' odometry."""
+    """Return whether a node reads what it sends or such data; a filter makes odometry from odometry."""
     read = (it for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES)
     passed = ends.type != words.ODOMETRY
     return any(it.name == ends.name or (passed and it.type == ends.type) for it in read)

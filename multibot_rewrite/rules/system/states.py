@@ -74,20 +74,20 @@ def not_active(seen: Index) -> Iterator[Finding]:
 
 
 def _active_at_another(seen: Index, node: str) -> str:
-    """The node of another robot that is called so and is active; empty for none."""
+    """Return the active node of another robot with the same plain name; empty for none."""
     same = (it for it in seen.node.values() if it.lifecycle == ACTIVE and seen.robot(it.name))
     return next((it.name for it in same if seen.plain(it.name) == seen.plain(node)), "")
 
 
 def _manager(seen: Index, node: str) -> str:
-    """The node that changes the state of another one; empty for none."""
+    """Return the node that changes the state of another one; empty for none."""
     clients = (end.node for end in seen.ends_at(SERVICE, f"{node}/change_state").clients)
     return min((it for it in clients if not _asks_for_a_person(seen, it)), default="")
 
 
 @system_rule("MG512", "interface-commanded-twice", ERROR)
 def interface_commanded_twice(seen: Index) -> Iterator[Finding]:
-    """A running manager refuses the second of its own controllers."""
+    """Yield interfaces that two controllers command; a running manager refuses its own second one."""
     active = (it for it in seen.system.controllers if it.state == ACTIVE)
     claims = lists_by_key(
         ((seen.robot(it.manager), interface), it) for it in active for interface in it.claims
@@ -115,7 +115,7 @@ def interface_commanded_twice(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG513", "no-controller-active", WARNING)
 def no_controller_active(seen: Index) -> Iterator[Finding]:
-    """Some inactive ones beside active ones are usual."""
+    """Yield managers without an active controller; some inactive ones next to active ones are usual."""
     kept = lists_by_key((it.manager, it) for it in seen.system.controllers)
     for manager, own in kept.items():
         if all(it.state != ACTIVE for it in own):
@@ -129,8 +129,8 @@ def no_controller_active(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG514", "use-sim-time-differs", WARNING)
 def use_sim_time_differs(seen: Index) -> Iterator[Finding]:
-    """Tools and bridges have the machine's time beside any robot. MG503 says it of a whole robot, and
-    of planned parameters ``parameter_not_planned``."""
+    """Yield robots' nodes with other clocks; tools and bridges have the machine's time with any
+    robot. MG503 says it of a whole robot, and of planned parameters ``parameter_not_planned``."""
     told, planned = {it.robot for it in mixed_clocks(seen)}, planned_clocks(seen)
     by_robot: dict[str, dict[bool, list[str]]] = defaultdict(lambda: defaultdict(list))
     for node, simulated in clocks(seen.system).items():
@@ -255,7 +255,7 @@ interface_not_exported = declaration.NOT_EXPORTED._replace(check=_not_exported)
 
 
 def missing(known: Sequence[Interface]) -> Iterator[Missing]:
-    """The claims without an export among the interfaces of one robot, by controller and place."""
+    """Yield the claims without an export among one robot's interfaces, by controller and place."""
     exports = {(it.kind, it.name): it for it in known if it.role == EXPORTS}
     opened = lists_by_key(((it.node, it.place), it) for it in open_claims(known))
     hints = Guesses()
@@ -268,8 +268,8 @@ def missing(known: Sequence[Interface]) -> Iterator[Missing]:
 
 
 def open_claims(known: Sequence[Interface]) -> list[Interface]:
-    """The claims that nothing exports; a controller chains to another one, whose name may be that of a
-    sensor."""
+    """Return the claims that nothing exports. A controller may claim interfaces of another one,
+    which may have a sensor's name."""
     exports = {(it.kind, it.name) for it in known if it.role == EXPORTS}
     given = {kind == JOINT for kind, _ in exports}
     claims = [it for it in known if it.role == CLAIMS]

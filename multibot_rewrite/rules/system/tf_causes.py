@@ -21,24 +21,24 @@ from multibot_rewrite.system.tf_copies import tree_topic
 
 @once
 def sent_by_robot(plan: Index) -> dict[str, list[Sent]]:
-    """What each robot's nodes send by the plan; of any other robot nothing."""
+    """Return by robot what its nodes send by the plan."""
     return lists_by_key((plan.robot_of.get(it.node, ""), it) for it in plan.sent)
 
 
 def state_publisher(plan: Index, robot: Robot) -> str:
-    """The robot's robot_state_publisher by the plan; empty where it has none."""
+    """Return the robot's robot_state_publisher by the plan; empty where it has none."""
     return next((it for it in plan.own[robot.name] if STATE_PUBLISHER in it), "")
 
 
 def is_described(plan: Index, robot: Robot) -> bool:
-    """Has the plan a node that sends the transforms of the robot's description?"""
+    """Return whether the plan has a node that sends the transforms of the robot's description."""
     ends = (end for node in plan.own[robot.name] for end in plan.by_node.get(node, ()))
     told = (it.name for it in ends if (it.kind, it.role) == (TOPIC, PUBLISHES))
     return bool(state_publisher(plan, robot)) or any(it.endswith(words.DESCRIPTION) for it in told)
 
 
 def where_set(plan: Index, node: str) -> str:
-    """The file that holds a node's frames: its plugin's line, or that of its parameters; or empty."""
+    """Return the place that sets a node's frames: its plugin's or its parameters'; empty for none."""
     planned = plan.node.get(node)
     return str(planned.plugin) or str(planned.place) if planned else ""
 
@@ -99,7 +99,7 @@ def why_disconnected(plan: Index, seen: Index, robot: Robot, roots: Sequence[str
 def _two_names(
     plan: Index, robot: Robot, roots: Sequence[str], edges: Sequence[Edge]
 ) -> Cause | None:
-    """A root that is in the tree under another name, with the robot's or without."""
+    """Return the cause if a root is in the tree twice, with the robot's name and without; or None."""
     plain = plan.of_frames.without_robot
     names = (*roots, *(edge.child for edge in edges))
     for root in roots:
@@ -121,7 +121,7 @@ def _two_names(
 def _misspelled(
     plan: Index, robot: Robot, roots: Sequence[str], edges: Sequence[Edge]
 ) -> Cause | None:
-    """A root that is called nearly as a frame of the robot is, the robot's name apart."""
+    """Return the cause if a root's name is nearly that of a frame of the robot; or None."""
     frames = (*robot.frames, *robot.other_frames)
     known = {plan.of_frames.without_robot(it, robot.name): it for it in sorted(frames)}
     for edge in (it for it in edges if it.parent in roots and it.parent not in frames):
@@ -152,16 +152,16 @@ def _not_sent(plan: Index, seen: Index, robot: Robot, planned: Sent) -> Cause:
 
 
 def foreign(plan: Index, seen: Index, robot: Robot) -> Iterator[tuple[str, Edge]]:
-    """Transforms of other robots, each with its robot, that a node of this one may send: all on a tf
-    topic of its own, else what several nodes send."""
+    """Yield transforms of other robots, each with its robot, that a node of this one may send: all
+    on a tf topic of its own, otherwise those that several nodes send."""
     found = _named(plan, seen).get(tree_topic(robot.tf_topic), ())
     return (it for it in found if it[0] != robot.name)
 
 
 @once
 def _named(plan: Index, seen: Index) -> Mapping[str, Sequence[tuple[str, Edge]]]:
-    """The transforms with a robot's name on one robot's tf topic, or that several nodes send on one of
-    all, by their topic and each with that robot."""
+    """Return by topic the transforms that have a robot's name, each with that robot, on one robot's
+    tf topic; on a shared one only those that several nodes send."""
     found: dict[str, list[tuple[str, Edge]]] = defaultdict(list)
     for tree in seen.trees:
         is_of_one = len(home_of(plan, tree)) == 1
@@ -181,7 +181,7 @@ def _no_odometry(seen: Index, robot: Robot, roots: Sequence[str]) -> str:
 
 
 def _bridged(plan: Index, seen: Index, robot: Robot) -> str:
-    """The odometry of a simulated robot, which a bridge carries beside the transforms of others."""
+    """Return the hint about odometry of a simulated robot that comes over a bridge; empty without."""
     carried = [it for it in plan.system.topics if it.bridge and it.name == robot.tf_topic]
     ends = ends_of(seen, robot.tf_topic) if carried else ()
     bridges = sorted({it.node for it in ends if it.role == PUBLISHES and "bridge" in it.node})
@@ -204,7 +204,7 @@ def _silent(plan: Index, seen: Index, robot: Robot, type_: str, bridged_alone: b
 
 
 def silent_topics(plan: Index, seen: Index, robot: Robot, type_: str) -> set[str]:
-    """The topics of a type that a robot needs by the plan and nothing publishes."""
+    """Return the topics of a type that a robot needs by the plan and nothing publishes."""
     read = {
         end.name
         for node in plan.own[robot.name]

@@ -74,7 +74,7 @@ def _by_frames(seen: Index) -> Iterator[Finding]:
 
 
 def _odometry_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
-    """The odometry frames of a tree that are not connected with the base of their robot."""
+    """Yield the odometry frames of a tree that are not connected with the base of their robot."""
     above = above_each(tree)
     if len({(edge.child, edge.parent) for edge in tree.edges}) > len(above):
         # A frame with two parents is a finding of its own.
@@ -101,8 +101,8 @@ def _odometry_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
 
 
 def _misspelled(seen: Index) -> Iterator[Finding]:
-    """A parent that nothing sends, and that is called nearly as a frame is which is sent; a frame that
-    is sent and has nothing below it, while a root is called nearly so."""
+    """Yield misspelt frames: a parent that nothing sends and that is nearly a sent frame, or a sent
+    frame with nothing below it that is nearly a root."""
     for tree in seen.trees:
         children, parents = ({getattr(it, end) for it in tree.edges} for end in ("child", "parent"))
         near_sent, near_root = _near(seen, children), _near(seen, parents - children)
@@ -123,7 +123,7 @@ def _misspelled(seen: Index) -> Iterator[Finding]:
 
 def _near(seen: Index, frames: Collection[str]) -> Callable[[str, str], str]:
     """Of some frames the one that another one may be meant for, but for one that it is not: of its
-    robot, or of none; of very many frames of a robot the last ones are not held against others."""
+    robot, or of none; of very many frames of a robot the last ones are not compared with others."""
     own = sets_by_key((seen.frame_robot(it), it) for it in frames)
     left: dict[str, int] = defaultdict(lambda: _COMPARED)
 
@@ -142,7 +142,7 @@ def _near(seen: Index, frames: Collection[str]) -> Callable[[str, str], str]:
 
 
 def _meant(name: str, others: Collection[str]) -> str:
-    """The frame that is called nearly so; names that differ in their numbers alone are two things."""
+    """Return the frame with nearly this name; names that differ in numbers alone are two things."""
     near = nearest(name, sorted(others), MISTYPED)
     slip = near and near not in name and name not in near and not differ_in_numbers(name, near)
     return near if slip and nearest(*_unlike(name, near), MISTYPED) else ""
@@ -168,13 +168,13 @@ def _slipped(
 
 
 def in_pieces(robot: str, topic: str, roots: Sequence[str]) -> str:
-    """The sentence for a tree of several roots."""
+    """Return the sentence for a tree of several roots."""
     whose = f"the tf tree of {robot}" if robot else "the tf tree"
     return f"{whose} on {topic} has {len(roots)} roots: {', '.join(roots)}"
 
 
 def told_not_to(seen: Index) -> Iterator[Finding]:
-    """Transforms that no node sends, and that nodes could which are told not to."""
+    """Yield transforms that no node sends, because parameters of those that could forbid it."""
     sent = {(tree.topic, edge.child) for tree in seen.trees for edge in tree.edges}
     off: dict[tuple[str, str], list[Edge]] = defaultdict(list)
     for it in (it for it in seen.system.edges if it.sure == OFF):
@@ -228,10 +228,10 @@ def _senders_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
 
 
 def is_sure(seen: Index, found: Finding, moved: bool) -> bool:
-    """Is a tree in pieces in which all is that a launch file starts? Of a robot that is not ``moved``
-    by a plugin in a simulator a driver that is started apart may send the odometry, and what is sent on
-    another topic of the robot somebody may bring to its tree; pieces without the usual frames may be
-    meant."""
+    """Return whether all of a tree in pieces is in the launch file. For a robot that is not
+    ``moved`` by a plugin in a simulator a driver that is started apart may send the odometry, and
+    what is sent on another topic of the robot somebody may bring to its tree; pieces without the
+    usual frames may be meant."""
     loose = [it for it in loose_odometry(seen) if {*found.names} & {*it}]
     lacking = [(odom, it) for odom, root in loose for it in found.names if it not in (odom, root)]
     if (loose and not moved) or any(sent_elsewhere(seen, found.robot, *it) for it in lacking):
@@ -240,12 +240,12 @@ def is_sure(seen: Index, found: Finding, moved: bool) -> bool:
 
 
 def is_of_description(seen: Index, edge: Edge) -> bool:
-    """Does robot_state_publisher send it?"""
+    """Return whether robot_state_publisher sends a transform."""
     return any(publishes_description(seen, it) for it in edge.publishers)
 
 
 def publishes_description(seen: Index, node: str) -> bool:
-    """Is it robot_state_publisher? Raises nothing."""
+    """Return whether it is robot_state_publisher. Raises nothing."""
     return last_word(seen.plain(node)).startswith("robot_state_publisher")
 
 

@@ -111,14 +111,14 @@ def _frames_of_another(
 
 
 def _is_of_its_tree(seen: Index, _: Tree, edge: Edge) -> bool:
-    """Is it between frames of one robot, or what that sends by the plan? What is below another robot's
-    frame is where that one sees it."""
+    """Return whether it is between frames of one robot, or what that sends by the plan. What is
+    below another robot's frame is where that one sees it."""
     one = seen.frame_robot(edge.child) == seen.frame_robot(edge.parent)
     return one or (edge.parent, edge.child) in seen.senders
 
 
 def _is_of_nobody(seen: Index, tree: Tree, edge: Edge) -> bool:
-    """Has no robot's node sent it, and is it no copy that a known node makes, and nothing seen?"""
+    """Return whether no robot's node has sent it, and it is not a copy by a known node."""
     trees = _trees_of(seen, seen.frame_robot(edge.child))
     copied = any(edge.child in by_child(seen)[it.topic] for it in trees) and edge.publishers
     sees = seen.frame_robot(edge.parent) == seen.robot(tree.topic)
@@ -130,7 +130,7 @@ def _trees_of(seen: Index, robot: str) -> Iterator[Tree]:
 
 
 def _is_relayed(seen: Index, tree: Tree, robot: str) -> bool:
-    """Has the plan a node of the robot there, or does one that sends there hear the robot's tree?"""
+    """Return whether a planned node of the robot is there, or a sender there reads its tree."""
     plan, topics = seen.expected, (tree.topic, static_topic(tree.topic))
     own = plan.own.get(robot, ()) if plan else ()
     planned = plan.by_key if plan else ()
@@ -142,8 +142,9 @@ def _is_relayed(seen: Index, tree: Tree, robot: str) -> bool:
 def _has_names_of(
     seen: Index, tree: Tree, owners: Sequence[str], robot: str, edges: Sequence[Edge]
 ) -> bool:
-    """Has the robot all of it, and lacks one whose topic it is frames of its own, while its nodes run?
-    Then these have the names of the robot, and a frame that is not received is the finding."""
+    """Return whether the robot has all of it, and one whose topic it is lacks frames of its own,
+    while its nodes run. Then these have the names of the robot, and a frame that is not received is
+    the finding."""
     plan, children = seen.expected, by_child(seen).get(seen.home.get(robot, ""), {})
     if not plan or not seen.nodes or any(it.child not in children for it in edges):
         return False
@@ -154,9 +155,9 @@ def _has_names_of(
 def _frames_beside(
     seen: Index, senders: Mapping[str, Mapping[str, Sequence[str]]]
 ) -> Iterator[Finding]:
-    """A robot's frames on a topic that none of its nodes has, sent by a node of no robot that does not
-    hear the robot's tree: what does may be a relay. A node that is not known may pass on the rest. Of
-    frames of which no sender is known only a plan says where they belong."""
+    """Yield a robot's frames on a topic of none of its nodes, from a node of no robot. A node that
+    hears the robot's tree may be a relay; an unknown node may pass on the rest. Without a known
+    sender only a plan says where frames belong."""
     level = WARNING if incomplete(seen.system) else ERROR
     trees = {it.topic: it for it in seen.trees}
     elsewhere = taken_elsewhere(seen.expected) if seen.expected else ()
@@ -183,8 +184,8 @@ def _frames_beside(
 
 
 def _whose(seen: Index, edge: Edge) -> Sequence[str]:
-    """The robot of a transform; of one without a robot's name the robots that have it by the plan and
-    lack it, where it is not known which nodes run."""
+    """Return the robots that a transform belongs to. If it has no robot's name and no nodes are
+    known, these are the robots that have it by the plan and lack it."""
     robot, plan = seen.frame_robot(edge.child), seen.expected
     if robot:
         known = edge.publishers or robot in seen.home
@@ -196,8 +197,9 @@ def _whose(seen: Index, edge: Edge) -> Sequence[str]:
 
 
 def _is_copy(seen: Index, tree: Tree, children: Container[str], edge: Edge, whole: bool) -> bool:
-    """Is it in the tree as well, without the robot's name if it is not the only one, or sent by a node
-    of a robot, or by one that hears the tree? ``children`` are those of the tree."""
+    """Return whether it is in the tree as well, without the robot's name if it is not the only one,
+    or sent by a node of a robot, or by one that reads the tree. ``children`` are those of the
+    tree."""
     hears = any(seen.robot(it) or it in tree.listeners for it in edge.publishers)
     if not edge.publishers:
         return False
@@ -206,8 +208,8 @@ def _is_copy(seen: Index, tree: Tree, children: Container[str], edge: Edge, whol
 
 
 def _is_beside(seen: Index, robot: str, topics: Mapping[str, Sequence[str]], topic: str) -> bool:
-    """Is it in the robot's namespace, and do only nodes send there that send to its tree as well, or
-    bridges of a simulator? A row of these names the topic, so it is meant."""
+    """Return whether it is in the robot's namespace, and only nodes send there that send to its
+    tree as well, or bridges of a simulator. A row of these names the topic, so it is meant."""
     at_home = topics.get(_home(seen, robot, topics), ())
     others = (it for it in topics[topic] if it not in at_home and _BRIDGE not in last_word(it))
     bridge = f"ros_gz{_BRIDGE}"
@@ -215,14 +217,14 @@ def _is_beside(seen: Index, robot: str, topics: Mapping[str, Sequence[str]], top
 
 
 def _is_meant(seen: Index, node: str, role: str, topic: str) -> bool:
-    """Has the plan the node there, away from the tf of its robot?"""
+    """Return whether the plan has the node there, away from the tf of its robot."""
     keys = ((node, TOPIC, role, it) for it in (topic, static_topic(topic)))
     known = seen.expected.by_key if seen.expected else ()
     return topic != seen.home.get(seen.robot(node)) and any(it in known for it in keys)
 
 
 def _home(seen: Index, robot: str, topics: Mapping[str, Sequence[str]]) -> str:
-    """The tf topic of a robot: the known one, its own one, or where most of its nodes send."""
+    """Return a robot's tf topic: the known one, its own, or the one where most of its nodes send."""
     if robot in seen.home:
         return seen.home[robot]
     own = [it for it in topics if seen.robot(it) == robot and seen.plain(it).strip("/") == TF]

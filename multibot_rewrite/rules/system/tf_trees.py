@@ -21,26 +21,26 @@ def homes(plan: Index) -> Mapping[str, Sequence[str]]:
 
 
 def home_of(plan: Index, tree: Tree) -> Sequence[str]:
-    """The robots whose tf topic this is by the layout."""
+    """Return the robots whose tf topic this is by the layout."""
     return homes(plan).get(tree.topic, ())
 
 
 @once
 def taken_elsewhere(plan: Index) -> Set[str]:
-    """The topics of rows of bridges but for the tf of robots: whoever wrote them meant it."""
+    """Return the topics of bridge rows except robots' tf topics: they were chosen on purpose."""
     rows = {it.name for it in plan.system.topics if PUBLISHES in it.bridge}
     return rows - homes(plan).keys()
 
 
 def robots_on(plan: Index, tree: Tree) -> Sequence[str]:
-    """The robots that publish there, or those whose topic it is where no publisher is known."""
+    """Return the robots that publish in a tree, or its topic's robots without a known publisher."""
     if not tree.senders:
         return home_of(plan, tree)
     return unique(filter(None, map(plan.robot, sorted(tree.senders))))
 
 
 def roots_by_robot(plan: Index, seen: Index) -> Iterator[tuple[Robot, Sequence[str]]]:
-    """The robots whose planned frames have several roots on the tf topic of the robot, with these."""
+    """Yield the robots whose planned frames have several roots on their tf topic, with the roots."""
     for tree in seen.trees:
         # A chain may go through frames that are nobody's, as a relay names them.
         above = {edge.child: edge.parent for edge in tree.edges}
@@ -52,9 +52,9 @@ def roots_by_robot(plan: Index, seen: Index) -> Iterator[tuple[Robot, Sequence[s
             for frame in (edge.child, edge.parent):
                 robot = _robot_at_home(plan, tree, frame)
                 roots_of[robot].add(roots_above.get(edge.parent, edge.parent))
-        # What is planned to hang from a frame of all, and does not.
+        # What is planned to hang from a frame of all, and is a root.
         for it in plan.system.edges if is_one_each else ():
-            hangs = it.static and it.parent in plan.system.shared_frames and it.child not in above
+            hangs = it.static and it.parent in plan.system.shared_frames
             if hangs and it.child in roots_of[_robot_at_home(plan, tree, it.child)]:
                 roots_of[_robot_at_home(plan, tree, it.child)].add(it.parent)
         for robot, found in roots_of.items():
@@ -64,7 +64,7 @@ def roots_by_robot(plan: Index, seen: Index) -> Iterator[tuple[Robot, Sequence[s
 
 
 def _robot_at_home(plan: Index, tree: Tree, frame: str) -> str:
-    """The robot whose layout puts this frame on this topic, or an empty string."""
+    """Return the robot whose layout puts this frame on this topic, or an empty string."""
     home = home_of(plan, tree)
     if len(home) == 1:
         return home[0] if frame in plan.frames_of[home[0]] else ""
@@ -90,7 +90,7 @@ def frames_by_topic(seen: Index) -> Mapping[str, Set[str]]:
 
 
 def no_odometry(seen: Index, robot: str, odom: str, root: str) -> str:
-    """The cause of a tree in pieces: nothing is sent below an odometry frame, or elsewhere."""
+    """Return the cause of a tree in pieces: nothing is sent below an odometry frame, or elsewhere."""
     if other := sent_elsewhere(seen, robot, odom, root):
         return f"{other.publishers[0]} sends {odom} -> {root} on {other.topic}: bring it to tf, too"
     return f"no node sends {odom} -> {root}: is odometry started, are its frames the same?"
@@ -104,7 +104,7 @@ def sent_elsewhere(seen: Index, robot: str, odom: str, root: str) -> Edge | None
 
 
 def loose_odometry(seen: Index) -> Iterator[tuple[str, str]]:
-    """The odometry frames that nothing is sent below, each with the root that it hangs from."""
+    """Yield the odometry frames with nothing below them, each with its root."""
     for tree in seen.trees:
         above, parents = above_each(tree), {it.parent for it in tree.edges}
         loose = (it for it in above if it not in parents and seen.plain_frame(it) == "odom")
@@ -112,7 +112,7 @@ def loose_odometry(seen: Index) -> Iterator[tuple[str, str]]:
 
 
 def root_of(frame: str, above: Mapping[str, str]) -> str:
-    """The frame above all that are above it; in a circle any of them."""
+    """Return the topmost frame above a frame; in a cycle any of it."""
     for _ in above:
         if frame not in above:
             return frame

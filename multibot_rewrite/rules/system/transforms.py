@@ -34,7 +34,7 @@ _OF_CONTROLLERS = "enable_odom_tf"
 
 @system_rule("MG401", "two-parents", ERROR)
 def frame_with_two_parents(seen: Index) -> Iterator[Finding]:
-    """The cause names the nodes that may have sent it."""
+    """Yield frames with two parents; the cause names the nodes that may have sent them."""
     for tree in seen.trees:
         edges = lists_by_key((edge.child, edge) for edge in tree.edges)
         for child, parents in _parents(tree).items():
@@ -57,7 +57,7 @@ def _parents(tree: Tree) -> dict[str, set[str]]:
 
 
 def _senders(tree: Tree, edges: Iterable[Edge]) -> Sequence[str]:
-    """The nodes that send these transforms: all on the topic where it is not known which."""
+    """Return the nodes that send these transforms, or all senders on the topic if unknown."""
     return unique(node for it in edges for node in it.publishers) or tree.senders
 
 
@@ -125,7 +125,7 @@ def collide(seen: Index, tree: Tree) -> str:
 
 
 def _may_meet(seen: Index, tree: Tree) -> bool:
-    """May two robots have one frame here? So, too, where it is not known what a node of them sends."""
+    """Return whether two robots may have one frame here, also by nodes with unknown frames."""
     owners: dict[str, set[str]] = defaultdict(set)
     for edge in tree.edges:
         for frame in (edge.child, edge.parent):
@@ -234,7 +234,7 @@ def _take_away(
 
 @system_rule("MG404", "static-and-moving", ERROR)
 def static_and_moving(seen: Index) -> Iterator[Finding]:
-    """A frame with two parents is a finding of its own."""
+    """Yield transforms that are sent as static and as moving; two parents are another finding."""
     for tree in seen.trees:
         several = {child for child, parents in _parents(tree).items() if len(parents) > 1}
         fixed = {it.child: it for it in tree.edges if "tf_static" in it.topic.split("/")}
@@ -330,14 +330,14 @@ def _without_prefix(nodes: Iterable[str]) -> Cause:
 
 
 def who_can_send(seen: Index, nodes: Sequence[str], edges: Sequence[Edge]) -> Sequence[str]:
-    """The nodes that can send one of these; all, where fewer than two would be left."""
+    """Return the nodes that can send one of these transforms; all if fewer than two are left."""
     found = [node for node in nodes if any(_can_send(seen, node, it) for it in edges)]
     return found if len(found) > 1 else nodes
 
 
 def _can_send(seen: Index, node: str, edge: Edge) -> bool:
-    """A description has no odometry, amcl (it reads a start pose) sends map -> odom alone, a drive
-    nothing below the map."""
+    """Return whether a node can send a transform: a description has no odometry, amcl (it reads a
+    start pose) sends only map -> odom, a drive sends nothing below the map."""
     above, word = seen.plain_frame(edge.parent), last_word(node)
     if word.startswith(_STATE_PUBLISHER):
         return above not in SENT_FRAMES

@@ -68,8 +68,8 @@ def nothing_known_sends(seen: Index) -> Iterator[Finding]:
 
 
 def _of_its_kind(seen: Index, name: str, robot: str) -> bool:
-    """Is a name of another robot that runs nothing which the robot has not, but for its sender, and of
-    which the nodes that both have send the same frames?"""
+    """Return whether a name is of another robot that runs nothing which the robot has not, except
+    its sender, and of which the nodes that both have send the same frames."""
     other, nodes = seen.robot(name), nodes_of_each(seen)
     theirs, own = _frames(seen).get(other, {}), _frames(seen).get(robot, {})
     both = theirs.keys() & own.keys()
@@ -81,7 +81,7 @@ def _of_its_kind(seen: Index, name: str, robot: str) -> bool:
 
 @once
 def _frames(seen: Index) -> Mapping[str, Mapping[str, Set[str]]]:
-    """The frames that each node of each robot sends, without the robot's name."""
+    """Return the frames that each node of each robot sends, without the robot's name."""
     found: dict[str, dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
     for it in seen.sent:
         found[seen.robot(it.node)][seen.plain(it.node)].add(seen.plain_frame(it.child))
@@ -90,7 +90,7 @@ def _frames(seen: Index) -> Mapping[str, Mapping[str, Set[str]]]:
 
 @once
 def _given(seen: Index) -> Mapping[str, Sequence[str]]:
-    """What is sent or served by its name without a robot's, the last one first."""
+    """Return the names that are sent or served by their name without a robot's, the last one first."""
     return lists_by_key(
         (seen.plain(name), name)
         for (_, name), ends in reversed([*seen.by_name.items()])
@@ -99,7 +99,7 @@ def _given(seen: Index) -> Mapping[str, Sequence[str]]:
 
 
 def no_longer_sent(end: End) -> Finding:
-    """The finding about one end that nothing sends any more."""
+    """Return the finding about one end that nothing sends any more."""
     does, gives = ("subscribes to", "publishes") if end.kind == TOPIC else ("calls", "serves")
     message = f"{does} {end.name}, which no node {gives} any more"
     return nothing_known_sends.finding(
@@ -108,7 +108,7 @@ def no_longer_sent(end: End) -> Finding:
 
 
 def open_ends(seen: Index) -> list[End]:
-    """What nodes surely need by their code, and nothing gives; a served action gives its status."""
+    """Return the ends that nodes surely need and nothing gives; a served action sends its status."""
     served = {
         f"{it.name}{_STATUS}" for it in seen.by_name.values() if it.kind == ACTION and it.servers
     }
@@ -165,7 +165,7 @@ def _read(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
 
 
 def _unknown(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
-    """A frame of another name: misspelled, or in no transform of a system that runs."""
+    """Return a finding for an unknown frame: misspelled, or not sent in a running system; or None."""
     near = nearest(it.frame, sorted(frames_in(edges)), MISTYPED)
     if not near and (seen.system.environment.settled != QUIET or not edges):
         return None
@@ -174,8 +174,8 @@ def _unknown(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
 
 
 def _sender(seen: Index, node: str, edges: Sequence[Edge]) -> Edge | None:
-    """A transform that a node sends by its file, of the robot of ``node`` if there is one. Nothing is
-    known where only nodes without one send any, and others may run."""
+    """Return a transform that a node sends by its file, preferably one of the robot of ``node``. It
+    is None if only nodes without a file are known and others may run."""
     # Of all that send on one topic nobody can tell them apart: a description has no odometry.
     own = [
         it

@@ -27,10 +27,14 @@ def test_a_link_of_the_own_model_is_renamed_with_it(model: str, is_own: bool, la
     assert ("<child_link>w</child_link>" not in text) == is_own
 
 
+WAVES = """<gazebo><plugin filename="gz-waves1-hydrodynamics-system" name="h">
+<enable>{}</enable></plugin>
+</gazebo>"""
 CONTAIN = """<gazebo><plugin name="c" filename="libContainPlugin.so"><entity>{}</entity>
 <namespace>c</namespace></plugin></gazebo>"""
 
 
+@pytest.mark.parametrize("plugin", [CONTAIN, WAVES], ids=["contain", "waves"])
 @pytest.mark.parametrize(
     ("entity", "layout", "is_shared"),
     [
@@ -41,10 +45,11 @@ CONTAIN = """<gazebo><plugin name="c" filename="libContainPlugin.so"><entity>{}<
     ],
 )
 def test_the_own_model_in_front_of_a_link_is_another_one_for_each_robot(
-    entity: str, layout: str, is_shared: bool
+    entity: str, layout: str, is_shared: bool, plugin: str
 ) -> None:
-    """ContainPlugin.cc:100 looks it up in the world, where each robot has a name of its own."""
-    made = rewrite(robot(CONTAIN.format(entity)), "robot1", layout=layout)
+    """ContainPlugin.cc:100 looks it up in the world, where each robot has a name of its own;
+    asv_wave_sim's Hydrodynamics.cc, IsEnabled compares it with the scoped name of each link."""
+    made = rewrite(robot(plugin.format(entity)), "robot1", layout=layout)
     assert ("1 name looked up in the whole world" in made.not_verified) == is_shared
 
 

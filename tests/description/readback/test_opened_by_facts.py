@@ -7,7 +7,7 @@ from __future__ import annotations
 from itertools import product
 
 import pytest
-from opened_facts import FACTS, Opened, met, opened
+from opened_facts import FACTS, Opened, met, only_in_ros_1, opened
 from real_robots import corpus_files
 
 from multibot_rewrite import rewrite_all
@@ -27,11 +27,12 @@ def both(text: bytes, layout: str, known: set[str]) -> tuple[set[Opened], set[Op
     if one.not_verified:
         return None
     # ROS 1 loads no plugin of a robot that ROS 2 controls, or of which one reads <ros>
-    # (gazebo_ros/src/node.cpp); ROS 2 does not read its parameters (MB904).
+    # (gazebo_ros/src/node.cpp); ROS 2 does not read its parameters (MB904), and has other libraries.
     of_ros_2 = b"<ros2_control" in text or b"<ros>" in text
-    ros_1 = "noetic" if of_ros_2 else "no such branch"
+    of_ros_1 = any(b"lib%s.so" % it in text for it in only_in_ros_1())
+    absent = "noetic" if of_ros_2 else "of ROS 2" if of_ros_1 else "no such branch"
     pair = (opened(it.data, it.robot, known) for it in (one, other))
-    first, second = ({it for it in its if ros_1 not in it.source} for its in pair)
+    first, second = ({it for it in its if absent not in it.source} for its in pair)
     return first, second
 
 

@@ -436,6 +436,9 @@ BAD = {
     "it starts too much": (
         "x = GroupAction([Node(package='a', executable='b')] * 1001)", "starts 1001 processes",
     ),
+    "it imports what is not here": (
+        "import acme_tools; x = LogInfo(msg='a')", "it imports the Python package 'acme_tools'",
+    ),
     "it writes": ("x = open('FOLDER/made', 'w')", "give --trust"),
     "it starts nothing": ("x = LogInfo(msg='a')", "starts no node with these arguments"),
     "it is no Python": (")", "SyntaxError"),
@@ -467,10 +470,27 @@ def test_a_bad_launch_file_is_named_in_the_fleet_file(package: Path) -> None:
     )
 
 
-def test_a_long_launch_file_and_one_that_imports_what_is_not_here(package: Path) -> None:
+def test_a_long_launch_file_and_one_that_imports_what_is_not_here(
+    package: Path, capsys: Any
+) -> None:
+    """What gives a launch file nothing but parameters may be missing; another one is named."""
     (path,) = write(package / "launch", {"up": f"{PUBLISHER}; {DRIVER}"})
-    Path(path).write_text(f"import acme_tools\n{LONG}\n{Path(path).read_text()}")
-    assert fleet_of(package)["launch"] == "rover/launch/up.launch.py"
+    text = f"{LONG}\n{Path(path).read_text()}"
+    Path(path).write_text(f"import moveit_configs_utils\n{text}")
+    made = fleet_of(package)
+    assert made["launch"] == "rover/launch/up.launch.py"
+    Path(path).write_text(f"import acme_tools\n{text}")
+    assert "launch" not in fleet_of(package)
+    named = (package.parent / "fleet.yaml").read_text()
+    assert "up.launch.py:1: package 'acme_tools' is not installed here" in named
+    row = f"layout: frames-per-robot\ndescription: rover/urdf/rover.urdf.xacro\nlaunch: {path}\n"
+    (package.parent / "own.yaml").write_text(f"{row}robots: [{{name: a}}, {{name: b}}]\n")
+    capsys.readouterr()
+    out = package.parent / "own"
+    assert main(["build", str(package.parent / "own.yaml"), "-o", str(out)]) == 2
+    error = capsys.readouterr().err
+    assert len(error.splitlines()) == 1 and "'acme_tools', which is not here" in error
+    assert not out.exists()
 
 
 def test_a_launch_file_is_for_one_description(package: Path, capsys: Any) -> None:

@@ -49,7 +49,7 @@ class MacroCall(NamedTuple):
 
 
 def json_text(value: object) -> str:
-    r"""JSON that strict readers take: a lone surrogate is text, ``\\udcff``, and no escape."""
+    r"""Return JSON that strict readers take: a lone surrogate is text, ``\\udcff``, and no escape."""
     import json
 
     text = in_json(json.dumps(value, indent=1, ensure_ascii=False)) + "\n"
@@ -69,12 +69,12 @@ def inside(path: str) -> str | None:
 
 
 def path_below(path: str) -> str:
-    """As ``inside``, or as it was given: what CI services look for in the repository."""
+    """Return a path as ``inside``, or as it was given: what CI services find in the repository."""
     return inside(path) or path_given(path)
 
 
 def said(finding: Finding) -> str:
-    """Message, further robots and hint, in one line."""
+    """Return message, further robots and hint, in one line."""
     hint = f" ({finding.hint})" if finding.hint else ""
     return one_line(f"{finding.message}{same_for(finding)}{hint}")
 
@@ -116,13 +116,13 @@ def via(finding: Finding, spelled: Callable[[str], str]) -> Iterator[str]:
 
 
 def counts(findings: Iterable[Finding]) -> dict[str, int]:
-    """How many there are of each level, from the worst on."""
+    """Return how many findings there are of each level, from the worst on."""
     found = Counter(it.level for it in findings)
     return {level: found[level] for level in (*LEVELS, *(found.keys() - set(LEVELS)))}
 
 
 def in_words(levels: Mapping[str, int]) -> str:
-    """``2 errors, 1 warning``; empty without findings."""
+    """Return ``2 errors, 1 warning``; empty without findings."""
     words = (
         f"{number} {level}" if level == INCONCLUSIVE else plural(number, level)
         for level, number in levels.items()
@@ -155,8 +155,8 @@ def fingerprints(findings: Sequence[Finding]) -> list[str]:
 
 
 def as_text(findings: Sequence[Finding], report: Report, *, colour: bool = False) -> str:
-    """Lines as compilers write them: ``file:line:column: level: CODE message (hint)``, and an indented
-    one for each macro call that led there."""
+    """Return lines as compilers write them: ``file:line:column: level: CODE message (hint)``, and
+    an indented one for each macro call that led there."""
     return "".join(f"{line}\n" for it in findings for line in lines_of(it, colour=colour))
 
 
@@ -170,7 +170,7 @@ def lines_of(finding: Finding, *, colour: bool = False) -> Iterator[str]:
 
 
 def as_json(findings: Sequence[Finding], report: Report) -> str:
-    """One JSON object, the same from release to release (docs/lint.md), indented."""
+    """Return one JSON object, the same from release to release (docs/lint.md), indented."""
     table = {
         "version": VERSION,
         "tool": report.tool,
@@ -270,7 +270,7 @@ def _escaped(text: str) -> str:
 
 
 def as_statistics(findings: Sequence[Finding], report: Report) -> str:
-    """How often each rule found something, and in how many files, the most frequent first."""
+    """Return how often each rule found something, in how many files, the most frequent first."""
     alike: dict[tuple[str, str], list[Finding]] = {}
     for it in findings:
         alike.setdefault((it.code, it.level), []).append(it)

@@ -33,7 +33,7 @@ _ROOT_SAID = "The folder in which the command was started: the root of the repos
 
 
 def as_sarif(findings: Sequence[Finding], report: Report) -> str:
-    """One run with every rule, the files that were linted, and a result for each finding."""
+    """Return one SARIF run with every rule, the linted files, and a result for each finding."""
     numbers = {code: number for number, code in enumerate(report.rules)}
     driver = {
         "name": report.tool,
@@ -116,7 +116,7 @@ def _result(finding: Finding, report: Report, numbers: Mapping[str, int], finger
 
 
 def _locations(finding: Finding, report: Report) -> list[Json]:
-    """Where it is: in a file, and the robot's node by its name; none where neither is known."""
+    """Return the places of a finding: in a file, and the robot's node; empty if neither is known."""
     it = finding
     node = {"fullyQualifiedName": it.place, "kind": "resource"} if it.robot or it.node else {}
     file = file_of(it, report)

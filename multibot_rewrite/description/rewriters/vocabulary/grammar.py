@@ -65,17 +65,16 @@ _PATH = lazy_compile(rf"(?=.)(?:{_STEP}(?:/{_STEP})*)?(?:@{_NAME})?")
 class VocabularySection(NamedTuple):
     """One section: what is known about an element, a plugin, a hardware class or a shared block.
 
-    ``wired`` are topics and services that its code names. ``switches`` are parameters that turn one of
-    them off, each as ``parameter=name``.
-    ``inserts`` is false where the consumer throws on children it does not know.
-    ``unique`` is a kind whose bare names the plugin looks up in the whole world. ``process_wide``
-    tells that its remap rules hold for every node of the process. ``hardwired`` are names it looks
-    for whatever the file says, each as ``kind:name``. ``model_namespace`` are the releases in which
-    its relative topics stand below the namespace of the model. ``releases`` are the words for the only
-    releases that have it. ``tags`` are those of the child elements that its rows know. ``opens`` is
-    what it opens beside names, or that it opens nothing, or that this is not known. ``helper`` is a
-    node that it starts beside its own, which only its namespace moves.
-    """
+    ``wired`` are topics and services that its code names. ``switches`` are parameters that turn one
+    of them off, each as ``parameter=name``. ``inserts`` is false where the consumer throws on
+    children it does not know. ``unique`` is a kind whose names the plugin looks up in the whole
+    world. ``process_wide`` tells that its remap rules hold for every node of the process.
+    ``hardwired`` are names it looks for whatever the file says, each as ``kind:name``.
+    ``model_namespace`` are the releases in which its relative topics are below the namespace of the
+    model. ``releases`` are the words for the only releases that have it. ``tags`` are those of the
+    child elements that its rows know. ``opens`` is what it opens in addition to names, or that it
+    opens nothing, or that this is not known. ``helper`` is a node that it starts in addition to its
+    own, which only its namespace moves."""
 
     type: str
     names: tuple[str, ...]
@@ -118,7 +117,7 @@ class VocabularySection(NamedTuple):
 
 
 def read_header(place: str, row: str) -> tuple[str, ...]:
-    """Type and names of a section from its first row (its ``[`` taken off)."""
+    """Return type and names of a section from its first row (without its ``[``)."""
     head, bracket, rest = row.partition("]")
     words = head.split()
     if not bracket or rest.strip() or len(words) < 2 or words[0] not in _HEADERS:
@@ -294,7 +293,7 @@ def _check_words(place: str, path: str, kinds: Iterable[str], options: dict[str,
 
 
 def is_step(text: str) -> bool:
-    """Is this one step of a path, as a definition file may have it?"""
+    """Return whether this is one step of a path, as a definition file may have it."""
     return _ONE_STEP.fullmatch(text) is not None
 
 
@@ -332,7 +331,7 @@ def split_path(path: str) -> tuple[tuple[str, ...], str]:
 
 @lru_cache(maxsize=PATHS)
 def split_step(step: str) -> tuple[str, str, str]:
-    """Tag, attribute and wanted value of a step: ``param[@name=mimic]``; empty where not asked."""
+    """Return tag, attribute and wanted value of ``param[@name=mimic]``; empty where not given."""
     tag, _, ask = step.partition("[@")
     attribute, _, value = ask.rstrip("]").partition("=")
     return tag, attribute, value

@@ -70,7 +70,7 @@ class Vocabulary:
         return self._find((type_, name), ())
 
     def _find(self, key: tuple[str, str], within: tuple[str, ...]) -> tuple[VocabularySection, ...]:
-        """``within`` are the blocks that are being read."""
+        """Return the sections of a key; ``within`` are the blocks that are being read."""
         if key in self._found or key not in self._raw:
             return self._found.get(key, ())
         made: list[VocabularySection] = []
@@ -95,11 +95,11 @@ class Vocabulary:
         return not self.release or has_release(words, self.release)
 
     def has(self, type_: str, name: str) -> bool:
-        """Is there a section of that type and name, in this release or another?"""
+        """Return whether a section of that type and name exists, in this release or another."""
         return (type_, name) in self._raw
 
     def names(self, type_: str) -> Iterator[str]:
-        """Every name and alias of that type."""
+        """Yield every name and alias of that type."""
         return (name for of, name in self._raw if of == type_)
 
     def rows_elsewhere(self, type_: str, name: str) -> Iterator[SiteRow]:
@@ -151,7 +151,7 @@ class Vocabulary:
             yield from ((name, of_ros_1) for of_ros_1 in found)
 
     def places(self) -> dict[str, list[str]]:
-        """Each element with a section and the elements it may be in, without reading more."""
+        """Return each element with a section and the elements it may be in, without reading more."""
         found: dict[str, list[str]] = {}
         elements = ((key[1], raws) for key, raws in self._raw.items() if key[0] == "element")
         for name, all_raws in elements:
@@ -162,11 +162,11 @@ class Vocabulary:
         return found
 
     def sections(self, *types: str) -> list[VocabularySection]:
-        """All rewriters of these types, parsed and checked, in file order."""
+        """Return all rewriters of these types, parsed and checked, in file order."""
         return self._parsed(key for key in self._raw if key[0] in types)
 
     def sections_in(self, files: Container[str]) -> list[VocabularySection]:
-        """All rewriters that these files have a part in, parsed and checked, and their values."""
+        """Return all rewriters with a part in these files, parsed and checked, and their values."""
         raws = self._raw.items()
         found = self._parsed(key for key, raw in raws if any(part[0] in files for part in raw))
         own = (part for _, parts in raws for part in parts if part[0] in files)

@@ -63,7 +63,7 @@ def is_typed(word: str) -> bool:
 
 
 def has_values(chunk: str) -> bool:
-    """May there be such rows in a section that is not read yet?"""
+    """Return whether such rows may be in a section that is not read yet."""
     return "\nread: " in chunk or " read=" in chunk or _ROW.search(chunk) is not None
 
 
@@ -160,7 +160,7 @@ def wired_topics(place: str, settings: Mapping[str, str]) -> Iterator[WiredTopic
 
 
 def role_and_type(place: str, options: Mapping[str, str]) -> tuple[str, str]:
-    """Of a row that holds a topic: ``publishes=TYPE``; raises VocabularyError."""
+    """Return role and type of a row with a topic, ``publishes=TYPE``; raises VocabularyError."""
     role = next((it for it in options if it in ROLES), "")
     type_ = options.get(role, "")
     if role and not is_type(type_):
@@ -169,7 +169,7 @@ def role_and_type(place: str, options: Mapping[str, str]) -> tuple[str, str]:
 
 
 def is_type(text: str) -> bool:
-    """Is this the full name of a message or service type?"""
+    """Return whether this is the full name of a message or service type."""
     package, _, rest = text.partition("/")
     kind, _, name = rest.partition("/")
     return kind in ("msg", "srv") and package.isidentifier() and name.isidentifier()

@@ -127,7 +127,7 @@ def limit(seconds: float, memory: int, files: bool = False) -> bool:
 
 
 def _memory() -> int:
-    """How many bytes of addresses the process has; 0 where nothing tells."""
+    """Return how many bytes of addresses the process has; 0 if unknown."""
     try:
         with open("/proc/self/statm") as file:
             return int(file.read().split()[0]) * os.sysconf("SC_PAGESIZE")

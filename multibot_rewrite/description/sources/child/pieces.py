@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Texts that know where they were written: what xacro makes of them, piece by piece.
 
-A value of an expansion is put together from what stands in an element, a property, the call of a macro,
-an argument or a YAML file. While xacro runs, each of these is a ``PiecedText``: a str with its pieces.
-What an expression makes in any other way is a piece that has only the place of the expression.
+A value of an expansion is put together from what is in an element, a property, the call of a macro,
+an argument or a YAML file. While xacro runs, each of these is a ``PiecedText``: a str with its
+pieces. What an expression makes in any other way is a piece that has only the place of the
+expression.
 
 Source: xacro 2.1.1 __init__.py (``eval_text``, ``grab_macro``, ``load_yaml``), substitution_args.py.
 """
@@ -25,8 +26,8 @@ TEXT_NODE = "#"
 class Spot(NamedTuple):
     """Where a piece was written: the file's number, or GIVEN for an argument of the caller; the
     element's; the attribute, ``#0`` for the first text in it; the offset there, in characters.
-    ``length`` is that of an expression whose result the piece is, 0 for a piece that stands there as it
-    is."""
+    ``length`` is that of an expression whose result the piece is, 0 for a piece that is written
+    there."""
 
     file: int
     element: int
@@ -83,7 +84,7 @@ def pieces_of(text: str) -> tuple[Piece, ...]:
 
 
 def joined(texts: Sequence[str]) -> PiecedText:
-    """One text of several."""
+    """Return several texts as one."""
     pieces = (piece for text in texts for piece in pieces_of(text))
     return PiecedText("".join(texts), _merged(pieces))
 
@@ -123,8 +124,8 @@ def _merged(pieces: Iterable[Piece]) -> Iterator[Piece]:
 def tracking(
     xacro: Any, arguments: Mapping[str, str], number: Callable[[str], int]
 ) -> dict[str, str]:
-    """From now on ``xacro`` keeps pieces; the ``arguments`` of the caller, with theirs. ``number``
-    gives one to a file that was read and is no XML."""
+    """Let ``xacro`` keep pieces from now on; return the ``arguments`` of the caller, with theirs.
+    ``number`` gives one to a file that was read and is no XML."""
     import yaml
 
     xacro.eval_text = _evaluator(xacro)
@@ -150,7 +151,7 @@ def note(document: Any, number: int) -> None:
 
 
 def _evaluator(xacro: Any) -> Callable[[str, Any], Any]:
-    """xacro's ``eval_text``, whose result knows its pieces."""
+    """Return xacro's ``eval_text``, whose result knows its pieces."""
     lexer = xacro.LEXER
 
     def expression(text: str, symbols: Any) -> Any:
@@ -210,7 +211,7 @@ def _known(value: Any, part: str) -> Any:
 
 
 def _quoted(text: str, part: str) -> Spot | None:
-    """Where a text is in quotes, if that is in one place."""
+    """Return where a text is in quotes, if that is in one place."""
     found = [
         part.find(f"{quote}{text}{quote}")
         for quote in "'\""
@@ -230,7 +231,7 @@ def _of(part: str) -> Spot | None:
 
 
 def _defaults(parse: Callable[[str], Any]) -> Callable[[str], Any]:
-    """xacro's reading of a macro's parameters, whose defaults know where they are written."""
+    """Return xacro's parser of macro parameters, with defaults that know where they are written."""
 
     def parsed(text: str) -> Any:
         param, value, rest = parse(text)
@@ -269,7 +270,7 @@ def numbers(document: Any, words: list[str]) -> array[int]:
 
 
 def _values(element: Any) -> Iterator[tuple[str, str]]:
-    """Attributes, and the text of an element that has nothing else in it."""
+    """Yield the attributes, and the text of an element that has nothing else in it."""
     yield from element.attributes.items()
     inside = element.childNodes
     if len(inside) == 1 and inside[0].nodeType == Node.TEXT_NODE:

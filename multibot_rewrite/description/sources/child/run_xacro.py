@@ -41,7 +41,7 @@ class Expanded(NamedTuple):
 
 
 def missing() -> str:
-    """Why xacro cannot be imported; empty if it can."""
+    """Return why xacro cannot be imported; empty if it can."""
     try:
         import xacro.substitution_args
     except ImportError as error:
@@ -92,7 +92,7 @@ def _failure(error: Exception, file: str, marks: Marks) -> dict[str, object]:
 
 
 def _place(error: BaseException) -> tuple[int, int, str] | None:
-    """File, element and attribute that were worked on."""
+    """Return the file, element and attribute that xacro was processing."""
     for frame in reversed(list(_frames(error))):
         node = next((frame.f_locals[it] for it in _NODES if it in frame.f_locals), None)
         element: Any = node if hasattr(node, "tagName") else getattr(node, "parentNode", None)
@@ -182,14 +182,14 @@ class Marks:
         return len(self.calls) // 4 - 1
 
     def origins(self, document: Any) -> array[int]:
-        """Three numbers for each element of an expanded document, in its order."""
+        """Return three numbers for each element of an expanded document, in its order."""
         nowhere = Mark(NOWHERE, NOWHERE, NOWHERE)
         found = (it.getUserData(MARK) or nowhere for it in document.getElementsByTagName("*"))
         return array(NUMBER, (number for mark in found for number in mark))
 
 
 def marking(xacro: Any, marks: Marks) -> None:
-    """From now on what ``xacro`` reads and calls is noted in ``marks``."""
+    """Note in ``marks`` what ``xacro`` reads and calls from now on."""
     parse, handle = xacro.parse, xacro.handle_macro_call
 
     def read(given: Any, filename: str | None = None) -> Any:

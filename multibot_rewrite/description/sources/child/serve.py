@@ -114,7 +114,7 @@ def _ended(pid: int) -> int:
 
 
 def _end(pid: int) -> int:
-    """Kill a child and wait for it; 0."""
+    """Kill a child, wait for it and return 0."""
     os.kill(pid, signal.SIGKILL)
     os.waitpid(pid, 0)
     return 0

@@ -13,18 +13,18 @@ SYSTEM = ctypes.CDLL(None, use_errno=True) if sys.platform == "linux" else None
 
 
 def control(*arguments: object) -> bool:
-    """``prctl``: is it done?"""
+    """Call ``prctl``; return whether it succeeded."""
     numbers = [ctypes.c_ulong(it) if isinstance(it, int) else it for it in arguments[1:]]
     return SYSTEM is not None and SYSTEM.prctl(arguments[0], *numbers) == 0
 
 
 def no_new_privileges() -> bool:
-    """Without it an unprivileged process may not fence itself in."""
+    """Give up new privileges: otherwise an unprivileged process may not restrict itself."""
     return control(_SET_NO_NEW_PRIVS, 1, 0, 0, 0)
 
 
 def undumpable() -> bool:
-    """Other processes of this user cannot read the memory of this one, nor its files in /proc."""
+    """Hide the memory of this process, and its files in /proc, from others of this user."""
     return control(_SET_DUMPABLE, 0, 0, 0, 0)
 
 

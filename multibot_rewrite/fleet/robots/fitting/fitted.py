@@ -2,9 +2,8 @@
 """Settings of a robot's nodes that no file of the robot makes: they fit what its description and its
 files have.
 
-What the user's files say stays. A node that a stack adds gets the type of commands, the frames and the
-transforms with which it works beside them.
-"""
+What the user's files say stays. A node that a node set adds gets the type of commands, the frames
+and the transforms with which it works with them."""
 
 from __future__ import annotations
 
@@ -104,7 +103,7 @@ def _as_listed(node: NodeFacts, spec: RobotSpec) -> NodeFacts:
 
 
 def _settled(node: NodeFacts) -> NodeFacts:
-    """Return the node as the parameters of its stack make it."""
+    """Return the node as the parameters of its node set make it."""
     if not node.usual:
         return node
     values = usual_values(node)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The topics of commands, and the input of a twist_mux for each sender of them: the drive obeys one.
 
-The inputs are those of the user's file, where one has the node; then what a stack adds fits these.
-"""
+The inputs are those of the user's file, where one has the node; then what a node set adds fits
+these."""
 
 from __future__ import annotations
 
@@ -41,11 +41,10 @@ def to_the_drive(node: NodeFacts) -> NodeFacts:
 def through_a_mux(
     nodes: Sequence[NodeFacts], added: Collection[str], usual: Usual, of_package: NodeFacts
 ) -> Sequence[NodeFacts]:
-    """Return the nodes, ``added`` ones that send commands beside the twist_mux with an input of it.
+    """Return the nodes, ``added`` ones that send commands past the twist_mux with an input of it.
 
-    ``usual`` are the stack's own parameters of the twist_mux, ``of_package`` is what its code has.
-    Where the user's file has no input for a sender, the twist_mux gets the stack's.
-    """
+    ``usual`` are the node set's own parameters of the twist_mux, ``of_package`` is what its code
+    has. Where the user's file has no input for a sender, the twist_mux gets the node set's."""
     node = next((it for it in nodes if it.name in own_mux(nodes, added)), None)
     if node is None:
         return nodes
@@ -108,7 +107,7 @@ def _with_own_inputs(node: NodeFacts, taken: Collection[str]) -> tuple[NodeFacts
 
 
 def _role(topic: str, usual: Usual) -> str:
-    """Return the id of the input that the stack has for a topic; that of a planner for any other."""
+    """Return the id of the input that the node set has for a topic; that of a planner for any other."""
     ids = (_id(name) for name, value in usual.items() if value == topic)
     return next(ids, _OF_PLANNER)
 
@@ -120,7 +119,8 @@ def _name_of_topic(role: str) -> str:
 def _with_inputs(
     node: NodeFacts, roles: Iterable[str], usual: Usual, of_package: NodeFacts
 ) -> NodeFacts:
-    """Return the twist_mux with inputs that the stack has, beside those of the user's file."""
+    """Return the twist_mux with inputs that the node set has, in addition to those of the user's
+    file."""
     (like,) = _commands(of_package, SUBSCRIBES)
     for role in roles:
         values = [it for it in usual.items() if it[0].startswith(_INPUT.format(role))]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Topics that nodes have for certain, and parameters that their stacks set."""
+"""Topics that nodes have for certain, and parameters that their node sets set."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def controllers(nodes: Iterable[NodeFacts]) -> Iterator[NodeFacts]:
 
 
 def usual_values(node: NodeFacts) -> dict[str, Given]:
-    """Return the parameters that the stack of a node sets."""
+    """Return the parameters that the node set of a node sets."""
     return {name: Given(value, NOWHERE) for name, value in node.usual}
 
 

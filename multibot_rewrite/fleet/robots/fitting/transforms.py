@@ -41,7 +41,7 @@ def sent_by_plugins(member: Member, spec: RobotSpec) -> tuple[Edge, ...]:
 
 
 def is_led_elsewhere(member: Member, spec: RobotSpec) -> bool:
-    """Has a bridge file of the robot the transform of its drive on another topic than tf?"""
+    """Return whether a bridge file of the robot has its drive's transform on another topic than tf."""
     elsewhere = _led_elsewhere(spec)
     return bool(elsewhere) and any(topic in elsewhere for topic, _ in _sent_by_systems(member))
 
@@ -57,7 +57,7 @@ def _sent_by_systems(member: Member) -> Iterator[tuple[str, Edge]]:
 
 
 def brings_transforms(spec: RobotSpec) -> bool:
-    """Has a bridge file of the robot, or a bridge of its launch files, a row with transforms?"""
+    """Return whether a bridge file of the robot or of its launch files has a row with transforms."""
     paths = spec.companions.get("bridge", ())
     return any(it.end.type == TF_TYPE for path in paths for it in bridge_rows(own_yaml(spec, path)))
 
@@ -97,7 +97,7 @@ def _in_files(nodes: Iterable[NodeFacts], free: Collection[str]) -> Iterator[Edg
 
 
 def sends_too(nodes: Iterable[NodeFacts], free: Collection[str], sent: Sequence[Edge]) -> bool:
-    """Does a node that surely runs and is not ``free`` send a transform that plugins have ``sent``?"""
+    """Return whether a node that surely runs and is not ``free`` sends what plugins have ``sent``."""
     bodies = {*BODY_FRAMES, *(it.child for it in sent)}
     sure = (it for it in nodes if not it.when)
     own = {_place(it, bodies) for it in _in_files(sure, free)}

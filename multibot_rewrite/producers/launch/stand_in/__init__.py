@@ -41,7 +41,7 @@ def _get_logger(name: str | None = None) -> Any:
 
 @cache
 def contents() -> Mapping[str, dict[str, Any]]:
-    """The modules, each with what it has."""
+    """Return the modules, each with its contents."""
     known = {key: it for room in _ROOMS for key, it in vars(room).items()}
     known["get_logger"] = _get_logger
     found = {
@@ -55,7 +55,7 @@ def contents() -> Mapping[str, dict[str, Any]]:
 
 @cache
 def inside() -> dict[str, str]:
-    """The modules inside of packages, as ``launch.actions.timer_action``, each with its package."""
+    """Return the modules inside packages, as ``launch.actions.timer_action``, each with its package."""
     found = {}
     for package, content in contents().items():
         own = names().inside.get(package, "").split()
@@ -90,5 +90,5 @@ def standing_in(**more: Mapping[str, Any]) -> Iterator[None]:
 
 
 def is_stood_in() -> bool:
-    """Does ``import launch`` find the stand-in?"""
+    """Return whether ``import launch`` finds the stand-in."""
     return sys.modules.get("launch") is not None and not hasattr(sys.modules["launch"], "__file__")

@@ -46,7 +46,7 @@ SomeEntitiesType_types_tuple = (Action, Iterable)
 
 @cache
 def not_read(name: str) -> Any:
-    """What can be imported and says nothing here: where it is needed, an error has its name."""
+    """Return an object that can be imported and not used: its use raises an error with its name."""
     reason = f"{name} is not read: it needs launch itself"
 
     def refuse(*words: Any, **options: Any) -> Any:
@@ -60,7 +60,7 @@ def not_read(name: str) -> Any:
 
 
 def doing(name: str, names: str, do: Callable[..., object]) -> type[Action]:
-    """An action that does something in the context with the texts that it is given."""
+    """Return a class of actions that do something in the context with the texts they are given."""
 
     def execute(it: Any, context: LaunchContext) -> None:
         do(context, *(text_of(context, vars(it)[word]) for word in it.names))
@@ -216,7 +216,7 @@ class IncludeLaunchDescription(Action):
             return []
 
     def names_without_context(self) -> list[str]:
-        """The arguments that it gives, where their names are known before the launch runs."""
+        """Return the arguments that it gives, if their names are known before the launch runs."""
         try:
             return [text_of(LaunchContext(), name) for name, _ in self.launch_arguments]
         except Exception:
@@ -227,7 +227,7 @@ Declared = tuple[DeclareLaunchArgument, tuple[IncludeLaunchDescription, ...]]
 
 
 def declared(entities: Iterable[Any]) -> list[Declared]:
-    """The arguments that are declared whatever happens, each with the includes that lead to it."""
+    """Return the unconditionally declared arguments, each with the includes that lead to it."""
     found: dict[str, Declared] = {}
     _declare(entities, (), found)
     return [it for it in found.values() if it[0].condition is None]

@@ -39,13 +39,13 @@ class Form(NamedTuple):
 
 
 def description_in(path: str) -> Any:
-    """The launch description of a file in XML or YAML; raises what launch raises for a wrong one."""
+    """Return the launch description of an XML or YAML file; raises what launch raises for a bad one."""
     made = [_made(it) for it in root_of(read_bytes(path), path).below]
     return import_module("launch").LaunchDescription(made)
 
 
 def _made(entity: Entity) -> Any:
-    """The action of an entity."""
+    """Return the action of an entity."""
     form = forms().get(entity.tag)
     if entity.tag in ("env", "machine", "param", "remap", "rosparam", "test"):
         raise RuntimeError(f"Unrecognized entity of the type: {entity.tag}")
@@ -76,7 +76,7 @@ def _built(entity: Entity, form: Form) -> Any:
 
 
 def _unread(tag: str) -> Any:
-    """An element of a package that extends launch files, or of nobody."""
+    """Return an action for an unknown element, which raises NotImplementedError when it is run."""
 
     def refuse(_: Any) -> None:
         raise NotImplementedError(f"<{tag}> is not read: it needs launch itself")
@@ -102,7 +102,7 @@ def _truth(value: Any) -> bool:
 
 
 def _words(line: str) -> list[Any]:
-    """A command line: only its own blanks separate, not those of values (ExecuteProcess)."""
+    """Return the words of a command: its own blanks separate, not those of values (ExecuteProcess)."""
     found: list[list[Any]] = [[]]
     for it in parse_substitution(line):
         if not isinstance(it, TextSubstitution):
@@ -141,7 +141,7 @@ def _parameter(entity: Entity) -> Any:
 
 
 def _named_value(entity: Entity) -> tuple[Any, Any]:
-    """A parameter with its value, or with those below its name."""
+    """Return a parameter with its value, or with those below its name."""
     name = tuple(_parts(entity.take("name")))
     if inner := entity.all("param"):
         entity.check()
@@ -155,7 +155,7 @@ def _named_value(entity: Entity) -> tuple[Any, Any]:
 
 
 def _typed(value: Any, kind: str) -> Any:
-    """A value as YAML has it, that of XML by its type; its substitutions have one later."""
+    """Return a value as YAML has it, that of XML by its type; its substitutions get one later."""
     if isinstance(value, list):
         return [_typed(it, kind.removeprefix("list_of_")) for it in value]
     if not isinstance(value, str):
@@ -195,12 +195,12 @@ _BELOW: Mapping[str, Reader] = {
 
 @cache
 def forms() -> Mapping[str, Form]:
-    """The form of each tag, by ``launch.yaml``."""
+    """Return the form of each tag, by ``launch.yaml``."""
     return {tag: _form(text) for tag, text in names().elements.items()}
 
 
 def _form(text: str) -> Form:
-    """``[module] class: attributes`` with the words of groups in it."""
+    """Return the form for ``[module] class: attributes``, with the words of its groups."""
     while "%" in text:
         text = re.sub(r"%(\w+)", lambda it: names().groups[it[1]], text)
     head, _, words = text.partition(":")

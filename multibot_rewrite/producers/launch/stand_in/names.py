@@ -13,12 +13,14 @@ from multibot_rewrite.base.bounded import load_own_yaml
 
 class Names(NamedTuple):
     """The names in each module, those of which only the name is known, and modules inside of packages;
+    packages that make parameters alone;
     actions that are executed and those that are passed; the words of each element, with ``groups`` of
     them; the class of each substitution."""
 
     read: Mapping[str, str]
     not_read: Mapping[str, str]
     inside: Mapping[str, str]
+    parameters: str
     executed: str
     passed: str
     groups: Mapping[str, str]

@@ -132,7 +132,7 @@ def _texts(context: LaunchContext, given: Mapping[str, Text]) -> dict[str, str]:
 
 
 def _replace(found: Any, values: Mapping[str, Any]) -> None:
-    """Every value of a key of this name, wherever it stands."""
+    """Every value of a key of this name, wherever it is."""
     if isinstance(found, dict):
         for key, below in found.items():
             _replace(below, values)
@@ -140,7 +140,7 @@ def _replace(found: Any, values: Mapping[str, Any]) -> None:
 
 
 def _set(found: Any, path: list[str], value: Any) -> None:
-    """The value of a whole path: one that is there, or is to be in the parameters of a node."""
+    """Set the value of a whole path: one that exists, or is to be in the parameters of a node."""
     *above, last = path
     if not above:
         return

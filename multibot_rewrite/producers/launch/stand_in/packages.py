@@ -156,7 +156,7 @@ class ParameterSubstitution(Kept, Substitution):
 
 
 def get_package_prefix(package_name: str) -> str:
-    """The folder that a package is installed in; raises PackageNotFoundError."""
+    """Return the folder that a package is installed in; raises PackageNotFoundError."""
     found = has_resource("packages", package_name)
     if not isinstance(found, str):
         raise PackageNotFoundError(f"package '{package_name}' not found")
@@ -164,12 +164,12 @@ def get_package_prefix(package_name: str) -> str:
 
 
 def get_package_share_directory(package_name: str, print_warning: bool = True) -> str:
-    """The share folder of a package; raises PackageNotFoundError."""
+    """Return the share folder of a package; raises PackageNotFoundError."""
     return os.path.join(get_package_prefix(package_name), "share", package_name)
 
 
 def get_package_share_path(package_name: str, print_warning: bool = True) -> Path:
-    """The same as a path."""
+    """Return the share folder of a package as a path; raises PackageNotFoundError."""
     return Path(get_package_share_directory(package_name))
 
 
@@ -182,13 +182,13 @@ def get_packages_with_prefixes() -> dict[str, str]:
 
 
 def has_resource(resource_type: str, resource_name: str) -> str | bool:
-    """The folder that has a resource, False for none."""
+    """Return the folder that has a resource, False for none."""
     own = os.path.join(_INDEX, resource_type, resource_name)
     return next((it for it in _prefixes() if os.path.isfile(os.path.join(it, own))), False)
 
 
 def get_resource(resource_type: str, resource_name: str) -> tuple[str, str]:
-    """The text of a resource and the folder that has it; raises LookupError."""
+    """Return the text of a resource and the folder that has it; raises LookupError."""
     found = has_resource(resource_type, resource_name)
     if not isinstance(found, str):
         raise LookupError(f"no resource {resource_name!r} of type {resource_type!r}")

@@ -159,14 +159,14 @@ def _are_alike(values: list[Any]) -> bool:
 
 
 def _is_substituted(value: Any) -> bool:
-    """Is it a substitution, or texts with one?"""
+    """Return whether it is a substitution, or texts with one."""
     several = value if isinstance(value, list | tuple) else ()
     texts = all(isinstance(it, str) or hasattr(it, "perform") for it in several)
     return hasattr(value, "perform") or (texts and any(hasattr(it, "perform") for it in several))
 
 
 def _read(text: str, name: str) -> Any:
-    """The text of a substitution as YAML has it."""
+    """Return the text of a substitution as YAML has it."""
     wrapped = "try wrapping it in launch_ros.parameter_descriptions.ParameterValue"
     hint = f"If the parameter is meant to be a string, {wrapped}(value, value_type=str)"
     try:

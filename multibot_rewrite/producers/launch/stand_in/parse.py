@@ -38,14 +38,14 @@ _OTHERWISE: Mapping[str, Callable[..., Any]] = {
 
 @cache
 def known() -> Mapping[str, Callable[..., Any]]:
-    """What makes each substitution."""
+    """Return what makes each substitution."""
     classes = {**vars(values), **vars(packages)}
     plain = {word: classes[it] for word, it in names().substitutions.items()}
     return {**plain, **_OTHERWISE}
 
 
 def parse_substitution(value: str) -> Parts:
-    """The parts of a text; raises ValueError for one that is not well formed or not known."""
+    """Return the parts of a text; raises ValueError if it is malformed or unknown."""
     parts, at = _parts(value, 0, _TEXTS[""], "")
     if at < len(value):
         raise ValueError(f"a substitution is not closed: {value[at : at + 40]!r}")
@@ -67,7 +67,7 @@ def _parts(text: str, at: int, plain: re.Pattern[str], quote: str) -> tuple[Part
 
 
 def _placed(text: str, at: int, quote: str) -> tuple[Any, int]:
-    """The substitution whose name begins here."""
+    """Return the substitution whose name begins here, and the offset behind it."""
     found = _NAME.match(text, at)
     name = found[0] if found else ""
     if name in ("arg", "find", "optenv"):

@@ -40,7 +40,7 @@ class EventHandler(Kept):
         self.actions: Any = vars(self)[self.names[-1]] or []
 
     def describe(self) -> tuple[str, list[Any]]:
-        """The actions that are known before the event."""
+        """Return the actions that are known before the event."""
         several = self.actions if isinstance(self.actions, list) else [self.actions]
         return "", [it for it in several if not callable(it)]
 
@@ -133,7 +133,7 @@ UnregisterEventHandler = kept(Action, "UnregisterEventHandler", "event_handler")
 
 
 def matches_action(target_action: Any) -> Any:
-    """Is an event that of this action?"""
+    """Return a function that tells whether an event is that of this action."""
     return lambda event: event is target_action
 
 

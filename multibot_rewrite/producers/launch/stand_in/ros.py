@@ -178,12 +178,12 @@ class Transition:
 
 
 def make_namespace_absolute(ns: str | None) -> str | None:
-    """A relative namespace below the root."""
+    """Return a relative namespace below the root."""
     return ns if ns is None or ns.startswith("/") else f"/{ns}"
 
 
 def prefix_namespace(base_ns: str | None, ns: str | None) -> str | None:
-    """A namespace below another one, unless it is absolute."""
+    """Return a namespace below another one, unless it is absolute."""
     if ns is None or not base_ns or ns.startswith("/"):
         found = base_ns if ns is None else ns
     else:

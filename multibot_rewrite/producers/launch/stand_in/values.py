@@ -46,7 +46,7 @@ Kind = TypeVar("Kind", bound=type[Kept])
 
 
 def kept(base: Kind, name: str, names: str, others: str = "") -> Kind:
-    """A class that only keeps what it is given by the words of ``names``, as its ``base`` does."""
+    """Return a class that keeps what it is given by the words of ``names``, as its ``base`` does."""
     more = {"others": (*base.others, *others.split())} if others else {}
     found: Kind = type(name, (base,), {"names": tuple(names.split()), **more})  # type: ignore[assignment]
     return found
@@ -148,7 +148,7 @@ def perform_substitutions(context: LaunchContext, subs: list[Any]) -> str:
 
 
 def text_of(context: LaunchContext, value: Text) -> str:
-    """The value of a text, a substitution, or several of both."""
+    """Return the value of a text, a substitution, or several of both."""
     return perform_substitutions(context, normalize_to_list_of_substitutions(value))
 
 
@@ -162,7 +162,7 @@ def str_of(value: Any) -> Text:
 def _substitution(
     perform: Callable[[Any, LaunchContext], str], *names: str, others: tuple[str, ...] = ()
 ) -> Any:
-    """A substitution with these arguments."""
+    """Return a class of substitutions with these arguments."""
     made = {"names": names, "others": others, "perform": perform}
     return type("Made", (Kept, Substitution), made)
 
@@ -207,7 +207,7 @@ def _is(value: bool) -> str:
 
 
 def _compared(value: Any) -> Any:
-    """A side of EqualsSubstitution: it may be any value."""
+    """Return a side of EqualsSubstitution as text; it may be any value."""
     texts = value if isinstance(value, list | tuple) else [value]
     if any(hasattr(it, "perform") for it in texts):
         return value
@@ -342,7 +342,7 @@ def evaluate_condition_expression(context: LaunchContext, expression: Text) -> b
 
 
 def truth_of(context: LaunchContext, value: Text) -> bool:
-    """The truth of a text; raises InvalidConditionExpressionError for one that is none."""
+    """Return the truth of a text; raises InvalidConditionExpressionError for one that is none."""
     word = text_of(context, value).strip().lower()
     if word not in _TRUTHS:
         raise InvalidConditionExpressionError(f"{word!r} is no condition; write true or false")
@@ -351,7 +351,7 @@ def truth_of(context: LaunchContext, value: Text) -> bool:
 
 @lru_cache(maxsize=64)
 def typed_truth(text: str) -> bool:
-    """The truth of a text as YAML has it, or 1 and 0; raises ValueError for one that is none."""
+    """Return the truth of a text as YAML has it, or 1 and 0; raises ValueError for one that is none."""
     found = load_yaml({"1": "true", "0": "false"}.get(text, text), A_VALUE) if text else text
     if not isinstance(found, bool):
         raise ValueError(f"Cannot convert value '{text}' to '{bool}'")

@@ -50,7 +50,7 @@ def _materials(elements: Elements) -> Sequence[etree._Element]:
 
 @memoized
 def _looks(subject: Subject) -> list[etree._Element]:
-    """The named materials of visuals."""
+    """Return the named materials of visuals."""
     root = subject.document.root
     links = set(subject.elements.tops("link")) if root.tag == "robot" else set()
     visuals = {it for it in subject.elements.every("visual") if it.getparent() in links}
@@ -77,7 +77,7 @@ def material_differs(subject: Subject) -> Iterator[Problem]:
 
 
 def _look(material: etree._Element) -> Look:
-    """The colour and the texture of a material."""
+    """Return the colour and the texture of a material."""
     parts = {it.tag: it for it in reversed(material)}
     color, texture = parts.get("color"), parts.get("texture")
     rgba = "" if color is None else color.get("rgba", "")

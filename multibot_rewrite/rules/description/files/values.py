@@ -115,15 +115,16 @@ _ABOVE_0 = {
     "camera": ("image/width", "image/height", "clip/near", "horizontal_fov"),
     "lidar": ("scan/horizontal/samples", "range/max"),
 }
+_NOT_BELOW_0 = ("update_rate", "noise/stddev", "range/resolution")
+# What is above another parameter counts as that one (gz-sim LinearBatteryPlugin.cc:252).
+_LIMITED = {"initial_charge": "capacity"}
 
 
 def sees_nothing(subject: Subject) -> Iterator[Problem]:
     """Pictures without a pixel, scans without a ray, negative rates, ranges in millimetres."""
     for sensor in subject.elements.every("sensor"):
         type_ = sensor.get("type", "")
-        rate = number_at(sensor, "update_rate")
-        if rate is not None and rate < 0:
-            yield _problem(sensor, "update_rate", "is below 0")
+        yield from _none_of(sensor)
         for inner in sensor.iterchildren("camera") if type_ in CAMERAS else ():
             yield from _none_of(inner, _ABOVE_0["camera"])
         for inner in sensor.iterchildren("lidar", "ray") if type_ in LIDARS else ():
@@ -137,7 +138,7 @@ def sees_nothing(subject: Subject) -> Iterator[Problem]:
 
 
 def unusable_numbers(subject: Subject) -> Iterator[Problem]:
-    """Steps of no time, reductions of 0, minima of a plugin above their maxima."""
+    """Yield steps of no time, reductions of 0, and minima of a plugin above their maxima."""
     every = subject.elements.every
     for physics in every("physics"):
         above = physics.getparent()
@@ -150,6 +151,7 @@ def unusable_numbers(subject: Subject) -> Iterator[Problem]:
         for least in plugin.iterchildren("*"):
             tag = str(least.tag)
             most = "_".join("max" if it == "min" else it for it in tag.split("_"))
+            most = _LIMITED.get(tag, most)
             low = number(text_of(least)) if most != tag else None
             high = number_at(plugin, most) if low is not None else None
             # Of a command or an integral -1 is no limit (gz-math PID.cc).
@@ -159,11 +161,12 @@ def unusable_numbers(subject: Subject) -> Iterator[Problem]:
                 yield Problem(least, message, "", "swap the two, or correct one", level=WARNING)
 
 
-def _none_of(inner: _Element, paths: tuple[str, ...]) -> Iterator[Problem]:
-    for path in paths:
+def _none_of(inner: _Element, paths: tuple[str, ...] = ()) -> Iterator[Problem]:
+    """Yield the numbers at these paths that are not above 0, and the path below each."""
+    for path in (*paths, *_NOT_BELOW_0):
         value = number_at(inner, path)
-        if value is not None and value <= 0:
-            yield _problem(inner, path, "has to be above 0")
+        if value is not None and (value < 0 or (value == 0 and path in paths)):
+            yield _problem(inner, path, "has to be above 0" if path in paths else "is below 0")
 
 
 def _problem(above: _Element, path: str, words: str, hint: str = "") -> Problem:
@@ -219,7 +222,7 @@ def _misspelt_library(
 
 
 def misspelt_libraries(subject: Subject) -> Iterator[Problem]:
-    """Libraries in no vocabulary."""
+    """Yield the libraries without a plugin definition."""
     for host in subject.inventory.hosts:
         section, name = host.node.section, host.element.get("filename", "").strip()
         if host.element.tag != "plugin" or not section or not is_unknown(section) or not name:
@@ -232,8 +235,8 @@ def misspelt_libraries(subject: Subject) -> Iterator[Problem]:
 
 
 def misspelt_hardware(subject: Subject) -> Iterator[Problem]:
-    """Yield the classes that are in no vocabulary and in none of the sources; another package may have
-    what the known ones do not."""
+    """Yield the classes without a plugin definition that are in none of the sources; another
+    package may have what the known ones do not."""
     for system in subject.elements.tops("ros2_control"):
         for it in system.iterfind("hardware/plugin"):
             name = text_of(it)
@@ -269,7 +272,7 @@ def library_of_ignition(subject: Subject) -> Iterator[Problem]:
 
 
 def _slip_of_library(name: str, known: Iterable[str]) -> str:
-    """The same for a library: what all of a family have in common does not make two alike."""
+    """Return the known library that was meant; what all of a family share does not make two alike."""
     start, end = next((it for it in FAMILIES if name.startswith(it[0])), ("", ""))
     stems = {
         it.removeprefix(start).removesuffix(end): it
@@ -280,7 +283,7 @@ def _slip_of_library(name: str, known: Iterable[str]) -> str:
 
 
 def _slip(name: str, known: Iterable[str]) -> str:
-    """The known name that was meant; one that is a part of the other is a name of its own."""
+    """Return the known name that was meant; empty if one is part of the other, or another word."""
     near = slip_of(name, known)
     part = near in name or name in near
     # Is a word in place of another one without a letter of it, as ``my`` of ``uuv``?

@@ -50,7 +50,7 @@ def needs_later_version(subject: Subject) -> Iterator[Problem]:
 
 
 def _read_now(subject: Subject, element: _Element) -> tuple[Edit, ...]:
-    """The edits that make the release's urdfdom read an element of a later version."""
+    """Return the edits that make the release's urdfdom read an element of a later version."""
     text = _text(subject)
     link = next(element.iterancestors("link"), None)
     if element.tag == versions.CAPSULE:
@@ -125,7 +125,7 @@ def quaternion_in_mujoco(subject: Subject) -> Iterator[Problem]:
 def _links_with_capsules(
     subject: Subject, *holders: str
 ) -> Iterator[tuple[_Element, list[_Element]]]:
-    """The links with capsules that urdfdom reads, and those in ``holders`` if any are named."""
+    """Yield the links with capsules that urdfdom reads; with ``holders`` only capsules inside those."""
     if versions.version_of(subject.document.root) < QUATERNIONS or _reads(subject) < QUATERNIONS:
         return
     for link in subject.document.root.iterchildren("link"):
@@ -137,7 +137,7 @@ def _links_with_capsules(
 
 
 def _reads(subject: Subject) -> versions.Version:
-    """The highest version that the release's urdfdom reads."""
+    """Return the highest version that the release's urdfdom reads."""
     return versions.highest_version(subject.settings.distro)
 
 

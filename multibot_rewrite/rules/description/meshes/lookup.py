@@ -59,7 +59,7 @@ def lookups(subject: Subject) -> tuple[MeshFile, ...]:
     first = {it.name: it for it in reversed(used_files(subject)) if it.scheme in ("package", "")}
     asked = (it for it in reversed(first.values()) if "$" not in it.name and "\\" not in it.name)
     folders_of = cache(lambda name, first: _packages(name, first, file, roots))
-    return tuple(_looked_up(it, *_where(it, file, folders_of)) for it in asked)
+    return tuple(_looked_up(it, *_search_path(it, file, folders_of)) for it in asked)
 
 
 def _looked_up(it: Used, folders: tuple[str, ...], path: str) -> MeshFile:
@@ -73,7 +73,7 @@ def _looked_up(it: Used, folders: tuple[str, ...], path: str) -> MeshFile:
 
 
 def _installs(folder: str, path: str) -> bool:
-    """Does CMake put a file of another folder of the package there?"""
+    """Return whether the package's CMakeLists.txt installs a file of another folder at this path."""
     if _CMAKE not in entries(folder):
         return False
     for words, below in _INSTALLED.findall(read_file(os.path.join(folder, _CMAKE))):
@@ -86,10 +86,10 @@ def _installs(folder: str, path: str) -> bool:
     return False
 
 
-def _where(
+def _search_path(
     it: Used, file: str, folders_of: Callable[[str, str], tuple[str, ...]]
 ) -> tuple[tuple[str, ...], str]:
-    """The folders in which a file may be, and its path below them."""
+    """Return the folders in which a file may be, and its path below them."""
     if it.scheme == "":
         here = os.path.dirname(os.path.abspath(file))
         return (here, os.path.dirname(here)), it.path
@@ -109,7 +109,7 @@ def _unquoted(path: str) -> str:
 
 
 def _packages(name: str, first: str, file: str, roots: tuple[str, ...]) -> tuple[str, ...]:
-    """The folders that may be a package; ``first`` is the first folder of a path below it."""
+    """Return the folders that may be a package; ``first`` is the first folder of a path below it."""
     found = ((it, entries(it)) for it in package_folders(name, file, roots))
     # A folder without a manifest must at least have that.
     return tuple(
@@ -139,7 +139,7 @@ def mesh_missing(subject: Subject) -> Iterator[Problem]:
 
 
 def _missing_folder(it: MeshFile) -> tuple[str, ...]:
-    """The folder that a file should be in, wherever it was looked for; empty if one of them exists."""
+    """Return the folders that were searched and the missing folder; empty if one of them has it."""
     inner = os.path.dirname(it.path)
     there = any(not inner or find_in(folder, inner) for folder in it.folders)
     return () if there else (*it.folders, inner)
@@ -155,7 +155,7 @@ def mesh_elsewhere(subject: Subject) -> Iterator[Problem]:
 
 
 def _elsewhere(subject: Subject, it: MeshFile) -> str:
-    """A relative file in the description's package, below a folder above it or in meshes."""
+    """Return the package URI of a relative file that exists elsewhere in its package, or empty."""
     file = os.path.abspath(subject.document.file.removesuffix(EXPANDED))
     own = package_of(file) if it.used.scheme == "" else None
     if own is None:
@@ -198,7 +198,7 @@ HINT_OF_UNIT = 'correct <unit meter> in the file, or add scale="0.001 0.001 0.00
 
 
 def box_of(subject: Subject, mesh: _Element, whole: bool = True) -> Extent | None:
-    """The box around a ``<mesh>`` in its own frame, in metres; as ``mesh_box``."""
+    """Return the box around a ``<mesh>`` in its own frame, in metres; as ``mesh_box``."""
     path = _paths(subject).get((mesh.get("filename") or "").strip(), "")
     box = mesh_box(path, whole) if path else None
     if box is None or "scale" not in mesh.attrib:
@@ -250,7 +250,7 @@ _CORNER = {
 
 
 def mesh_box(path: str, whole: bool = True) -> Extent | None:
-    """The box around a mesh; not ``whole``: around its beginning. None where it cannot be told."""
+    """Return the box around a mesh, or around its start if not ``whole``; None if it is unknown."""
     state, kind = file_state(path), os.path.splitext(path)[1].lower()
     # The scene, which says what is shown and where, is at the end of a Collada file.
     whole = whole or kind == COLLADA

@@ -53,12 +53,12 @@ def _read(element: _Element, name: str) -> Used:
 
 
 def problem(it: Used, message: str, hint: str) -> Problem:
-    """A problem at the file's name."""
+    """Return a problem at the file's name."""
     return Problem(it.element, message, "filename", hint)
 
 
 def and_more(count: int) -> str:
-    """The rest of a message that is about the first of many."""
+    """Return the end of a message about the first of many: `` (and N more)``; empty for one."""
     return f" (and {count - 1} more)" if count > 1 else ""
 
 
@@ -68,7 +68,7 @@ def _with_scheme(subject: Subject, *schemes: str) -> list[Used]:
 
 @rule("MB704", "path-of-one-machine", WARNING)
 def path_of_one_machine(subject: Subject) -> Iterator[Problem]:
-    """The first absolute path that is written out in the source, and how many there are."""
+    """Yield a problem for the first absolute path that the source writes out, with their number."""
     found = [it for it in _with_scheme(subject, "file") if "$" not in it.name]
     starts = starts_of(subject, [it.element for it in found])
     found = [
@@ -99,14 +99,14 @@ def mesh_without_file(subject: Subject) -> Iterator[Problem]:
 
 
 def _is_shape(mesh: _Element) -> bool:
-    """Is it the shape of a visual or collision of a link?"""
+    """Return whether it is the shape of a visual or collision of a link."""
     above = [str(it.tag) for it in mesh.iterancestors()][:4]
     return above[:1] + above[2:] == ["geometry", "link", "robot"] and mesh.find("uri") is None
 
 
 @rule("MB709", "mixed-schemes", NOTE)
 def mixed_schemes(subject: Subject) -> Iterator[Problem]:
-    """The first file that is named in another way than the first."""
+    """Yield a problem for the first file whose name has another scheme than the first one."""
     used = [it for it in used_files(subject) if "$" not in it.name]
     other = next((it for it in used if it.scheme != used[0].scheme), None)
     if other is not None:
@@ -116,7 +116,7 @@ def mixed_schemes(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB710", "model-uri", WARNING)
 def model_uri(subject: Subject) -> Iterator[Problem]:
-    """The first of them, and how many there are."""
+    """Yield a problem for the first ``model://`` name, with their number."""
     if found := _with_scheme(subject, "model"):
         message = f"RViz cannot load {found[0].name!r}{and_more(len(found))}"
         yield problem(found[0], message, "write package://")
@@ -124,7 +124,7 @@ def model_uri(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB711", "mesh-from-the-net", NOTE)
 def mesh_from_the_net(subject: Subject) -> Iterator[Problem]:
-    """The first of them, and how many there are."""
+    """Yield a problem for the first mesh from the network, with their number."""
     if found := _with_scheme(subject, "http", "https"):
         message = f"{found[0].name!r} needs the network{and_more(len(found))}"
         yield problem(found[0], message, "put it into a package")
@@ -132,7 +132,7 @@ def mesh_from_the_net(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB712", "find-left-over", WARNING)
 def find_left_over(subject: Subject) -> Iterator[Problem]:
-    """The first of them, and how many there are; MB105 reports xacro files with a wrong name."""
+    """Yield a problem for the first name with ``$(find``, with their number; in xacro MB105 has it."""
     if any("xacro" in str(uri) for uri in subject.document.root.nsmap.values()):
         return
     if found := [it for it in used_files(subject) if "$(find" in it.name]:

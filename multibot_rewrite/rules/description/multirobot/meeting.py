@@ -24,7 +24,7 @@ IN_FRONT = make_naming("postfix", affix="prefix")
 
 @memoized
 def _shared(subject: Subject) -> tuple[Problem, ...]:
-    """What a rewrite for the named robots would report; nothing where it would be refused."""
+    """Return what a rewrite for the named robots would report; nothing where it would be refused."""
     if not subject.settings.robots:
         return ()
     # Without robots a lint loads none of it.

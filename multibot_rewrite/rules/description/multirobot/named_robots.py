@@ -30,12 +30,12 @@ ByNaming = Callable[[Inventory, Naming], Iterable[Problem]]
 
 
 def _by_naming(hazard: ByNaming) -> Hazard:
-    """The same for a check that needs only the naming."""
+    """Return a check of inventory and renames from one that needs only the naming."""
     return lambda inventory, renames: hazard(inventory, renames.naming)
 
 
 def _if_robots(hazard: Hazard, subject: Subject) -> Iterator[Problem]:
-    """What a rewrite for the named robots warns about; nothing where none are named."""
+    """Yield what a rewrite for the named robots warns about; nothing where none are named."""
     if subject.settings.robots:
         yield from hazard(subject.inventory, rename_map(subject))
 
@@ -47,7 +47,7 @@ joints_reordered = rule("MB405", "joints-reordered", WARNING, options=OF_TWO)(
 
 @rule("MB420", "name-taken", ERROR, options=OF_TWO)
 def name_taken(subject: Subject) -> Iterator[Problem]:
-    """What a rewrite for the robots rejects as MB420."""
+    """Yield the problems for which a rewrite for the robots is refused with MB420."""
     if names := subject.settings.robots:
         from multibot_rewrite.description.checks import robots  # most lints name none
 
@@ -61,7 +61,7 @@ def name_taken(subject: Subject) -> Iterator[Problem]:
     options={"robots": ("left_b", "b"), "naming": make_naming("both", separators={"link": "_"})},
 )
 def robots_share_a_name(subject: Subject) -> Iterator[Problem]:
-    """What a rewrite for the robots rejects as MB421."""
+    """Yield the problems for which a rewrite for the robots is refused with MB421."""
     naming, names = subject.settings.naming, subject.settings.robots
     pairs = overlap(naming, names) if len(names) > 1 else []
     if pairs:
@@ -127,7 +127,7 @@ hard_wired_name = rule("MB428", "hard-wired-name", WARNING, options=OF_TWO)(
 
 @memoized
 def rename_map(subject: Subject) -> RenameMap:
-    """The rename map of a subject, made once."""
+    """Return the rename map of a subject, made once."""
     from multibot_rewrite.description.steps.renames import make_renames  # most lints name no robots
 
     return make_renames(subject.inventory, subject.settings.naming)

@@ -54,7 +54,7 @@ class Scope(NamedTuple):
 
 
 def scopes(root: _Element) -> list[Scope]:
-    """The macros of a file, and what is outside of them; none where nothing takes a prefix."""
+    """Return the macros of a file, and what is outside of them; empty where nothing takes a prefix."""
     arguments = [it.get("name", "") for it in root.iter("{*}arg") if is_xacro(it)]
     given = frozenset(prefixes(arguments))
     macros = [it for it in root.iter("{*}macro") if is_xacro(it)]
@@ -84,7 +84,7 @@ def scopes(root: _Element) -> list[Scope]:
 
 
 def _declares(element: _Element) -> bool:
-    """Is it a link or joint of the robot itself: right below the robot or an element of xacro?"""
+    """Return whether it is a link or joint right below the robot or an element of xacro."""
     if element.tag == "joint" and element.find("parent") is None:
         return False
     above = element.getparent()
@@ -97,7 +97,7 @@ def _name_at(element: _Element, attribute: str, text: str) -> WrittenName:
 
 
 def _names_in(text: str) -> Iterator[str]:
-    """The names in all substitutions of a text, and ``$`` for substitutions without a name."""
+    """Yield the names in all substitutions of a text, and ``$`` for substitutions without a name."""
     for expression, argument in SUBSTITUTIONS.findall(text):
         yield from [argument] if argument else _WORD.findall(_LITERAL.sub("", expression))
     yield "$"
@@ -115,7 +115,7 @@ def _properties_by_name(root: _Element) -> Mapping[str, list[str]]:
 
 
 def _with_properties(names: frozenset[str], users: Mapping[str, list[str]]) -> frozenset[str]:
-    """These names, and the properties made from them."""
+    """Return these names and the properties made from them."""
     found, waiting = set(names), list(names)
     while waiting:
         new = set(users.get(waiting.pop(), ())) - found
@@ -125,7 +125,7 @@ def _with_properties(names: frozenset[str], users: Mapping[str, list[str]]) -> f
 
 
 def parameters(macro: _Element) -> list[str]:
-    """The names of a macro's parameters."""
+    """Return the names of a macro's parameters."""
     return [it[1] for it in _PARAM.finditer(macro.get("params", ""))]
 
 
@@ -135,13 +135,13 @@ def prefixes(names: list[str]) -> list[str]:
 
 
 def is_xacro(element: _Element) -> bool:
-    """Is it an element of xacro?"""
+    """Return whether it is an element of xacro."""
     tag = element.tag
     return isinstance(tag, str) and "xacro}" in tag
 
 
-def words_of(top: _Element) -> frozenset[str]:
-    """The names in all substitutions and conditions below an element."""
+def names_below(top: _Element) -> frozenset[str]:
+    """Return the names in all substitutions and conditions below an element."""
     words: set[str] = set()
     for it in top.iterdescendants("*"):
         for value in (*it.values(), it.text or "", it.tail or ""):
@@ -184,7 +184,7 @@ def prefix_unused(subject: Subject) -> Iterator[Problem]:
     for macro in root.iter("{*}macro"):
         names = prefixes(parameters(macro)) if is_xacro(macro) else []
         if names and not _calls_others(macro):
-            read = words_of(macro)
+            read = names_below(macro)
             for name in names:
                 if name not in read and macro.find(".//link") is not None:
                     message = f"macro {macro.get('name', '')!r} takes {name!r} and does not use it"
@@ -193,7 +193,7 @@ def prefix_unused(subject: Subject) -> Iterator[Problem]:
     if any(is_xacro(it) for it in root.iter("{*}include")) or root.find(".//link") is None:
         return
     arguments = [it for it in root.iter("{*}arg") if is_xacro(it)]
-    read = words_of(root) if arguments else frozenset()
+    read = names_below(root) if arguments else frozenset()
     for element in arguments:
         name = element.get("name", "")
         if PREFIX.fullmatch(name) and name not in read:
@@ -215,7 +215,7 @@ def _forgotten(scope: Scope, declared: list[WrittenName]) -> Iterator[Problem]:
 
 
 def _calls_others(macro: _Element) -> bool:
-    """Does it call macros? They see the parameters of their caller."""
+    """Return whether a macro calls macros, which see the parameters of their caller."""
     inside = (it for it in macro.iterdescendants("{*}*") if is_xacro(it))
     return any(str(it.tag).rpartition("}")[2] not in _BUILTIN for it in inside)
 

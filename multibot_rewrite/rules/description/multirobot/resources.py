@@ -29,8 +29,8 @@ def one_controller_file(subject: Subject) -> Iterator[Problem]:
 
 
 def _one_device(subject: Subject) -> Iterator[Problem]:
-    """What the hardware of the description opens, of classes that are not known what parameters of such
-    a name or value hold, where it is the same for every robot."""
+    """Yield what the hardware opens and every robot shares, for classes without a definition. The
+    parameter's name or value shows that it is a device or address."""
     root = subject.document.root
     if root.find("ros2_control") is None:
         return

@@ -42,15 +42,15 @@ def claims_of(subject: Subject, kinds: tuple[str, ...]) -> list[Claim]:
 
 @memoized
 def _claims_by_kind(subject: Subject) -> Mapping[str, Sequence[tuple[int, Claim]]]:
-    """The claims by their first kind, each with its number; most name a link or joint, and are left
-    out."""
+    """Return the numbered claims by their first kind, without those that name a link or joint. Most
+    do."""
     claims = [(at, it.site, it) for at, it in enumerate(subject.inventory.claims)]
     left = (it for it in claims if not it[1].whole_value_kind)
     return lists_by_key((site.kinds[0], (at, claim)) for at, site, claim in left)
 
 
 def is_plain(text: str) -> bool:
-    """Is it a name: not empty and not a placeholder?"""
+    """Return whether it is a name: not empty and not a placeholder."""
     return bool(text.strip("/")) and NOT_PLAIN.isdisjoint(text) and not text.startswith("__")
 
 
@@ -61,7 +61,7 @@ def tag_of(claim: Claim) -> str:
 
 
 def process_wide_plugins(subject: Subject) -> set[_Element]:
-    """The plugins that hand their remap rules to the whole Gazebo process."""
+    """Return the plugins that give their remap rules to the whole Gazebo process."""
     hosts = subject.inventory.hosts
     return {it.element for it in hosts if it.node.section and it.node.section.process_wide}
 
@@ -74,14 +74,14 @@ def inserted(subject: Subject) -> Iterator[tuple[_Element, tuple[str, str, str]]
             yield host, (it.kind, it.old, tag)
 
 
-def missed(subject: Subject) -> Iterator[tuple[_Element, Insertion]]:
-    """The defaults that are names of nothing else, which urdf-postfix would replace."""
+def missing_defaults(subject: Subject) -> Iterator[tuple[_Element, Insertion]]:
+    """Yield the default names that urdf-postfix would replace, except shared ones, by plugin."""
     yield from ((host, it) for host, it in _insertions(subject) if not it.shared)
 
 
 @memoized
 def _insertions(subject: Subject) -> list[tuple[_Element, Insertion]]:
-    """What a rewrite would insert, with the plugin it is for."""
+    """Return what a rewrite would insert, with the plugin it is for."""
     declared, hosts = subject.inventory.declared, subject.inventory.served
     may = [
         (host, section)
@@ -124,7 +124,7 @@ def absolute_topic(subject: Subject) -> Iterator[Problem]:
 
 
 def _target(claim: Claim) -> str:
-    """The topic that a claim names; of a remap rule, its target."""
+    """Return the topic that a claim names; for a remap rule, its target."""
     if claim.site.form not in REMAP_FORMS:
         return claim.value.strip()
     found = split_remap(claim.value)
@@ -151,7 +151,7 @@ def _is_gz(claim: Claim) -> bool:
 
 
 def _is_classic(subject: Subject) -> bool:
-    """Is it for Gazebo Classic, which itself puts the model's name before sensor topics?"""
+    """Return whether it is for Gazebo Classic, which puts the model's name before sensor topics."""
     from multibot_rewrite.spelling.bridged_topics import GZ_LIBRARIES, plugin_libraries
 
     keys = plugin_libraries(subject.inventory)
@@ -180,7 +180,7 @@ def hard_coded_namespace(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB409", "no-namespace", NOTE)
 def no_namespace(subject: Subject) -> Iterator[Problem]:
-    """The first plugin without a namespace, and how many there are."""
+    """Yield a problem for the first plugin without a namespace, with their number."""
     inventory = subject.inventory
     bare = [
         element
@@ -242,7 +242,7 @@ def default_frame_shared(subject: Subject) -> Iterator[Problem]:
 @rule("MB433", "default-frame-below-model", NOTE)
 def default_frame_below_model(subject: Subject) -> Iterator[Problem]:
     """Frames that would be below the name by which the model is spawned."""
-    for element, item in missed(subject):
+    for element, item in missing_defaults(subject):
         if item.kind in FRAME_KINDS:
             tag = item.xml[1:].partition(">")[0]
             was = item.old.replace("{model}", "MODEL")

@@ -47,8 +47,8 @@ ENDLESS = 20 * pi
 
 @rule("MB620", "wheel-size", WARNING)
 def wheel_size(subject: Subject) -> Iterator[Problem]:
-    """The distance along the axis of the first pair, of joints or of shapes, and the radii of round
-    shapes of all wheels; of other wheels they are unknown."""
+    """Yield drives whose wheel distance or radius differs from the description's. The distance is
+    that of the first pair, the radius that of round shapes of all wheels."""
     for drive in drives(subject):
         tags, robot = drive.tags, drive.robot
         value = size_of(drive, tags.separation, tags.defaults[0])
@@ -72,8 +72,8 @@ def _size(drive: Drive, name: str, value: float, words: str, measured: float) ->
 
 @rule("MB622", "wheels-turn-wrong", WARNING)
 def wheels_turn_wrong(subject: Subject) -> Iterator[Problem]:
-    """The first pair of each drive whose plugin turns left with slower left wheels, and pairs whose
-    axes are against each other in the robot's frame."""
+    """Yield the drives whose wheels turn the wrong way: left and right are swapped, or the axes of
+    a pair are opposite in the robot's frame."""
     for drive in drives(subject):
         left, right = drive.pairs[0]
         way = are_swapped(left, right) if drive.tags.turns_left else 0.0
@@ -84,6 +84,9 @@ def wheels_turn_wrong(subject: Subject) -> Iterator[Problem]:
         for left, right in drive.pairs:
             if "fixed" in (left.joint.type, right.joint.type):
                 continue  # MB624
+            if left.joint.name == right.joint.name:
+                message = f"{left.joint.name!r} is the left and the right wheel"
+                yield Problem(right.named, message, "", "name the joint of the other wheel")
             for words in rolling_faults(drive.robot, left, right):
                 yield Problem(right.named, words, "", "the drive takes them for wheels that roll")
             if are_opposite(left, right):
@@ -139,7 +142,7 @@ _PUSHING = frozenset(("gazebo_ros_planar_move", "gz-sim-velocity-control-system"
 
 
 def _is_pushed(subject: Subject) -> bool:
-    """Has the robot a plugin that moves its body, or one of which nothing is known?"""
+    """Return whether the robot has a plugin that moves its body, or an unknown one."""
     blocks = set(subject.elements.tops("gazebo"))
     return any(
         is_unknown(section) or not _PUSHING.isdisjoint(section.names)
@@ -188,7 +191,7 @@ def _most(subject: Subject, joint: Joint) -> float:
 
 
 def _holds(joint: Joint) -> bool:
-    """Does a motor hold this joint, at 0?"""
+    """Return whether a motor holds this joint at 0."""
     if joint.type not in DRIVEN or "mimic" in joint.parts or joint.type == "continuous":
         return joint.type == "continuous" and "mimic" not in joint.parts
     limit = joint.parts["limit"]
@@ -197,7 +200,7 @@ def _holds(joint: Joint) -> bool:
 
 
 def _load(subject: Subject, joint: Joint) -> float:
-    """The torque or force of gravity at a joint, all joints at 0."""
+    """Return the torque or force of gravity at a joint, with all joints at 0."""
     pose, axis = link_poses(subject).get(joint.child), axis_of(joint)
     weight = carried(subject).get(joint.child, NO_WEIGHT)
     if pose is None or axis is None or not weight.mass:
@@ -256,7 +259,7 @@ def carried(subject: Subject) -> Mapping[str, Weight]:
 
 
 def _without_gravity(subject: Subject) -> set[str]:
-    """The links that a block takes the gravity from, as sdformat's parser_urdf reads it."""
+    """Return the links for which a block turns gravity off, as sdformat's parser_urdf reads it."""
     if not subject.elements.every("turnGravityOff", "gravity"):
         return set()
     blocks = [it for it in subject.elements.tops("gazebo") if it.get("reference")]

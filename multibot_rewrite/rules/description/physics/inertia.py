@@ -34,20 +34,20 @@ SHAPES = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius
 
 
 def inertials(robot: Robot) -> Iterator[tuple[Link, Inertial]]:
-    """The links that have an inertial, and it."""
+    """Yield the links that have an inertial, with it."""
     for link in robot.links:
         if link.inertial is not None:
             yield link, link.inertial
 
 
 def part_of(inertial: Inertial, tag: str) -> _Element:
-    """A child of an inertial, the inertial itself where it has none."""
+    """Return a child of an inertial, or the inertial itself where it has none."""
     found = inertial.element.find(tag)
     return inertial.element if found is None else found
 
 
 def moves(robot: Robot, name: str) -> bool:
-    """Is a link the child of a joint that is not fixed?"""
+    """Return whether a link is the child of a joint that is not fixed."""
     return name in robot.above and robot.above[name][0].type != "fixed"
 
 
@@ -61,7 +61,7 @@ def parts_with_mass(robot: Robot) -> dict[str, int]:
 
 
 def sizes_of(shape: _Element) -> tuple[float, ...]:
-    """The sizes of a shape; empty if one is missing or not a number."""
+    """Return the sizes of a shape; empty if one is missing or not a number."""
     return numbers(" ".join([shape.get(name, "?") for name in SHAPES[str(shape.tag)]])) or ()
 
 
@@ -113,7 +113,7 @@ def impossible_inertia(subject: Subject) -> Iterator[Problem]:
 
 
 def _of_models(subject: Subject) -> Iterator[Problem]:
-    """The links of an SDF, which are not merged: sdformat refuses a mass of 0 as well."""
+    """Yield the faults of masses and inertias in an SDF, whose links are not merged."""
     classics = may_be_classics(subject.document.root, subject.settings.distro)
     for link in subject.elements.every("link"):
         inertial = link.find("inertial")
@@ -136,7 +136,7 @@ def _of_models(subject: Subject) -> Iterator[Problem]:
 
 
 def _is_static(link: _Element) -> bool:
-    """Is it of a static model, whose masses are nothing to Gazebo Classic (Link.cc)?"""
+    """Return whether it is of a static model, whose masses Gazebo Classic ignores (Link.cc)."""
     model = link.getparent()
     static = "" if model is None else (model.findtext("static") or "").strip()
     return static in ("1", "true")
@@ -200,19 +200,19 @@ ROUNDING = 0.01
 
 
 def _is_possible(moments: tuple[float, ...]) -> bool:
-    """Is it certainly possible? Values off the diagonal shift the moments by ``off`` at most."""
+    """Return whether it is certainly possible; off-diagonal values shift moments by ``off`` at most."""
     xx, xy, xz, yy, yz, zz = moments
     off = abs(xy) + abs(xz) + abs(yz)
     return min(xx, yy, zz) >= off and max(xx, yy, zz) + off <= (xx + yy + zz) / 2
 
 
 def is_negative(moments: Vector) -> bool:
-    """Is the smallest moment below 0, by more than rounding?"""
+    """Return whether the smallest moment is below 0, by more than rounding."""
     return moments[0] < -1e-6 * abs(moments[2])
 
 
 def fault_of(moments: Vector) -> str:
-    """What is wrong with impossible moments."""
+    """Return what is wrong with impossible moments, for a message."""
     low, middle, high = moments
     if is_negative(moments):
         return f"is not positive definite: a principal moment is {low:.3g}"
@@ -243,8 +243,8 @@ TINY_MASS = 1e-6
 
 @rule("MB603", "link-without-mass", WARNING)
 def link_without_mass(subject: Subject) -> Iterator[Problem]:
-    """The uppermost bodies without mass, if the robot has several bodies and some mass: an error of a
-    robot that runs in Gazebo, where what it relies on goes with them."""
+    """Yield the uppermost bodies without mass, if the robot has several bodies and some mass. Of a
+    robot in Gazebo it is an error, where something in use is lost with them."""
     robot = subject.robot
     mass = _masses(robot)
     if len(mass) < 2 or not any(it > 0 for it in mass.values()):
@@ -259,7 +259,7 @@ def link_without_mass(subject: Subject) -> Iterator[Problem]:
         if name not in robot.above and name not in robot.below:
             continue  # no joint has it: MB501
         gone = reached(robot, [name], lost)
-        used = relied_on(subject, frozenset(gone))
+        used = lost_with(subject, frozenset(gone))
         tail = f", with {len(gone) - 1} links below it" if gone[1:] else ""
         tail += f"; {', '.join(used)} {'goes' if len(used) == 1 else 'go'} with it" if used else ""
         level = ERROR if subject.settings.simulated and (used or name not in robot.above) else ""
@@ -270,7 +270,7 @@ def link_without_mass(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB609", "root-inertia", NOTE)
 def root_inertia(subject: Subject) -> Iterator[Problem]:
-    """A root with <inertial>."""
+    """Yield a problem for a root link with <inertial>."""
     robot = subject.robot
     for link, inertial in inertials(robot):
         if link.name not in robot.above:
@@ -279,7 +279,7 @@ def root_inertia(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB610", "no-inertia", NOTE)
 def no_inertia(subject: Subject) -> Iterator[Problem]:
-    """A robot without mass: with joints that move, or one that runs in Gazebo."""
+    """Yield a problem for a robot without mass that has moving joints or runs in Gazebo."""
     robot, chosen = subject.robot, subject.settings.simulated
     massless = bool(robot.links) and not weighs(robot)
     unweighed = not any(it.inertial for it in robot.links)
@@ -319,8 +319,8 @@ def _masses(robot: Robot) -> dict[str, float]:
     return mass
 
 
-def relied_on(subject: Subject, gone: frozenset[str]) -> tuple[str, ...]:
-    """What goes with these links, in the words of a message."""
+def lost_with(subject: Subject, gone: frozenset[str]) -> tuple[str, ...]:
+    """Return the sensors and joints in use that are lost with these links, as a message names them."""
     joints = {it.name for it in subject.robot.joints if it.child in gone or it.parent in gone}
     blocks = subject.elements.tops("gazebo")
     lost = (it for it in blocks if it.get("reference") in gone | joints)

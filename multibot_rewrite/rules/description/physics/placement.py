@@ -42,7 +42,7 @@ def visual_without_collision(subject: Subject) -> Iterator[Problem]:
 
 
 def _bodies_with(subject: Subject, tag: str) -> dict[str, None]:
-    """The bodies whose links have such an element."""
+    """Return the bodies whose links have such an element, in their order."""
     parents = {it.getparent(): None for it in subject.elements.every(tag)}
     names = [it.get("name", "") for it in parents if it is not None and it.tag == "link"]
     return {subject.robot.body.get(name, name): None for name in names}
@@ -78,7 +78,7 @@ def shape_missing(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB616", "mesh-scale", WARNING)
 def mesh_scale(subject: Subject) -> Iterator[Problem]:
-    """An odd number of negative scales mirrors: two of them are a rotation."""
+    """Yield meshes whose scale mirrors (an odd number of negative factors), is 0 or unusual."""
     for mesh in _geometries(subject.elements, "mesh"):
         scale = vector(mesh.get("scale"))
         if scale is None:
@@ -94,7 +94,7 @@ def mesh_scale(subject: Subject) -> Iterator[Problem]:
 
 
 def _geometries(elements: Elements, *tags: str) -> Iterator[_Element]:
-    """The shapes of a URDF with these tags."""
+    """Yield the shapes of a URDF with these tags."""
     for shape in elements.every(*tags) if elements.root.tag == "robot" else ():
         parent = shape.getparent()
         if parent is not None and parent.tag == "geometry":
@@ -102,7 +102,7 @@ def _geometries(elements: Elements, *tags: str) -> Iterator[_Element]:
 
 
 def _owner(shape: _Element) -> str:
-    """The name of the link that has a shape."""
+    """Return the name of the link that has a shape."""
     link = next(shape.iterancestors("link"), None)
     return "" if link is None else link.get("name", "")
 
@@ -136,7 +136,7 @@ _Shapes = list[tuple[_Element, _Element]]
 
 @memoized
 def _shapes(subject: Subject) -> Mapping[_Element, tuple[_Shapes, _Shapes]]:
-    """The shapes of each link: those that are seen, and those that bump."""
+    """Return for each link the shapes of its visuals and those of its collisions."""
     found: dict[_Element, tuple[_Shapes, _Shapes]]
     found = {it.element: ([], []) for it in subject.robot.links}
     for link, element, _, shape in parts(subject):
@@ -148,7 +148,7 @@ def _shapes(subject: Subject) -> Mapping[_Element, tuple[_Shapes, _Shapes]]:
 def _alike(
     subject: Subject, one: tuple[_Element, _Element], other: tuple[_Element, _Element]
 ) -> bool:
-    """Are two shapes written alike, at one place? Most are, and nothing has to be computed."""
+    """Return whether two shapes are written alike, at one place. Most are, and need no computation."""
     (here, shape), (there, same) = one, other
     if shape.tag != same.tag or shape.items() != same.items():
         return False
@@ -162,7 +162,7 @@ def _pose(subject: Subject, element: _Element) -> Pose | None:
 
 
 def _around(subject: Subject, shapes: _Shapes) -> Extent | None:
-    """The box around some shapes; None if one of them has no known size."""
+    """Return the box around some shapes; None if one of them has no known size."""
     found = []
     for element, shape in shapes:
         own = _pose(subject, element)
@@ -197,8 +197,8 @@ def _apart(one: Extent, other: Extent) -> float:
 
 
 def _covers_next(subject: Subject, link: Link, hard: _Shapes) -> bool:
-    """Is the collision where a link below is seen? A cylinder of a leg's hip is around the motor that
-    the thigh shows."""
+    """Return whether the collision is where a link below is seen. A cylinder of a leg's hip is
+    around the motor that the thigh shows."""
     own = _around(subject, hard)
     for joint in subject.robot.below.get(link.name, ()):
         child, pose = subject.robot.link.get(joint.child), _pose(subject, joint.element)

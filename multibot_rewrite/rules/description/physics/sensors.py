@@ -58,7 +58,7 @@ def optical_frame_not_rotated(subject: Subject) -> Iterator[Problem]:
 
 
 def _is_straight(pose: Pose | None) -> bool:
-    """Does x point forward and z up?"""
+    """Return whether x points forward and z up."""
     return (
         pose is not None and turned(pose.matrix, X)[0] > SAME and turned(pose.matrix, Z)[2] > SAME
     )
@@ -79,7 +79,7 @@ def camera_at_optical_frame(subject: Subject) -> Iterator[Problem]:
 
 
 def _is_optical(pose: Pose) -> bool:
-    """Is x to the right of the parent, and z forward?"""
+    """Return whether x is to the right of the parent, and z forward."""
     return dot(turned(pose.matrix, X), Y) < -SAME and turned(pose.matrix, Z)[0] > SAME
 
 
@@ -101,7 +101,7 @@ def sensor_in_ground(subject: Subject) -> Iterator[Problem]:
 @rule("MB628", "scan-turned-around", WARNING)
 def scan_turned_around(subject: Subject) -> Iterator[Problem]:
     """Ranges, and angles; a Classic lidar that casts rays turns them the other way round."""
-    for it in subject.elements.every("lidar", "ray"):
+    for it in subject.elements.every("lidar", "ray", "logical_camera"):
         sensor = it.getparent()
         casts = sensor is not None and sensor.get("type") == "ray"
         for part, low, high in _BOUNDS[:1] if casts else _BOUNDS:
@@ -117,12 +117,13 @@ _BOUNDS = (
     ("range", "min", "max"),
     ("scan/horizontal", "min_angle", "max_angle"),
     ("scan/vertical", "min_angle", "max_angle"),
+    (".", "near", "far"),
 )
 
 
 @rule("MB629", "camera-clip", WARNING)
 def camera_clip(subject: Subject) -> Iterator[Problem]:
-    """The planes of each camera; a value that is left out is one of sdformat's, 0.1 and 100."""
+    """Yield cameras whose near plane is not before the far one; sdformat's defaults are 0.1 and 100."""
     for it in subject.elements.every("clip"):
         near, far = number_at(it, "near"), number_at(it, "far")
         near, far = (0.1 if near is None else near), (100.0 if far is None else far)
@@ -159,7 +160,7 @@ def _way_out(sensor: Sensor) -> float:
 
 @rule("MB637", "lidar-without-rays", WARNING)
 def lidar_without_rays(subject: Subject) -> Iterator[Problem]:
-    """Lidars beside what only Gazebo loads, where nothing is for Gazebo Classic."""
+    """Yield lidars in addition to what only Gazebo loads, where nothing is for Gazebo Classic."""
     libraries = {simulators.library_of(it) for it in simulators.simulator_plugins(subject)}
     hardware = {simulator.name for _, _, simulator in simulators.simulated(subject)}
     gazebo = simulators.GAZEBO.name in hardware or any(it.startswith(_GAZEBOS) for it in libraries)

@@ -182,7 +182,7 @@ def commanded_joint_without_state(subject: Subject) -> Iterator[Problem]:
 
 @lru_cache(maxsize=256)
 def _meant(name: str) -> str:
-    """The interface of ros2_control that is almost called like that."""
+    """Return the standard interface of ros2_control with nearly this name, or empty."""
     return slip_of(name, STANDARD)
 
 

@@ -76,7 +76,7 @@ interface_claimed_twice = declaration.CLAIMED_TWICE._replace(
 
 
 def _of_no_node(subject: Subject) -> Iterator[Problem]:
-    """The section of the manager that a plugin makes, in the file that it is given."""
+    """Yield a problem for a section that names another node than the manager of its plugin."""
     systems = subject.elements.tops("ros2_control")
     files = [it for it in (_files(subject, systems[0]) if systems else ()) if _place(it[0]) == ""]
     if not files:
@@ -114,7 +114,7 @@ def mujoco_joint_without_name(subject: Subject) -> Iterator[Problem]:
         param = system.find("hardware/param[@name='mujoco_model']")
         if param is None or text_at(system, "hardware/plugin") != _MUJOCO:
             continue
-        path = _found(subject, text_of(param))
+        path = _resolved_path(subject, text_of(param))
         bare = [it for it in _joints_of(path, {path}) if not it[0].get("name")]
         moved = [it for it in bare if it[0].tag == "joint" and it[0].get("type") != "free"]
         what = f"{len(moved)} joints have" if moved else "its free joint has"
@@ -125,7 +125,7 @@ def mujoco_joint_without_name(subject: Subject) -> Iterator[Problem]:
 
 
 def _joints_of(path: str, seen: set[str]) -> Iterator[tuple[_Element, str]]:
-    """The joints of the bodies of a model, each with its file."""
+    """Yield the joints of the bodies of a MuJoCo model and its includes, each with its file."""
     with suppress(InputError):
         root = read_xml(read_file(path), path)
         yield from ((it, path) for above in _BODIES for it in root.iterfind(f".//{above}/joint"))
@@ -139,8 +139,8 @@ def _joints_of(path: str, seen: set[str]) -> Iterator[tuple[_Element, str]]:
 
 @memoized
 def _claimed(subject: Subject) -> list[tuple[_Element, tuple[Interface, ...]]]:
-    """The interfaces of a description, with those that a file of its controllers claims, where it is
-    named."""
+    """Return the exported and claimed interfaces of each controller file, with the element that
+    names it."""
     systems = subject.elements.tops("ros2_control")
     files = _files(subject, systems[0]) if systems else ()
     found = ((element, _interfaces(subject, path, is_sure)) for element, path, is_sure in files)
@@ -182,7 +182,7 @@ def _files(subject: Subject, system: _Element) -> Iterator[tuple[_Element, str, 
     ]
     starts = starts_of(subject, named) if subject.origins else {}
     for element in named:
-        path = _found(subject, text_of(element))
+        path = _resolved_path(subject, text_of(element))
         # What an argument of xacro names by default may be the file of another robot.
         own = element not in starts or is_fixed(subject, starts[element], "")
         if path.endswith(_YAML) and is_file(path):
@@ -194,8 +194,8 @@ def _files(subject: Subject, system: _Element) -> Iterator[tuple[_Element, str, 
             yield system, os.path.join(folder, beside[0]), False
 
 
-def _found(subject: Subject, text: str) -> str:
-    """The path of a file as it is named; empty if its package is not there."""
+def _resolved_path(subject: Subject, text: str) -> str:
+    """Return the path of a named file; empty if its package is not found."""
     file = subject.document.file
     named = _IN_PACKAGE.fullmatch(text)
     if not named:
@@ -206,7 +206,7 @@ def _found(subject: Subject, text: str) -> str:
 
 
 def _interfaces(subject: Subject, path: str, is_sure: bool) -> tuple[Interface, ...]:
-    """What a description exports and the controllers of a file claim; none of what is for another."""
+    """Return the interfaces exported, and claimed by a file's controllers; none of another robot."""
     # Most descriptions have no such file, and a lint of them loads nothing of this.
     from multibot_rewrite.companions.yaml_text import read_yaml
     from multibot_rewrite.knowledge.parameters import load_known_nodes

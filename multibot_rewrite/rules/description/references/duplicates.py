@@ -134,7 +134,7 @@ def system_twice(subject: Subject) -> Iterator[Problem]:
 
 
 def _scope(plugin: _Element) -> object:
-    """The model, world or sensor that loads a plugin; a block without a reference is the model's."""
+    """Return the model, world or sensor of a plugin; the model for a block without a reference."""
     above = plugin.getparent()
     root = plugin.getroottree().getroot()
     whole = above is not None and above.tag == "gazebo" and not above.get("reference")
@@ -149,7 +149,7 @@ def duplicate_transmission(subject: Subject) -> Iterator[Problem]:
 
 
 def _repeated(found: Iterable[tuple[object, _Element]]) -> Iterator[_Element]:
-    """The elements whose key an earlier one has."""
+    """Yield the elements whose key an earlier one has."""
     seen = set()
     for key, element in found:
         if key in seen:

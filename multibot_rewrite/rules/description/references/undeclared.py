@@ -47,11 +47,9 @@ class References(NamedTuple):
 
 @memoized
 def references(subject: Subject) -> References:
-    """The references of a document, for all rules of this group.
-
-    In a part of a description a name may be declared elsewhere; in what xacro has not expanded it
-    may not be made yet.
-    """
+    """Return the undeclared references of a document, for all rules of this group. In a part of a
+    description a name may be declared elsewhere; in what xacro has not expanded it may not be made
+    yet."""
     inventory = subject.inventory
     claims = doubtful(inventory)
     if uses_xacro(inventory.document):
@@ -63,8 +61,8 @@ def references(subject: Subject) -> References:
 
 
 def _elsewhere(loose: Loose, inventory: Inventory) -> bool:
-    """Is it declared after all: in another file, with the robot's name as its scope (as in Gazebo
-    Classic), or in the PROTO of a Webots robot?"""
+    """Return whether it is declared after all: in another file, with the robot's name as its scope
+    (as in Gazebo Classic), or in the PROTO of a Webots robot."""
     claim, part = loose
     root = inventory.document.root
     is_part = not inventory.declared["link"] or (root.tag == "robot" and "name" not in root.attrib)
@@ -84,7 +82,7 @@ def _elsewhere(loose: Loose, inventory: Inventory) -> bool:
 
 
 def undeclared(code: str, subject: Subject) -> Iterator[Problem]:
-    """The undeclared names of one rule: ``checks.references`` gives each place the code of its rule."""
+    """Yield the undeclared names of one rule; ``checks.references`` gives each place its code."""
     for it in lacking(subject, references(subject).loose.get(code, ())):
         inside = {one.tag for one in it.element.iterancestors("ros2_control", "plugin")}
         level = it.level

@@ -27,7 +27,7 @@ srdf_rule = partial(rule, formats=(SRDF,))
 def of_moveit(
     check: Callable[[Subject], Iterator[Problem]],
 ) -> Callable[[Subject], Iterator[Problem]]:
-    """A check of what MoveIt alone reads: an SRDF for Pinocchio is left alone."""
+    """Return the check limited to SRDFs that MoveIt reads; those for Pinocchio are left alone."""
 
     @wraps(check)
     def found(subject: Subject) -> Iterator[Problem]:
@@ -45,7 +45,7 @@ def level_of(subject: Subject) -> str:
 
 
 def undeclared_for_moveit(code: str) -> Callable[[Subject], Iterator[Problem]]:
-    """The names of a rule that nothing declares, in an SRDF for MoveIt."""
+    """Return a check that yields a rule's undeclared names in an SRDF for MoveIt."""
 
     def check(subject: Subject) -> Iterator[Problem]:
         return undeclared(code, subject)
@@ -193,7 +193,7 @@ def _ends(joint: Joint) -> frozenset[str]:
 
 
 def _both_checked(joint: Joint, robot: Robot, alone: set[str]) -> bool:
-    """Are both links of a joint checked against each other?"""
+    """Return whether both links of a joint are checked against each other."""
     ends = _ends(joint)
     return len(ends) == 2 and all(
         it in robot.link and it not in alone and _has_shape(robot, it) for it in ends

@@ -74,14 +74,14 @@ def state_beyond_limits(subject: Subject) -> Iterator[Problem]:
 
 
 def _states(root: _Element) -> Iterator[tuple[_Element, str, str]]:
-    """The joints of states, their groups and names."""
+    """Yield the joints of named states, with the group and the joint's name."""
     for state in root.iterchildren("group_state"):
         for it in state.iterchildren("joint"):
             yield it, text_of(state, "group"), text_of(it)
 
 
 def _limits(joint: Joint) -> tuple[float, float] | None:
-    """The limits of a joint; None where they are not two numbers in order."""
+    """Return the limits of a joint; None unless they are two numbers in order."""
     limit = joint.element.find("limit")
     if limit is None:
         return None
@@ -109,7 +109,7 @@ def broken_chain(subject: Subject) -> Iterator[Problem]:
 @srdf_rule("MB811", "empty-group", WARNING)
 @of_moveit
 def empty_group(subject: Subject) -> Iterator[Problem]:
-    """Groups with nothing in them."""
+    """Yield a problem for each group with nothing in it."""
     for it in subject.document.root.iterchildren("group"):
         if not any(child.tag in ELEMENTS["group"][2] for child in it.iterchildren("*")):
             yield Problem(it, f"group {text_of(it)!r} is empty", "name", "add a joint")

@@ -52,7 +52,7 @@ def axis_length(subject: Subject) -> Iterator[Problem]:
 
 @memoized
 def _axes(subject: Subject) -> list[tuple[Joint, _Element, float]]:
-    """The joints that use an <axis>, and its length; without xyz it is 0."""
+    """Return the joints that use an <axis>, with it and its length; without xyz that is 0."""
     found = []
     for joint, axis in joints_with(subject.robot, "axis"):
         if joint.type in ONE_AXIS:
@@ -188,7 +188,7 @@ def prismatic_units(subject: Subject) -> Iterator[Problem]:
 
 
 def _moves_nothing(robot: Robot, joint: Joint) -> bool:
-    """Is its child an empty link at the end of a robot whose other links have a body?"""
+    """Return whether its child is an empty link at the end of a robot whose other links have a body."""
     child = robot.link.get(joint.child)
     empty = child is not None and not len(child.element) and joint.child not in robot.below
     return empty and any(len(it.element) for it in robot.links)
@@ -228,7 +228,7 @@ def _is_degrees(angle: float) -> bool:
 
 @memoized
 def _bounds(subject: Subject) -> list[tuple[Joint, _Element, float, float]]:
-    """The joints of the known types that have both bounds."""
+    """Return the joints of known types that have both bounds, with the limit and its bounds."""
     found = []
     for joint, limit in joints_with(subject.robot, "limit"):
         if joint.type in TYPES:

@@ -82,7 +82,7 @@ def _leaders(robot: Robot) -> dict[str, str]:
 
 
 def _loops(leader: Mapping[str, str]) -> list[list[str]]:
-    """The joints that follow each other in a loop."""
+    """Return the loops of joints that follow each other."""
     done: set[str] = set()
     found = []
     for start in leader:
@@ -122,7 +122,7 @@ def mimic_beyond_limits(subject: Subject) -> Iterator[Problem]:
 
 
 def _bounds(joint: Joint) -> Bounds | None:
-    """The limits of a joint that has a range."""
+    """Return the limits of a joint that has a range; None for any other."""
     limit = joint.parts.get("limit") if joint.type in BOUNDED else None
     if limit is None:
         return None

@@ -44,7 +44,7 @@ def several_roots(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB502", "no-link", WARNING)
 def no_link(subject: Subject) -> Iterator[Problem]:
-    """A robot without links that is no expansion: files of macros have no links of their own."""
+    """Yield a problem for a robot without links, unless it is a file of macros or xacro's result."""
     root = subject.document.root
     if root.tag != "robot" or subject.robot.links or subject.origins:
         return
