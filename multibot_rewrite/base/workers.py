@@ -24,7 +24,6 @@ _Made = TypeVar("_Made")
 MOST_MEMORY = 4 * 2**30
 # What a container may use in a period: cgroup v2, as Docker, Podman and Kubernetes mount it.
 QUOTA = "/sys/fs/cgroup/cpu.max"
-FORKS = hasattr(os, "fork")
 # So many objects may wait for the garbage collector.
 MOST_LEFT = 500_000
 
@@ -54,9 +53,8 @@ class WorkerPool(Generic[_Item, _Made]):
         self.workers: dict[int, _Worker] = {}
 
     def start(self, count: int) -> None:
-        """Start workers; raises UsageError where the system does not let a single one start. Windows
-        has no fork: there this process does the work."""
-        for _ in range(count if FORKS else 0):
+        """Start workers; raises UsageError where the system does not let a single one start."""
+        for _ in range(count):
             try:
                 worker = self._forked()
             except OSError as error:
@@ -100,9 +98,6 @@ class WorkerPool(Generic[_Item, _Made]):
 
     def results(self) -> Iterator[_Made]:
         """Yield the results for the items, in their order."""
-        if not FORKS:
-            yield from map(self.work, self.items)
-            return
         waiting = iter(range(len(self.items)))
         busy: dict[int, int] = {}
         done: dict[int, _Made] = {}
@@ -204,10 +199,7 @@ def limit_files(most: int) -> None:
 
 
 def limit_time(seconds: float) -> None:
-    """Limit the CPU time of this process from now on; after it SIGXCPU ends the process. Without a fork
-    it is that of the command, and goes on."""
-    if not FORKS:
-        return
+    """Limit the CPU time of this process from now on; after it SIGXCPU ends the process."""
     import resource
 
     used = resource.getrusage(resource.RUSAGE_SELF)

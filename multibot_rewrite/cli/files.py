@@ -119,10 +119,9 @@ def _target(path: str) -> tuple[str, int]:
 def write_new(path: str, data: bytes, mode: int) -> None:
     """Write a file that is not there yet; ``mode`` 0 is the usual one. The disk starts on it, and
     ``see_on_disk`` waits until it is there."""
-    binary = getattr(os, "O_BINARY", 0)  # Windows has it, and no fchmod before Python 3.13
-    handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | binary, 0o666)
+    handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
     try:
-        if mode and hasattr(os, "fchmod"):
+        if mode:
             os.fchmod(handle, mode)
         view = memoryview(data)
         while view:
@@ -135,10 +134,7 @@ def write_new(path: str, data: bytes, mode: int) -> None:
 
 
 def see_on_disk(path: str) -> None:
-    """Wait until a file, or which files a folder holds, is on the disk. Windows opens no folder, and
-    waits for no file that is open to be read."""
-    if os.name == "nt":
-        return
+    """Wait until a file, or which files a folder holds, is on the disk."""
     handle = os.open(path, os.O_RDONLY)
     try:
         os.fsync(handle)

@@ -62,16 +62,18 @@ _PLAIN = ("urdf", "baseline", "fail_on", "trust")
 
 def run(options: argparse.Namespace) -> int:
     """Lint or fix; returns the exit code."""
-    if options.lsp:  # a command of its own, as far as the code goes; pygls is an extra
+    if options.lsp:  # a program of its own; pygls is an extra
         return int(import_module("multibot_rewrite.cli.lsp").run(options))
     check_use(options)
     config = configured(".", options.config)
-    if doubt := release_doubt(options.distro or config.distro):
+    asked = options.distro or config.distro
+    if doubt := release_doubt(asked):
         note(options, f"warning: {doubt}")
     alone = config
     config = with_options(config, **given(options))
     paths, unreadable = _files(options, config)
-    config, why = of_release(options, config, paths)
+    settings, why = of_release(asked, config.settings, paths)
+    config = config._replace(settings=settings)
     _check_selecting(options, paths)
     # Before the work: nothing that is linted is written over.
     for option in ("--output", "--write-baseline"):
@@ -92,15 +94,12 @@ def run(options: argparse.Namespace) -> int:
     return _conclude(options, config, paths, findings, why)
 
 
-def of_release(
-    options: argparse.Namespace, config: Configured, paths: Sequence[str]
-) -> tuple[Configured, str]:
-    """Return the configuration for the release that the files are for, and why it is that one."""
-    asked = options.distro or config.distro
+def of_release(asked: str, settings: Settings, paths: Sequence[str]) -> tuple[Settings, str]:
+    """Return the settings for the release that the files are for, and why it is that one."""
     told = release_told(asked)
     said = release_of_all(told, (it for it in paths if it.endswith(_TELLING)))
-    settings = config.settings._replace(distro=said.release, ros=ROS_2 if told else "")
-    return config._replace(settings=settings), said.why or why_here(asked)
+    settings = settings._replace(distro=said.release, ros=ROS_2 if told else "")
+    return settings, said.why or why_here(asked)
 
 
 def _files(options: argparse.Namespace, config: Configured) -> tuple[list[str], list[Finding]]:

@@ -22,8 +22,9 @@ from typing import Any
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.model import MultibotError, Unusable
 from multibot_rewrite.cli import answers
+from multibot_rewrite.cli.answers import Place
 from multibot_rewrite.cli.process import DONE
-from multibot_rewrite.refactor.symbols import Place
+from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.version import __version__
 
 try:
@@ -41,7 +42,8 @@ _FIX, _FIX_ALL = lsp.CodeActionKind.QuickFix, lsp.CodeActionKind.SourceFixAll
 _SEVERITIES = {ERROR: lsp.DiagnosticSeverity.Error, WARNING: lsp.DiagnosticSeverity.Warning}
 # A name, a tag with its bracket or an attribute with its value.
 _MARKED = re.compile(r"</?[\w:.-]+|[\w:.-]+\s*=\s*(?:\"[^\"]*\"?|'[^']*'?)|[^\s<>]+")
-_WORD = re.compile(r"[^\s\"'<>=,(){}\[\]]+")
+# The ends of a word around the cursor.
+_BEFORE, _AFTER = (re.compile(it) for it in (r"[^\s\"'<>=,(){}\[\]]*$", r"^[^\s\"'<>=,(){}\[\]]*"))
 
 
 class Server(LanguageServer):
@@ -55,7 +57,7 @@ class Server(LanguageServer):
         self.context.set_forkserver_preload(["multibot_rewrite.cli.warm"])
         self.found: dict[str, Sequence[Finding]] = {}
         self.running: dict[str, asyncio.Task[None]] = {}
-        self.spares: list[asyncio.Future[tuple[BaseProcess, Connection]]] = []
+        self.spares: list[tuple[BaseProcess, Connection]] = []
 
     async def ask(self, function: Callable[..., Any], uri: str, *given: Any) -> Any:
         """Return what a function of ``answers`` returns for a file; None where it does not end well. An
@@ -64,7 +66,7 @@ class Server(LanguageServer):
         texts = {os.path.realpath(it.path): it.source.encode() for it in documents}
         path = self.workspace.get_text_document(uri).path
         self.spare()
-        child, connection = await self.spares.pop()
+        child, connection = self.spares.pop()
         try:
             connection.send((texts, function, self.options, path, *given))
             answer = await asyncio.wait_for(asyncio.to_thread(connection.recv), MOST)
@@ -81,21 +83,17 @@ class Server(LanguageServer):
     def spare(self) -> None:
         """Have a process that only waits for a question."""
         if not self.spares:
-            self.spares.append(asyncio.ensure_future(asyncio.to_thread(self._started)))
+            ours, theirs = self.context.Pipe()
+            child = self.context.Process(target=answers.answer, args=(theirs,), daemon=True)
+            child.start()
+            theirs.close()
+            self.spares.append((child, ours))
 
-    def _started(self) -> tuple[BaseProcess, Connection]:
-        ours, theirs = self.context.Pipe()
-        child = self.context.Process(target=answers.answer, args=(theirs,), daemon=True)
-        child.start()
-        theirs.close()
-        return child, ours
-
-    def diagnose(self, *uris: str) -> None:
-        """Lint files that are open, once nobody has typed for a moment."""
-        for uri in uris:
-            if uri in self.running:
-                self.running[uri].cancel()
-            self.running[uri] = asyncio.create_task(self._diagnose(uri))
+    def diagnose(self, uri: str) -> None:
+        """Lint a file, once nobody has typed for a moment."""
+        if uri in self.running:
+            self.running[uri].cancel()
+        self.running[uri] = asyncio.create_task(self._diagnose(uri))
 
     async def _diagnose(self, uri: str) -> None:
         await asyncio.sleep(PAUSE)
@@ -123,11 +121,10 @@ class Server(LanguageServer):
 
     def changes(self, files: Mapping[str, bytes]) -> lsp.WorkspaceEdit:
         """Return the edits that make these texts of files."""
-        edits = {}
-        for path, text in files.items():
-            document = self.workspace.get_text_document(self.uri_of(path))
-            edits[document.uri] = list(_edits(document.lines, text))
-        return lsp.WorkspaceEdit(changes={uri: it for uri, it in edits.items() if it})
+        texts = {self.uri_of(path): text for path, text in files.items()}
+        lines = self.workspace.get_text_document
+        edits = {uri: [*_edits(lines(uri).lines, text)] for uri, text in texts.items()}
+        return lsp.WorkspaceEdit(changes=edits)
 
     def location(self, it: Place) -> lsp.Location:
         """Return a place as the editor counts."""
@@ -153,13 +150,13 @@ def _diagnostic(document: TextDocument, it: Finding) -> lsp.Diagnostic:
     return lsp.Diagnostic(where, words, severity, it.code, source="urdf-lint")
 
 
-def _edits(old: Sequence[str], new: bytes) -> Iterator[lsp.TextEdit]:
+def _edits(old: Sequence[str], text: bytes) -> Iterator[lsp.TextEdit]:
     """Return the edits of whole lines that make a text of another."""
-    lines = new.decode().splitlines(keepends=True)
-    for tag, start, end, first, last in SequenceMatcher(None, old, lines, False).get_opcodes():
+    new = text.decode().splitlines(keepends=True)
+    for tag, start, end, first, last in SequenceMatcher(None, old, new, False).get_opcodes():
         if tag != "equal":
             where = lsp.Range(lsp.Position(start, 0), lsp.Position(end, 0))
-            yield lsp.TextEdit(where, "".join(lines[first:last]))
+            yield lsp.TextEdit(where, "".join(new[first:last]))
 
 
 server = Server()
@@ -173,11 +170,6 @@ def run(options: argparse.Namespace) -> int:
     return DONE
 
 
-@server.feature(lsp.INITIALIZED)
-def _initialized(_: lsp.InitializedParams) -> None:
-    server.spare()
-
-
 @server.feature(lsp.TEXT_DOCUMENT_DID_OPEN)
 @server.feature(lsp.TEXT_DOCUMENT_DID_CHANGE)
 @server.feature(lsp.TEXT_DOCUMENT_DID_CLOSE)
@@ -187,39 +179,44 @@ def _changed(params: Any) -> None:
 
 @server.feature(lsp.TEXT_DOCUMENT_DID_SAVE)
 def _saved(_: lsp.DidSaveTextDocumentParams) -> None:
-    server.diagnose(*server.workspace.text_documents)  # one may include it
+    for uri in server.workspace.text_documents:  # one may include it
+        server.diagnose(uri)
 
 
 @server.feature(lsp.TEXT_DOCUMENT_HOVER)
 async def _hover(params: lsp.HoverParams) -> lsp.Hover | None:
     document = server.workspace.get_text_document(params.text_document.uri)
-    at = document.position_from_client_units(params.position)
-    text = next(iter(document.lines[at.line :]), "")
-    around = (it[0] for it in _WORD.finditer(text) if it.start() <= at.character <= it.end())
-    codes = [it.code for it in server.found.get(document.uri, ()) if it.line == at.line + 1]
-    word = next(around, "").strip("/:?!")
-    explained = await server.ask(answers.explain, document.uri, word, codes)
+    word = document.word_at_position(params.position, _BEFORE, _AFTER).strip("/:?!")
+    here = [
+        it.code for it in server.found.get(document.uri, ()) if it.line == params.position.line + 1
+    ]
+    explained = await server.ask(answers.explain, document.uri, word, here)
     content = lsp.MarkupContent(lsp.MarkupKind.Markdown, f"```text\n{explained}\n```")
     return lsp.Hover(content) if explained else None
 
 
 @server.feature(lsp.TEXT_DOCUMENT_CODE_ACTION, lsp.CodeActionOptions([_FIX, _FIX_ALL]))
 async def _actions(params: lsp.CodeActionParams) -> list[lsp.CodeAction]:
-    uri, where, only = params.text_document.uri, params.range, params.context.only or ()
-    path = server.workspace.get_text_document(uri).path
-    fixable = [it for it in server.found.get(uri, ()) if it.edits and it.file == path]
-    here = [it for it in fixable if where.start.line < it.line <= where.end.line + 1]
-    asked: list[tuple[str, str, Finding | None]] = [
-        *((f"Fix {it.code}: {it.message}", _FIX, it) for it in here),
-        *[("Fix all that urdf-lint can", _FIX_ALL, None)] * bool(fixable),
+    uri, where, only = params.text_document.uri, params.range, params.context.only or ("",)
+    document = server.workspace.get_text_document(uri)
+    path, source = document.path, document.source.encode()
+    # Only in the text that was linted, not in one that was typed since.
+    known = (
+        server.found.get(uri, ()) if uri in server.running and server.running[uri].done() else ()
+    )
+    fixable = [it for it in known if it.edits and it.file == path]
+    made: list[tuple[str, str, bytes | None]] = [
+        (f"Fix {it.code}: {it.message}", _FIX, b"".join(cut(source, sorted(it.edits))))
+        for it in fixable
+        if where.start.line < it.line <= where.end.line + 1
     ]
-    actions = []
-    for title, kind, finding in asked:
-        if only and not any((kind + ".").startswith(it + ".") for it in only):
-            continue
-        if (text := await server.ask(answers.fixed, uri, finding)) is not None:
-            actions.append(lsp.CodeAction(title, kind, edit=server.changes({path: text})))
-    return actions
+    if fixable and any(_FIX_ALL.startswith(it) for it in only):
+        made.append(("Fix all that urdf-lint can", _FIX_ALL, await server.ask(answers.fixed, uri)))
+    return [
+        lsp.CodeAction(title, kind, edit=server.changes({path: text}))
+        for title, kind, text in made
+        if text is not None and any(kind.startswith(it) for it in only)
+    ]
 
 
 async def _places(params: Any) -> list[Place]:

@@ -118,9 +118,8 @@ def _guarded(program: str, run: Callable[[], int], own_process: bool) -> int:
         if own_process:
             sys.unraisablehook = _not_lost
             signal.signal(signal.SIGTERM, signal.default_int_handler)
-            hangup = getattr(signal, "SIGHUP", None)  # Windows has none; under nohup it is ignored
-            if hangup and signal.getsignal(hangup) is signal.SIG_DFL:
-                signal.signal(hangup, signal.default_int_handler)
+            if signal.getsignal(signal.SIGHUP) is signal.SIG_DFL:  # under nohup it is ignored
+                signal.signal(signal.SIGHUP, signal.default_int_handler)
         return run()
     except ProofError as error:
         fault = "verification failed, nothing was written; this is a fault of the tool"

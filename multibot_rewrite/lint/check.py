@@ -128,8 +128,7 @@ def lint_subject(subject: Subject, wanted: Callable[[Rule], bool] = bool) -> lis
 def _limited(seconds: float) -> Iterator[None]:
     """Raise _TooLongError after that time; only a process's main thread can be stopped like that."""
     before: Any = None
-    # Raised in other threads, to ask threading is slow to import; and on Windows.
-    with suppress(ValueError, AttributeError):
+    with suppress(ValueError):  # raised in other threads; to ask threading is slow to import
         before = signal.signal(signal.SIGALRM, _stop)
     if before is None:
         yield

@@ -26,16 +26,12 @@ ROUNDS = 5
 _LINE = re.compile(r"\bline \d+")
 
 
-def fix(
-    path: str, source: bytes, settings: Settings, only: Finding | None = None
-) -> tuple[bytes, list[Finding]]:
-    """Return the text with every safe fix applied, or that of one finding, and the findings that are
-    left. Raises InputError if the file cannot be read, ProofError if the proof fails."""
+def fix(path: str, source: bytes, settings: Settings) -> tuple[bytes, list[Finding]]:
+    """Return the text with every safe fix applied, and the findings that are left. Raises
+    InputError if the file cannot be read, ProofError if the proof fails."""
     findings = lint_data(path, source, settings)
     for _ in range(ROUNDS):
-        found = {
-            edit for it in findings if it.file == path and only in (None, it) for edit in it.edits
-        }
+        found = {edit for it in findings if it.file == path for edit in it.edits}
         edits = list(_not_overlapping(found))
         if not edits:
             return source, findings

@@ -225,21 +225,15 @@ def _files_with(
     """Yield the related files that have a name of these kinds, and where in their text."""
     urdf = next(path for path, found in changes.items() if found)
     described = next(it.inventory.document.source for it in package.descriptions if it.path == urdf)
-    for path, data, file in files_with_names(package, described, name):
-        if starts := set(starts_of(file, (name,), kinds)):
-            yield path, data, file, starts
-
-
-def files_with_names(
-    package: Package, described: bytes, name: str = ""
-) -> Iterator[tuple[str, bytes, NamedFile]]:
-    """Return the files beside a description that have this text, with their bytes and names."""
     found = package.found
     for path in (*found.params, *found.rviz, *found.bridge, *found.moveit, *found.behavior_trees):
         data = read_bytes(path)
-        if name.encode() in data:
-            with suppress(MultibotError):
-                yield path, data, names_in_file(data, path, described)
+        if name.encode() not in data:
+            continue
+        with suppress(MultibotError):
+            file = names_in_file(data, path, described)
+            if starts := set(starts_of(file, (name,), kinds)):
+                yield path, data, file, starts
 
 
 def _mentions(package: Package, old: str, changed: Collection[str]) -> Iterator[str]:

@@ -10,13 +10,12 @@ import shutil
 import signal
 import stat
 import subprocess
-import sys
 from collections import Counter
 from pathlib import Path
 
 import pytest
 from lxml import etree
-from paths import FIXTURES, ROBOTS, ROOT
+from paths import FIXTURES, ROBOTS
 from postfix_command import (
     COMMAND,
     PATIENCE,
@@ -34,7 +33,6 @@ from multibot_rewrite import rewrite_all
 
 pytestmark = pytest.mark.slow
 
-SUPPORT = ROOT / "tests" / "support"
 OPTIONS = (
     (),
     ("--affix", "prefix"),
@@ -489,24 +487,3 @@ def test_a_program_that_reads_two_pipes_hears_of_failures_alone(
     line = [*COMMAND, *words]
     done = subprocess.run(line, cwd=folder, capture_output=True, check=False, timeout=PATIENCE)
     assert (done.returncode, bool(done.stderr)) == (code, told)
-
-
-def test_without_what_posix_alone_has_a_urdf_is_rewritten_and_linted(tmp_path: Path) -> None:
-    """More files than one process lints elsewhere, and a xacro, which needs a fork."""
-    for number in range(14):
-        shutil.copy(ROBOTS / "rover.urdf", tmp_path / f"r{number}.urdf")
-    (tmp_path / "a.xacro").write_text('<robot name="a"><link name="b"/></robot>')
-
-    def both(program: str, *words: str) -> list[tuple[int, bytes]]:
-        """With and without."""
-        ways = (["-m", f"multibot_rewrite.cli.{program}"], [SUPPORT / "without_posix.py", program])
-        lines = ([sys.executable, *way, *words] for way in ways)
-        done = [subprocess.run(it, cwd=tmp_path, capture_output=True, check=False) for it in lines]
-        return [(it.returncode, it.stdout) for it in done]
-
-    rewritten, without = both("urdf_postfix", "r0.urdf", "robot1")
-    assert rewritten == without and b"robot1" in without[1]
-    linted, without = both("urdf_lint", *(f"r{number}.urdf" for number in range(14)))
-    assert linted == without
-    _, (code, said) = both("urdf_lint", "a.xacro")
-    assert code == 1 and b"a.xacro:1:1: error: MB103 xacro is not expanded on this system" in said

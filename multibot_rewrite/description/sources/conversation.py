@@ -92,9 +92,6 @@ def converse(
     """Let a child expand the file of ``sources.access``; raises InputError where it cannot tell."""
     access = sources.access
     reach = access.reach
-    if not hasattr(os, "fork"):
-        what = "xacro is not expanded on this system"
-        raise InputError(f"{access.path}: {what}; give what xacro makes of it", XACRO_FAILED)
     if reach.trust:
         unrepeatable()  # it may look at anything
     seconds = reach.seconds

@@ -210,8 +210,7 @@ _HERE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__
 
 def identity(settings: Settings) -> str:
     """Return a digest of program, plugin definitions and settings; raises VocabularyError, OSError."""
-    own = (os.uname().release, str(os.geteuid())) if hasattr(os, "uname") else ()
-    where = (os.getcwd(), sys.version, *own)
+    where = (os.getcwd(), sys.version, os.uname().release, str(os.geteuid()))
     specs = filter(None, map(find_spec, LIBRARIES))
     folders = filter(None, (_HERE, *(os.path.dirname(it.origin or "") for it in specs)))
     programs = sorted(it for folder in folders for it in _states(folder))

@@ -15,7 +15,7 @@ from copy import deepcopy
 from importlib import import_module
 from io import BytesIO
 from math import isfinite, pi
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 from lxml import etree
 from lxml.etree import _Element
@@ -35,7 +35,7 @@ UNCOLOURED: Colour = ()
 _LIBRARY_END = "THREE.GLTFLoader=GLTFLoader;})();"
 Matrix = Sequence[Sequence[float]]
 # What yourdfpy reads and nobody sees: a fault in it is none of the picture.
-_SHAPES = ("box", "cylinder", "sphere", "mesh")
+_SHAPES = "geometry/box | geometry/cylinder | geometry/sphere | geometry/mesh"
 _NOT_DRAWN = ("inertial", "collision", "calibration", "safety_controller")
 
 
@@ -182,10 +182,8 @@ def load_urdf(root: _Element, source: str) -> Model:
     etree.strip_elements(drawn, *_NOT_DRAWN, with_tail=False)
     for it in drawn.iter("capsule"):
         it.tag = "cylinder"
-    for link in drawn.iterchildren("link"):
-        for it in link.findall("visual"):
-            if not any(it.find(f"geometry/{shape}") is not None for shape in _SHAPES):
-                link.remove(it)
+    for it in cast("list[Any]", drawn.xpath(f"link/visual[not({_SHAPES})]")):
+        it.getparent().remove(it)
     off = {"build_scene_graph": False, "load_meshes": False}
     try:
         robot = yourdfpy.URDF.load(BytesIO(etree.tostring(drawn)), **off).robot
