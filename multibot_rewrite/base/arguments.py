@@ -7,6 +7,7 @@ An argument is checked by its annotation: a new option needs no line here unless
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Callable, Iterable, Mapping
 from functools import wraps
 from inspect import Parameter, Signature, signature
@@ -144,7 +145,18 @@ def _path_or(other: type, write: str) -> Reader:
     return read
 
 
-_source = _path_or(bytes, "write a path, XML text or bytes")
+def _source(what: str, value: object) -> object:
+    """Return a path, text or bytes: of an open file its path or text, of a parsed element its text."""
+    root = value.getroot() if hasattr(value, "getroot") else value
+    if hasattr(value, "read"):
+        name = getattr(value, "name", "")
+        value = name if isinstance(name, str) and os.path.isfile(name) else value.read()
+    elif hasattr(root, "iterfind"):  # of lxml and of Python, each with a function of this name
+        value = sys.modules[type(root).__module__].tostring(root)
+    return _SOURCE(what, value or None)
+
+
+_SOURCE = _path_or(bytes, "write a path, XML text or bytes")
 READERS: Mapping[str, Reader] = {
     "str | os.PathLike[str] | Mapping[str, Any]": _path_or(Mapping, "write a path, or a dict"),
     "str": _text,

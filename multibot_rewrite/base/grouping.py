@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values gathered by a key."""
+"""Values gathered by a key, or by chains of keys."""
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Hashable, Iterable
+from collections.abc import Hashable, Iterable, Mapping
 from typing import TypeVar
 
 _Key = TypeVar("_Key", bound=Hashable)
@@ -37,3 +37,20 @@ def dicts_by_key(
     for key, name, value in triples:
         found[key][name] = value
     return found
+
+
+def chain_ends(next_of: Mapping[str, str]) -> dict[str, str]:
+    """Return what each name leads to in the end; an empty string for one that leads into a circle.
+
+    Each name is passed once, however long the chains are.
+    """
+    ends: dict[str, str] = {}
+    for start in next_of:
+        passed: dict[str, None] = {}
+        name = start
+        while name in next_of and name not in ends and name not in passed:
+            passed[name] = None
+            name = next_of[name]
+        end = "" if name in passed else ends.get(name, name)
+        ends.update(dict.fromkeys(passed, end))
+    return ends

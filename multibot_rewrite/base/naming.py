@@ -58,7 +58,7 @@ class Layout(NamedTuple):
 
     @property
     def renames_models(self) -> bool:
-        """Has the model another name for each robot? Else its spawner gives it one."""
+        """Return whether the model has another name for each robot, given by it and not its spawner."""
         return self.frames and not self.at_run_time
 
 
@@ -253,7 +253,7 @@ def is_of_world(topic: str) -> bool:
 
 
 def is_keyword(text: str) -> bool:
-    """SDF reserves ``__model__`` and the like (sdformat Utils.cc isReservedName)."""
+    """Return whether SDF reserves it, as ``__model__`` (sdformat Utils.cc isReservedName)."""
     return len(text) >= 4 and text.startswith("__") and text.endswith("__")
 
 
@@ -264,7 +264,7 @@ def _name_affix(side: str, separator: str, text: str) -> Affix:
 
 
 def _topic_affix(naming: Naming, separator: str, text: str, below: bool) -> Affix | None:
-    """``below`` tells that a relative name is put under something that is the robot's already."""
+    """Return the affix of a topic; ``below``: a relative name in something that is the robot's."""
     bare = text.strip("/")
     if (
         not bare

@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from functools import lru_cache
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cache, lru_cache
 from itertools import islice
+
+from multibot_rewrite.base.bounded import load_own_yaml
 
 # How much alike two words have to be, from 0 to 1 (difflib's ratio): one of a short list that a
 # person can choose from, a name of a file, and a name where the finding itself rests on it.
@@ -128,7 +130,7 @@ def _words(name: str) -> tuple[str, ...]:
 
 
 def _one_typo(words: Sequence[str], others: Sequence[str]) -> bool:
-    """Do they differ in one long word without digits, by a letter or two letters swapped?"""
+    """Return whether they differ in one long word without digits, by one letter or two swapped."""
     pairs = [pair for pair in zip(words, others, strict=True) if pair[0] != pair[1]]
     if len(pairs) != 1:
         return False
@@ -140,3 +142,10 @@ def _one_typo(words: Sequence[str], others: Sequence[str]) -> bool:
     while one and two and one[-1] == two[-1]:
         one, two = one[:-1], two[:-1]
     return max(len(one), len(two)) == 1 or (len(one) == 2 and one == two[::-1])
+
+
+@cache
+def other_words(what: str) -> Mapping[str, str]:
+    """Return the table of ``commands``, ``options`` or ``keys``: each word, and what does it."""
+    words: Mapping[str, str] = load_own_yaml(__file__, "other_words.yaml")[what]
+    return words

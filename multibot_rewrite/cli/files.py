@@ -9,6 +9,7 @@ are made, and has to finish only once.
 from __future__ import annotations
 
 import os
+import signal
 import stat
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
@@ -33,7 +34,8 @@ def write_all(items: Iterable[tuple[str, bytes]]) -> None:
             with explained(target):
                 see_on_disk(temporary)
         changed = {os.path.dirname(path) for path in (*made, *staged)}
-        _commit(staged)
+        with _signals_held():
+            _commit(staged)
         made.clear()
     finally:
         for temporary in staged.values():
@@ -58,6 +60,17 @@ def make_folders(folder: str, made: list[str]) -> None:
     for path in reversed(missing):
         os.mkdir(path)
         made.append(path)
+
+
+@contextmanager
+def _signals_held() -> Iterator[None]:
+    """Let Ctrl-C and the like wait: an interrupt between two of its lines would leave copies."""
+    ends = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, ends)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _commit(staged: dict[str, str]) -> None:

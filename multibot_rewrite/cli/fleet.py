@@ -40,7 +40,7 @@ OF_FLEET_FILE = {"words": "ROBOT", **{it: f"--{it}" for it in _OF_FLEET_FILE}}
 
 
 def check_use(options: argparse.Namespace, printed: bool) -> None:
-    """Raise UsageError for what cannot be meant; ``printed`` is whether the result is."""
+    """Raise UsageError for a target that cannot be written; ``printed``: the result is printed."""
     check_report(options, printed)
     if options.output:
         check_target(options.output, [options.input])
@@ -132,7 +132,7 @@ def _is_nodl(path: str) -> bool:
 
 
 def report_table(options: argparse.Namespace, made: Fleet) -> bool:
-    """Report what is wrong with the table and open in the robots; does it fail the command?"""
+    """Report what is wrong with the table and open in the robots; return whether that is a failure."""
     found = chosen(options, (*made.table.problems, *made.gaps))
     about = About([options.input], made.words, made.table.release)
     return report_beside(options, found, about)

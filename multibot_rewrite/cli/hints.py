@@ -5,8 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
 
-from multibot_rewrite.base.nearest import CHOICE, extensions, nearest
-from multibot_rewrite.base.other_words import other_words
+from multibot_rewrite.base.nearest import CHOICE, extensions, nearest, other_words
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 

@@ -168,7 +168,8 @@ def _deliver(options: argparse.Namespace, made: Proposal, file: str) -> int:
         detail(options, f"{path}:{at}: {why}")
     robots = sum(len(it.names) for it in made.members)
     files = {os.path.basename(it.looked.path) for it in made.members}
-    what = f"{plural(robots, 'robot')} of {', '.join(sorted(files))}, {made.keys['layout'].value}"
+    each = f", {options.count} of each," if options.count and len(made.members) > 1 else ""
+    what = f"{plural(robots, 'robot')}{each} of {', '.join(sorted(files))}, {made.keys['layout'].value}"
     if goes_to_file(options):
         note(
             options,
@@ -308,7 +309,7 @@ def _left_out(made: Proposal) -> list[str]:
 
 
 def _apart(made: Proposal) -> float:
-    """Return metres from robot to robot; 0 where they differ already, or there is one robot."""
+    """Return metres from robot to robot; 0 if their poses differ already, or there is one robot."""
     places = [it["y"] for it in made.poses.values()]
     steps = {round(after - before, 3) for before, after in pairwise(places)}
     if len(steps) != 1:

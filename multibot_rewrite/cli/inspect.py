@@ -7,7 +7,7 @@ import argparse
 import os
 import re
 import shlex
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.config import configured_vocabulary
 from multibot_rewrite.base.findings.codes import (
@@ -20,6 +20,7 @@ from multibot_rewrite.base.findings.codes import (
 )
 from multibot_rewrite.base.findings.finding import Rule
 from multibot_rewrite.base.model import SiteRow, UsageError
+from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.base.wording import clip, shorten
 from multibot_rewrite.cli import node_source
@@ -44,10 +45,10 @@ from multibot_rewrite.description.rewriters.vocabulary import (
 )
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.own_names import filled
-from multibot_rewrite.description.sources.read import is_xacro
-from multibot_rewrite.description.sources.whole import read_whole
+from multibot_rewrite.description.sources.read import is_xacro, read_whole
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.knowledge.declared import declared_by, plugin_bases
 from multibot_rewrite.knowledge.stacks import every_release
 from multibot_rewrite.lint.catalogue import rules
 
@@ -100,13 +101,25 @@ def show(options: argparse.Namespace, name: str | None) -> int:
     node = None if found else every_release().nodes.get(name)
     if node:
         return node_source.run_known(options, node)
-    if not found:
+    bases = {base: it.classes[name] for base, it in plugin_bases().items() if name in it.classes}
+    if not (found or bases):
         raise _unknown(vocabulary, name, TYPES)
-    if options.form == JSON:
+    if not found:
+        deliver_report(options, _class(name, bases))
+    elif options.form == JSON:
         deliver(options, json_bytes({"sections": [as_json(it) for it in found]}))
     else:
         deliver_report(options, details(found))
     return DONE
+
+
+def _class(name: str, bases: Mapping[str, str]) -> Iterator[str | Grid]:
+    """Yield what a class is that a package registers for pluginlib, and the parameters that it has."""
+    for base, releases in bases.items():
+        yield f"{name}  a plugin of {base}, in {releases or 'all releases'}"
+    rows = [(it.path, it.type, it.releases, it.source) for it in declared_by(name)]
+    if rows:
+        yield Grid(("parameter", "type", "releases", "source"), rows)
 
 
 def _unknown(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> UsageError:
@@ -114,9 +127,11 @@ def _unknown(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> UsageEr
     if others:
         where = f"is not in {vocabulary.release}, only in {', '.join(dict.fromkeys(others))}"
         return UsageError(f"{name!r} {where}; name one of them with --distro")
-    near = near_names(vocabulary, name, types) or [near_name(name, rules())]
+    classes = (it for base in plugin_bases().values() for it in base.classes)
+    other = nearest(name, (*every_release().nodes, *classes))
+    near = near_names(vocabulary, name, types) or [other or near_name(name, rules())]
     hint = f"the nearest known: {', '.join(near)}" if any(near) else "multibot inspect lists all"
-    what = "plugin, class, element, sensor type, rule or file"
+    what = "plugin, node, class, element, sensor type, rule or file"
     return UsageError(f"{name!r} is not known: no {what} has this name; {hint}")
 
 
@@ -303,7 +318,7 @@ def _only_xacro(options: argparse.Namespace, words: Sequence[str]) -> str:
     other = next((it for it in words if not is_xacro(it)), None)
     if other is not None:
         linted = shlex.join(["urdf-lint", other])
-        raise UsageError(f"{other} is no xacro; {linted} tells what is not known in it")
+        raise UsageError(f"{other} is no xacro; {linted} shows what is unknown in it")
     if len(words) > 1:
         raise UsageError(f"{words[1]}: the arguments of one xacro file are shown; leave it out")
     return words[0]

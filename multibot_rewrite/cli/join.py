@@ -115,7 +115,7 @@ def _parts(options: argparse.Namespace) -> list[Part]:
 
 
 def _for_each(option: str, values: Sequence[str], many: int, of_all: bool = False) -> list[str]:
-    """Return the value for each part; the first part has none unless there is one for all."""
+    """Return the option's value for each part: those given from the second part on, or one for all."""
     if of_all and len(values) == many:
         return list(values)
     if not values or len(values) == many - 1:

@@ -183,13 +183,12 @@ def _fixed(options: argparse.Namespace, settings: Settings, findings: list[Findi
     files = sorted({it.file for it in findings if it.edits})
     old = {file: read_file(file) for file in files}
     new = {file: fix(file, old[file], settings) for file in files}
-    if options.diff:
+    if options.diff and files:
         for file, (data, _) in new.items():
             print_bytes(diff(old[file], data, file, f"{file} fixed", prints_colour(options)))
         return []
     write_files(options, ((file, data) for file, (data, _) in new.items()))
-    if files:
-        note(options, f"fixed {', '.join(files)}")
+    note(options, f"fixed {', '.join(files)}" if files else "nothing that --fix can fix")
     return files
 
 
@@ -239,7 +238,7 @@ def _count(findings: Sequence[Finding]) -> str:
 
 
 def check_use(options: argparse.Namespace) -> None:
-    """Raise UsageError for what cannot be meant."""
+    """Raise UsageError for missing paths and for options that exclude each other."""
     paths = plain_words(options)
     if not paths:
         raise UsageError("no PATH given; for example: urdf-lint urdf/")

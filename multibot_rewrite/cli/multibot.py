@@ -44,7 +44,7 @@ def find_command(word: str) -> Command:
         return COMMANDS[word]
     if word.startswith("-"):
         raise UsageError(f"{word}: write the command first, for example: {_with_option(word)}")
-    from multibot_rewrite.base.other_words import other_words  # a mistake alone needs it
+    from multibot_rewrite.base.nearest import other_words  # a mistake alone needs it
 
     if meant := other_words("commands").get(word):
         raise UsageError(f"there is no command {word!r}; use {meant}")

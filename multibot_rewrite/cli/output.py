@@ -81,8 +81,8 @@ def _given(options: argparse.Namespace) -> Iterator[tuple[str, str]]:
 
 
 def check_there(options: argparse.Namespace) -> None:
-    """Raise UsageError for a file to be read that is not there: with one that is called nearly so, or
-    with what makes such a file. A word without an ending may be a package or a folder."""
+    """Raise UsageError for a missing input file, with one of a similar name, or with what makes
+    such a file. A word without an ending may be a package or a folder."""
     written = {"suggest", "fleet"} if vars(options).get("undo") else {"suggest"}
     for option, path in _given(options):
         folder, name = os.path.split(path)

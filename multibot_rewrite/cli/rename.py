@@ -6,8 +6,8 @@ from __future__ import annotations
 import argparse
 
 from multibot_rewrite.base.config import configured_vocabulary
-from multibot_rewrite.base.wording import plural
-from multibot_rewrite.cli.output import deliver_changed, detail, note, note_unread, verified_words
+from multibot_rewrite.base.wording import SEVERAL, plural, shorten
+from multibot_rewrite.cli.output import deliver_changed, note, note_unread, verified_words
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.usage import arguments_alone
 from multibot_rewrite.refactor.rename import MOST_MENTIONS, Renaming, rename_symbol
@@ -38,6 +38,6 @@ def _tell(options: argparse.Namespace, made: Renaming) -> None:
     )
     note_unread(options, made.unread)
     if left := made.mentions:
-        note(options, f"left as they are: {plural(len(left), 'line')} with {options.old!r}")
-        for place in left[:MOST_MENTIONS]:
-            detail(options, f"  {place}")
+        lines = f"{plural(len(left), 'line')} with {options.old!r}"
+        most = MOST_MENTIONS if options.verbose else SEVERAL
+        note(options, f"left as they are: {lines}: {shorten(left, most)}")

@@ -84,7 +84,7 @@ def report_first(
     about: About,
     rules: Mapping[str, Rule] = NO_RULES,
 ) -> bool:
-    """Write the findings, which are the result; are there some at the level of ``--fail-on``?"""
+    """Write the findings, which are the result; return whether ``--fail-on`` matches any."""
     text = _text(options, findings, about, rules, colour=prints_colour(options))
     deliver(options, text.encode())
     return fails(findings, options.fail_on)

@@ -14,6 +14,7 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.selection import fails
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.nearest import did_you_mean
+from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.cli.output import (
     diff,
     note,
@@ -34,7 +35,7 @@ CHANGES = "changes"
 
 
 def check_use(options: argparse.Namespace, names: list[str]) -> None:
-    """Raise UsageError for what cannot be meant."""
+    """Raise UsageError for missing words and for options that exclude each other."""
     if options.input == "":
         raise UsageError("the name of the input is empty")
     if options.input is None:
@@ -43,6 +44,9 @@ def check_use(options: argparse.Namespace, names: list[str]) -> None:
         undo = " --undo" * options.undo
         example = f"urdf-postfix {options.input} robot1{undo}"
         raise UsageError(f"no robot name given; for example: {example}")
+    file = next((it for it in names if os.path.isfile(it)), "")
+    if file and not os.path.exists(options.input):
+        raise UsageError(f"the file comes first: urdf-postfix {file} {options.input}")
     _check_together(options)
     inputs = (options.input, options.urdf or "", options.xacro or "")
     if xacro_args(options) and not any(is_xacro(path) for path in inputs):
@@ -130,7 +134,7 @@ def input_name(options: argparse.Namespace) -> str:
 def is_stopped(
     options: argparse.Namespace, found: Iterable[Finding], robots: Sequence[str], release: str
 ) -> bool:
-    """Report what was found, to a program only what stops the rewrite; does it stop it?"""
+    """Report what was found, to a program only errors; return whether they stop the rewrite."""
     findings: Sequence[Finding] = chosen(options, dict.fromkeys(found))
     if options.silent and not fails(findings, options.fail_on):
         findings = ()
@@ -202,7 +206,8 @@ def check_shared(
             hint = _hint(word, given, make, result, names)
             if not hint and any(word.strip("/").encode() in data_of_file(it) for it in files):
                 continue
-            what = "topic" if kind == TOPICS else "frame"
+            what, there = "topic" if kind == TOPICS else "frame", sorted(names.get(kind, ()))
+            hint = hint or f"; its {what}s are {shorten(there, SEVERAL)}" * bool(there)
             raise UsageError(f"--shared {word}: the input has no {what} {word!r}{hint}")
 
 

@@ -73,7 +73,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _check_use(options: argparse.Namespace) -> bool:
-    """Are nodes to be described? Raises UsageError."""
+    """Return whether nodes are to be described; raises UsageError."""
     live.check_source(options)
     for name in ("expect", "timeout", "domain"):
         if (options.snapshot or options.bag) and getattr(options, name) not in (None, []):

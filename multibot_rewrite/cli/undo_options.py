@@ -52,8 +52,7 @@ def more_to_undo(stripped: bytes, options: argparse.Namespace, undo: Undo, robot
 
 
 def _fullest(options: argparse.Namespace, undo: Undo, robot: str) -> tuple[float, str]:
-    """Return how often the robot's name is left by the options that take out most of it, and these; of
-    such as do the same, the fewest."""
+    """Return how often the name is left after the best added options, and the fewest such options."""
     best: tuple[float, str] = inf, ""
     for more in _missing(options):
         try:

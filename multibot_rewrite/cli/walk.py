@@ -130,18 +130,16 @@ def check_target(target: str, inputs: Iterable[str], option: str = "--output") -
 
 
 def check_link(target: str) -> None:
-    """Raise UsageError where ``target`` is a link out of its folder: a result would
-    replace what nobody named. The links of the system, as /dev/stdout is, are what they lead to."""
+    """Raise UsageError where ``target`` is a link: a result would replace what nobody named. The links
+    of the system, as /dev/stdout is, are what they lead to."""
     folder = os.path.realpath(os.path.dirname(target) or ".")
-    if not os.path.islink(target) or folder.startswith(("/dev", "/proc")):
-        return
-    real = os.path.realpath(target)
-    if os.path.commonpath((real, folder)) != folder:
+    if os.path.islink(target) and not folder.startswith(("/dev", "/proc")):
+        real = os.path.realpath(target)
         raise UsageError(f"{target} is a link to {real}; name that, if it is meant")
 
 
 def is_same_file(path: str, other: str) -> bool:
-    """Do two paths lead to one file, by links of either kind or not?"""
+    """Return whether two paths lead to one file, by links of either kind or not."""
     if os.path.realpath(path) == os.path.realpath(other):
         return True
     return os.path.isfile(path) and os.path.isfile(other) and os.path.samefile(path, other)

@@ -32,7 +32,7 @@ def is_named_beside(path: str) -> bool:
 
 
 def is_beside(source: object) -> bool:
-    """Is it the path or the text of such a file, and of no description? One of XML has to be a tree."""
+    """Return whether it is the path or the text (a tree in XML) of such a file, not a description."""
     if isinstance(source, bytes):
         start = source.lstrip(b"\xef\xbb\xbf \t\r\n")[:1]
         return bool(_IS_TREE.search(source)) if start == b"<" else True

@@ -34,7 +34,7 @@ class Slot(NamedTuple):
 
     @property
     def is_block(self) -> bool:
-        """Is it written over several lines, where no name can be? Raises nothing."""
+        """Return whether it is a block of several lines, where no name can be. Raises nothing."""
         return self.style in ("|", ">")
 
 
@@ -77,7 +77,7 @@ class Site(NamedTuple):
 
     @property
     def own(self) -> bool:
-        """Does the node make the name itself? Raises nothing."""
+        """Return whether the node itself makes the name. Raises nothing."""
         return self.param is not None and self.param.own
 
 

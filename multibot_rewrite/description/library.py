@@ -136,8 +136,9 @@ def rewrite(
 ) -> Rewrite:
     """Rewrite a robot description for ``robot`` and prove it; ``.not_verified`` says what is open.
 
-    ``source`` is a path (str or PathLike), XML text (a str that starts with ``<``) or bytes; a path
-    ending in ``.xacro`` is expanded. The options are those of ``rewrite_all``. In a launch file:
+    ``source`` is a path (str or PathLike), XML text (a str that starts with ``<``), bytes, an open file
+    or a parsed element (lxml, ElementTree); a path ending in ``.xacro`` is expanded. The options are
+    those of ``rewrite_all``. In a launch file:
 
         parameters=[{"robot_description": rewrite("rover.urdf", "robot1").text}]
 

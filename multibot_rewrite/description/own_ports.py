@@ -71,7 +71,7 @@ class Port(NamedTuple):
 
     @property
     def is_written(self) -> bool:
-        """Is it no default?"""
+        """Return whether it is no default."""
         return self.start < self.end
 
 

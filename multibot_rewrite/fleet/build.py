@@ -110,11 +110,10 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         more = (*tables, *moveit_parameters(plan, files))
         files = sorted((*kept, *more, *copied(plan)))
         brought = {it.name for it in fleet.bridged if PUBLISHES in it.bridge}
-        # A launch file of the robots may start RViz. The plan has one for all of them.
+        # A launch file of the robots may start RViz.
         launched = ((it, one.handed_on) for one in plan.evidence.values() for it in one.nodes)
         rviz = any(it.kind == RVIZ and it.name in handed for it, handed in launched)
-        are_opened = bool(configs) or (rviz and not any(name for name, _ in shown))
-        alone = windows(plan, opened_of(plan, opened)) if are_opened else []
+        alone = windows(plan, opened_of(plan, opened)) if configs or rviz else []
         starts = fleet_starts(plan, each, files, brought, shown, alone)
         files = sorted((*files, launch_file(starts)))
         told += one_launch_each(plan.file.apart, starts)

@@ -27,7 +27,7 @@ class ControllerWay(NamedTuple):
 
     @property
     def of_manager(self) -> bool:
-        """Do rules of their manager reach them, so those in the tag of a plugin?"""
+        """Return whether rules of their manager, and so those in a plugin's tag, reach them."""
         return self.forwarded or self.process_wide
 
 

@@ -191,7 +191,7 @@ def extend(library: NodeLibrary, text: str, file: str, own: bool = False) -> Nod
 
 
 def _check_rule(item: YamlItem, given: str, ends: Iterable[Endpoint]) -> None:
-    """Is it a name of these ends?"""
+    """Raise an error for a name that no end has, or that a rule may not give it."""
     found = next((it for it in ends if it.name == given), None)
     if found is None:
         wrong(item, unknown("name", given, {it.name for it in ends}))

@@ -72,8 +72,8 @@ def _terms(term: str) -> Iterator[str]:
 
 
 def older(name: str, release: str) -> str:
-    """Say that what was read of a package is from before this release and of an earlier version; empty
-    where that is not so or nothing of it is known."""
+    """Return a note that a package was read in an earlier version, of an older release; empty if
+    that is not so or nothing is known."""
     it = versions_of(name).get(release, Versions())
     came = CAME.get(release, max(CAME.values()))
     if not it.date or it.date >= came or number(it.now)[:2] <= number(it.version)[:2]:

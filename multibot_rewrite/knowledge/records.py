@@ -216,7 +216,7 @@ class NodeFacts(NamedTuple):
 
     @property
     def is_controller(self) -> bool:
-        """Does the controller manager load it? The hardware's nodes are in its process, too."""
+        """Return whether the controller manager loads it; nodes of hardware are in its process, too."""
         return self.host == MANAGER and not self.of_hardware
 
 

@@ -31,7 +31,7 @@ def words(data: Sequence[Text]) -> Parsed:
 
 
 def robots(entity: Any, parser: Any) -> Parsed:
-    """``multibot_robots fleet= [robots=]``: its children for every robot, see ``launch.each_robot``."""
+    """Parse ``multibot_robots fleet= [robots=]``: children per robot, see ``launch.each_robot``."""
     given = {**action_options(entity, parser), **_texts(entity, parser, "fleet", "robots")}
     if "fleet" not in given:
         raise ValueError("multibot_robots: the fleet is missing; add fleet=FILE")

@@ -17,7 +17,7 @@ HOMES = {
     "description.steps": "plan",
     "fleet.checks": "across_domains lacking named_twice of_robots shared_names",
     "fleet.file": "filled_arguments",
-    "fleet.launch": "launched_files launched_prefix",
+    "fleet.launch": "launched_files",
     "fleet.outputs": "bridge_outputs cell_outputs controller_files given_world moveit_parameters"
     " params_style spawn",
     "fleet.robots": "joined_robots rewritten_robots robot_nodes simulators start_poses",

@@ -37,7 +37,7 @@ def fix(path: str, source: bytes, settings: Settings) -> tuple[bytes, list[Findi
             return source, findings
         fixed = b"".join(cut(source, edits))
         after = lint_data(path, fixed, settings)
-        _prove(path, (source, findings), (fixed, after), edits)
+        _verify(path, (source, findings), (fixed, after), edits)
         source, findings = fixed, after
     raise ProofError(f"{path}: there is still something to fix after {ROUNDS} rounds")
 
@@ -51,14 +51,14 @@ def _not_overlapping(edits: Iterable[Edit]) -> Iterator[Edit]:
             end = edit.end
 
 
-def _prove(
+def _verify(
     path: str,
     old: tuple[bytes, Sequence[Finding]],
     new: tuple[bytes, Sequence[Finding]],
     edits: Sequence[Edit],
 ) -> None:
-    """Every element without an edit in its tag or text is what it was, or, between versions of URDF,
-    all say the same; and no finding is new."""
+    """Check that every element without an edit in its tag or text is unchanged or, between versions
+    of URDF, that all say the same; and that no finding is new."""
     before, after = (read_document(data, path) for data, _ in (old, new))
     # For each element: is there an edit between its start tag and the next one?
     numbers = {bisect_right(before.starts, it.start) - 1 for it in edits}
@@ -96,7 +96,7 @@ class Meaning(NamedTuple):
 
 
 def same_meaning(one: _Element, other: _Element) -> bool:
-    """Do two descriptions say the same, each element in the same place?"""
+    """Return whether two descriptions mean the same, each element in the same place."""
     return _is_same(_meaning(one), _meaning(other))
 
 

@@ -63,7 +63,7 @@ def _descriptions(launched: Launched) -> Iterator[Finding]:
 
 
 def _loaded_again(launched: Launched) -> Iterator[Finding]:
-    """Systems of the world in the descriptions of two models or more."""
+    """Report systems of the world in the descriptions of two models or more."""
     settings = Settings(select=(_AGAIN,), distro=launched.release, ros=ROS_2, simulated=True)
     found: list[list[Finding]] = []
     for it in (one for one in launched.models.found if one.spawned):

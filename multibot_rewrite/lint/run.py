@@ -34,12 +34,10 @@ def lint_files(
     watch: Watch = iter,
     cache: Cache | None = None,
 ) -> list[Finding]:
-    """Every finding of the files, each once, in the order of files and lines.
-
-    ``jobs`` is the number of processes, 0 for one on each processor it may use; ``watch`` wraps the
-    iteration over the files' findings, for a progress bar. With a ``cache`` only files are linted
-    for which something changed; the caller saves it.
-    """
+    """Return every finding of the files, each once, in the order of files and lines. ``jobs`` is
+    the number of processes, 0 for one on each processor it may use; ``watch`` wraps the iteration
+    over the files' findings, for a progress bar. With a ``cache`` only files are linted for which
+    something changed; the caller saves it."""
     settings = among(paths, settings, cache)
     found = {path: _known(cache, path, settings) for path in paths} if cache else {}
     if unknown := [path for path in paths if found.get(path) is None]:
@@ -133,7 +131,7 @@ def _linted(paths: Sequence[str], settings: Settings, jobs: int, watch: Watch) -
 
 
 def _once(found: Iterable[Finding]) -> list[Finding]:
-    """One place in a macro is one finding, however many calls, of however many files, reach it."""
+    """Return one finding for each place in a macro, however many calls or files lead to it."""
     alike: dict[tuple[object, ...], dict[str, Finding]] = {}
     for it in found:
         place = (it.code, it.level, it.file, it.line, it.column)
@@ -150,7 +148,7 @@ def _with_others(first: Finding, *others: Finding) -> Finding:
 
 
 def _in_order(found: Iterable[Finding], paths: Sequence[str]) -> list[Finding]:
-    """By file, those that were asked for first; then by line."""
+    """Return findings by file, the files that were given first; then by line."""
     rank = {path: at for at, path in enumerate(paths)}
     for it in found:
         rank.setdefault(it.file, len(rank))

@@ -109,8 +109,8 @@ def diagnose_domains(each: Mapping[int, Diagnosis]) -> Diagnosis:
 
 
 def _carried_across(each: Mapping[int, Diagnosis]) -> Iterator[Finding]:
-    """Orders that a robot's own nodes send and its driver obeys, and that a node which runs in two
-    domains sends on in the other one, where a driver obeys them as well: one sender drives two."""
+    """Yield commands of a robot's nodes, obeyed by its driver, that a node in two domains also
+    sends in the other one, where a driver obeys them as well: one sender drives two."""
     pairs = ((at, other) for at in each for other in each if at != other)
     for at, other in pairs:
         for name, ends in each[at].whose.orders.items():

@@ -218,7 +218,7 @@ def substitute_type(kind: str, type_: str) -> str:
 
 
 def to_order(nodes: Iterable[Stub]) -> tuple[Any, ...]:
-    """Stub nodes as plain values, the order of the process that runs them."""
+    """Return stub nodes as plain values, the order of the process that runs them."""
     return tuple(
         (
             *(run.code_name, run.arguments, run.process_namespace, run.process_rules),
@@ -255,7 +255,7 @@ class Started(NamedTuple):
 
 
 def stage(domain: int | None) -> dict[str, str]:
-    """Return an environment where nobody else is: this machine only, the domain of the environment
+    """Return an environment without other nodes: this machine only, the domain of the environment
     if it is free, otherwise one that is hardly used."""
     environ = {k: v for k, v in os.environ.items() if k not in _ELSEWHERE}
     asked = settings(os.environ).domain if os.environ.get("ROS_DOMAIN_ID") else None
@@ -266,7 +266,7 @@ def stage(domain: int | None) -> dict[str, str]:
 
 
 def stages(domain: int | None, count: int) -> list[dict[str, str]]:
-    """So many environments as ``stage`` makes, each in a domain of its own: the next free ones."""
+    """Return so many environments as ``stage`` makes, each in a free domain of its own."""
     first = stage(domain)
     numbers = [int(first["ROS_DOMAIN_ID"])]
     while len(numbers) < count:

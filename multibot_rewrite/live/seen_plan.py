@@ -61,12 +61,12 @@ def robots_to_plan(seen: Diagnosis) -> tuple[GuessedRobot, ...]:
 
 
 def _mine(robot: GuessedRobot) -> str:
-    """Whose names are of the robot; empty where no name has a robot's."""
+    """Return the name of a guessed robot; empty where no name has a robot's."""
     return "" if robot is NAMELESS else robot.name
 
 
 def _robot(seen: Diagnosis, robot: GuessedRobot) -> Robot:
-    """Frames without a robot's name are those of the robot on whose topic they are."""
+    """Return the robot's record; frames without a name are of the robot on whose topic they are."""
     whose = seen.whose
     mine = _mine(robot)
     topics = [it for it in seen.tf if whose.robot(it[0]) == mine]

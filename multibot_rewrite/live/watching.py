@@ -83,7 +83,7 @@ class WatchState(NamedTuple):
 
 
 def judge(found: Iterable[Finding], graph: System) -> Verdict:
-    """As planned, not as planned, or inconclusive because the view may be incomplete."""
+    """Return as planned, not as planned, or inconclusive because the view may be incomplete."""
     levels = {finding.level for finding in found}
     if ERROR in levels:
         return Verdict.WRONG

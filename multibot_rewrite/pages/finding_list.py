@@ -78,7 +78,7 @@ def _head(row: FindingRow, link: str) -> str:
 
 
 def _body(row: FindingRow, sources: Sources) -> str:
-    """Where, why, and the line of the description if it is known."""
+    """Return where, why, and the line of the description if it is known."""
     finding = row.finding
     rule = sources.rules.get(finding.code)
     names = ", ".join(filter(None, (finding.node, *finding.names)))

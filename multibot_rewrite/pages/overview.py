@@ -80,7 +80,7 @@ _TIPS = "<defs>{}</defs>".format(
 
 
 def _shared_tiles(crossings: Sequence[Crossing], shared: Sequence[str]) -> Iterator[Tile]:
-    """Boxes for the nodes of no robot, and for names of no robot that should belong to one."""
+    """Yield boxes for the nodes of no robot, and for names of no robot that should belong to one."""
     if len(shared) > MOST_NODES:
         yield Tile(OTHERS, plural(len(shared), "other node"), "of no robot", "#shared", "shared")
     else:

@@ -71,10 +71,8 @@ def ids_of(about: Targets, ids: Ids) -> list[str]:
 
 
 def make_sections(scene: Scene) -> list[PageSection]:
-    """One for each robot, then one for what belongs to no robot.
-
-    Of robots with the same findings the first is unfolded.
-    """
+    """Return a section for each robot, then one for what belongs to no robot. Of robots with the
+    same findings the first is unfolded."""
     concerns = concerns_of(scene)
     met: set[tuple[int, ...]] = set()
     sections, left = [], MOST_OPEN
@@ -120,11 +118,8 @@ def ids_in(section: PageSection, ids: Ids) -> set[str]:
 def link_to(
     finding: Finding, targets: Iterable[str], sections: Mapping[str, tuple[str, set[str]]]
 ) -> str:
-    """Where a finding is shown: in its robot's section, or in another one.
-
-    ``targets`` are the ids of what it is about. ``sections`` has by robot the id of its section
-    and the ids in it.
-    """
+    """Return the link to a finding: in its robot's section, or in another one. ``targets`` are the
+    ids of what it is about. ``sections`` has by robot the id of its section and the ids in it."""
     own = sections.get(finding.robot) or sections[""]
     for target in targets:
         if target.startswith("f"):
@@ -164,7 +159,7 @@ def only_common(group: DrawnGroup) -> DrawnGroup:
 
 
 def has_faults(group: DrawnGroup) -> bool:
-    """Whether anything in the group is missing or wrong."""
+    """Return whether anything in the group is missing or wrong."""
     states = {node.state for node in group.nodes} | {edge.state for edge in group.edges}
     return not states.isdisjoint(FAULTY)
 

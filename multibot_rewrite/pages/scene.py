@@ -234,10 +234,8 @@ def _edges(plan: Index, seen: Index, states: States) -> Iterator[DrawnEdge]:
 
 
 def _is_expected(plan: Index, key: EndKey, bridged: Container[tuple[str, str]]) -> bool:
-    """Whether the plan has an endpoint of the graph, by itself or in another form.
-
-    An action may be planned as its parts. Helpers of a robot's nodes have what these have.
-    """
+    """Return whether the plan has an endpoint of the graph, by itself or in another form. An action
+    may be planned as its parts. Helpers of a robot's nodes have what these have."""
     node, kind, role, name = key
     if key in plan.by_key or node in plan.own[""] or (role, name) in bridged:
         return True
@@ -270,7 +268,7 @@ def _nodes(
 def _groups(
     plan: System, edges: Iterable[DrawnEdge], nodes: Mapping[str, DrawnNode], robot_of: _RobotOf
 ) -> Iterator[DrawnGroup]:
-    """One for each robot, then one for the rest; an endpoint that connects two robots is in both."""
+    """Yield a group for each robot and one for the rest; an edge between two robots is in both."""
     parts: dict[str, list[DrawnEdge]] = {robot.name: [] for robot in plan.robots}
     parts[""] = []
     for edge in edges:
@@ -295,7 +293,7 @@ def _groups(
 def _nodes_as_robots(
     edges: Iterable[DrawnEdge], nodes: Mapping[str, DrawnNode]
 ) -> Iterator[DrawnEdge]:
-    """Among shared names a robot's nodes are drawn as one robot, unless their endpoint is faulty."""
+    """Yield edges to shared names from one box per robot, unless a node's endpoint is faulty."""
     states: dict[DrawnEdge, set[str]] = defaultdict(set)
     for edge in edges:
         robot = nodes[edge.node].robot
@@ -308,7 +306,7 @@ def _nodes_as_robots(
 
 
 def combined_state(states: Collection[str]) -> str:
-    """Missing or unexpected only if all endpoints are; otherwise the worst of the other states."""
+    """Return missing or unexpected only if all endpoints are; otherwise the worst other state."""
     if len(states) == 1:
         return next(iter(states))
     return worst(state for state in states if state not in (MISSING, UNEXPECTED))

@@ -60,7 +60,7 @@ class Ids(NamedTuple):
 
 
 def safe(text: str) -> str:
-    """Text for HTML, between tags or in quotes."""
+    """Return text for HTML, between tags or in quotes."""
     return escape(visible(text))
 
 
@@ -89,7 +89,7 @@ def group_svg(group: DrawnGroup, ids: Ids, prefix: str) -> str:
 
 
 def _edges(group: DrawnGroup, place: GroupLayout, ids: Ids) -> Iterator[str]:
-    """Faulty edges are drawn last, above the others."""
+    """Yield the edges, faulty ones last and so above the others."""
     left = {node.name: y for node, y in place.left}
     right = {node.name: y for node, y in place.right}
     names = {(name.kind, name.name): y for name, y in place.names}
@@ -202,14 +202,14 @@ def tree_svg(found: FrameTree, robots: Iterable[str], ids: Ids) -> str:
 
 
 def visible(text: str) -> str:
-    """``text`` on one line; characters that are not printable are written as escapes."""
+    """Return ``text`` on one line; characters that are not printable are written as escapes."""
     if text.isprintable():
         return text
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
 def clipped(text: str, room: int) -> str:
-    """``text`` in at most ``room`` columns; the middle is cut, because names differ at their ends."""
+    """Return ``text`` in at most ``room`` columns, cut in the middle: names differ at their ends."""
     if len(text) * 2 <= room or columns(text) <= room:
         return text
     back = _fitting(text[::-1], room // 2)[::-1]

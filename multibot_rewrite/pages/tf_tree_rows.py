@@ -82,7 +82,7 @@ class _Forest(NamedTuple):
 
 
 def _trees(forest: _Forest, states: States) -> Iterator[tuple[FrameRow, ...]]:
-    """One tree from each root; below a root of no robot one for each robot."""
+    """Yield one tree from each root; from a root of no robot one for each robot."""
     below = {child for _, child in forest.static}
     seen: set[str] = set()
     # After the roots only frames in a loop are left.
@@ -101,9 +101,7 @@ def _trees(forest: _Forest, states: States) -> Iterator[tuple[FrameRow, ...]]:
 def _rows(
     forest: _Forest, states: States, root: str, first: Sequence[str], seen: set[str]
 ) -> Iterator[FrameRow]:
-    """Depth first from ``root`` through the children ``first``.
-
-    With its own node set: a tree may be deeper than Python's."""
+    """Yield rows depth first from ``root`` through the children ``first``, without recursion."""
     waiting = [(root, "", -1, 0)]
     at = 0
     while waiting:

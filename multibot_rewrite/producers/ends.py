@@ -133,7 +133,7 @@ def edges_off(given: Iterable[Run], known: Mapping[str, NodeFacts]) -> Iterator[
 
 
 def _switch(condition: str, runs: NodeFacts, given: Run) -> Place | None:
-    """Where the parameter is that alone switches it off."""
+    """Return the place of the parameter that alone switches an endpoint off."""
     value_of = lookup(runs, given.values)
     off = [it for it in condition.split(AND) if not holds(it, value_of)]
     parts = chain(*parse_condition(off[0])) if len(off) == 1 else ()

@@ -38,8 +38,8 @@ class SensorFrame(NamedTuple):
 
 
 def sensor_frames(root: _Element, model: str, release: str) -> Iterator[SensorFrame]:
-    """Those of the sensors on links, in the order of the file; ``model`` is what it is spawned as. In a
-    URDF the links at fixed joints are merged."""
+    """Yield the frames of the sensors on links, in the order of the file; ``model`` is the spawned
+    model's name. In a URDF the links at fixed joints are merged."""
     bodies = read_robot(root).body
     names = [path for path, words in _NAMED if has_release(words, release)]
     for sensor in root.iter("sensor"):

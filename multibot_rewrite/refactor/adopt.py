@@ -130,7 +130,7 @@ class _Job(NamedTuple):
 
 
 def _with_files_beside(made: Adopted, found: Sequence[Description], job: _Job) -> Adopted:
-    """With launch files and the parameters that they fill in, and what other files name."""
+    """Return the result with launch files, the parameters that they fill in, and other files."""
     there, shared = job.package.found, prefixing().shared_frames
     # What gets the prefix.
     declared = (it.inventory.declared.get(kind, ()) for it in found for kind in PREFIXED)
@@ -154,7 +154,7 @@ def _with_files_beside(made: Adopted, found: Sequence[Description], job: _Job) -
 
 
 def _configured(found: Sequence[Description], job: _Job) -> Iterator[Description]:
-    """Each description with its other configurations; SRDFs after the URDFs whose names they have."""
+    """Yield each description with its other configurations; SRDFs after the URDFs they are for."""
     urdfs: list[Inventory] = []
     for it in sorted(found, key=_is_srdf):
         own = [it, *configurations(it, job.how, job.tree, urdfs, job.unread)]
@@ -200,8 +200,8 @@ def _made(
 
 
 def _with_namespace(found: Sequence[Description], own: Mapping[str, str], job: _Job) -> Adopted:
-    """With an argument for a namespace, too, where one changes names alone; ``own`` are arguments that
-    descriptions have for that already, by their paths."""
+    """Return the result with an argument for a namespace, if one changes names alone; ``own`` are
+    arguments that descriptions have for that already, by their paths."""
     texts, prefix = texts_of(found), free_name(found)
     has = {it.path: own.get(it.path, "") for it in found}
     space = namespaced([] if any(has.values()) else found, texts, job.tree)
@@ -257,7 +257,7 @@ def _prefix_of(arguments: Iterable[Argument]) -> str:
 
 
 def _as_xacros(descriptions: Iterable[Description], job: _Job) -> Iterator[Description]:
-    """Each description as a xacro; those that cannot be one are noted as unread."""
+    """Return each description as a xacro; those that cannot be one are noted as unread."""
     for it in descriptions:
         if it.inventory.format not in ("robot", "srdf.robot"):
             continue
@@ -283,8 +283,8 @@ def _as_xacro(it: Description, tree: Tree, how: Expanding) -> Description:
 
 
 def _changes(it: Description) -> Iterator[ValueEdit]:
-    """Where the prefix goes in the values of a description. A link or joint that it does not have is
-    one of another description that includes the same file."""
+    """Return where the prefix goes in the values of a description. A link or joint that it does not
+    have is one of another description that includes the same file."""
     document, claims, _, declared, *_ = it.inventory
     naming = prefixing()
     renames = make_renames(it.inventory, naming)

@@ -101,7 +101,7 @@ def _tried(folder: str, path: str, text: bytes, after: Mapping[str, bytes], how:
 def _one(
     folder: str, path: str, made: LaunchEdit, after: Mapping[str, bytes], how: Trial
 ) -> Launches:
-    """One launch file with what it fills in, as far as it is verified."""
+    """Return one launch file with what it fills in, as far as it is verified."""
     argument = how.argument
     if made.data is None:
         return Launches({}, (), made.left)
@@ -160,7 +160,7 @@ def _verdict(order: LaunchOrder, how: Trial, filled: Sequence[Filled]) -> _Verdi
         return _Verdict(str(error), "")
     for it in filled:
         if not (_gets(graph, it.path, it.before) and _gets(other, it.path, it.tried)):
-            return _Verdict(f"{os.path.basename(it.path)} is not what it was, or lacks it", "")
+            return _Verdict(f"{os.path.basename(it.path)} is changed, or lacks it", "")
     if given == [it if it == WORLD else f"{prefix}{it}" for it in plain]:
         return _Verdict(spaced, "")
     return _Verdict(f"with {argument}:={prefix} its links are {', '.join(given[:3])}", "")
@@ -246,7 +246,7 @@ def fillable(
 
 
 def starts_of(file: NamedFile, names: Collection[str], kinds: Collection[str]) -> Iterator[int]:
-    """Where in the text of a file names of these kinds begin."""
+    """Return where in the text of a file names of these kinds begin."""
     for site in file.names:
         if site.text in names and not {site.kind, *KINDS.get(site.kind, ())}.isdisjoint(kinds):
             start = file.text.find(site.text, site.slot.start + site.at, site.slot.end)

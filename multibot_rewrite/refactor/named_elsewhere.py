@@ -31,7 +31,7 @@ _MOST = 20
 def named_elsewhere(
     folder: str, names: Collection[str], without: Collection[str]
 ) -> Iterator[Left]:
-    """Each line of a file that holds a name; ``without`` are the files that are looked at already."""
+    """Yield each line of a file that holds a name; ``without`` are files to leave out."""
     if not names:
         return
     some = "|".join(re.escape(it) for it in sorted(names, key=len, reverse=True))
@@ -56,8 +56,8 @@ def named_elsewhere(
 
 
 def root_sections(paths: Collection[str]) -> Iterator[Left]:
-    """Sections of parameter files whose nodes are in no namespace, of nodes that get it: the robot's
-    own and its controllers. Source: rcl_yaml_param_parser."""
+    """Yield sections of parameter files whose nodes are in no namespace, of nodes that get it: the
+    robot's own and its controllers. Source: rcl_yaml_param_parser."""
     texts = {path: read_file(path) for path in paths}
     own = {*OF_ROBOT, *chain.from_iterable(map(_controllers, texts.values()))}
     for path, data in texts.items():

@@ -90,7 +90,7 @@ def namespaced(found: Sequence[Description], texts: Mapping[str, bytes], tree: T
 
 
 def _every(found: Iterable[Description], tree: Tree) -> tuple[list[Spaced], list[Left]]:
-    """Each URDF for the rewrite, and those that it refuses."""
+    """Return each URDF for the rewrite, and those that it refuses."""
     every: list[Spaced] = []
     left: list[Left] = []
     for it in found:
@@ -154,7 +154,7 @@ def _fault(
 
 
 def _said(data: bytes) -> list[tuple[int, str, tuple[tuple[str, str], ...], str]]:
-    """Depth, tag, attributes and text of each element: all that its readers see."""
+    """Return depth, tag, attributes and text of each element: all that its readers see."""
     return [
         (
             sum(1 for _ in it.iterancestors()),
@@ -167,7 +167,7 @@ def _said(data: bytes) -> list[tuple[int, str, tuple[tuple[str, str], ...], str]
 
 
 def _changes(template: Template) -> Iterator[ValueEdit]:
-    """Where the namespace goes in the values that are there."""
+    """Return where the namespace goes in existing values."""
     document, claims, *_ = template.inventory
     for claim, spelling in zip(claims, template.plan.renames.values, strict=True):
         for *_, (at, before, after) in spelling if claim.value else ():

@@ -122,7 +122,7 @@ def texts_of(descriptions: Iterable[Description]) -> dict[str, bytes]:
 
 
 def as_named(files: Mapping[str, bytes], descriptions: Iterable[Description]) -> dict[str, bytes]:
-    """Files by the paths that they were read under, in place of their real ones."""
+    """Return files by the paths that they were read under, in place of their real ones."""
     read = (name for it in descriptions for name in (it.path, *it.sources))
     named = {os.path.realpath(name): name for name in read}
     return {named.get(path, path): data for path, data in files.items()}
@@ -161,7 +161,7 @@ def configurations(
 
 
 def _values(sources: Mapping[str, bytes], given: Mapping[str, str]) -> Iterator[tuple[str, str]]:
-    """Arguments that are not given, with values that they do not have by default."""
+    """Yield arguments that are not given, with values that they do not have by default."""
     roots = [read_document(data, it).root for it, data in sources.items() if b"<robot" in data]
     elements = [it for root in roots for it in root.iter("*")]
     others = list(_others(elements))
@@ -192,7 +192,7 @@ def _others(elements: Iterable[_Element]) -> Iterator[tuple[str, str]]:
 
 
 def _compared(text: str) -> Iterator[tuple[str, str]]:
-    """Names with the words that an expression compares them with."""
+    """Yield names with the words that an expression compares them with."""
     for it in _COMPARED.finditer(text):
         yield from ((it[1], word[1]) for word in _WORD.finditer(it[2] or it[3]))
     yield from ((it[2], it[1][1:-1]) for it in _BEHIND.finditer(text))

@@ -83,7 +83,7 @@ def placed(
 
 
 def _names(of: int, it: Description, changes: Iterable[ValueEdit]) -> Iterator[_Name]:
-    """Each change, and each value that is made at the same places and does not change."""
+    """Return each change, and each value that is made at the same places and does not change."""
     assert it.read is not None
     read = it.read
     real = {file: os.path.realpath(file) for file in read.sources}
@@ -115,7 +115,7 @@ def _values(element: etree._Element) -> Iterator[tuple[str, str]]:
 def _used(
     read: Expansion, number: int, attribute: str, pieces: Sequence[tuple[int, Piece]], at: int
 ) -> Spot | None:
-    """Where a prefix before character ``at`` goes in the element that has the value."""
+    """Return where a prefix before character ``at`` goes in the element that has the value."""
     origin = read.origins.of(number)
     slot = origin and _slot(read.sources[origin.file], origin.start, attribute)
     if not origin or not slot:
@@ -142,7 +142,7 @@ def _slot(source: bytes, start: int, attribute: str) -> tuple[int, int] | None:
 def _made(
     read: Expansion, pieces: Sequence[tuple[int, Piece]], at: int
 ) -> tuple[Spot | None, frozenset[Spot]]:
-    """Where the piece at ``at`` stands as it is, outside of an expression; and the other pieces."""
+    """Return where the piece at ``at`` is copied from, if in no expression; and the other pieces."""
     spots = {(it.file, it.start): last for last, it in pieces if it.kind not in (EXPRESSION, GIVEN)}
     for last, it in pieces:
         spot = it.file, it.start

@@ -158,8 +158,7 @@ def _renamed(symbol: _Symbol, package: Package, folder: str, how: Expanding) -> 
 def _check_free(
     symbol: _Symbol, package: Package, changes: Mapping[str, Sequence[ValueEdit]]
 ) -> None:
-    """Nothing in the folder has or uses the new name: it would be one with the old. A link is a frame,
-    too."""
+    """Refuse a new name that the folder has or uses: the two would be one. A link is a frame, too."""
     kinds = next(it for it in KINDS.values() if symbol.kind in it)
     for it in package.descriptions:
         for one in chain.from_iterable(it.inventory.names):
@@ -237,7 +236,7 @@ def _files_with(
 
 
 def _mentions(package: Package, old: str, changed: Collection[str]) -> Iterator[str]:
-    """Lines that have the name, of files that do not change."""
+    """Yield lines that have the name, of files that do not change."""
     word = re.compile(rb"(?<![\w/])" + re.escape(old.encode()) + rb"(?![\w/])")
     for path in chain.from_iterable(files_below(it, _TEXTS) for it in package.found.folders):
         if os.path.realpath(path) not in changed:

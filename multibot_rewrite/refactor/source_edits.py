@@ -90,13 +90,13 @@ def _place(read: Expansion, document: Document, change: ValueEdit, touched: list
 
 
 def place_of(read: Expansion | None, element: int) -> str:
-    """Where an element of an expansion is written; empty where nobody knows."""
+    """Return where an element of an expansion comes from; empty if unknown."""
     origin = read and read.origins.of(element)
     return place(origin.file, read.sources[origin.file], origin.start) if read and origin else ""
 
 
 def place(file: str, source: bytes, offset: int) -> str:
-    """``file:line:column`` of an offset."""
+    """Return ``file:line:column`` of an offset."""
     return ":".join(map(str, (file, *locate(source, offset))))
 
 
@@ -119,7 +119,7 @@ def expected(document: Document, changes: Iterable[ValueEdit]) -> bytes | None:
 def spans(
     document: Document, changes: Iterable[ValueEdit]
 ) -> Iterator[tuple[int, int, bytes] | None]:
-    """Where in the bytes of a document each change is, and its new bytes; None where that is hidden."""
+    """Return where in a document's bytes each change is, and its new bytes; None if hidden."""
     for element, attribute, value, start, end, new in changes:
         slot = value_slot(document.source, document.starts[element], attribute, value)
         begin, last = (slot and place_in(document.source, slot, value, at) for at in (start, end))

@@ -77,7 +77,7 @@ def _found_by(rules: Iterable[Rule], seen: Index) -> Iterator[Finding]:
 
 
 def _of_localizers(seen: Index, found: Sequence[Finding]) -> list[Finding]:
-    """Where nothing joins a robot with the map, its map in the frame `map` is no fault of its own."""
+    """Return the findings without unknown frames `map` of robots that nothing joins with the map."""
     lost = {it.robot for it in found if it.code == localized.map_not_joined.code}
     unknown = frame_ids.frame_id_unknown.code
     return [
@@ -218,7 +218,7 @@ def in_domain(it: Finding, number: int) -> Finding:
 
 
 def _of_bridge(it: Finding, plan: System) -> Finding:
-    """Without a bridge that is missing on one side nothing crosses; its file has its topics."""
+    """Return a finding of a domain_bridge: if it is missing, or a topic in its file, as that."""
     if it.node not in _bridges(plan):
         return it
     if it.code == missing_endpoint.code:

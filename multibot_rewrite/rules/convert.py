@@ -139,7 +139,7 @@ def raised(text: Spanned, version: Version) -> tuple[Edit, ...]:
 
 
 def lowered(text: Spanned) -> tuple[Edit, ...]:
-    """All edits that make a description one of URDF 1.0; none where it would not mean the same."""
+    """Return all edits to URDF 1.0; none if the description would not mean the same there."""
     root = text.document.root
     limits = (it for joint in root.iterchildren("joint") for it in joint.iterchildren("limit"))
     if any(limit.get(name) is None for limit in limits for name in LIMITS):
@@ -207,7 +207,7 @@ def ends_of(pose: poses.Pose, length: float) -> tuple[Vector, Vector]:
 
 
 def _is_plain(text: Spanned, link: _Element, shape: _Element, holder: _Element) -> bool:
-    """Is it a shape and nothing else: nobody may ask for this collision by its name."""
+    """Return whether it is a shape and nothing else: nobody may use this collision's name."""
     asked = f"{link.get('name')}_collision".encode() in text.source or holder.get("name")
     if holder.tag == "collision" and asked:
         return False

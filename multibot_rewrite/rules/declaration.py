@@ -194,7 +194,7 @@ def _place_fields(place: Place) -> dict[str, Any]:
 
 
 def see(records: Iterable[Placed]) -> str:
-    """``; see FILE:LINE and FILE:LINE``: the places of all but the last one."""
+    """Return ``; see FILE:LINE and FILE:LINE``: the places of all but the last one."""
     places = dict.fromkeys(str(it.place) for it in records if it.place != NOWHERE)
     others = [*places][:-1]
     return f"; see {' and '.join(others)}" if others else ""

@@ -5,7 +5,7 @@ below it, and what several nodes do alike, or one node does often, is one line."
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.bounded import own_rows
 from multibot_rewrite.base.findings.finding import (
@@ -18,65 +18,87 @@ from multibot_rewrite.base.findings.finding import (
 )
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import SEVERAL, shorten, unique
+from multibot_rewrite.rules.system.planned_ends import missing
 from multibot_rewrite.system.index import TF, Index, ends_of
-from multibot_rewrite.system.records import PUBLISHES, SERVES
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, End
 
 
-def _names(_: Index, cause: Finding, it: Finding) -> bool:
-    return not {*cause.names}.isdisjoint(it.names)
+def _ends(seen: Index | None, names: Iterable[str]) -> Iterator[End]:
+    """Yield the ends of these names, of whatever kind."""
+    return (end for name in names for end in ends_of(seen, name)) if seen else iter(())
 
 
-def _robot(_: Index, cause: Finding, it: Finding) -> bool:
-    return cause.robot == it.robot
+def _planned(seen: Index, it: Finding) -> Sequence[End]:
+    return seen.expected.by_node.get(it.node, ()) if seen.expected else ()
 
 
-def _served(seen: Index, cause: Finding, it: Finding) -> bool:
-    """Return whether the node of the first finding serves what the second is about."""
-    return any(end.node == cause.node for name in it.names for end in ends_of(seen, name))
+def _lacked(seen: Index, it: Finding) -> Iterator[str]:
+    """Yield the names of a finding, and those that its node lacks by the plan."""
+    plan = seen.expected
+    lacks = (key[3] for key in missing(plan, seen) if key[0] == it.node) if plan else ()
+    return map(seen.plain, (*it.names, *lacks))
 
 
-def _same_node(seen: Index, cause: Finding, it: Finding) -> bool:
-    """Return whether the first finding's missing node is the second's, robots' names aside."""
-    return seen.plain(cause.node) == it.node
+def _described(seen: Index, it: Finding) -> Iterable[str]:
+    """Return the robots of a description, by its topic and by its links."""
+    own = (one for one in seen.system.descriptions if one.topic in it.names)
+    return {it.robot, *(seen.frame_robot(link) for one in own for link in one.links)} - {""}
 
 
-def _two_robots(_: Index, cause: Finding, it: Finding) -> bool:
-    """Return whether the nodes of a whole robot run twice, and so what they send."""
-    return len(cause.names) > 1 and cause.robot == it.robot
+def _givers(seen: Index, it: Finding) -> Iterator[str]:
+    """Yield the nodes that send a topic of these names in any robot, all without the robots' names."""
+    for plain in map(seen.plain, it.names):
+        own = (seen.of_robot(robot, TOPIC, plain) for robot in seen.robots)
+        yield from (seen.plain(end.node) for ends in own if ends for end in ends.publishers)
 
 
-def _sends_tf(seen: Index, cause: Finding, it: Finding) -> bool:
-    """Return whether the missing node has to send its robot's tf, by the plan."""
-    planned = seen.expected.by_node.get(cause.node, ()) if seen.expected else ()
-    tf = any((end.type, end.role) == (TF, PUBLISHES) for end in planned)
-    return tf and cause.robot == it.robot
+def _frame_senders(seen: Index, it: Finding) -> Iterator[str]:
+    edges = (one for tree in seen.trees for one in tree.edges if one.child in it.names)
+    return (node for edge in edges for node in edge.publishers)
 
 
-def _lacks_tf(seen: Index, cause: Finding, it: Finding) -> bool:
-    """Return whether the node of the first finding lacks tf, by the plan."""
-    planned = ends_of(seen.expected, cause.names[0]) if seen.expected and cause.names else ()
-    return any(end.type == TF for end in planned) and cause.robot == it.robot
+# What a finding has in common with another one, by the words of explains.schema.
+_FACETS: Mapping[str, Callable[[Index, Finding], Iterable[str]]] = {
+    "anything": lambda seen, it: ("",),
+    "robot": lambda seen, it: (it.robot,),
+    "robot twice": lambda seen, it: (it.robot, "") if len(it.names) > 1 else (),
+    "node": lambda seen, it: filter(None, (it.node,)),
+    "plain node": lambda seen, it: (seen.plain(it.node),),
+    "names": lambda seen, it: it.names,
+    "plain names": lambda seen, it: map(seen.plain, it.names),
+    "frames": lambda seen, it: map(seen.plain_frame, it.names),
+    "users": lambda seen, it: (end.node for end in _ends(seen, it.names)),
+    "senders": lambda seen, it: (x.node for x in _ends(seen, it.names) if x.role == PUBLISHES),
+    "frame senders": _frame_senders,
+    "server": lambda seen, it: (seen.plain(name.rpartition("/")[0]) for name in it.names),
+    "givers": _givers,
+    "planned names": lambda seen, it: (seen.plain(end.name) for end in _planned(seen, it)),
+    "lacked names": _lacked,
+    "described robots": _described,
+    "a clock": lambda seen, it: ("",) * is_about_a_clock(seen, it),
+    "no tf": lambda seen, it: ("" for x in _ends(seen.expected, it.names[:1]) if x.type == TF),
+    "sent tf": lambda seen, it: (
+        "" for x in _planned(seen, it) if x.type == TF and x.role == PUBLISHES
+    ),
+}
 
 
-def _described(seen: Index, cause: Finding, it: Finding) -> bool:
-    """Return whether it is about the robot whose description it is, or whose frames it has."""
-    links = (
-        link for one in seen.system.descriptions if one.topic in cause.names for link in one.links
+def _explains(seen: Index, cause: Finding, it: Finding, common: str) -> bool:
+    """Return whether both have all of this in common: ``robot``, or ``server = node``, of the cause and
+    of what comes of it."""
+    sides = (one.split(" = ") for one in common.split(" and "))
+    return all(
+        not {*_FACETS[side[0]](seen, cause)}.isdisjoint(_FACETS[side[-1]](seen, it))
+        for side in sides
     )
-    return it.robot in {cause.robot, *map(seen.frame_robot, links)} - {""}
 
 
-def _clock(seen: Index, cause: Finding, it: Finding) -> bool:
-    return is_about_a_clock(seen, cause) and cause.robot == it.robot
-
-
-# What a cause and what comes of it have in common -> does the first finding explain the second?
-_ALIKE = _names, _robot, _served, _same_node, _two_robots, _sends_tf, _lacks_tf, _described, _clock
-_IN_COMMON = {"anything": lambda *_: True, **{it.__name__[1:]: it for it in _ALIKE}}
 _EXPLAINS = own_rows(__file__, "explains.schema")
-# What several nodes have with one name is one of the first, what one node has so often of the second.
-_OF_NAMES = frozenset(("MG303", "MG306", "MG307"))
-_OF_NODES = {"MG102": 2, "MG304": 3}
+# What so many findings of a code have in common that are one.
+_ONE_OF = {
+    **dict.fromkeys(("MG303", "MG306", "MG307", "MG501"), ("names", 2)),
+    **{"MG102": ("node", 2), "MG304": ("node", 3), "MG101": ("robot", 3), "MG322": ("robot", 3)},
+}
 _UNPLANNED = "MG108"
 # From bad to good.
 _BAD = (ERROR, INCONCLUSIVE, WARNING, NOTE)
@@ -91,7 +113,7 @@ _ORDER = (
 
 
 def folded(seen: Index, found: Sequence[Finding]) -> list[Finding]:
-    """One finding for each cause."""
+    """Return one finding for each cause."""
     by_code = lists_by_key((it.code, at) for at, it in enumerate(found))
     below: dict[int, list[int]] = defaultdict(list)
     gone: set[int] = set()
@@ -101,7 +123,7 @@ def folded(seen: Index, found: Sequence[Finding]) -> list[Finding]:
             it for other in codes.split() for it in by_code.get(other, ()) if it not in gone
         ):
             # Each robot's cause has it, so that the robots' findings stay one.
-            why = [it for it in causes if _IN_COMMON[common](seen, found[it], found[at])]
+            why = [it for it in causes if _explains(seen, found[it], found[at], common)]
             for cause in why:
                 below[cause].append(at)
             gone.update([at] if why else [])
@@ -117,8 +139,9 @@ def _with_explained(it: Finding, explained: Sequence[Finding]) -> Finding:
     """Return a cause with its consequences in the hint, at the worst of their levels."""
     if not explained:
         return it
-    first, *others = explained
-    more = f", and {shorten(unique(one.code for one in others))}" if others else ""
+    first = explained[0]
+    others = unique(one.code for one in explained if one.code != first.code)
+    more = f", and {shorten(others)}" if others else ""
     told = f"so {first.node or first.robot or 'tf'}: {first.message} ({first.code}{more})"
     level = min((it.level, *(one.level for one in explained)), key=_BAD.index)
     # Of one name each has the rules for a part of its nodes.
@@ -139,23 +162,22 @@ def _alike(found: Iterable[Finding]) -> Iterator[Finding]:
     """Yield the findings; those that several nodes share become one, at the first and worst."""
     groups: dict[tuple[object, ...], list[Finding]] = {}
     for it in found:
-        key: tuple[object, ...] = (it,)
-        if it.code in _OF_NAMES and it.node:
-            key = it.code, it.names
-        elif it.code in _OF_NODES and it.node:
-            key = it.code, it.node
-        groups.setdefault(key, []).append(it)
-    for (code, *_), own in groups.items():
-        if len(own) == 1 or len(own) < _OF_NODES.get(str(code), 0):
+        by, _ = _ONE_OF.get(it.code, ("", 0))
+        common = (it.code, getattr(it, by, ""), it.hint if by == "robot" else "")
+        one = not it.remaps and it.robot if by == "robot" else it.node
+        groups.setdefault(common if by and one else (it,), []).append(it)
+    for own in groups.values():
+        code = own[0].code
+        if len(own) == 1 or len(own) < _ONE_OF[code][1]:
             yield from own
         else:
-            yield _one_of(own, str(code))
+            yield _one_of(own, code)
 
 
 def _one_of(own: Sequence[Finding], code: str) -> Finding:
     first = min(own, key=lambda it: _BAD.index(it.level))
     others = [it for it in own if it is not first]
-    if code in _OF_NAMES:
+    if _ONE_OF[code][0] == "names" or code == "MG101":
         same = unique(it.node for it in others if it.node != first.node)
     else:
         same = unique(it.names[0] for it in others if it.names)
@@ -164,37 +186,35 @@ def _one_of(own: Sequence[Finding], code: str) -> Finding:
         remaps = first.remaps
     more = f"; the same for {shorten(same, SEVERAL)}" if same else ""
     names = unique(name for it in (first, *others) for name in it.names)
-    return first._replace(message=f"{first.message}{more}", names=names, remaps=remaps)
+    settings = tuple(dict.fromkeys(one for it in own for one in it.settings))
+    message = f"{first.message}{more}"
+    return first._replace(message=message, names=names, remaps=remaps, settings=settings)
 
 
 def _without_unplanned(seen: Index, found: Iterable[Finding]) -> list[Finding]:
-    """Return the findings; an unplanned node is named in the error that it causes, if there is one."""
+    """Return the findings; an unplanned node is named in the first one about it, if there is one."""
     every = [*found]
     nodes = {it.node: at for at, it in enumerate(every) if it.code == _UNPLANNED}
-    gone = set()
+    gone: set[int] = set()
     for at, it in enumerate(every) if nodes else ():
-        if it.level == ERROR and it.code != _UNPLANNED:
-            left = [one for one in _makers(seen, it) if one in nodes and nodes[one] not in gone]
-            for node in left:
-                gone.add(nodes[node])
-                hint = f"{every[at].hint}; {node} is not in the plan"
-                every[at] = every[at]._replace(hint=hint)
+        users = _users(seen, it) if it.level in (ERROR, WARNING) and it.code != _UNPLANNED else ()
+        if left := [one for one in users if one in nodes and nodes[one] not in gone]:
+            gone.update(map(nodes.__getitem__, left))
+            verb = "is" if len(left) == 1 else "are"
+            hint = f"{it.hint}; {shorten(left, SEVERAL)} {verb} not in the plan"
+            every[at] = it._replace(hint=hint)
     return [it for at, it in enumerate(every) if at not in gone]
 
 
-def _makers(seen: Index, it: Finding) -> Sequence[str]:
-    """Return the nodes that send or serve what a finding is about."""
-    ends = (end for name in it.names for end in ends_of(seen, name))
-    sent = (end.node for end in ends if end.role in (PUBLISHES, SERVES))
-    edges = (one for tree in seen.trees for one in tree.edges if one.child in it.names)
-    own = (node for edge in edges for node in edge.publishers if seen.robot(node) == it.robot)
-    return unique((*sent, *own))
+def _users(seen: Index, it: Finding) -> Sequence[str]:
+    """Return the nodes that have the names that a finding is about, or send its frames."""
+    own = (node for node in _frame_senders(seen, it) if seen.robot(node) == it.robot)
+    return unique((it.node, *(end.node for end in _ends(seen, it.names)), *own))
 
 
 def is_about_a_clock(seen: Index, it: Finding) -> bool:
-    """Return whether it is about the time that nodes get."""
-    ends = (end for name in it.names for end in ends_of(seen, name))
-    return any(end.type == "rosgraph_msgs/msg/Clock" for end in ends)
+    """Is it about the time that nodes get?"""
+    return any(end.type == "rosgraph_msgs/msg/Clock" for end in _ends(seen, it.names))
 
 
 def in_order(seen: Index, found: Iterable[Finding]) -> list[Finding]:

@@ -84,7 +84,7 @@ def matches(path: str, pattern: str) -> bool:
 
 
 def is_silent(settings: Settings, file: str, code: str) -> bool:
-    """Do the settings switch a rule off in that one file?"""
+    """Return whether the settings switch a rule off in that one file."""
     return any(
         matched(codes, code) >= 0 and matches(file, pattern) for pattern, codes in settings.per_file
     )

@@ -40,7 +40,7 @@ class Elements:
         self._first: dict[str, Mapping[_Element | None, _Element]] = {}
 
     def every(self, *tags: str) -> Sequence[_Element]:
-        """All of these tags, tag by tag in document order."""
+        """Return all of these tags, tag by tag in document order."""
         return _of(self._every, tags)
 
     def tops(self, *tags: str) -> Sequence[_Element]:

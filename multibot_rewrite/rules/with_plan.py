@@ -19,7 +19,7 @@ from multibot_rewrite.rules.system.changed import untold
 from multibot_rewrite.rules.system.differing import BETWEEN_ROBOTS, unexplained
 from multibot_rewrite.rules.system.planned_ends import missing, missing_endpoint
 from multibot_rewrite.rules.system.planned_frames import frame_without_robot_name
-from multibot_rewrite.rules.system.planned_nodes import sender_not_planned, unplanned_node
+from multibot_rewrite.rules.system.planned_nodes import sender_not_planned
 from multibot_rewrite.rules.system.unsent import nothing_known_sends
 from multibot_rewrite.system.index import TF, Index, ends_of
 from multibot_rewrite.system.records import ACTION, PUBLISHES, SERVES, SERVICE, TOPIC, End
@@ -53,10 +53,9 @@ def one_for_a_cause(
     said = {at: _with_cause(left[at], own, rules, in_doubt) for at, own in causes.items()}
     lost = {name for node, *_, name in missing(plan, seen) if node not in plan.may_miss}
     loose = {name for node, *_, name in missing(plan, seen)} - lost
-    by_end = {at for at, own in causes.items() if any(it.code != unplanned_node.code for it in own)}
     kept = []
     for at, it in enumerate(left):
-        names = {*it.names} if at not in by_end and _is_absence(it, rules) else set()
+        names = {*it.names} if at not in causes and _is_absence(it, rules) else set()
         if not (names & lost or (names and names <= loose)):
             kept.append(said.get(at, it))
     every = {*unexplained([*kept, *by_plan])}
@@ -89,9 +88,7 @@ def _is_of_an_end(it: Finding, rules: Mapping[str, Rule]) -> bool:
 
 def _same(seen: Index, it: Finding, rules: Mapping[str, Rule]) -> Iterator[_About]:
     """Yield the keys of findings that have the same cause as one by the plan."""
-    if it.code == unplanned_node.code:
-        yield it.node, ""
-    elif it.code in (sender_not_planned.code, frame_without_robot_name.code):
+    if it.code in (sender_not_planned.code, frame_without_robot_name.code):
         yield from ((whose, name) for name in it.names for whose in (it.node, it.robot, ""))
     elif _is_of_an_end(it, rules) and _is_there(it):
         used = it.names[-1]
@@ -122,13 +119,10 @@ def _with_cause(
     it: Finding, by_plan: Sequence[Finding], rules: Mapping[str, Rule], in_doubt: bool
 ) -> Finding:
     """Return the finding with the plan's remedy, or the plan's finding if that is the certain one."""
-    known = [one for one in by_plan if one.code != unplanned_node.code]
-    if known and in_doubt and _is_absence(it, rules) and not _is_absence(known[0], rules):
-        return known[0]
-    hint, remaps = _hint(it, known, rules) if known else (it.hint, it.remaps)
-    place = known[0] if known else it
-    if len(known) < len(by_plan):
-        hint += f"; {it.node} is not in the plan"
+    place = by_plan[0]
+    if in_doubt and _is_absence(it, rules) and not _is_absence(place, rules):
+        return place
+    hint, remaps = _hint(it, by_plan, rules)
     level = ERROR if any(one.level == ERROR for one in by_plan) else it.level
     found = it._replace(hint=hint, level=level, remaps=remaps)
     if not place.file:

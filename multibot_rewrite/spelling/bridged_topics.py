@@ -363,7 +363,7 @@ def bridged_as(topics: Iterable[BridgedTopic]) -> tuple[Topic, ...]:
 
 
 def once(topics: Iterable[Topic]) -> tuple[Topic, ...]:
-    """Each topic once, with all that a bridge does with it."""
+    """Return each topic once, with all that a bridge does with it."""
     found: dict[str, Topic] = {}
     for topic in topics:
         first = found.setdefault(topic.name, topic)

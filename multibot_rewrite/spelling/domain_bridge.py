@@ -109,7 +109,7 @@ def _needed(plan: System, numbers: Mapping[str, int]) -> Iterator[Crossing]:
 
 
 def _robots(plan: System) -> Mapping[str, str]:
-    """By node: its robot; empty for a node of all robots, and for what such a node makes for itself."""
+    """Return the robot of each node; empty for a node of all robots, and for nodes that it makes."""
     return defaultdict(str, {it.name: it.robot for it in plan.nodes})
 
 
@@ -135,7 +135,7 @@ def _given(plan: System, numbers: Mapping[str, int], given: Sequence[str]) -> It
 
 
 def services_apart(plan: System) -> Iterator[tuple[End, int, int]]:
-    """Services and actions that are called in one domain and served in another alone, with both."""
+    """Yield services and actions called in one domain and served only in another, with both."""
     numbers = domain_of(plan)
     robot_of = _robots(plan)
     served: dict[tuple[str, str], set[int]] = defaultdict(set)
@@ -150,7 +150,7 @@ def services_apart(plan: System) -> Iterator[tuple[End, int, int]]:
 
 
 def bridge_files(plan: System) -> Iterator[tuple[str, bytes]]:
-    """By path: the file of each robot's bridge, as the plan has it."""
+    """Yield by path the file of each robot's bridge, as the plan has it."""
     numbers = domain_of(plan)
     for robot, number in numbers.items():
         name = bridge_name(robot)
@@ -170,5 +170,5 @@ def bridge_files(plan: System) -> Iterator[tuple[str, bytes]]:
 
 
 def bridge_path(robot: str) -> str:
-    """Where the file of a robot's bridge goes."""
+    """Return the path of the file of a robot's bridge."""
     return f"{DOMAIN_BRIDGE}/{bridge_name(robot)}.yaml"

@@ -92,7 +92,7 @@ def to_policy(plan: System, more: Iterable[End] = ()) -> str:
 
 
 def profiles(plan: System, more: Iterable[End] = ()) -> Mapping[str, tuple[Profile, ...]]:
-    """Each enclave with what its nodes may do."""
+    """Return each enclave with what its nodes may do."""
     ends = (*plan.ends, *more)
     allowed = dicts_by_key((end.node, (end.kind, end.role, end.name), None) for end in ends)
     result, nodes = {}, nodes_by_robot(plan)

@@ -46,7 +46,7 @@ def robot_words(plan: System) -> dict[str, str]:
 
 
 def vacuous(plan: System) -> str:
-    """Why a graph without any node would be as planned; empty for a plan that tests something."""
+    """Return why a graph without nodes would be as planned; empty for a plan that tests something."""
     if not plan.robots:
         return "no robot is planned"
     needed = {it.robot for it in plan.nodes if it.sure.word == RUNS.word or it.sure.instead}
@@ -121,7 +121,7 @@ def named_frames(inventory: Inventory) -> tuple[str, ...]:
 
 
 def _placed(nodes: Iterable[Node], table: Table) -> Iterator[Node]:
-    """Each node with its plugin and what else names it, and its way and taker, where it has no
+    """Yield each node with its plugin and further names, and its way and taker, if it has no
     --ros-args of its own."""
     known: dict[str, NodeFacts] = {}
     for run in (it for it in table.runs if it.fact.is_known):
@@ -154,7 +154,7 @@ def _placed(nodes: Iterable[Node], table: Table) -> Iterator[Node]:
 
 
 def _private_nodes(table: Table, always: bool = False) -> dict[str, tuple[str, ...]]:
-    """By robot: patterns of the nodes that its nodes make for themselves, or ``always`` make."""
+    """Return by robot patterns of the nodes that its nodes make for themselves, or ``always`` make."""
     found: dict[str, tuple[str, ...]] = {}
     made = ((run, end) for run, end, _ in table.ends if end.by and not (always and end.when))
     for run, end in made:

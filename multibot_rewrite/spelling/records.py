@@ -89,12 +89,12 @@ class Run(NamedTuple):
 
     @property
     def has_fact(self) -> bool:
-        """Is known what it does?"""
+        """Return whether it is known what it does."""
         return self.fact.is_known
 
     @property
     def is_known(self) -> bool:
-        """Is known what it does, or that it only looks on?"""
+        """Return whether it is known what it does, or that it only looks on."""
         return self.has_fact or is_viewer(self.name)
 
     def value(self, name: str) -> object:

@@ -56,7 +56,7 @@ class Shown(NamedTuple):
 
 
 def shown_by_robot(plan: System) -> tuple[list[Shown], Shown]:
-    """Every robot, and what is of all robots."""
+    """Return every robot, and what is of all robots."""
     every = {it.name: Shown(it, {}, {}) for it in (Robot(""), *plan.robots)}
     tags = {it.tag or it.name: it.name for it in plan.robots}
     owners = {it.name: it.robot for it in plan.nodes}

@@ -150,8 +150,8 @@ class Led(NamedTuple):
 
 
 def in_order(starts: Sequence[Start]) -> Iterator[Led]:
-    """Yield the processes with those that wait for them; one that waits for what is not there, or runs
-    under a condition that this one has not, waits for nothing."""
+    """Yield the processes with those that wait for them; one that waits for a missing one, or for
+    one under another condition, waits for nothing."""
     leaders = {
         it.number: at
         for at, it in enumerate(starts)

@@ -83,7 +83,7 @@ def build_table(
 
 
 def joined(table: Table, other: Table) -> Table:
-    """Two tables of different robots as one; nodes for all robots are in it once."""
+    """Return two tables of different robots as one; nodes for all robots are in it once."""
     # Two descriptions may know other things of a node for all robots; of a robot's node both its stack
     # and the plugin that makes it may tell.
     runs: dict[object, Run] = {}
@@ -116,11 +116,9 @@ def run_of(
     others: Places = NOWHERE,
     once: frozenset[str] = frozenset(),
 ) -> Run:
-    """Namespace, name, rules and names of one robot's node; a node for all robots stays as it is.
-
-    ``others`` are the places of the robot's nodes: a name below one of them is renamed with it.
-    ``once`` are the nodes for all robots: a name below one of them is that node's own.
-    """
+    """Return namespace, name, rules and names of one robot's node; a node for all robots stays as
+    it is. ``others`` are the places of the robot's nodes: a name below one of them is renamed with
+    it. ``once`` are the nodes for all robots: a name below one of them is that node's own."""
     if node.shared:
         above, _, own = node.name.strip("/").rpartition("/")
         return with_names(Run("", node.name, f"/{above}", own, (), node))
@@ -237,7 +235,7 @@ def _below(name: str, naming: Naming, others: Places) -> str:
 
 
 def plugin_nodes(reading: Reading, robot: str) -> Iterator[Run]:
-    """Each ROS 2 plugin of ``robot``'s rewritten description: what is known of it, its rules."""
+    """Yield each ROS 2 plugin of ``robot``'s rewritten description: what is known of it, its rules."""
     for node in reading.nodes:
         own = (robot, node.name, node.namespace, node.name, tuple(_rules(node)))
         yield Run(*own, _facts(node), written=True, process_wide=node.section.process_wide)

@@ -25,7 +25,7 @@ UNREACHABLE_NAME = declare("MR101", "no-rule-reaches-name", WARNING, formats=("r
 
 
 def unreachable(nodes: Sequence[NodeFacts], naming: Naming) -> Iterator[Finding]:
-    """Names that every robot would share and that no remap rule reaches."""
+    """Report names that every robot would share and that no remap rule reaches."""
     for node in nodes:
         for endpoint in node.endpoints:
             reason = endpoint.fixed or (RUN_TIME if "<" in endpoint.name else "")
@@ -55,11 +55,10 @@ class _Names(NamedTuple):
 def useless_rules(
     runs: Iterable[Run], release: str, controllers: Sequence[Run] | None = ()
 ) -> Iterator[Finding]:
-    """Rules that match no name of their node, and rules after one that matches first.
-
+    """Report rules that match no name of their node, and rules after one that matches first.
     ``controllers`` are those that a plugin hands its rules on to; None if they are not known. A
-    description may serve robots with other controllers: a rule for one known in ``release`` is right.
-    """
+    description may serve robots with other controllers: a rule for one known in ``release`` is
+    right."""
     others = [*map(_names, controllers or ())]
     known = _of_managers(release)
     by_file = any(it.fact.origin.place.line for it in controllers or ())

@@ -32,11 +32,9 @@ OF_A_PROBLEM = ("code", "level", "robot", "node", "message", "hint")
 
 
 def ros_args(table: Table) -> str:
-    """One line for each process: the arguments of ``ros2 run PACKAGE EXECUTABLE``.
-
-    For a controller they are those of its spawner, for a component those of ``ros2 component load``.
-    A node that nothing is started for has no line.
-    """
+    """Return one line for each process: the arguments of ``ros2 run PACKAGE EXECUTABLE``. For a
+    controller they are those of its spawner, for a component those of ``ros2 component load``. A
+    node that nothing is started for has no line."""
     text = _comment(table)
     for it in started(table):
         by = f" ({it.way})" if it.way != PROCESS else ""
@@ -51,7 +49,7 @@ def _comment(table: Table) -> str:
 
 
 def launch(table: Table) -> str:
-    """Python for a launch file: robot -> node -> arguments, by what is started for the nodes."""
+    """Return Python for a launch file: robot -> node -> arguments, by what is started for the nodes."""
     found = list(started(table))
     return _comment(table) + "".join(_launch_table(found, *it) for it in _LAUNCH)
 
@@ -117,19 +115,19 @@ def as_data(table: Table) -> dict[str, object]:
 
 
 def as_json(table: Table) -> str:
-    """JSON of ``as_data``."""
+    """Return JSON of ``as_data``."""
     return json.dumps(as_data(table), indent=1) + "\n"
 
 
 def as_yaml(table: Table) -> str:
-    """YAML of ``as_data``."""
+    """Return YAML of ``as_data``."""
     import yaml
 
     return str(yaml.safe_dump(as_data(table), sort_keys=False, width=inf))
 
 
 def gazebo(table: Table) -> str:
-    """``<ros>`` blocks for Gazebo Classic and gz_ros2_control plugins, one for each node."""
+    """Return ``<ros>`` blocks for Gazebo Classic and gz_ros2_control plugins, one for each node."""
     blocks = [f"<!-- ROS 2 {table.release} -->\n"] * bool(table.release)
     for node in table.runs:
         rows = [f"  <namespace>{node.namespace.translate(ESCAPES)}</namespace>"] * (
@@ -146,7 +144,7 @@ def gazebo(table: Table) -> str:
 
 
 def given_to(it: Delivery) -> str:
-    """Where the rules of a node are written, for people."""
+    """Return where the rules of a node go, for people."""
     if it.way == HOST:
         return f"process of {it.taker}"
     return {PROCESS: "its process", SPAWNER: "its spawner", PLUGIN: "its plugin"}.get(
@@ -155,8 +153,8 @@ def given_to(it: Delivery) -> str:
 
 
 def standing_by_robot(table: Table) -> Iterator[tuple[str, list[Delivery]]]:
-    """Return where the rules of each node are written, by robot, with all rules of what takes them
-    for others as well; nodes for all robots are under a name that no robot can have."""
+    """Return by robot where each node's rules go, with all rules of a process that takes those of
+    other nodes; nodes for all robots are under a name that no robot can have."""
     given = deliveries(table)
     rules = rules_by_taker(given)
     each = {key_of(it.node): it for it in reversed(given)}

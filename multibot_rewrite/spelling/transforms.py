@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
-from multibot_rewrite.base.chains import chain_ends
+from multibot_rewrite.base.grouping import chain_ends
 from multibot_rewrite.base.naming import Naming, spelled
 from multibot_rewrite.knowledge.conditions import holds
 from multibot_rewrite.knowledge.records import NodeFacts

@@ -42,7 +42,7 @@ class _Standing(NamedTuple):
 
 
 def running_nodes(table: Table, left_out: Collection[str] = ()) -> Iterator[tuple[Delivery, Run]]:
-    """Where the rules of each node are written, and the node with the rules that rcl has for it and
+    """Yield where the rules of each node go, and the node with the rules that rcl has for it and
     its process; those at one of the ways ``left_out`` are missing."""
     meant = deliveries(table)
     given = [it for it in meant if it.way not in left_out]
@@ -120,12 +120,11 @@ NOT_TAKEN = declare(
 
 
 def not_taken(table: Table) -> Iterator[Finding]:
-    """Names of the code or of another robot that a node has because its rule does not reach it.
-
-    One finding a node. Of what a plugin's controllers are known to publish the second reading of
-    the description says it, where no node set names them."""
+    """Report, once a node, names of the code or of another robot that a node has because its rule
+    does not reach it. What a plugin's controllers are known to publish is reported by the second
+    reading of the description, if no node set names them."""
     of_manager = controller_way(table.release).of_manager
-    robots = _robots_worth_a_look(table)
+    robots = _robots_to_check(table)
     some = table._replace(runs=tuple(it for it in table.runs if it.robot in robots))
     names: dict[tuple[str, str], Names] = {}
     for run in some.runs:
@@ -154,8 +153,8 @@ def not_taken(table: Table) -> Iterator[Finding]:
                 yield _finding(it, list(wrong), table.release)
 
 
-def _robots_worth_a_look(table: Table) -> set[str]:
-    """Those of which descriptions decide something, and the first with each of the node set's nodes."""
+def _robots_to_check(table: Table) -> set[str]:
+    """Return robots whose descriptions matter, and the first with each of the node set's nodes."""
     first: dict[str, set[str]] = {}
     found = {""}
     for it in table.runs:
@@ -169,7 +168,7 @@ def _robots_worth_a_look(table: Table) -> set[str]:
 def _wrong(
     names: Names, running: Run, owners: Callable[[], Mapping[str, set[str]]]
 ) -> Iterator[str]:
-    """Those called otherwise than the table says: as in the code, or like something of a robot."""
+    """Yield names that differ from the table: as in the code, or like something of a robot."""
     own, theirs, bare = (bound_to(running, it) for it in (running.rules, running.handed_on, ()))
     for end, name in names:
         kind = TOPIC if end.kind == ACTION else end.kind

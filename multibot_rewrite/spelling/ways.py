@@ -47,7 +47,7 @@ Sources: TypeAlias = Mapping[str, frozenset[str]]
 
 
 def key_of(run: Run) -> Key:
-    """Its robot and its name in its node set."""
+    """Return its robot and its name in its node set."""
     return run.robot, run.node
 
 
@@ -88,7 +88,7 @@ def merged(nodes: Iterable[Run]) -> tuple[Run, ...]:
 
 
 def way_of(node: Run, known: Nodes, release: str) -> str:
-    """How a node of the table gets its rules."""
+    """Return how a node of the table gets its rules."""
     if node.fact.plugin:
         return PLUGIN
     host = known.get((node.robot, node.fact.host))
@@ -200,7 +200,7 @@ def spawner_arguments(it: Started) -> list[str]:
 
 
 def ros_arguments(namespace: str, name: str, rules: Iterable[Rule]) -> list[str]:
-    """``--ros-args`` with namespace, name (empty for that in the code) and rules; may be empty."""
+    """Return ``--ros-args`` with namespace, name (empty: that in the code) and rules; may be empty."""
     placed = [f"__ns:={namespace}"] if namespace != "/" else []
     named = [f"__node:={name}"] if name else []
     words = [*placed, *named, *(f"{source}:={target}" for source, target in rules)]

@@ -67,7 +67,7 @@ class Coverage(NamedTuple):
 
     @property
     def is_whole(self) -> bool:
-        """Is all read and all nodes known, did all answer that were asked, and was any seen?"""
+        """Return whether all is read, all nodes are known and have answered, and any was seen."""
         total, lost = self.total, self.compared and not self.total.seen
         left = total.unknown or total.partly or self.unread or self.processes
         return not (left or total.silent or lost)

@@ -22,7 +22,7 @@ _FULL, _SHORT = re.compile(rf"/{_WORD}(\d+)(/[\w/]+)"), re.compile(rf"\b{_WORD}(
 
 
 def domain_of(plan: System) -> dict[str, int]:
-    """By robot, and for all robots (empty name): its domain; empty for a plan of one domain."""
+    """Return the domain by robot, with "" for all robots; empty for a plan of one domain."""
     if not plan.domains:
         return {}
     told = {it.robot: it.number for it in plan.domains}
@@ -39,9 +39,9 @@ def by_domain(plan: System) -> dict[int, System]:
 
 
 def seen_by_domain(plan: System, seen: System) -> dict[int, System]:
-    """One view of nodes in several domains, taken apart: a node is in the domain that the plan has it
-    in, else in that of its robot by its name, or by those of all its ends; any other one in that of all
-    robots, or in the first one where nothing is planned in that."""
+    """Return one view of nodes in several domains, taken apart: a node is in the domain that the
+    plan has for it, else in that of its robot by its name, or by those of all its ends; any other
+    one in that of all robots, or in the first one if nothing is planned in that."""
     numbers, robot = domain_of(plan), whose_by_plan(plan).robot
     planned = {it.name: it.robot for it in plan.nodes}
     in_use = {numbers[it] for it in planned.values()}

@@ -109,7 +109,7 @@ def _localhost_only(environ: Mapping[str, str]) -> bool:
 
 
 def setting_caveats(environ: Mapping[str, str]) -> Iterator[Caveat]:
-    """Problems in the variables that rcl accepts, each with what to do."""
+    """Yield problems in the variables that rcl accepts, each with what to do."""
     asked = settings(environ)
     word = environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "")
     if _localhost_only(environ):
@@ -194,7 +194,7 @@ def _nothing(asked: DiscoverySettings) -> str:
 
 
 def _cut_off(endpoints: Iterable[End], asked: DiscoverySettings) -> Iterator[Caveat]:
-    """Where Fast DDS may have found too few participants, without multicast and without a server."""
+    """Report that Fast DDS may have found too few participants, without multicast or a server."""
     machines = Counter(map(machine, _processes(endpoints)))
     if asked.discovery_server or not machines:
         return
@@ -224,7 +224,7 @@ def machine(process: str) -> str:
 def unfinished(
     nodes: Iterable[Node], endpoints: Collection[End], discovery_server: str
 ) -> Iterator[Caveat]:
-    """Nodes without endpoints, and endpoints without a known node: discovery is not finished."""
+    """Report nodes without endpoints, and endpoints without a known node: discovery is unfinished."""
     bare = sorted({node.name for node in nodes} - {endpoint.node for endpoint in endpoints})
     if bare:
         remedy = "set ROS_SUPER_CLIENT=TRUE" if discovery_server else "look again"
@@ -254,7 +254,7 @@ def _without_readers(endpoints: Collection[End]) -> list[str]:
 
 
 def participants(endpoints: Iterable[End]) -> int:
-    """How many DDS participants the endpoints belong to."""
+    """Return how many DDS participants the endpoints belong to."""
     return len(_processes(endpoints))
 
 
@@ -273,11 +273,10 @@ def machines(graph: System) -> Machines:
 
 
 def hidden_from_here(graph: System, seen: Machines) -> bool:
-    """Whether a robot on another machine may run unseen: nothing but one machine was ``seen``.
-
-    Then multicast may be lost, or the other machine keeps to itself. Under LOCALHOST without peers
-    only this machine was asked for, and a discovery server or a router knows all that use it.
-    """
+    """Return whether a robot on another machine may run unseen: nothing but one machine was
+    ``seen``. Then multicast may be lost, or the other machine keeps to itself. Under LOCALHOST
+    without peers only this machine was asked for, and a discovery server or a router knows all that
+    use it."""
     around = graph.environment
     asked_for_all = around.range not in (LOCALHOST, "OFF") or bool(around.static_peers)
     one_look = not any(it.code == "looks-merged" for it in around.caveats)
@@ -285,7 +284,7 @@ def hidden_from_here(graph: System, seen: Machines) -> bool:
 
 
 def why_not_seen(graph: System, robot: str, seen: Machines) -> str:
-    """Return what is known of where ``robot`` may be, and what to do, in one sentence."""
+    """Return where ``robot`` may be, as far as known, and what to do, in one sentence."""
     around = graph.environment
     if around.rmw == ZENOH:
         router = around.discovery_server

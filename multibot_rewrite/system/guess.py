@@ -64,10 +64,12 @@ def guess_robots(graph: System) -> tuple[GuessedRobot, ...]:
     parts = _of_parts(graph.edges)
     namespaces = [it for it in _namespaces(graph) if not _is_a_part(it, parts)]
     frames = {it for edge in graph.edges for it in (edge.child, edge.parent)}
+    words = [] if namespaces else _last_words(graph)
+    if not (namespaces or words):
+        namespaces = sorted(_alike(graph, _lived_in(graph), numbered=True))
     if namespaces:
         found = [GuessedRobot(_name(it, namespaces), it) for it in namespaces]
         return tuple(with_frames(found, frames))
-    words = _last_words(graph)
     if words:
         return tuple(with_frames((GuessedRobot(it, "") for it in words), frames))
     parents = sets_by_key((it.child, it.parent) for it in graph.edges)
@@ -81,7 +83,7 @@ def _is_a_part(namespace: str, parts: Collection[str]) -> bool:
 
 
 def _name(namespace: str, all_of_them: Iterable[str]) -> str:
-    """Its last word, or the whole namespace where two end alike."""
+    """Return its last word, or the whole namespace if two end alike."""
     last = namespace.rpartition("/")[2]
     alike = [it for it in all_of_them if it.rpartition("/")[2] == last]
     return last if len(alike) == 1 else namespace.strip("/")
@@ -94,7 +96,7 @@ def _namespaces(graph: System) -> list[str]:
     shown = ((space, word) for space, _, word in parts if space and word in OF_A_ROBOT)
     # Below a node's own name are its private names.
     found = sets_by_key((space, word) for space, word in shown if space not in nodes)
-    lived_in = [node.name for node in graph.nodes if not is_tool(node.name)]
+    lived_in = _lived_in(graph)
     bodies = [
         space
         for space, words in found.items()
@@ -111,12 +113,16 @@ def _namespaces(graph: System) -> list[str]:
     return sorted({*outer, *_numbered_alike(outer, lived_in)})
 
 
-def _alike(graph: System, nodes: Iterable[str]) -> Iterator[str]:
+def _lived_in(graph: System) -> list[str]:
+    return [node.name for node in graph.nodes if not is_tool(node.name)]
+
+
+def _alike(graph: System, nodes: Iterable[str], numbered: bool = False) -> Iterator[str]:
     """Yield namespaces next to each other with nodes of the same names, one of which has a topic of
-    a whole robot in each of them."""
+    a whole robot in each of them; with two such nodes of any kind where the namespaces are numbered."""
     whole = {end.node for end in graph.ends if end.name.rpartition("/")[2] in _WHOLE}
     below: dict[str, dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
-    for node in (it for it in nodes if it in whole):
+    for node in (it for it in nodes if numbered or it in whole):
         space = node.rpartition("/")[0]
         while space:
             below[space.rpartition("/")[0]][space].add(node.removeprefix(space))
@@ -124,8 +130,9 @@ def _alike(graph: System, nodes: Iterable[str]) -> Iterator[str]:
     for spaces in below.values():
         times = Counter(name for names in spaces.values() for name in names)
         for space, names in spaces.items():
-            full = [f"{space}{it}" for it in names]
-            if any(times[name] > 1 for name in names) and _may_be_a_robot(space, full):
+            same = sum(times[name] > 1 for name in names)
+            enough = same > 1 and _NUMBER.search(space.rpartition("/")[2]) if numbered else same
+            if enough and _may_be_a_robot(space, [f"{space}{it}" for it in names]):
                 yield space
 
 
@@ -136,7 +143,7 @@ def _may_be_a_robot(space: str, nodes: Collection[str]) -> bool:
 
 
 def _numbered_alike(spaces: Collection[str], nodes: Iterable[str]) -> Iterator[str]:
-    """Namespaces of nodes that differ from a robot's by the number alone: it has just started."""
+    """Yield namespaces of nodes that differ from a robot's only in the number: it has just started."""
     patterns = {_NUMBER.sub("#", space) for space in spaces if _NUMBER.search(space)}
     for node in nodes:
         space = node.rpartition("/")[0]
@@ -147,7 +154,7 @@ def _numbered_alike(spaces: Collection[str], nodes: Iterable[str]) -> Iterator[s
 
 
 def _last_words(graph: System) -> list[str]:
-    """Words behind topics of a body: ``robot1`` of ``/cmd_vel/robot1`` and ``/odom/robot1``."""
+    """Return words behind topics of a body: ``robot1`` of ``/cmd_vel/robot1`` and ``/odom/robot1``."""
     found: dict[str, set[str]] = defaultdict(set)
     for end in graph.ends:
         *_, before, last = ("", *end.name.split("/"))
@@ -202,7 +209,7 @@ def _not_parts(words: Mapping[str, Collection[str]], parents: Mapping[str, Set[s
 
 
 def with_frames(robots: Iterable[GuessedRobot], frames: Iterable[str]) -> Iterator[GuessedRobot]:
-    """Each with the way in which most frames have its name."""
+    """Yield each with the way in which most frames have its name."""
     times = Counter(way for frame in frames for way in _affixes(frame))
     for robot in robots:
         word = robot.namespace.rpartition("/")[2] or robot.name
@@ -221,7 +228,7 @@ def _affixes(frame: str) -> Iterator[tuple[str, str]]:
 
 
 def whose_by_guess(robots: Iterable[GuessedRobot]) -> Whose:
-    """Whose each name is, by how the robots show."""
+    """Return whose each name is, by how the robots show."""
     known = tuple(robots)
     there = [it for it in known if not it.only_frames]
     by_word = {it.namespace or it.name: it for it in there}
@@ -254,10 +261,8 @@ def whose_by_guess(robots: Iterable[GuessedRobot]) -> Whose:
 
 
 def _whose(name: str, robots: Mapping[str, GuessedRobot]) -> GuessedRobot | None:
-    """By namespace, by the last word, or by a word of a node's or topic's name in the root.
-
-    ``robots`` are by namespace and by name.
-    """
+    """Return a name's robot by namespace, by the last word, or by a word of a node's or topic's
+    name in the root. ``robots`` are by namespace and by name."""
     above = name
     while above:
         if above in robots:

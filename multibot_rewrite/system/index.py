@@ -264,17 +264,17 @@ class Index(NamedTuple):
 
     @property
     def is_live(self) -> bool:
-        """Was it seen running? Next to what launch files start there may be more."""
+        """Return whether it was seen running, and not read from launch files."""
         return not any(it.place.file for it in self.system.nodes)
 
     @property
     def in_doubt(self) -> bool:
-        """May nodes run that no source names, such as a driver?"""
+        """Return whether nodes may run that no source names, such as a driver."""
         return any(it.code == UNKNOWN_NODES for it in self.system.environment.caveats)
 
     @property
     def nobody(self) -> str:
-        """Return what is said of all nodes: where there may be more, of those that are known."""
+        """Return words for no node: if others may run, for no known node."""
         return "no known node" if incomplete(self.system) else "no node"
 
     def is_tool(self, node: str) -> bool:
@@ -342,12 +342,12 @@ def spaces(it: Index) -> Set[str]:
 
 
 def ends_of(it: Index, name: str) -> Iterator[End]:
-    """All ends of a name, whatever their kind."""
+    """Return all ends of a name, of any kind."""
     return (end for kind in KINDS for side in it.ends_at(kind, name)[3:] for end in side)
 
 
 def _without_slash(frame: Edge) -> Edge:
-    """tf2 takes a frame with a slash in front as one without (buffer_core.cpp stripSlash)."""
+    """Return an edge without slashes in front of frames, as tf2 (buffer_core.cpp stripSlash)."""
     if not (frame.child.startswith("/") or frame.parent.startswith("/")):
         return frame
     child, parent = (it.removeprefix("/") for it in (frame.child, frame.parent))

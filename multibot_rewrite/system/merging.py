@@ -40,11 +40,8 @@ class Look(NamedTuple):
 
 
 def merged(looks: Sequence[Look]) -> System:
-    """All that any look has seen; a single look is left as it is.
-
-    Raises UsageError for looks that no single system can explain: of two domains, or of DDS and
-    Zenoh.
-    """
+    """Return all that any snapshot has; a single one is left as it is. Raises UsageError for
+    snapshots that no single system can explain: of two domains, or of DDS and Zenoh."""
     if len(looks) == 1:
         return looks[0].snapshot
     _refuse_strangers(looks)
@@ -86,7 +83,7 @@ def _refuse_strangers(looks: Sequence[Look]) -> None:
 
 
 def _nodes(looks: Sequence[Sequence[Node]]) -> Iterator[Node]:
-    """Each node once; two processes with a node of one name are two nodes."""
+    """Yield each node once; two processes with a node of one name are two nodes."""
     best: dict[tuple[str, str], Node] = {}
     most: Counter[tuple[str, str]] = Counter()
     totals: Counter[str] = Counter()
@@ -106,7 +103,7 @@ def _nodes(looks: Sequence[Sequence[Node]]) -> Iterator[Node]:
 
 
 def _endpoints(looks: Sequence[Sequence[End]]) -> list[End]:
-    """Each endpoint once, from the look that knows most of it."""
+    """Return each endpoint once, from the snapshot with most detail about it."""
     best: dict[tuple[str, ...], list[End]] = {}
     for endpoints in looks:
         found = lists_by_key(
@@ -126,7 +123,7 @@ def _detail(ends: Sequence[End]) -> tuple[int, int, int]:
 
 
 def _frames(frames: Iterable[Edge]) -> Iterator[Edge]:
-    """Each transform once a topic, with the publishers that any look has seen."""
+    """Yield each transform once a topic, with the publishers of all snapshots."""
     found = lists_by_key(((frame.topic, frame.parent, frame.child), frame) for frame in frames)
     for (topic, parent, child), same in sorted(found.items()):
         publishers = {node for frame in same for node in frame.publishers}

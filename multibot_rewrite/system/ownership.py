@@ -123,7 +123,7 @@ ALONE = Whose((), lambda _: "", lambda name: name, lambda _: "", lambda frame: f
 
 
 def whose_by_plan(plan: System) -> Whose:
-    """Whose names are by a plan; what it has for all robots is nobody's."""
+    """Return whose names are by a plan; what it has for all robots is nobody's."""
     names, frames = name_ownership(plan), frame_ownership(plan)
     shared = {*(it.name for it in plan.nodes if not it.robot), *plan.shared_topics}
     # All that is not everybody's is of a robot alone whose name is in no name.
@@ -288,7 +288,7 @@ def _of_one_robot(pairs: Iterable[tuple[str, str]]) -> dict[str, str]:
 
 
 def _is_last(names: Iterable[tuple[str, str]]) -> bool:
-    """Whether the tag is more often at the end of a name than at its beginning."""
+    """Return whether the tag is more often at the end of a name than at its beginning."""
     more = 0
     for name, tag in names:
         plain = name.strip("/")

@@ -54,8 +54,8 @@ class Answer(NamedTuple):
 def with_answers(
     system: System, answers: Iterable[Answer], asked: Iterable[Question] = ()
 ) -> System:
-    """Return the system with what nodes answered; of those ``asked`` for parameters, which every node
-    has that serves them, it names the ones that did not."""
+    """Return the system with the answers of nodes; nodes ``asked`` for parameters that did not
+    answer are named."""
     said = tuple(answers)
     silent = {it.node for it in asked if it.type == GET_PARAMETERS} - {it.node for it in said}
     states = {it.node: it.lifecycle for it in said if it.lifecycle}
@@ -98,10 +98,9 @@ class Question(NamedTuple):
 def questions(
     graph: System, parameters: Mapping[str, Collection[str]] = NO_MORE
 ) -> Iterator[Question]:
-    """Whom to ask for what; of two nodes with one name, one would answer for the other.
-
-    ``parameters`` are those that are wanted of a node besides ``use_sim_time``, whatever it lists.
-    """
+    """Yield whom to ask for what; of two nodes with one name, one would answer for the other.
+    ``parameters`` are those that are wanted of a node in addition to ``use_sim_time``, whatever it
+    lists."""
     times = Counter(node.name for node in graph.nodes)
     for end in graph.ends:
         known = (end.kind, end.role) == (SERVICE, SERVES) and end.type in ASKED

@@ -14,7 +14,7 @@ ANY = "*"
 
 
 def fitted(plan: System, graph: System) -> tuple[System, System]:
-    """Plan and graph with the same words for what is made at run time."""
+    """Return plan and graph with the same words for what is made at run time."""
     known = with_patterns(plan, graph)
     return with_names(plan, known), known
 

@@ -69,7 +69,7 @@ def read_plain(expected: type, value: object) -> object:
 
 
 def read_word(words: tuple[str, ...], value: object) -> object:
-    """One of these words."""
+    """Return one of these words."""
     if value not in words:
         raise unexpected(f"one of {', '.join(words)}", value)
     return value
@@ -108,7 +108,7 @@ def read_seconds(value: object) -> object:
 
 
 def read_transform(value: object) -> object:
-    """Three numbers and four, or nothing; null is one that is none (NaN)."""
+    """Return three numbers and four, or nothing; null is one that is none (NaN)."""
     numbers = read_list(read_seconds, value)
     if len(numbers) not in (0, 7) or not all(
         abs(it) < FARTHEST or it == math.inf for it in numbers

@@ -402,7 +402,7 @@ def surely(system: System) -> System:
 
 
 def incomplete(system: System) -> tuple[Caveat, ...]:
-    """Why something may be missing in the view; empty for a complete one."""
+    """Return why something may be missing in the view; empty for a complete one."""
     return tuple(caveat for caveat in system.environment.caveats if caveat.incomplete)
 
 
@@ -420,7 +420,7 @@ def unseen(system: System) -> tuple[Caveat, ...]:
 
 
 def clocks(system: System) -> dict[str, bool]:
-    """By node: whether it goes by simulated time, where that is known."""
+    """Return by node whether it goes by simulated time, if known."""
     told = (it for it in system.parameters if it.name == SIM_TIME and it.value != UNTOLD)
     return {it.node: it.value == "true" for it in told}
 
@@ -444,7 +444,7 @@ def alternatives(system: System) -> tuple[tuple[str, ...], ...]:
 
 
 def may_miss(node: Node) -> bool:
-    """Need the node not run: on a condition, or because another one may run in its place?"""
+    """Return whether the node need not run: on a condition, or if another may run in its place."""
     return node.sure.word != RUNS.word or bool(node.sure.instead)
 
 

@@ -23,7 +23,7 @@ def is_tool(node: str, more: tuple[str, ...] = ()) -> bool:
 
 @lru_cache(maxsize=8)
 def _patterns(more: tuple[str, ...]) -> tuple[re.Pattern[str], re.Pattern[str]]:
-    """Of full names, and of last words."""
+    """Return patterns of full names, and of last words."""
     sides = ([p for p in more if "/" in p], [p for p in more if "/" not in p])
     full, last = (re.compile("|".join(map(translate, side)) or "(?!)") for side in sides)
     return full, last

@@ -3,18 +3,14 @@
 
 from __future__ import annotations
 
-import os
 import re
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 from paths import ROOT
 
-from multibot_rewrite.base.child import isolated, python, search_path, variables
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.start.module import safe_path
 from multibot_rewrite.lint.config.changed import changed_since
 
 PACKAGE = ROOT / "multibot_rewrite"
@@ -22,60 +18,11 @@ PACKAGE = ROOT / "multibot_rewrite"
 ONLY = PACKAGE / "base" / "child.py"
 
 
-def _planted(folder: Path, *names: str) -> Path:
-    """Modules that tell when they are run."""
-    for name in names:
-        (folder / name).write_text("open('ran', 'w').close()\nraise SystemExit(9)\n")
-    return folder / "ran"
-
-
 @pytest.mark.more
 def test_nobody_else_says_how_a_child_of_python_begins() -> None:
     others = [path for path in PACKAGE.rglob("*.py") if path != ONLY]
     said = re.compile(r"\[\s*sys\.executable|\(\s*sys\.executable|\"git\"")
     assert [str(path) for path in others if said.search(path.read_text())] == []
-
-
-def test_modules_of_the_current_folder_are_not_run(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    ran = _planted(tmp_path, "rclpy.py", "yaml.py", "multibot_rewrite.py", "lxml.py", "json.py")
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("PYTHONPATH", os.pathsep)
-    command = python("multibot_rewrite.cli.urdf_lint", "--version")
-    done = subprocess.run(command, env=variables(), capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    assert not ran.exists()
-
-
-def test_a_path_of_search_has_no_current_folder(tmp_path: Path) -> None:
-    here = str(tmp_path)
-    found = safe_path(["", ".", here, "/opt/ros", str(ROOT)], here)
-    assert found == ["/opt/ros", str(ROOT)]
-    assert safe_path(["/opt/ros"], here) == [str(ROOT), "/opt/ros"]
-    assert os.getcwd() not in search_path() or os.getcwd() == str(ROOT)
-
-
-def test_relative_parts_of_a_variable_are_left_out() -> None:
-    given = {"PYTHONPATH": os.pathsep.join(("", "here", "/opt/ros")), "A": "b"}
-    assert variables(given) == {"PYTHONPATH": "/opt/ros", "A": "b"}
-
-
-def test_an_isolated_child_keeps_that_no_bytecode_is_written(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(sys, "dont_write_bytecode", True)
-    assert "-B" in isolated("x")
-    monkeypatch.setattr(sys, "dont_write_bytecode", False)
-    assert "-B" not in isolated("x")
-
-
-def test_an_isolated_child_finds_what_was_compiled(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It sees no variable, and may have another working directory."""
-    monkeypatch.setattr(sys, "pycache_prefix", "compiled")
-    assert f"pycache_prefix={os.path.abspath('compiled')}" in isolated("x")
-    monkeypatch.setattr(sys, "pycache_prefix", None)
-    assert not any("pycache_prefix" in it for it in isolated("x")[:-1])
 
 
 def test_git_runs_no_program_of_a_repository(

@@ -8,16 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from multibot_rewrite.base.file_kinds import KINDS, recognised, refuse_others
+from multibot_rewrite.base.file_kinds import KINDS, recognised
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.proposal.searching import search
 from multibot_rewrite.lint.check import lint_data
-from multibot_rewrite.producers.bags.read import read_bag
-from multibot_rewrite.producers.launch.child import launch_graph
-from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.rules.settings import Settings
-from multibot_rewrite.spelling.plan import read_plan
 from multibot_rewrite.system.json import from_json
 
 TEXTS = {
@@ -57,12 +53,6 @@ def test_each_kind_is_known_by_its_text(kind: str) -> None:
     assert recognised(b"\xef\xbb\xbf" + TEXTS[kind].encode()) == kind
 
 
-@pytest.mark.parametrize("data", [b"", b"\x89MCAP0", b"a: 1\n", b"<a/>", b"\xff\xfe", b"[1, 2]"])
-def test_others_are_of_no_kind(data: bytes) -> None:
-    assert recognised(data) == ""
-    refuse_others(data, "x", "fleet")
-
-
 @pytest.mark.parametrize("kind", [it for it in KINDS if it != "fleet"])
 def test_a_fleet_file_that_is_another_file(kind: str, tmp_path: Path) -> None:
     path = tmp_path / "x.yaml"
@@ -73,24 +63,10 @@ def test_a_fleet_file_that_is_another_file(kind: str, tmp_path: Path) -> None:
     assert KINDS[kind].use in str(caught.value)
 
 
-@pytest.mark.parametrize("kind", [it for it in KINDS if it != "plan"])
-def test_a_plan_that_is_another_file(kind: str) -> None:
-    with pytest.raises(InputError, match=KINDS[kind].words):
-        read_plan(TEXTS[kind].encode(), "x")
-
-
 @pytest.mark.parametrize("kind", [it for it in KINDS if it not in ("plan", "snapshot")])
 def test_a_snapshot_that_is_another_file(kind: str) -> None:
     with pytest.raises(InputError, match=KINDS[kind].words):
         from_json(TEXTS[kind].encode(), "x")
-
-
-@pytest.mark.parametrize("kind", ["params", "fleet", "plan", "urdf", "rviz"])
-def test_a_launch_file_that_is_another_file(kind: str, tmp_path: Path) -> None:
-    path = tmp_path / "x.launch.py"
-    path.write_text(TEXTS[kind])
-    with pytest.raises(InputError, match=KINDS[kind].words):
-        launch_graph(LaunchOrder(str(path), trusted=True))
 
 
 @pytest.mark.parametrize(
@@ -106,11 +82,6 @@ def test_a_file_that_the_lint_does_not_take(kind: str, name: str) -> None:
     assert (it.code, it.message, it.hint) == ("MB101", KINDS[kind].words, KINDS[kind].use)
 
 
-def test_a_plan_of_an_earlier_version_is_known() -> None:
-    plan = "layout: postfix\nshared_nodes: {}\nignored_nodes: []\nrobots:\n  robot1: {}\n"
-    assert recognised(plan.encode()) == "plan"
-
-
 @pytest.mark.parametrize("kind", [it for it in KINDS if it not in ("urdf", "xacro", "sdf")])
 @pytest.mark.parametrize("name", ["x.yaml", "x.xml"])
 def test_a_description_for_init_that_is_another_file(kind: str, name: str, tmp_path: Path) -> None:
@@ -118,14 +89,6 @@ def test_a_description_for_init_that_is_another_file(kind: str, name: str, tmp_p
     path.write_text(TEXTS[kind])
     with pytest.raises(InputError, match=KINDS[kind].words):
         search([str(path)])
-
-
-@pytest.mark.parametrize("kind", ["params", "fleet", "urdf"])
-def test_a_bag_that_is_another_file(kind: str, tmp_path: Path) -> None:
-    path = tmp_path / "x.mcap"
-    path.write_text(TEXTS[kind])
-    with pytest.raises(InputError, match=KINDS[kind].words):
-        read_bag(str(path))
 
 
 def test_all_faults_of_a_fleet_file_at_once(tmp_path: Path) -> None:
@@ -139,16 +102,6 @@ def test_all_faults_of_a_fleet_file_at_once(tmp_path: Path) -> None:
     assert told.startswith(f"{path}:1: unknown key 'layot'; did you mean 'layout'?")
     assert "line 3: robots[0]: unknown key 'descripton'" in told
     assert "line 4: affix: 'middle' is not known" in told
-
-
-@pytest.mark.parametrize("kind", ["urdf", "xacro", "sdf", "world", "srdf", "config"])
-def test_a_kind_is_known_behind_any_number_of_comments(kind: str) -> None:
-    """Twenty comments once took minutes; five thousand are longer than what is looked at."""
-    text = TEXTS[kind].partition("?>")[2] if TEXTS[kind].startswith("<?") else TEXTS[kind]
-    head, _, rest = text.partition(">")
-    many = "<!-- part <robot> of <launch> -- > -->\n" * 8_000
-    assert recognised(f'<?xml version="1.0"?>\n{many}{text}'.encode()) == kind
-    assert recognised(f"{head}>{many}{rest}{many}".encode()) == kind
 
 
 @pytest.mark.parametrize(

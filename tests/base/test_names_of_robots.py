@@ -8,12 +8,9 @@ import pytest
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import (
     SEPARATORS,
-    Affix,
     Naming,
     is_keyword,
-    is_of_world,
     make_naming,
-    overlap,
     removal,
     spelled,
 )
@@ -46,21 +43,6 @@ def test_what_a_layout_renames(
     renamed = make_naming(layout, groups="rename").separators
     assert ("group" in renamed) is (layout in ("L2", "L3", "L4"))
     assert naming.layout.renames_models is (layout in ("L2", "L3", "L4"))
-
-
-def test_the_usual_policy_and_its_words() -> None:
-    assert make_naming() == make_naming("postfix", "postfix", "postfix")
-    assert make_naming("L4", "prefix").topics == "prefix"
-    assert make_naming("L1", topics="postfix").topics == "postfix"
-    own = make_naming("L4", shared_frames=["/depot/"], shared_topics=["/a/"])
-    assert (own.shared_frames, own.shared_topics) == ({"depot"}, {"a"})
-
-
-def test_a_frame_has_the_separator_of_a_link() -> None:
-    assert make_naming(separators={"link": "-"}).separators["frame"] == "-"
-    both = make_naming(separators={"link": "-", "frame": "."}).separators
-    assert (both["link"], both["frame"]) == ("-", ".")
-    assert make_naming(separators={"frame": "."}).separators["link"] == "/"
 
 
 @pytest.mark.sample(1)
@@ -144,38 +126,6 @@ def test_a_name_for_a_robot(naming: Naming, kind: str, text: str, reached: bool,
 
 
 @pytest.mark.parametrize(
-    ("naming", "kind", "text"),
-    [
-        (AFTER, "link", "base"), (AFTER, "link", "r/base"), (BEFORE, "link", "base/r"),
-        (AFTER, "link", "base_r"), (L1, "link", "base/r"), (AFTER, "topic", "clock"),
-        (AFTER, "link", "base/rr"),
-    ],
-)  # fmt: skip
-def test_what_nobody_put_there_is_not_taken_away(naming: Naming, kind: str, text: str) -> None:
-    assert removal(naming, "r", kind, text) is None
-
-
-def test_names_that_an_argument_spells() -> None:
-    own = {("link", "arm_base"): Affix(0, "", "_"), ("link", "fixed"): None}
-    naming = AFTER._replace(own=own)
-    assert spelled(naming, "r", "link", "arm_base") == "r_arm_base"
-    assert spelled(naming, "r", "link", "fixed") == "fixed"
-    assert spelled(naming, "r", "link", "other") == "other/r"
-    assert removal(naming, "r", "link", "r_arm_base") == (0, 2)
-    assert removal(naming, "r", "link", "fixed") is None
-    assert removal(naming, "r", "joint", "r_arm_base") is None
-
-
-@pytest.mark.parametrize(
-    ("topic", "it_is"),
-    [("/world/w/set_pose", True), ("/world/w", False), ("/world/w/model/m/x", False),
-     ("world/w/x", False), ("/a/w/x", False), ("/world/w/models", True)],
-)  # fmt: skip
-def test_topics_of_a_world(topic: str, it_is: bool) -> None:
-    assert is_of_world(topic) is it_is
-
-
-@pytest.mark.parametrize(
     ("text", "it_is"),
     [
         ("__model__", True),
@@ -189,24 +139,3 @@ def test_topics_of_a_world(topic: str, it_is: bool) -> None:
 )
 def test_words_that_sdf_reserves(text: str, it_is: bool) -> None:
     assert is_keyword(text) is it_is
-
-
-def test_robots_whose_names_may_meet() -> None:
-    assert overlap(make_naming("L4"), ["b", "left_b", "c"]) == [("left_b", "b", "_")]
-    assert overlap(make_naming("L4"), ["left", "left_b"]) == []
-    assert overlap(make_naming("L4", "prefix"), ["left", "left_b"]) == [("left_b", "left", "_")]
-    assert overlap(make_naming("L2"), ["left", "left_b", "b"]) == [
-        ("left_b", "b", "_"), ("left_b", "left", "_"),
-    ]  # fmt: skip
-    assert overlap(make_naming("L4"), ["b", "leftb", "left_B", "b"]) == []
-    assert overlap(make_naming("L4"), ["x_y_z", "z", "y_z"]) == [
-        ("x_y_z", "y_z", "_"), ("x_y_z", "z", "_"), ("y_z", "z", "_"),
-    ]  # fmt: skip
-
-
-@pytest.mark.parametrize("name", ["box", "/box", "box/", "x"])
-def test_a_shared_frame_is_one_whatever_slashes_it_has(name: str) -> None:
-    naming = make_naming("L4", shared_frames=["box", "x"])
-    assert spelled(naming, "r1", "frame", name) == spelled(naming, "r1", "link", name) == name
-    assert spelled(naming, "r1", "joint", "box") == "box_r1"
-    assert spelled(naming, "r1", "frame", "bo") == "bo/r1"

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import json
-from hashlib import sha256
 from pathlib import Path
 
 import pytest
@@ -20,9 +19,7 @@ from multibot_rewrite.base.findings.finding import (
     RulePage,
 )
 from multibot_rewrite.base.findings.formats import Report, plain, rendered
-from multibot_rewrite.base.findings.formats.plain import by_file, counts, inside, path_below
 from multibot_rewrite.base.model import Edit, UsageError
-from multibot_rewrite.version import __version__
 
 
 class WrittenRule(Rule):
@@ -66,26 +63,6 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def identity(code: str, where: str, message: str, arguments: str = "", time: int = 1) -> str:
-    return sha256("\0".join((code, where, message, arguments, str(time))).encode()).hexdigest()
-
-
-def test_text() -> None:
-    lines = [
-        "r1: error: MB101 is 100% bad; the same for r2 (do: it) [with side:=left]",
-        "    via m.xacro:7: wheel",
-        "/r1/a: inconclusive: MG102 may be lost",
-        "c.urdf:0:0: note: MB101 is odd",
-    ]
-    assert rendered("text", FOUND, REPORT) == "".join(f"{it}\n" for it in lines)
-    painted = rendered("text", FOUND, REPORT, colour=True).splitlines()
-    assert painted[0].startswith("r1: \033[31merror: MB101\033[0m is")
-    assert painted[2].startswith("/r1/a: \033[35minconclusive: MG102\033[0m")
-    assert painted[3].startswith("c.urdf:0:0: \033[36mnote: MB101\033[0m is odd")
-    warned = rendered("text", [NOTED._replace(level=WARNING)], REPORT, colour=True)
-    assert warned == "c.urdf:0:0: \033[33mwarning: MB101\033[0m is odd\n"
-
-
 def test_json() -> None:
     made = json.loads(rendered("json", FOUND, REPORT))
     first, second, third = made.pop("findings")
@@ -109,38 +86,6 @@ def test_json() -> None:
     )
     assert (second["names"], second["node"], third["edits"]) == (["/r1/t"], "/r1/a", [])
     assert json.loads(rendered("json", [], REPORT._replace(release="")))["distro"] is None
-
-
-def test_github() -> None:
-    """docs.github.com, Workflow commands: % and line ends are escaped, in properties : and , too."""
-    assert rendered("github", FOUND, REPORT) == (
-        "::error file=a b.urdf,line=3,col=5,title=MB101 bad-name::"
-        "r1: is 100%25 bad; the same for r2 (do: it) [with side:=left]%0Avia m.xacro:7: wheel\n"
-        "::warning file=a b.urdf,line=1,col=1,title=MG102::/r1/a: may be lost\n"
-        "::notice file=c.urdf,line=1,col=1,title=MB101 bad-name::is odd\n"
-    )
-    odd = NOTED._replace(file="a,b:c.urdf", level=WARNING, message="50%\r")
-    assert rendered("github", [odd], REPORT) == (
-        "::warning file=a%2Cb%3Ac.urdf,line=1,col=1,title=MB101 bad-name::50%25\\r\n"
-    )
-    nowhere = REPORT._replace(files=())
-    assert rendered("github", [IN_GRAPH], nowhere) == "::warning title=MG102::/r1/a: may be lost\n"
-
-
-def test_gitlab() -> None:
-    made = json.loads(rendered("gitlab", FOUND, REPORT))
-    assert made[0] == {
-        "description": "MB101: r1: is 100% bad; the same for r2 (do: it) [with side:=left]",
-        "check_name": "MB101 bad-name",
-        "fingerprint": identity("MB101", "a b.urdf", "is 100% bad", "side:=left"),
-        "severity": "critical", "location": {"path": "a b.urdf", "lines": {"begin": 3}},
-    }  # fmt: skip
-    assert made[1]["fingerprint"] == identity("MG102", "/r1/a", "may be lost")
-    assert [it["severity"] for it in made] == ["critical", "minor", "info"]
-    assert made[2]["location"] == {"path": "c.urdf", "lines": {"begin": 1}}
-    twice = json.loads(rendered("gitlab", [NOTED, NOTED._replace(line=9, level=WARNING)], REPORT))
-    assert twice[1]["fingerprint"] == identity("MB101", "c.urdf", "is odd", time=2)
-    assert twice[1]["severity"] == "major"
 
 
 def test_junit() -> None:
@@ -209,71 +154,6 @@ def test_statistics() -> None:
     assert rendered("statistics", [], REPORT) == ""
 
 
-def test_sarif(folder: Path) -> None:
-    """SARIF 2.1.0; GitHub, SARIF support for code scanning."""
-    made = json.loads(rendered("sarif", FOUND, REPORT))
-    assert made["version"] == "2.1.0" and made["$schema"].endswith("/sarif-schema-2.1.0.json")
-    (run,) = made["runs"]
-    results = run.pop("results")
-    uri = {"uri": "a%20b.urdf", "uriBaseId": "%SRCROOT%"}
-    other = {"uri": "c.urdf", "uriBaseId": "%SRCROOT%"}
-    said = "The folder in which the command was started: the root of the repository."
-    assert run == {
-        "tool": {"driver": {
-            "name": "multibot lint", "version": __version__, "semanticVersion": __version__,
-            "rules": [{
-                "id": "MB101", "name": "bad-name", "shortDescription": {"text": "It is"},
-                "fullDescription": {"text": "It is. Really."},
-                "help": {
-                    "text": "It is. Really.\n\nWhy: It hurts.\n\nFix: Do it.\n\n"
-                    "Bad:\n<a/>\n\nGood:\n<b/>",
-                    "markdown": "It is. Really.\n\n**Why.** It hurts.\n\n**Fix.** Do it.\n\n"
-                    "Bad:\n\n```xml\n<a/>\n```\n\nGood:\n\n```xml\n<b/>\n```",
-                },
-                "defaultConfiguration": {"level": "error"},
-            }],
-        }},
-        "originalUriBaseIds": {"%SRCROOT%": {"description": {"text": said}}},
-        "artifacts": [{"location": uri}, {"location": other}],
-        "columnKind": "unicodeCodePoints", "properties": {"distro": "jazzy"},
-    }  # fmt: skip
-    node = {"fullyQualifiedName": "r1", "kind": "resource"}
-    first = {"startLine": 3, "startColumn": 5}
-    assert results[0] == {
-        "ruleId": "MB101", "ruleIndex": 0, "level": "error",
-        "message": {
-            "text": "r1: is 100% bad; the same for r2 (do: it) [with side:=left] via [wheel](1)"
-        },
-        "locations": [{
-            "physicalLocation": {"artifactLocation": uri, "region": first}, "logicalLocations": [node],
-        }],
-        "partialFingerprints": {
-            "urdfLint/v1": identity("MB101", "a b.urdf", "is 100% bad", "side:=left")
-        },
-        "relatedLocations": [{
-            "id": 1,
-            "physicalLocation": {
-                "artifactLocation": {"uri": "m.xacro", "uriBaseId": "%SRCROOT%"},
-                "region": {"startLine": 7},
-            },
-            "message": {"text": "call of wheel"},
-        }],
-        "fixes": [{
-            "description": {"text": "do: it"},
-            "artifactChanges": [{"artifactLocation": uri, "replacements": [{
-                "deletedRegion": {"startLine": 1, "startColumn": 1, "endLine": 1, "endColumn": 2},
-                "insertedContent": {"text": "xy"},
-            }]}],
-        }],
-    }  # fmt: skip
-    assert (results[1]["level"], "ruleIndex" in results[1]) == ("warning", False)
-    assert results[1]["locations"][0]["logicalLocations"][0]["fullyQualifiedName"] == "/r1/a"
-    assert results[2]["locations"] == [{
-        "physicalLocation": {"artifactLocation": other, "region": {"startLine": 1, "startColumn": 1}}
-    }]  # fmt: skip
-    assert "relatedLocations" not in results[2] and "fixes" not in results[2]
-
-
 def test_sarif_of_a_graph_and_of_files_elsewhere(folder: Path) -> None:
     nowhere = REPORT._replace(files=(), release="")
     (run,) = json.loads(rendered("sarif", [IN_GRAPH, NOTED._replace(file="")], nowhere))["runs"]
@@ -293,15 +173,6 @@ def test_sarif_of_a_graph_and_of_files_elsewhere(folder: Path) -> None:
     assert result["message"]["text"].endswith("via [a\\[b\\]\\\\](1)")
 
 
-def test_paths_and_files_of_findings(folder: Path) -> None:
-    assert inside(str(folder / "x" / "a")) == "x/a" and inside("a") == "a"
-    assert inside("/elsewhere/a") is None and inside(f"{folder}x") is None
-    assert path_below("/elsewhere/a") == "/elsewhere/a"
-    assert by_file(FOUND, REPORT) == {"a b.urdf": [IN_FILE, IN_GRAPH], "c.urdf": [NOTED]}
-    assert by_file([NOTED._replace(file="z")], REPORT)["z"]
-    assert list(counts([])) == ["error", "warning", "note"]
-
-
 def test_a_lone_surrogate_is_text() -> None:
     made = rendered("json", [NOTED._replace(message="\udcff")], REPORT)
     assert json.loads(made)["findings"][0]["message"] == "\\udcff"
@@ -311,16 +182,6 @@ def test_a_lone_surrogate_is_text() -> None:
 
 
 KNOWN = {**rule("MB101", "bad-name"), **rule("MB102", "odd-name"), **rule("MG201", "lost-topic")}
-
-
-@pytest.mark.parametrize(
-    ("word", "found"),
-    [("MB101", ["MB101"]), ("mb1", ["MB101", "MB102"]), ("odd-name", ["MB102"]),
-     ("M", ["MB101", "MB102", "MG201"]),
-     ("MX", [])],
-)  # fmt: skip
-def test_rules_by_code_or_name(word: str, found: list[str]) -> None:
-    assert [it.code for it in codes.find_rules(word, KNOWN)] == found  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
@@ -340,12 +201,6 @@ def test_a_code_that_no_rule_has(word: str, hint: str) -> None:
     )
     with pytest.raises(UsageError):
         codes.find_codes(["M"], "--select", KNOWN)  # type: ignore[arg-type]
-
-
-def test_codes_by_name() -> None:
-    words = ["odd-name", "MG", "MB101", "lost-topic"]
-    found = codes.find_codes(words, "--select", KNOWN)  # type: ignore[arg-type]
-    assert found == ("MB102", "MG", "MB101", "MG201")
 
 
 def test_a_rule_for_a_terminal() -> None:

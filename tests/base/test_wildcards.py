@@ -9,7 +9,7 @@ from itertools import product
 import pytest
 
 from multibot_rewrite.base.lazy import with_gaps
-from multibot_rewrite.knowledge.declared import Declared, checks_in, stands_for
+from multibot_rewrite.knowledge.declared import checks_in
 
 GAPS = [
     ["a", "b"],
@@ -29,19 +29,6 @@ def test_a_name_with_gaps_is_what_a_pattern_finds(pieces: list[str], gap: str) -
     for length in range(7):
         for text in map("".join, product("ab/", repeat=length)):
             assert bool(re.fullmatch(fast, text)) == bool(re.fullmatch(simple, text)), text
-
-
-@pytest.mark.parametrize("pieces", [it for it in GAPS if len(it) > 1], ids="*".join)
-def test_what_stands_in_a_path_is_what_a_greedy_pattern_finds(pieces: list[str]) -> None:
-    words = [f"<w{at}>" for at in range(len(pieces) - 1)]
-    path = "".join(it + word for it, word in zip(pieces, [*words, ""], strict=True))
-    simple = re.compile("(.+)".join(map(re.escape, pieces)))
-    for length in range(7):
-        for name in map("".join, product("abc", repeat=length)):
-            found = simple.fullmatch(name)
-            wanted = dict(zip(words, found.groups(), strict=True)) if found else {}
-            assert stands_for(path, name) == wanted, name
-            assert Declared(path, "", "", "", "", "").has_name(name) == bool(found), name
 
 
 @pytest.mark.parametrize(

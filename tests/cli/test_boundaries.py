@@ -27,9 +27,10 @@ def test_an_output_that_is_a_link_out_of_its_folder(
     folder.mkdir()
     (folder / "link").symlink_to(tmp_path / "file")
     (folder / "near").symlink_to(folder / "deep" / "file")
-    with pytest.raises(UsageError, match=r"is a link to .*/file; name that"):
-        check_link(str(folder / "link"))
-    for name in ("near", "none", "/dev/stdout"):
+    for name in ("link", "near"):
+        with pytest.raises(UsageError, match=r"is a link to .*/file; name that"):
+            check_link(str(folder / name))
+    for name in ("none", "/dev/stdout"):
         check_link(str(folder / name))
     (folder / "fleet.yaml").write_text("robots: [{name: a, description: a.urdf}]\n")
     (folder / "out").symlink_to(tmp_path)

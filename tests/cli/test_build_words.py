@@ -6,7 +6,6 @@ from __future__ import annotations
 import argparse
 from functools import partial
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -57,16 +56,6 @@ def test_what_a_check_of_a_build_says(capsys: pytest.CaptureFixture[str]) -> Non
     assert capsys.readouterr().err == "multibot: out is up to date\n"
 
 
-def test_files_that_are_there_are_known_by_their_hashes(tmp_path: Path) -> None:
-    """sha256 of nothing and of "a", as sha256sum has them."""
-    (tmp_path / "sub").mkdir()
-    (tmp_path / "sub" / "a").write_bytes(b"a")
-    found = build._there(str(tmp_path), ["sub/a", "sub", "gone"])
-    assert list(found) == ["sub/a"]
-    assert "ca978112ca1bbdcafac231b39a23dc4da786eff8147c4e72b9807785afee48bb" in found["sub/a"]
-    assert build._known(str(tmp_path)) == {}
-
-
 def test_rules_are_explained_each_once(capfd: pytest.CaptureFixture[str]) -> None:
     given = options(output=None, form="table")
     assert inspect.explain(given, ["MG101,MB101", "MG101"]) == 0
@@ -78,30 +67,3 @@ def test_rules_are_explained_each_once(capfd: pytest.CaptureFixture[str]) -> Non
         assert said(partial(inspect.explain, given), [word]) == (
             f"no rule has the code {word!r}, and none begins with it; {hint}"
         )
-
-
-def test_what_is_taken_for_a_code() -> None:
-    """Plugins and elements of the vocabulary are not: no name of it is a letter behind an M."""
-    assert all(map(inspect.are_codes, (["MG101"], ["mb2"], ["MB"], ["MB20X"], ["x,MB202"])))
-    assert not any(map(inspect.are_codes, ([], [""], ["M"], ["mimic"], ["libMB202.so"])))
-    assert inspect.is_name("undeclared-link") and not inspect.is_name("camera")
-
-
-def test_the_files_that_a_build_was_made_from(tmp_path: Path) -> None:
-    """Those of the fleet file and of what is written, interfaces of nodes, and the parts of a joined
-    robot; not what a robot's arguments were filled in for, if it does not read it itself."""
-    a, b, c, d, e, f, g = (str(tmp_path / it) for it in "abcdefg")
-    for path in (a, b, c, d, e, f, g):
-        Path(path).write_text(path)
-
-    def robot(parts: tuple[str, ...], files: tuple[str, ...], *filled: str) -> SimpleNamespace:
-        return SimpleNamespace(parts=parts, files=files, filled=[(it, b"") for it in filled])
-
-    robots = [robot((), (c,), b, c), robot(("p",), (d,)), robot((), (g,))]
-    facts = [SimpleNamespace(interface=e), SimpleNamespace(interface="")]
-    plan: Any = SimpleNamespace(
-        file=SimpleNamespace(files={a: "", b: "", c: ""}, robots=robots),
-        fleet=SimpleNamespace(facts=facts),
-    )
-    files: Any = [SimpleNamespace(sources=(f,))]
-    assert build._read(plan, files) == {it: it.encode() for it in (a, c, d, e, f)}

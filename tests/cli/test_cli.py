@@ -330,16 +330,16 @@ def test_in_place_strip_undoes_in_place(folder: Path, rover: bytes) -> None:
 
 
 @pytest.mark.parametrize("there", [True, False], ids=["file", "dangling"])
-def test_a_link_stays_a_link(folder: Path, there: bool) -> None:
+def test_no_link_is_followed(folder: Path, there: bool) -> None:
     (folder / "deep").mkdir()
     target = folder / "deep" / "target.urdf"
     if there:
         target.write_text("old")
     (folder / "link.urdf").symlink_to("deep/target.urdf")
-    assert run(folder, "rover.urdf", "robot1", "-o", "link.urdf").code == 0
-    assert (folder / "link.urdf").is_symlink()
-    assert names(target.read_bytes(), "link")[0] == "base_footprint/robot1"
-    assert temporaries(folder) == []
+    before = contents(folder)
+    result = run(folder, "rover.urdf", "robot1", "-o", "link.urdf")
+    assert (result.code, contents(folder)) == (2, before)
+    assert f"link.urdf is a link to {target}; name that" in result.err
 
 
 @pytest.mark.parametrize(

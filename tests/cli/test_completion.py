@@ -79,9 +79,3 @@ def test_where_nothing_was_installed_it_says_so(
         made.write_text(f"# {name}\n")
     assert main(["completion", "fish"]) == 0
     assert capsys.readouterr().out == "".join(f"# {it}\n" for it in PROGRAMS)
-
-
-def test_an_unknown_shell_is_named(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit, match="2"):
-        main(["completion", "tcsh"])
-    assert "'tcsh' is not known, use one of bash, zsh, fish" in capsys.readouterr().err

@@ -10,7 +10,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
-from graph_cases import as_planned, environment, without_node
+from graph_cases import as_planned
 
 from multibot_rewrite.cli import live
 from multibot_rewrite.cli.multibot import main
@@ -20,7 +20,6 @@ from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import (
     PUBLISHES,
     TOPIC,
-    Caveat,
     End,
     Node,
     Parameter,
@@ -46,9 +45,6 @@ def generate_launch_description():
     return LaunchDescription([state, {}])
 """
 OWN = 'Node(package="ours", executable="{0}", name="{0}")'
-INCLUDE = """\
-__import__("launch").actions.IncludeLaunchDescription(
-        __import__("launch_ros").substitutions.FindPackageShare("not_installed_here"))"""
 FLEET = """\
 description: pole.urdf
 distro: jazzy
@@ -131,48 +127,6 @@ def test_a_build_and_its_plan_say_what_they_start_as_it_is(
     assert last(capsys) == UNKNOWN
 
 
-def test_processes_that_are_no_nodes_are_counted(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """With one of them a graph is as planned only as far as known."""
-    command = "__import__('launch').actions.ExecuteProcess(cmd=['{}'])"
-    built = Built(tmp_path, command.format("agent"), command.format("beep"))
-    assert "2 other processes started as they are" in capsys.readouterr().err
-    assert built.check() == 0
-    assert "as planned as far as known" in last(capsys)
-    built.check("--format", "json")
-    assert numbers(capsys)["processes"] == 2
-
-
-def test_a_graph_of_unknown_nodes_is_as_planned_as_far_as_known(
-    unknown: Built, capsys: pytest.CaptureFixture[str]
-) -> None:
-    capsys.readouterr()
-    text = f"{UNKNOWN}, all seen"
-    assert unknown.check() == 0
-    assert last(capsys) == f"{text}; 0 findings: as planned as far as known (ROS 2 jazzy)"
-    assert unknown.check("--format", "json") == 0
-    assert numbers(capsys) == whole(text, row(6, 2, 6, 0), row(3, 1, 3, 0))
-
-
-def test_a_graph_of_known_nodes_is_as_planned(
-    known: Built, capsys: pytest.CaptureFixture[str]
-) -> None:
-    capsys.readouterr()
-    assert known.check() == 0
-    assert last(capsys) == f"{KNOWN}, all seen; 0 findings: as planned (ROS 2 jazzy)"
-
-
-def test_what_is_not_seen_is_counted(unknown: Built, capsys: pytest.CaptureFixture[str]) -> None:
-    unknown.see(without_node(unknown.seen, "/robot2/horn"))
-    capsys.readouterr()
-    assert unknown.check() == 1
-    assert last(capsys).startswith(f"{UNKNOWN}, 5 of 6 seen; 1 finding: not as planned")
-    assert unknown.check("--format", "json") == 1
-    found = numbers(capsys)
-    assert (found["seen"], [it["seen"] for it in found["robots"]]) == (5, [3, 2])  # type: ignore[attr-defined]
-
-
 def test_what_does_not_answer_is_silent(known: Built, capsys: pytest.CaptureFixture[str]) -> None:
     answer = Parameter("/robot1/robot_state_publisher", "use_sim_time", "false")
     known.see(known.seen._replace(parameters=(answer,)))
@@ -183,31 +137,6 @@ def test_what_does_not_answer_is_silent(known: Built, capsys: pytest.CaptureFixt
     assert known.check("--format", "json") == 0
     found = numbers(capsys)
     assert (found["silent"], [it["silent"] for it in found["robots"]]) == (1, [0, 1])  # type: ignore[attr-defined]
-
-
-def test_a_view_that_may_lack_something_is_no_verdict(
-    known: Built, capsys: pytest.CaptureFixture[str]
-) -> None:
-    known.see(known.seen._replace(environment=environment(Caveat("a", True, "it was cut short"))))
-    capsys.readouterr()
-    assert known.check() == 3
-    words = "inconclusive, the view may be incomplete"
-    assert last(capsys) == f"{KNOWN}, all seen; 0 findings: {words} (ROS 2 jazzy)"
-    assert known.check("--format", "json") == 3
-    assert numbers(capsys)["incomplete"] == 1
-
-
-def test_beside_a_warning_nothing_is_as_planned(
-    known: Built, capsys: pytest.CaptureFixture[str]
-) -> None:
-    stranger = End(TOPIC, PUBLISHES, "/robot1/x", "std_msgs/msg/Empty", "", "/robot1/stranger")
-    more = {"nodes": (*known.seen.nodes, Node("/robot1/stranger")), "ends": (stranger,)}
-    known.see(known.seen._replace(nodes=more["nodes"], ends=(*known.seen.ends, *more["ends"])))  # type: ignore[arg-type]
-    capsys.readouterr()
-    assert known.check() == 0
-    out, err = capsys.readouterr()
-    assert "warning: MG108" in out
-    assert "finding: no error, see the warnings" in err and "as planned" not in err
 
 
 def test_a_launch_file_with_unknown_nodes_is_not_as_planned(
@@ -223,31 +152,6 @@ def test_a_launch_file_with_unknown_nodes_is_not_as_planned(
         each = None if seen is None else 3
         found = whole(text, row(6, 2, seen, None), row(3, 1, each, None))
         assert numbers(capsys) == {**found, "incomplete": 1}
-
-
-def test_a_launch_file_that_is_not_read_whole_leaves_the_plan_open(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    built = Built(tmp_path, INCLUDE)
-    text = f"{KNOWN}, 1 part of launch files not read"
-    assert f"multibot: {text}; " in capsys.readouterr().err
-    assert built.check() == 0
-    out, err = capsys.readouterr()
-    assert "MF823" in out and "one.launch.py" in out
-    assert "nothing wrong seen, but the plan has faults" in err
-    assert built.check("--format", "json") == 0
-    assert numbers(capsys)["unread"] == 1
-
-
-def test_a_graph_without_a_plan_says_nothing_of_what_is_known(
-    unknown: Built, capsys: pytest.CaptureFixture[str]
-) -> None:
-    capsys.readouterr()
-    assert main(["check", "--from", str(unknown.graph)]) == 0
-    assert last(capsys) == "2 robots, 3 nodes each; 0 findings: nothing wrong seen"
-    assert main(["check", "--from", str(unknown.graph), "--format", "json"]) == 0
-    text = "2 robots, 3 nodes each"
-    assert numbers(capsys) == whole(text, row(6, None, None, None), row(3, None, None, None))
 
 
 def test_a_watch_and_its_lines_say_as_far_as_known(
@@ -335,17 +239,3 @@ def planned(robots: Iterable[tuple[str, int, int]]) -> System:
 )
 def test_robots_that_differ_are_named(robots: list[tuple[str, int, int]], text: str) -> None:
     assert in_words(coverage(planned(robots))) == text
-
-
-def test_what_is_no_node_of_a_robot_does_not_count() -> None:
-    """Tools come and go; what a node makes for itself has a name of its own in each run."""
-    plan = planned([("a", 1, 0)])
-    more = (Node("/a/rviz2", robot="a"), Node("/a/worker_*", robot="a"))
-    twice = (*plan.nodes, *plan.nodes, *more)
-    assert in_words(coverage(plan._replace(nodes=twice))) == "1 robot, 1 node: all known"
-
-
-def test_a_recording_has_no_nodes() -> None:
-    held = coverage(planned([("a", 2, 0)]), System(environment=environment()))
-    assert in_words(held) == "1 robot, 2 nodes: all known, 0 of 2 seen"
-    assert not held.is_whole

@@ -16,7 +16,6 @@ MODEL = """<sdf version="1.12"><model name="rover" namespace="fleet"><link name=
 URDF = (
     '<robot name="r"><link name="base"/><gazebo>\n<model name="m" namespace="n"/></gazebo></robot>'
 )
-OWN = 'namespace="fleet/robot1"'
 
 
 @pytest.fixture(autouse=True)
@@ -26,34 +25,6 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "m.sdf").write_text(MODEL)
     (tmp_path / "m.urdf").write_text(URDF)
     return tmp_path
-
-
-def rewritten(folder: Path, *words: str) -> str:
-    assert urdf_postfix.main(["m.sdf", "robot1", "-o", "out.sdf", "-q", *words]) == 0
-    return (folder / "out.sdf").read_text()
-
-
-def test_the_option_comes_before_the_variable(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    assert OWN not in rewritten(folder)
-    monkeypatch.setenv("ROS_DISTRO", "rolling")
-    assert OWN in rewritten(folder)
-    assert OWN not in rewritten(folder, "--distro", "humble")
-
-
-def test_a_rewrite_is_taken_back_for_its_release(folder: Path) -> None:
-    made = rewritten(folder, "--distro", "rolling")
-    (folder / "made.sdf").write_text(made)
-    words = ["made.sdf", "robot1", "--undo", "-q", "-o", "back.sdf", "--distro", "rolling"]
-    assert urdf_postfix.main(words) == 0
-    assert (folder / "back.sdf").read_text() == MODEL
-
-
-def test_why_answers_for_the_release(capsys: pytest.CaptureFixture[str]) -> None:
-    for release, kind in (("rolling", "subtopic"), ("lyrical", "topic")):
-        assert urdf_postfix.main(["--why", "m.sdf:2", "--distro", release]) == 0
-        assert f" {kind}" in capsys.readouterr().out.replace("topic>", "")
 
 
 def test_a_release_that_is_not_known(capsys: pytest.CaptureFixture[str]) -> None:
@@ -105,43 +76,6 @@ def test_a_vocabulary_is_checked_for_its_release(
     assert multibot.main([*words, "humble"]) == 2
     assert "there is no [element nowhere]" in capsys.readouterr().err
     assert multibot.main([*words, "jazzy"]) == 0
-
-
-def test_a_section_of_another_release_is_named(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    (folder / "lamp.vocab").write_text("[plugin lamp]\nreleases: <=jazzy\nlink uses link\n")
-    words = ["inspect", "lamp", "--vocabulary", "lamp.vocab", "--distro"]
-    assert multibot.main([*words, "lyrical"]) == 2
-    said = "'lamp' is not in lyrical, only in humble, jazzy; name one of them with --distro"
-    assert said in capsys.readouterr().err
-    assert multibot.main([*words, "humble"]) == 0
-
-
-def test_why_says_where_it_is_written(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    place = "acme/lamps@1.2.0 src/lamp.cpp:34"
-    (folder / "why.vocab").write_text(f"[plugin lamp]\nsource: {place}\nlink uses link\n")
-    plugin = "<plugin filename='liblamp.so'><link>base</link></plugin>"
-    text = f"<robot name='r'><link name='base'/>\n<gazebo>\n{plugin}</gazebo></robot>"
-    (folder / "lamp.urdf").write_text(text)
-    assert urdf_postfix.main(["--why", "lamp.urdf:3", "--vocabulary", "why.vocab"]) == 0
-    said = [it.strip() for it in capsys.readouterr().out.splitlines()]
-    assert said[-1] == f"source: {place}"
-
-
-def test_why_a_value_is_renamed_or_not(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Whole; without a robot for the first of a fleet."""
-    (folder / "a.urdf").write_text('<robot name="a">\n<link name="base"/>\n<x y="base"/></robot>')
-    assert urdf_postfix.main(["--why", "a.urdf:2"]) == 0
-    first, value, claimed, *rest = capsys.readouterr().out.splitlines()
-    assert (first, value) == ("a.urdf:2:13: robot/link@name", "  value: 'base'")
-    assert claimed.startswith("  claimed by [element link] urdf.vocab:")
-    assert claimed.endswith(": @name declares link; also the tf frame")
-    assert rest == ["  is: link 'base'", "  for robot1: 'base/robot1'"]
-    assert urdf_postfix.main(["--why", "a.urdf:3", "r2"]) == 0
-    place, value, claimed = capsys.readouterr().out.splitlines()
-    assert (place, value) == ("a.urdf:3:7: robot/x@y", "  value: 'base'")
-    assert claimed.startswith("  claimed by no rewriter: ")
 
 
 CLASSIC = (

@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -115,6 +117,24 @@ def test_a_call_that_fails_leaves_everything_as_it_was(
         for name, data in OLD.items():
             (folder / name).write_bytes(data)
     assert 0 < whole < len(calls) / 2
+
+
+def test_an_interrupt_at_any_call_leaves_no_copies(folder: Path, calls: range) -> None:
+    for number in calls:
+        left = iter(range(1, 10**6))
+
+        def watch(_: str, __: tuple[Any, ...], go: Callable[[], Any], at: int = number) -> Any:
+            if next(left) == at:  # noqa: B023
+                os.kill(os.getpid(), signal.SIGINT)
+            return go()
+
+        with pytest.MonkeyPatch.context() as patch, suppress(KeyboardInterrupt):
+            watched(patch, watch)
+            write(folder)
+        assert held(folder) in (OLD, NEW)
+        shutil.rmtree(folder / "more", ignore_errors=True)
+        for name, data in OLD.items():
+            (folder / name).write_bytes(data)
 
 
 @pytest.mark.slow

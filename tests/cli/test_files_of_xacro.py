@@ -111,11 +111,6 @@ def test_a_build_writes_over_nothing_that_a_xacro_reads(
     assert there(robot) == before
 
 
-def test_another_file_is_written(robot: Path) -> None:
-    assert POSTFIX(["r.urdf.xacro", "robot1", "-o", "parts/made.urdf"]) == 0
-    assert (robot / "parts" / "made.urdf").exists()
-
-
 WARNED: dict[str, Command] = {
     "postfix": (POSTFIX, "r.urdf.xacro robot1 robot2 -o {robot}.urdf tf_prefx:={robot}_"),
     "lint": (LINT, "r.urdf.xacro --select MB144 --fail-on error tf_prefx:=x_"),

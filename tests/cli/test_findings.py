@@ -126,16 +126,6 @@ def test_every_format_tells_the_finding(
     assert text.count("MB405") >= 1
 
 
-def test_a_refused_rewrite_is_reported_in_the_format_too(tmp_path: Path, said: Said) -> None:
-    twice = tmp_path / "twice.urdf"
-    twice.write_text('<robot name="r"><link name="a"/><link name="a"/></robot>')
-    words = ("urdf-postfix", str(twice), "robot1", "-o", str(tmp_path / "out"))
-    code, out, _ = said(*words, "--format", "json", "--ignore", "MB2")
-    assert (code, codes(out)) == (1, ["MB201"])
-    code, out, err = said(*words)
-    assert (code, out, err.count("MB201")) == (1, "", 1)
-
-
 # ---------------------------------------------------------------- tables and graphs
 
 

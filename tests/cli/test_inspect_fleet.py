@@ -58,12 +58,6 @@ def test_each_process_is_shown(folder: Path, capsys: pytest.CaptureFixture[str])
     assert "up.launch.py:8" in capsys.readouterr().out
 
 
-def test_the_fleet_file_says_otherwise(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    found = inspected(folder, capsys, "own_nodes: [map_server]\nshared_nodes: [late]")
-    assert f"each robot | {MAP} | " in found
-    assert "all robots | own late | up.launch.py:8 |  | shared_nodes names it" in found
-
-
 def test_a_robot_without_a_launch_file_has_none(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

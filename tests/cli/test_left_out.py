@@ -9,7 +9,6 @@ from pathlib import Path
 
 import pytest
 
-from multibot_rewrite.base import left_out
 from multibot_rewrite.cli import urdf_lint
 from multibot_rewrite.description.sources import included_by
 from multibot_rewrite.fleet.proposal.searching import search
@@ -108,19 +107,6 @@ def test_nothing_left_to_read_says_what_was_left_out(
     )
 
 
-def test_git_is_asked_in_the_repository_of_each_file(workspace: Path) -> None:
-    """A repository in another one has its own rules; outside of any nothing is ignored."""
-    inner = workspace / "src" / "arm" / "gen" / "inner"
-    inner.mkdir()
-    run(inner, "init", "-q")
-    (inner / ".gitignore").write_text("b.urdf\n")
-    paths = [str(inner / "a.urdf"), str(inner / "b.urdf"), "src/arm/gen/h.urdf", "../a.urdf"]
-    assert left_out.ignored_by_git(paths) == {str(inner / "b.urdf"), "src/arm/gen/h.urdf"}
-    link = workspace / "link"
-    link.symlink_to(workspace / "src" / "arm" / "gen")
-    assert left_out.ignored_by_git(["link/h.urdf"]) == {"link/h.urdf"}
-
-
 def test_without_git_nothing_is_ignored(
     workspace: Path, linted: Linted, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -136,28 +122,3 @@ def test_the_other_commands_leave_the_same_folders_out(workspace: Path) -> None:
     for name in ("build/p.xacro", "old/p.xacro", "src/p.xacro"):
         (workspace / name).write_text("<robot/>")
     assert included_by._xacros(".") == ["src/p.xacro"]
-
-
-def test_a_folder_of_models_alone_is_linted(
-    tmp_path: Path, linted: Linted, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (tmp_path / "model.sdf").write_text(
-        '<sdf version="1.9"><model name="m"><link name="a"/><link name="b"/></model></sdf>'
-    )
-    monkeypatch.chdir(tmp_path)
-    assert "1 file: no findings" in linted(".")[1]
-
-
-def test_quiet_shows_no_note(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    """Unless the command fails on notes, or a program reads the findings."""
-    file = tmp_path / "a.urdf"
-    file.write_text(
-        '<robot name="a"><link name="b"><inertial><mass value="1"/></inertial></link></robot>'
-    )
-    levels = {}
-    for words in ((), ("-q",), ("-q", "--fail-on", "note"), ("-q", "--format", "json")):
-        urdf_lint.main([str(file), *words])
-        out, err = capsys.readouterr()
-        levels[words] = ": note: " in out or '"level": "note"' in out
-        assert words == () or err == ""
-    assert [*levels.values()] == [True, False, True, True]

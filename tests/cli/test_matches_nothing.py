@@ -64,7 +64,10 @@ BESIDE = "urdf-postfix params.yaml robot1 --urdf rover.urdf -o out/p.yaml"
             f"{REWRITE} --shared scan",
             "no frame 'scan'; topics are written with a slash: --shared /sc",
         ),
-        (f"{REWRITE} --shared /nosuch", "--shared /nosuch: the input has no topic '/nosuch'\n"),
+        (
+            f"{REWRITE} --shared /nosuch",
+            "has no topic '/nosuch'; its topics are ",
+        ),
         (f"{REWRITE} --shared map,/scann", "no topic '/scann'; did you mean '/scan'?"),
         (f"{REWRITE} --shared base_lnk", "no frame 'base_lnk'; did you mean 'base_link'?"),
         (f"{REWRITE} --shared /base_link", "frames have no slash: --shared base_link"),
@@ -183,17 +186,6 @@ def test_a_name_of_a_fleet_file_that_nothing_has(
     begin, _, end = said.partition(" * ")
     assert len(lines) == bool(said)
     assert all(it.startswith(f"fleet.yaml:{begin}") and end in it for it in lines)
-
-
-def test_a_name_that_a_parameter_file_of_the_fleet_has_is_known(
-    here: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    # A node that is not known, so that its parameter is a text and no frame.
-    (here / "params.yaml").write_text("tracker:\n  ros__parameters: {anchor: hall}\n")
-    text = FLEET % ("/clock", "hall")
-    (here / "fleet.yaml").write_text(f"{text}companions: {{params: params.yaml}}\n")
-    run("multibot build -o out")
-    assert "MF838" not in capsys.readouterr().err
 
 
 def test_the_names_of_a_call_without_a_fleet_file(

@@ -108,7 +108,9 @@ def write(path: Path, text: str) -> None:
         (("inspect", "no.urdf"), "no.urdf: there is no such file or folder"),
         (("inspect", "--suggest", "no.urdf"), "no.urdf: cannot be read: No such file"),
         (("inspect", "--vocabulary", "no"), "no: cannot be read: No such file"),
-        (("inspect", "no"), "'no' is not known: no plugin, class, element, sensor type"),
+        (("inspect", "no"), "'no' is not known: no plugin, node, class, element, sensor type"),
+        (("inspect", "amc"), "the nearest known: amcl"),
+        (("inspect", "dwb_critics::GoalDistCritc"), "nearest known: dwb_critics::GoalDistCritic"),
         (("inspect", "MX1"), "multibot: no rule has the code 'MX1', and none begins with it; "),
         (("build", ROVER, "-o", "x"), "rover.urdf: a description; use multibot init, which makes"),
         (
@@ -116,8 +118,8 @@ def write(path: Path, text: str) -> None:
             "rover.urdf: a description; use multibot init, which makes a fleet file",
         ),
         (("check", LAUNCH), ".launch.xml: a launch file; use multibot check-launch, or"),
-        (("inspect", "."), ". is no xacro; urdf-lint . tells what is not known in it"),
-        (("inspect", ROVER), "rover.urdf tells what is not known in it"),
+        (("inspect", "."), ". is no xacro; urdf-lint . shows what is unknown in it"),
+        (("inspect", ROVER), "rover.urdf shows what is unknown in it"),
         (("inspect", ARM, ARM), "the arguments of one xacro file are shown; leave it out"),
         (("inspect", "name:=a"), "name:=a is an argument of a xacro file; name the file"),
         (("inspect", ROVER, "name:=a"), "NAME:=VALUE is for xacro"),
@@ -321,3 +323,11 @@ def test_a_suggestion_leaves_out_what_a_given_file_knows(multibot: Multibot, two
 def test_the_fixture_robots_need_no_suggestion(multibot: Multibot) -> None:
     for path in sorted(ROBOTS.glob("*.urdf")):
         assert "[" not in multibot("inspect", "--suggest", str(path)).out
+
+
+def test_a_class_of_a_plugin_is_known(capsys: pytest.CaptureFixture[str]) -> None:
+    """dwb_critics/default_critics.xml registers it, trajectory_critic.hpp has scale."""
+    assert main(["inspect", "dwb_critics::GoalDistCritic"]) == 0
+    told = capsys.readouterr().out
+    assert "dwb_critics::GoalDistCritic  a plugin of dwb_core::TrajectoryCritic, in all" in told
+    assert "\nscale " in told

@@ -72,13 +72,6 @@ def test_the_bridge_of_a_fleet(capsys: pytest.CaptureFixture[str]) -> None:
     assert {row["ros_topic_name"].split("/")[1] for row in rows} == {"clock", "r1", "r2"}
 
 
-def test_the_table_is_for_people(capsys: pytest.CaptureFixture[str]) -> None:
-    code, out, _ = run(capsys, ROVER, "robot1", "--stack", "robot_state", "--layout", "L1")
-    assert code == 0
-    assert "/robot1/robot_state_publisher" in out
-    assert "/tf -> tf" in out
-
-
 @pytest.mark.parametrize(
     ("words", "message"),
     [
@@ -98,23 +91,6 @@ def test_wrong_use_is_one_line(
     assert message in err
     assert err.count("\n") == 1
     assert Path(ROVER).read_bytes() == before
-
-
-def test_nodes_of_ones_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    own = tmp_path / "own.yaml"
-    own.write_text(
-        "nodes:\n"
-        "  painter:\n"
-        "    package: acme\n"
-        "    publishes: {/paint: std_msgs/msg/String}\n"
-        "stacks:\n"
-        "  shop:\n"
-        "    nodes: [painter]\n"
-    )
-    words = (ROVER, "robot1", "--nodes", str(own), "--stack", "shop", "--layout", "L2")
-    code, out, err = run(capsys, *words)
-    assert code == 0, err
-    assert "/paint -> paint" in out
 
 
 @pytest.mark.more

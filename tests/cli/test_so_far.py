@@ -5,26 +5,18 @@ from __future__ import annotations
 
 import fault_changes
 import pytest
-import small_fleet
 from graph_examples import read_system
 
 from multibot_rewrite.cli.live import so_far
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.ros import assemble, observe
-from multibot_rewrite.producers.ros.request import Request, from_text, to_text
+from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.rules.check import ABSENCE
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, End, System
 
 
 def judge(seen: System) -> object:
     return diagnose(seen).findings
-
-
-def test_a_healthy_view_has_nothing_wrong_so_far() -> None:
-    seen = small_fleet.healthy("L2")
-    assert so_far(seen, judge) == f"{len(seen.nodes)} nodes so far, nothing wrong seen"  # type: ignore[arg-type]
-    assert so_far(seen, None) == f"{len(seen.nodes)} nodes so far, nothing wrong seen"
-    assert so_far(seen._replace(nodes=(), ends=()), None) == "0 nodes so far"
 
 
 def test_what_contradicts_is_shown_and_what_is_missing_is_not() -> None:
@@ -37,11 +29,6 @@ def test_what_contradicts_is_shown_and_what_is_missing_is_not() -> None:
     ).system
     assert "MG501" in {it.code for it in diagnose(missing).findings} & ABSENCE
     assert so_far(missing, judge) == "1 node so far, nothing wrong seen"  # type: ignore[arg-type]
-
-
-def test_a_request_for_what_is_seen_so_far_survives_the_command_line() -> None:
-    request = Request(3.0, headers=True, shows=True)
-    assert from_text(to_text(request)) == request
 
 
 def ends_of(topic: str, asked: bool) -> list[End]:

@@ -254,15 +254,14 @@ def test_a_result_does_not_replace_what_is_read(tmp_path: Path) -> None:
     walk.check_target(str(tmp_path), [str(tmp_path / "c")])
 
 
-def test_a_link_out_of_its_folder_is_not_written_through(tmp_path: Path) -> None:
+def test_a_link_is_not_written_through(tmp_path: Path) -> None:
     (tmp_path / "sub").mkdir()
-    link, inside = tmp_path / "sub" / "link", tmp_path / "sub" / "inside"
+    link = tmp_path / "sub" / "link"
     link.symlink_to(tmp_path / "far")
-    inside.symlink_to("near")
     assert said(walk.check_link, str(link)) == (
         f"{link} is a link to {tmp_path / 'far'}; name that, if it is meant"
     )
-    for fine in (str(inside), str(tmp_path / "plain"), "/dev/stdout"):
+    for fine in (str(tmp_path / "plain"), "/dev/stdout"):
         walk.check_link(fine)
 
 

@@ -22,6 +22,7 @@ WRONG = (
     ("r.urdf", ("no robot name given; for example: urdf-postfix r.urdf robot1\n",)),
     ("r.urdf --undo", ("for example: urdf-postfix r.urdf robot1 --undo\n",)),
     ("r.urdf a:=b", ("no robot name given",)),
+    ("robot1 robot2 r.urdf", ("the file comes first: urdf-postfix r.urdf robot1\n",)),
     # Names of robots.
     ("r.urdf robot-1", ("'robot-1'", "'-'", "'robot_1'")),
     ("r.urdf 1st", ("'1st'", "digit '1'", "'robot_1st'")),

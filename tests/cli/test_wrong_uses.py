@@ -12,13 +12,11 @@ import pytest
 import small_fleet
 from refusals import said
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
-from multibot_rewrite.base.model import Edit
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.cli import (
     check,
     lint,
     live,
-    plan,
     rewrite_use,
     unplanned,
     view,
@@ -101,30 +99,6 @@ def test_a_lint_that_cannot_be_meant(given: dict[str, object], message: str) -> 
     assert said(lint.check_use, options(**{**LINT, **given})) == message
 
 
-@pytest.mark.parametrize(
-    "given",
-    [{}, {"words": ["-"]}, {"fix": True, "diff": True}, {"write_baseline": "b"},
-     {"fix": True, "output": "x", "baseline": "b", "changed_since": "HEAD"}],
-)  # fmt: skip
-def test_a_lint_that_can(given: dict[str, object]) -> None:
-    lint.check_use(options(**{**LINT, **given}))
-
-
-def test_the_last_line_of_a_lint() -> None:
-    edit = (Edit(0, 1, b"", None),)
-    found = [
-        Finding("MB1", ERROR, "", edits=edit), Finding("MB1", ERROR, ""),
-        Finding("MB2", NOTE, "", edits=edit),
-    ]  # fmt: skip
-    told = options(changed_since=None, fix=False)
-    assert lint._summary(told, ["a"], [], 0) == "1 file: no findings"
-    assert lint._summary(told, ["a", "b"], found, 0) == "2 files: 2 errors, 1 note; --fix fixes 2"
-    fixed = options(changed_since="HEAD~1", fix=True)
-    assert lint._summary(fixed, ["a"], found[:1], 3) == (
-        "1 file changed since HEAD~1: 1 error; 3 in the baseline are gone"
-    )
-
-
 # ---------------------------------------------------------------- plan, check --watch
 
 
@@ -133,16 +107,6 @@ PLAN = {
     "form": "plan",
     "separator": [], "shared": [], "input": "a.launch.py", "words": [], "output": None,
 }  # fmt: skip
-
-
-def test_a_launch_file_says_what_runs() -> None:
-    for given, what in (
-        ({"stack": ["nav2"]}, "--stack"), ({"shared": ["x"]}, "--shared"),
-        ({"form": "table"}, "--form"), ({"robots": ["a"], "layout": "both"}, "--robots"),
-    ):  # fmt: skip
-        assert said(plan._of_launch, options(**{**PLAN, **given})) == (
-            f"a.launch.py: a launch file says what runs, leave out {what}"
-        )
 
 
 def views(*graphs: System) -> Generator[Mapping[int, System], None, None]:
@@ -227,19 +191,6 @@ def test_what_a_check_does_not_take_together() -> None:
             )
     suggesting = options(**{**usual, "suggest": "x", "watch": False})
     assert said(check._check_use, suggesting) == "--suggest begins a plan: leave out PLAN"
-
-
-def test_a_suggestion_replaces_nothing(tmp_path: Path) -> None:
-    usual = options(
-        **{**WATCH, "watch": False, "zenoh": None, "bag": None, "suggest": str(tmp_path)}
-    )
-    unplanned._check_use(usual)
-    for name in ("fleet.yaml", "nodes.yaml", "robot.urdf", "plan.yaml"):
-        (tmp_path / name).write_text("")
-        assert said(unplanned._check_use, usual) == (
-            f"{tmp_path / name} is there already; name another folder with --suggest"
-        )
-        (tmp_path / name).unlink()
 
 
 def test_a_folder_is_a_file_of_each_robot_below_it(tmp_path: Path) -> None:

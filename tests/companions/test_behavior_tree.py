@@ -21,7 +21,6 @@ from paths import fixture_text
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.behavior_tree.rewrite import rewrite_behavior_tree
-from multibot_rewrite.spelling.table import build_table
 
 LAYOUTS = ("L1", "L2", "L3", "L4")
 DECLARED = {"link": {"base_link": None, "tool": None}, "joint": {"wheel": None}}
@@ -154,16 +153,6 @@ def test_a_port_that_is_set_is_not_inserted() -> None:
 SUBTREES = fixture_text("behavior_tree_subtrees.xml")
 
 
-def test_literals_are_followed_into_subtrees() -> None:
-    new, found = run(SUBTREES, context())
-    wanted = SUBTREES.replace('costmap="/clear"', 'costmap="/amr/clear"')
-    wanted = wanted.replace('spot="base_link"', 'spot="sp/base_link"')
-    wanted = wanted.replace('="tool"', '="sp/tool"').replace('value="odom"', 'value="sp/odom"')
-    assert new == wanted
-    column = SUBTREES.splitlines()[3].index('other="') + len('other="') + 1
-    assert [(it.code, it.line, it.column) for it in found] == [("MB901", 4, column)]
-
-
 @pytest.mark.parametrize(
     ("shares", "followed"),
     [
@@ -184,18 +173,6 @@ def test_what_a_subtree_is_called_is_no_port(port: str, renamed: bool) -> None:
     assert ('value="/amr/clear"' in run(text, context())[0]) is renamed
 
 
-def test_a_subtree_of_itself_ends() -> None:
-    body = '<SubTree ID="Main" a="/b"/><Spin server_name="{a}"/>'
-    assert 'a="/amr/b"' in run(tree(body), context())[0]
-
-
-def test_subtrees_of_version_3_map_bare_names() -> None:
-    body = '<SubTree ID="Main" robot_base_frame="base_link"/>'
-    assert run(tree(body, ""), context()) == (tree(body, ""), ())
-    plus = '<SubTreePlus ID="Main" robot_base_frame="base_link"/>'
-    assert one(plus, form="") == plus.replace("base_link", "sp/base_link")
-
-
 def test_models_for_editors_stay_and_those_of_subtrees_do_not() -> None:
     text = """<root BTCPP_format="4">
   <TreeNodesModel>
@@ -207,15 +184,6 @@ def test_models_for_editors_stay_and_those_of_subtrees_do_not() -> None:
 """
     line = '<SubTree ID="A"><input_port name="global_frame" default="odom"/>'
     assert run(text, context()) == (text.replace(line, line.replace("odom", "sp/odom")), ())
-
-
-def test_bytes_around_stay() -> None:
-    text = (
-        '\ufeff<?xml version="1.0"?>\r\n<!-- odom ä -->\r\n<root   BTCPP_format = "4" >\r\n'
-        '\t<BehaviorTree ID="ä">\r\n\t\t<A\r\n\t\t  robot_base_frame\t=\t"base_link"\r\n\t\t/>\r\n'
-        "<![CDATA[ base_link ]]></BehaviorTree>\r\n</root>\r\n"
-    )
-    assert run(text, context())[0] == text.replace('"base_link"', '"sp/base_link"')
 
 
 @pytest.mark.parametrize(
@@ -253,30 +221,6 @@ def test_what_is_no_tree_is_one_line(data: bytes, said: str) -> None:
 )
 def test_findings(body: str, found: list[str]) -> None:
     assert [code for code, _ in codes(tree(body), context())] == found
-
-
-def test_an_unknown_frame_is_reported_with_the_nearest() -> None:
-    text = tree('<A robot_base_frame="base_lnk"/>')
-    (found,) = run(text, context("L1"))[1]
-    assert found.hint == "did you mean 'base_link'?"
-    assert found.column == text.index("base_lnk") + 1
-
-
-def test_another_file_is_said() -> None:
-    text = '<root BTCPP_format="4">\n<include path="other.xml"/></root>'
-    assert codes(text, context()) == [("MB887", 2)]
-
-
-@pytest.mark.parametrize("layout", LAYOUTS)
-def test_services_are_those_that_the_table_has(layout: str) -> None:
-    naming = make_naming(layout, "postfix" if layout == "L4" else "prefix")
-    ends = build_table(["amr", "b"], FACTS, naming, release=NEWEST_LTS).ends
-    served = {name for run, _, name in ends if run.robot == "amr"}
-    for name in ("local_costmap/clear_entirely_local_costmap", "planner_selector", "spin"):
-        port = "server_name" if name == "spin" else "service_name"
-        node = etree.fromstring(one(f'<A {port}="{name}"/>', layout))
-        lead = "/" if layout == "L4" else "/amr/"
-        assert lead + str(node.get(port)) in served
 
 
 VALUES = st.sampled_from(["base_link", "odom", "map", "/a/b", "{x}", "", "a'b", "1.5", "ä"])

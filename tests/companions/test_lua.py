@@ -9,7 +9,7 @@ from companion_calls import NEWEST_LTS, Context, fill_template, make_context, ma
 from hypothesis import given, strategies as st
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.companions.lua import OWN_FILES, rewrite_lua, tokens_of
+from multibot_rewrite.companions.lua import rewrite_lua, tokens_of
 
 LAYOUTS = ("L1", "L2", "L3", "L4")
 DECLARED = {"link": {"base_link": None, "imu_link": None}, "joint": {}}
@@ -113,10 +113,6 @@ def test_findings(text: str, found: list[tuple[str, int]]) -> None:
     assert codes(text) == found
 
 
-def test_what_includes_of_cartographer_hold_needs_no_word() -> None:
-    assert codes("".join(f'include "{name}"\n' for name in sorted(OWN_FILES))) == []
-
-
 @pytest.mark.parametrize(
     ("text", "line"),
     [
@@ -157,9 +153,3 @@ def test_tokens_are_the_text(pieces: list[str]) -> None:
     found = list(tokens_of(text, "a.lua"))
     assert all(text.startswith(it.text, it.at) for it in found)
     assert [it.text for it in found] == [it for it in pieces if not it.startswith("--")]
-
-
-def test_a_place_has_its_line_and_column() -> None:
-    text = 'a = {\n--[[ of\ntwo ]] odom_frame = "odom",\n  tracking_frame = "base_link"}\n'
-    found = [(it.text, it.line, it.column) for it in tokens_of(text, "f") if it.kind == "string"]
-    assert found == [('"odom"', 3, 21), ('"base_link"', 4, 20)]

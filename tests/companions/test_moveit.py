@@ -23,7 +23,6 @@ from multibot_rewrite.companions.moveit.rewrite import node_of, rewrite_moveit
 from multibot_rewrite.companions.names.rename_map import with_srdf
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.knowledge.node_library import stack_of
-from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.stacks import built_in
 
 LINKS = ("base_link", "tool0", "camera_link")
@@ -49,15 +48,6 @@ def run(text: str, it: Context, file: str = "a.yaml") -> tuple[str, tuple[Findin
 
 def text_of(text: str, it: Context) -> str:
     return run(text, it)[0]
-
-
-@pytest.mark.parametrize("frame", ["map", "odom", "world", "earth", "utm", "local_enu"])
-def test_frames_that_nodes_send_are_not_missed_in_the_description(frame: str) -> None:
-    """REP 105 and navsat_transform_node; the same frames as in parameter files."""
-    assert built_in_nodes(NEWEST_LTS).sent >= {frame}
-    text = "controller_list:\n  - {name: a, base_frame_id: %s}\n"
-    assert codes(text % frame, context("L2", shared_frames=())) == []
-    assert codes(text % "base_lnik", context("L2", shared_frames=())) == [("MB853", 2)]
 
 
 def codes(text: str, it: Context) -> list[tuple[str, int]]:
@@ -147,15 +137,6 @@ def test_what_is_no_file_of_moveit_is_one_line(text: str, said: str) -> None:
     with pytest.raises(InputError) as raised:
         run(text, context())
     assert said in str(raised.value) and "\n" not in str(raised.value)
-
-
-@pytest.mark.parametrize("depth", [1, 500, 900, 970, 3000])
-def test_deep_nesting_is_no_traceback(depth: int) -> None:
-    text = "controller_list: " + "[" * depth + "{joints: [j1]}" + "]" * depth + "\n"
-    try:
-        assert text_of(text, context()) == text.replace("j1", "sp_j1")
-    except InputError as error:
-        assert depth > 100 and "\n" not in str(error)
 
 
 # (text, {layout: what it becomes}); a layout that is not there leaves the text as it is.
@@ -360,30 +341,12 @@ def test_a_file_for_a_robot(name: str, layout: str) -> None:
     assert text_of(text, context(layout)) == new
 
 
-def test_a_bom_and_no_last_line_end_stay() -> None:
-    assert text_of("\ufeffj1: 1.0", context()) == "\ufeffsp_j1: 1.0"
-
-
-@pytest.mark.parametrize(("groups", "new"), [("keep", "arm"), ("rename", "sp_arm")])
-def test_groups_follow_the_policy_in_keys_and_values(groups: str, new: str) -> None:
-    it = context("L2", groups=groups)
-    assert text_of("arm: {kinematics_solver: a/B}\n", it) == f"{new}: {{kinematics_solver: a/B}}\n"
-    text = "controller_list: []\ninitial:\n  - group: arm\n    pose: home\n"
-    assert text_of(text, it) == text.replace("group: arm", f"group: {new}")
-
-
 def test_groups_without_an_srdf_are_reported() -> None:
     text = "arm: {kinematics_solver: a/B}\n"
     new, found = run(text, context("L2", srdf=False, groups="rename"))
     assert new == text and [it.code for it in found] == ["MB892"]
     assert codes(text, context("L2", srdf=False)) == []
     assert codes(text, context("L2", groups="rename")) == []
-
-
-def test_virtual_joints_of_an_srdf_are_joints() -> None:
-    text = "joint_limits: {virtual_joint: {max_velocity: 1}}\n"
-    assert text_of(text, context()) == text.replace("virtual", "sp_virtual")
-    assert codes(text, context(srdf=False)) == [("MB854", 1)]
 
 
 def test_a_name_that_the_description_lacks_is_reported_once_with_the_nearest() -> None:
@@ -415,15 +378,6 @@ def test_a_name_that_the_description_lacks_is_reported_once_with_the_nearest() -
 )
 def test_findings(text: str, found: list[tuple[str, int]]) -> None:
     assert codes(text, context()) == found
-
-
-def test_a_substitution_stays() -> None:
-    text = "joint_limits:\n  $(arg p)j1: {}\n"
-    assert text_of(text, context()) == text
-
-
-def test_mentions_matter_only_where_names_change() -> None:
-    assert codes("arm:\n  kinematics_solver: a/B\n  favourite: j1\n", context("L1")) == []
 
 
 def test_an_alias_that_needs_two_new_names_is_refused() -> None:
@@ -465,11 +419,6 @@ def test_the_manager_that_moveit_asks_is_the_robots() -> None:
         assert codes(text, context("L4")) == [("MB893", line)]
 
 
-def test_another_controller_manager_needs_no_namespace() -> None:
-    text = "moveit_controller_manager: moveit_simple_controller_manager/MoveItSimpleControllerManager\n"
-    assert text_of(text, context()) == text and codes(text, context("L4")) == []
-
-
 JOINT_LISTS = st.lists(st.sampled_from([*JOINTS[:2], "other", "a b", "0.5", "${x}j1", ""]))
 
 
@@ -487,14 +436,6 @@ def test_lists_of_joints(joints: list[str], layout: str, quote: str, flow: bool)
     wanted = [spell.format(it) if it in JOINTS else it for it in old]
     assert (after["controller_list"][0]["joints"] or []) == wanted
     assert text_of(text, context(layout)).count("# j1") == text.count("# j1")
-
-
-def test_a_file_of_another_robot_is_told_at_its_first_name() -> None:
-    """A name that comes again is at its first place, too."""
-    text = "controller_list:\n  - {name: c, joints: [a]}\n  - {name: d, joints: [b, q, a]}\n"
-    (found,) = run(text, context())[1]
-    assert (found.code, found.level, found.line) == ("MB875", "error", 2)
-    assert found.message.startswith("3 of the 3 names in this file are in no description: a, b")
 
 
 @pytest.mark.parametrize("prefix", ["$(var tf_prefix)", "<robot_namespace>_", "${prefix}"])

@@ -13,9 +13,9 @@ from multibot_rewrite.companions.context import NAMESPACE_SLOT, TAG_SLOT
 from multibot_rewrite.companions.engine import splices_of
 from multibot_rewrite.companions.params.sections import raw_sections
 from multibot_rewrite.companions.params.shared_defaults import takes_sections
-from multibot_rewrite.companions.rviz.read_config import every, read_config
-from multibot_rewrite.companions.sites import AS_IS, UNCLEAR, XML, Site, Slot
-from multibot_rewrite.companions.yaml_text import Splice, YamlText, read_yaml
+from multibot_rewrite.companions.rviz.read_config import read_config
+from multibot_rewrite.companions.sites import UNCLEAR, Site, Slot
+from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 
 TO_DO = "put each node's parameters below ros__parameters:"
 ROS1 = "it has no ros__parameters key, so it is for ROS 1 or a node reads it directly; for ROS 2"
@@ -132,39 +132,6 @@ def test_lists_in_brackets_cannot_be_copied(text: str, line: int, what: str) -> 
     )
 
 
-def test_a_config_of_ros_1_is_refused() -> None:
-    text = "Visualization Manager:\n  Displays:\n    - Class: rviz/Grid\n"
-    with pytest.raises(InputError) as caught:
-        read_config(read(text, "a.rviz"))
-    assert str(caught.value) == (
-        "a.rviz:3: this is a ROS 1 config (rviz/Grid), which rviz2 cannot load; create it in rviz2"
-    )
-
-
-def test_displays_in_groups_are_found() -> None:
-    text = """\
-Panels:
-  - {Class: rviz_common/Displays, Name: Displays}
-Visualization Manager:
-  Displays:
-    - Class: rviz_common/Group
-      Name: all
-      Displays:
-        - {Class: rviz_default_plugins/LaserScan, Name: scan, Topic: {Value: /scan}}
-        - {Class: acme/Odd, Name: odd}
-  Tools:
-    - {Class: rviz_default_plugins/SetGoal, Topic: {Value: goal}}
-"""
-    config = read_config(read(text, "a.rviz"))
-    assert [it.name for it in every(config.displays)] == ["all", "scan", "odd"]
-    assert [it.known for it in every(config.displays)] == [True, True, False]
-    scan = next(it for it in every(config.displays) if it.name == "scan")
-    assert [(it.kind, it.text) for it in scan.places] == [("topic", "/scan")]
-    (panel,), (tool,) = config.panels, config.tools
-    assert (panel.places, panel.known, tool.known) == ((), True, True)
-    assert [it.text for it in tool.places] == ["goal"]
-
-
 @pytest.mark.parametrize("form", ["Action", "Condition", "Decorator", "Control"])
 def test_a_node_of_a_tree_is_called_by_its_id(form: str) -> None:
     """BT.CPP: the explicit form has the name in ID, the compact one is the tag."""
@@ -177,22 +144,6 @@ def test_a_node_of_a_tree_is_called_by_its_id(form: str) -> None:
 
 def site(slot: Slot, text: str, at: int = 0, size: int = -1) -> Site:
     return Site("frame", text, "key", slot, at, size)
-
-
-def test_several_names_of_one_value_are_put_in_their_places() -> None:
-    slot = Slot(1, 4, 3, 8, "a b c")
-    made = [(site(slot, "a", 0, 1), "long"), (site(slot, "c", 4, 1), "x")]
-    assert [*splices_of("k: a b c", "f", made)] == [Splice(3, 8, '"long b x"')]
-    assert [*splices_of("k: a b c", "f", [(site(slot, "a b c"), "a b c")])] == []
-    block = slot._replace(style="|")
-    assert [*splices_of("k: a b c", "f", [(site(block, "a"), "z")])] == []
-
-
-@pytest.mark.parametrize(("style", "new"), [(AS_IS, "<a>'"), (XML, "&lt;a&gt;&apos;")])
-def test_a_value_is_written_as_its_file_has_it(style: str, new: str) -> None:
-    slot = Slot(1, 1, 0, 1, "a", style)
-    (made,) = splices_of("a", "f", [(site(slot, "a"), "<a>'")])
-    assert made.new == new
 
 
 def test_what_cannot_be_edited_is_said() -> None:
@@ -211,9 +162,3 @@ def test_one_text_cannot_be_two_names() -> None:
         "f:7: an alias uses 'a' as two kinds of name, 'ROBOT/a' and '/ROBOT/a';"
         " write the value out in both places"
     )
-
-
-def test_an_anchor_before_a_value_stays() -> None:
-    text = "k: &x 'a'"
-    (made,) = splices_of(text, "f", [(site(Slot(1, 4, 3, 9, "a", "'"), "a"), "b")])
-    assert text[: made.start] + made.new + text[made.end :] == "k: &x 'b'"

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 import pytest
 import yaml
@@ -12,8 +11,6 @@ from beside import findings_of
 from companion_calls import (
     NAMESPACE_SLOT,
     NEWEST_LTS,
-    Splice,
-    all_sections,
     built_in,
     built_in_nodes,
     extend,
@@ -22,9 +19,6 @@ from companion_calls import (
     load_known_nodes,
     make_context,
     make_naming,
-    make_template,
-    quoted,
-    raw_sections,
     read_yaml,
     rewrite_params,
     stack_of,
@@ -99,25 +93,6 @@ def test_a_section_is_put_under_the_nodes_full_name(
     assert text.splitlines()[0] == f"{new}:"
 
 
-def test_one_key_may_hold_several_sections() -> None:
-    inner = "    ros__parameters: {use_sim_time: true}\n"
-    source = (
-        f"local_costmap:\n  local_costmap_client:\n{inner}  local_costmap_rclcpp_node:\n{inner}"
-    )
-    assert made(source)[0] == source.replace("local_costmap:", "/robot1/local_costmap:", 1)
-
-
-def test_the_helpers_of_a_costmap_go_with_it() -> None:
-    """Layout postfix: files of older releases have their sections below the one key."""
-    inner = "    ros__parameters: {use_sim_time: true}\n"
-    source = f"local_costmap:\n  local_costmap:\n{inner}  local_costmap_client:\n{inner}"
-    text, findings = made(source, L4)
-    keys = [line.strip(" :") for line in text.splitlines() if line.endswith(":")]
-    assert keys[0] == "/robot1/local_costmap"
-    assert {"local_costmap", "local_costmap_client"} <= set(keys)
-    assert "MF101" not in codes(findings)
-
-
 def test_rcl_would_find_every_section() -> None:
     """The keys joined as rcl joins them are the full names that the nodes run under."""
     context = setting(L2)
@@ -131,11 +106,6 @@ def test_rcl_would_find_every_section() -> None:
         assert joined.removesuffix("/ros__parameters") == expected
 
 
-def test_a_controllers_section_has_the_one_key_that_the_spawner_looks_for() -> None:
-    text, _ = made(section("diff_drive_controller", "publish_rate: 1.0"))
-    assert "/robot1/diff_drive_controller" in yaml.safe_load(text)
-
-
 @pytest.mark.parametrize("key", ["robot1", "/robot1", "robot1/", "/"])
 def test_the_namespace_of_the_robot_that_a_file_is_for_is_no_name_of_a_node(key: str) -> None:
     """Clearpath's generator writes a key with the namespace alone above the nodes."""
@@ -143,54 +113,6 @@ def test_the_namespace_of_the_robot_that_a_file_is_for_is_no_name_of_a_node(key:
     assert "MB312" not in codes(made(source, own=("robot1",))[1])
     wrong = source.replace("twist_server_node", "twist-server")
     assert "MB312" in codes(made(wrong, own=("robot1",))[1])
-
-
-def test_a_robots_name_in_a_file_is_an_error() -> None:
-    source = section("amcl", "scan_topic: /robot2/scan")
-    companion = rewrite_params(read_yaml(source.encode(), "p.yaml"), setting())
-    found = findings_of(companion, ["robot1", "robot2"])
-    assert [(it.level, it.line) for it in found if it.code == "MB863"] == [("error", 3)]
-    assert "MB863" not in codes(made(source)[1])
-
-
-OWN = """\
-robot1:
-  amcl:
-    ros__parameters: {scan_topic: scan}
-robot1/sensors/lidar:
-  driver:
-    ros__parameters: {rate: 1}
-/robot1/**:
-  ros__parameters: {use_sim_time: true}
-"""
-
-
-@pytest.mark.parametrize(
-    ("layout", "keys"),
-    [
-        ("L1", ["/robot1/amcl", "/robot1/sensors/lidar/driver", "/**"]),
-        ("L4", ["/**/amcl_robot1", "/sensors/lidar/driver_robot1", "/**"]),
-    ],
-)
-def test_a_file_for_one_robot_may_have_its_sections_in_its_namespace(
-    layout: str, keys: list[str]
-) -> None:
-    nodes = stack_of(built_in("jazzy"), "localization")
-    context = make_context(DECLARED, make_naming(layout=layout), nodes, distro="jazzy")  # type: ignore[arg-type]
-    document = read_yaml(OWN.encode(), "p")
-    robots = ["robot1", "robot2"]
-    made = rewrite_params(document, context, None, (), nodes, own=["robot1"])
-    text = fill_template(made.template, "robot1", "robot1")
-    assert [it.path for it in raw_sections(read_yaml(text.encode(), "p"))] == [
-        it.lstrip("/") for it in keys
-    ]
-    assert not {it.code for it in findings_of(made, robots)} & {"MB883", "MB863"}
-    others = rewrite_params(document, context, None, (), nodes)
-    assert {"MB883", "MB863"} <= {it.code for it in findings_of(others, robots)}
-    # Another robot's name below it is wrong all the same.
-    wrong = read_yaml(OWN.replace("scan_topic: scan", "scan_topic: /robot2/scan").encode(), "p")
-    found = findings_of(rewrite_params(wrong, context, None, (), nodes, own=["robot1"]), robots)
-    assert "MB863" in {it.code for it in found}
 
 
 def test_a_node_for_all_robots_keeps_its_section() -> None:
@@ -204,15 +126,6 @@ def test_a_node_for_all_robots_keeps_its_section() -> None:
     companion = rewrite_params(read_yaml((source * 2).encode(), "p"), context)
     assert fill_template(companion.template, "robot1", "r1") == source * 2
     assert codes(findings_of(companion)).count("MB886") == 1
-
-
-def test_a_repeated_section_is_rewritten_twice() -> None:
-    text, findings = made(section("amcl", "scan_topic: /a") + section("amcl", "map_topic: /m"))
-    assert text.count("/robot1/amcl:") == 2
-    assert "scan_topic: /robot1/a" in text
-    assert "map_topic: /robot1/m" in text
-    assert "MB866" in codes(findings)
-    assert text.count("odom_frame_id") == 1
 
 
 def test_a_repeated_key_is_rewritten_twice() -> None:
@@ -316,27 +229,6 @@ def test_a_name_is_renamed_by_its_kind(
     assert value(node, old, policy) == new
 
 
-@pytest.mark.parametrize("distro", ["jazzy", "kilted"])
-@pytest.mark.parametrize("policy", [L1, L2, L4])
-@pytest.mark.parametrize("layer", ["ObstacleLayer", "StaticLayer"])
-def test_a_private_topic_of_a_costmap_stays_private(
-    layer: str, policy: tuple[str, str], distro: str
-) -> None:
-    """Whatever namespace the costmap reads its topics in: ``~`` is the node."""
-    lines = (
-        "plugins: [all]",
-        "all:",
-        f"  plugin: nav2_costmap_2d::{layer}",
-        "  map_topic: ~/map",
-        "  observation_sources: front",
-        "  front: {topic: ~/scan}",
-    )
-    text = section("local_costmap", *lines)
-    nested = "local_costmap:\n" + "".join(f"  {line}\n" for line in text.splitlines())
-    rewritten, _ = made(nested, policy, distro)
-    assert ("map_topic: ~/map" in rewritten, "topic: ~/scan" in rewritten) == (True, True)
-
-
 @pytest.mark.parametrize(
     ("lines", "new"),
     [
@@ -359,15 +251,6 @@ def test_keys_that_are_joints_are_renamed_nested_and_dotted(
     assert not codes(findings)
 
 
-def test_a_controller_is_identified_by_its_type() -> None:
-    manager = section(
-        "controller_manager", "wheels:", "  type: diff_drive_controller/DiffDriveController"
-    )
-    text, _ = made(manager + section("wheels", "left_wheel_names: [left_wheel]"))
-    assert "left_wheel_names: [r1_left_wheel]" in text
-    assert "tf_frame_prefix_enable: false" in text
-
-
 @pytest.mark.parametrize("end", ["", "\n", "\n\n"])
 @pytest.mark.parametrize("above", ["", "/**/", "/<robot_namespace>/"])
 def test_a_controller_without_a_section_gets_one_behind_the_last_line(above: str, end: str) -> None:
@@ -387,18 +270,6 @@ def test_a_controller_with_a_section_in_any_namespace_gets_no_second_one(above: 
     manager = section(f"{above}controller_manager", "wheels_x:", f"  {kind}")
     text, _ = made(manager + section(f"{above}wheels_x", "a: 1"))
     assert len(yaml.safe_load(text)) == 2
-
-
-@pytest.mark.parametrize("word", ["y", "no", "1", "1e3"])
-def test_a_quoted_word_is_a_name_and_stays_quoted(word: str) -> None:
-    declared = {**DECLARED, "joint": {word: None}}
-    context = make_context(
-        declared, make_naming(layout="L2", affix="prefix"), (), distro=NEWEST_LTS
-    )  # type: ignore[arg-type]
-    source = section("joint_trajectory_controller", f"joints: ['{word}']")
-    companion = rewrite_params(read_yaml(source.encode(), "p"), context)
-    assert f"joints: ['r1_{word}']" in fill_template(companion.template, "robot1", "r1")
-    assert yaml.safe_load(quoted(word)) == word
 
 
 # ---------------------------------------------------------------- topics
@@ -428,30 +299,6 @@ def test_topics_of_costmap_layers_leave_the_costmaps_namespace(
     assert ("MF121" in codes(findings)) == (written == "scan" and distro != "kilted")
 
 
-def test_the_binary_filter_does_not_join_its_names_on_kilted_either() -> None:
-    layer = "plugin: nav2_costmap_2d::{}, filter_info_topic: info"
-    for plugin, new in (("BinaryFilter", "/robot1/info"), ("KeepoutFilter", "info")):
-        inner = f"      f: {{{layer.format(plugin)}}}\n"
-        source = f"local_costmap:\n  local_costmap:\n    ros__parameters:\n{inner}"
-        assert f"filter_info_topic: {new}}}" in made(source, L2, "kilted")[0]
-
-
-@pytest.mark.parametrize(
-    ("policy", "distro", "told"),
-    [(L2, "jazzy", True), (L2, "kilted", False), (L4, "kilted", True)],
-)
-def test_a_source_without_a_topic_is_reported(
-    policy: tuple[str, str], distro: str, told: bool
-) -> None:
-    layer = "layer: {observation_sources: scan tof, scan: {topic: /scan}, tof: {clearing: true}}"
-    source = f"local_costmap:\n  local_costmap:\n    ros__parameters:\n      {layer}\n"
-    found = [it for it in made(source, policy, distro)[1] if it.code == "MB885"]
-    assert [it.message for it in found if "source tof of layer" in it.message] == [
-        it.message for it in found
-    ]
-    assert bool(found) is told
-
-
 @pytest.mark.parametrize("distro", ["jazzy", "kilted", "lyrical"])
 def test_a_costmap_reads_the_mask_topic_in_the_namespace_of_its_server(distro: str) -> None:
     """Layout postfix: layer.cpp joins a relative name with the namespace above the costmap."""
@@ -469,15 +316,6 @@ def test_a_shared_topic_is_written_from_the_root() -> None:
 # ---------------------------------------------------------------- lines that are missing
 
 
-def test_a_default_that_is_every_robots_is_inserted() -> None:
-    text, _ = made(section("amcl", "# first", "alpha1: 0.2"))
-    assert text == (
-        "/robot1/amcl:\n  ros__parameters:\n    # first\n"
-        "    # multibot: the default is every robot's\n"
-        "    base_frame_id: r1/base_footprint\n    odom_frame_id: r1/odom\n    alpha1: 0.2\n"
-    )
-
-
 @pytest.mark.parametrize(
     "source",
     [
@@ -492,17 +330,6 @@ def test_what_is_set_elsewhere_is_not_inserted(source: str) -> None:
     assert "multibot:" not in made(source)[0]
 
 
-def test_bare_frames_need_no_defaults() -> None:
-    assert "multibot:" not in made(section("amcl", "alpha1: 0.2"), L1)[0]
-
-
-def test_what_another_file_sets_is_not_inserted() -> None:
-    other = read_yaml(section("amcl", "base_frame_id: base_link").encode(), "o.yaml")
-    text, _ = made(section("amcl", "alpha1: 0.2"), beside=[other])
-    assert "odom_frame_id: r1/odom" in text
-    assert "base_frame_id" not in text
-
-
 @pytest.mark.parametrize("policy", [L1, L2, L3, L4])
 @pytest.mark.parametrize("line", ["publish_rate: 1.0", "tf_frame_prefix_enable: true"])
 def test_no_controller_puts_its_namespace_before_frames(policy: tuple[str, str], line: str) -> None:
@@ -510,17 +337,6 @@ def test_no_controller_puts_its_namespace_before_frames(policy: tuple[str, str],
     text, _ = made(section("diff_drive_controller", line), policy)
     assert text.count("tf_frame_prefix_enable: false") == 1
     assert "tf_frame_prefix_enable: true" not in text
-
-
-def test_lines_are_inserted_as_the_file_is_written() -> None:
-    crlf = section("smoother_server", "x: 1").replace("\n", "\r\n")
-    assert "\r\n    robot_base_frame: r1/base_link\r\n    x: 1\r\n" in made(crlf)[0]
-    flow = "smoother_server: {ros__parameters: {x: 1}}\n"
-    assert yaml.safe_load(made(flow)[0]) == {
-        "/robot1/smoother_server": {"ros__parameters": {"robot_base_frame": "r1/base_link", "x": 1}}
-    }
-    empty = "smoother_server: {ros__parameters: {}}\n"
-    assert "{robot_base_frame: r1/base_link}" in made(empty)[0]
 
 
 AMCL = """\
@@ -572,18 +388,6 @@ def test_a_file_that_no_section_can_be_added_to_is_told() -> None:
         "/<robot>/smoother_server has no section: robot_base_frame: all robots would share the "
         "default, and no line can be inserted here"
     ) in said
-
-
-def test_a_robot_without_a_file_gets_the_same_sections() -> None:
-    known = built_in_nodes("jazzy")
-    texts = [all_sections(setting(L2), known, it) for it in ((), ("amcl",))]
-    of_robot = [
-        fill_template(make_template("", [Splice(0, 0, it)]), "robot1", "r1") for it in texts
-    ]
-    added = made(section("map_server", "a: 1"), is_first=True)[0].partition("a: 1\n")[2]
-    assert of_robot[0] == added
-    assert AMCL in of_robot[0] and AMCL not in of_robot[1] and SMOOTHER in of_robot[1]
-    assert all_sections(make_context(DECLARED, make_naming("L2"), [], "jazzy"), known, ()) == ""
 
 
 # ---------------------------------------------------------------- what is told
@@ -887,17 +691,6 @@ def test_the_page_has_codes_that_exist() -> None:
     codes_named = set(re.findall(r"MF1\d\d", text))
     assert codes_named
     assert codes_named <= set(catalogue.rules())
-
-
-def test_the_example_of_the_page_is_one(tmp_path: Path) -> None:
-    text = (ROOT / "docs" / "companions.md").read_text()
-    path = tmp_path / "more.yaml"
-    path.write_text(re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)[0])
-    source = section("front_mast", "mast_serial: 1", "motors: [elbow]", "limits: {elbow: {max: 1}}")
-    text, _ = made(source, known=load_known_nodes(str(path), NEWEST_LTS))
-    assert "base: r1/mast_base" in text
-    assert "motors: [r1_elbow]" in text
-    assert "limits: {r1_elbow: {max: 1}}" in text
 
 
 def test_a_frame_that_a_node_makes_is_known() -> None:

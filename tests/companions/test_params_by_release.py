@@ -7,8 +7,6 @@ doc/migration.rst), controller_interface/tf_prefix.hpp and nav2_amcl/src/amcl_no
 
 from __future__ import annotations
 
-import re
-
 import pytest
 from made_params import codes, made, section
 
@@ -109,13 +107,6 @@ def test_a_slash_is_taken_off_where_the_node_does(
     assert [(it.code, it.level) for it in findings] == [("MB301", level)]
 
 
-@pytest.mark.parametrize(
-    "line", ["scan_topic: /scan", "odom_frame_id: odom", "odom_frame_id: $(var x)"]
-)
-def test_other_slashes_are_not_reported(line: str) -> None:
-    assert "MB301" not in codes(made(section("amcl", line))[1])
-
-
 def test_a_joint_group_controller_is_deprecated_from_lyrical_on() -> None:
     text = section(
         "controller_manager", "arm: {type: effort_controllers/JointGroupEffortController}"
@@ -141,26 +132,6 @@ def test_interfaces_that_nobody_publishes(given: tuple[str, ...], found: list[st
     text = section("joint_state_broadcaster", *given)
     assert codes(made(text, distro="lyrical")[1]) == found
     assert codes(made(text, distro="kilted")[1]) == []
-
-
-@pytest.mark.parametrize("node", ["fts_wrench_transformer", "wrench_transformer", "of_its_own"])
-def test_target_frames_of_the_wrench_transformer_are_frames(node: str) -> None:
-    text, findings = made(section(node, "target_frames: [tool0, laser]"), distro="lyrical")
-    assert "target_frames: [r1/tool0, r1/laser]" in text
-    assert findings == ()
-
-
-def test_a_sensor_that_is_renamed_is_not_said_to_stay() -> None:
-    text, findings = made(section("imu_sensor_broadcaster", "sensor_name: mag", "frame_id: map"))
-    assert "sensor_name: r1_mag" in text
-    assert findings[0].code == "MB854"
-
-
-def test_a_joint_that_stays_is_said_to_stay() -> None:
-    interfaces = ("command_interfaces: [position]", "state_interfaces: [position]")
-    text, findings = made(section("joint_trajectory_controller", "joints: [zzz]", *interfaces))
-    assert "joints: [zzz]" in text
-    assert codes(findings) == ["MB854"]
 
 
 @pytest.mark.parametrize(
@@ -193,15 +164,6 @@ def test_a_parameter_that_only_other_releases_have(
     assert codes(made(section(node, line), distro=others.rpartition(" ")[2])[1]).count("MB870") == 0
 
 
-def test_a_parameter_that_the_release_deprecates_is_told_once() -> None:
-    text = section("joint_state_broadcaster", "publish_dynamic_joint_states: false")
-    assert codes(made(text, distro="lyrical")[1]) == ["MB869"]
-
-
-def test_an_unknown_parameter_is_of_no_release() -> None:
-    assert codes(made(section("behavior_server", "my_gain: 0.1"), distro="humble")[1]) == []
-
-
 def test_a_node_that_only_another_release_has_is_told_once() -> None:
     known = built_in_nodes("humble")
     amcl = known.nodes["amcl"]
@@ -212,10 +174,3 @@ def test_a_node_that_only_another_release_has_is_told_once() -> None:
     assert [it.message for it in found if it.code == "MB870"] == [
         "node amcl is not in humble, only in rolling"
     ]
-
-
-def test_what_is_told_of_a_release_says_where_that_is_written() -> None:
-    line = "saved_pose_filepath: /tmp/x"
-    (found,) = (it for it in made(section("amcl", line), distro="jazzy")[1] if it.code == "MB870")
-    place = "ros-navigation/navigation2@1.5.1 nav2_amcl/src/amcl_node.cpp"
-    assert re.search(rf"; source: {place}:\d+$", found.hint)

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from multibot_rewrite.companions.names.placeholders import filled, is_robot, without_robot
+from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.fleet.build import Outputs, make_outputs
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
@@ -74,6 +74,7 @@ def made(folder: Path, form: str, layout: str) -> Outputs:
 
 
 @pytest.mark.slow
+@pytest.mark.sample(4)
 @pytest.mark.parametrize(
     ("form", "layout", "base", "lidar"),
     [
@@ -124,23 +125,6 @@ def test_one_meaning_in_every_file(
 )  # fmt: skip
 def test_a_name_without_the_robot(value: str, name: str) -> None:
     assert without_robot(value) == name
-
-
-def test_below_a_namespace_a_name_may_have_a_slash() -> None:
-    assert without_robot("<namespace>/scan", "/") == "/scan"
-    assert without_robot("<robot_name>_scan", "/") == "scan"
-
-
-@pytest.mark.parametrize(
-    ("value", "alone"),
-    [("<ns>", True), ("/<ns>/", True), ("$(var ns)", True), ("<ns>/a", False), ("ns", False)],
-)
-def test_what_is_the_robot_alone(value: str, alone: bool) -> None:
-    assert is_robot(value) is alone
-
-
-def test_a_text_is_filled_in_every_place() -> None:
-    assert filled("<ns> and ${robot_name}, <other>", "r") == "r and r, <other>"
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 
 import pytest
@@ -14,17 +13,8 @@ from multibot_rewrite.companions.params.rcl_parameters import (
     check_values,
     exact_nodes,
     node_parameters,
-    parameters_text,
     typed,
 )
-
-TRUE = ["Y", "y", "yes", "Yes", "YES", "true", "True", "TRUE", "on", "On", "ON"]
-FALSE = ["N", "n", "no", "No", "NO", "false", "False", "FALSE", "off", "Off", "OFF"]
-
-
-@pytest.mark.parametrize("word", [*TRUE, *FALSE])
-def test_words_of_truth(word: str) -> None:
-    assert typed(word) is (word in TRUE)
 
 
 @pytest.mark.parametrize(
@@ -104,12 +94,3 @@ def test_what_rcl_rejects_is_said(value: str, said: str) -> None:
         check_values(text)
     assert str(caught.value) == said
     check_values(read('a: {ros__parameters: {x: "", y: [1.0, 2.0], z: []}}'))
-
-
-def test_a_file_of_parameters_is_json_that_yaml_reads() -> None:
-    text = parameters_text({"/r/a": {"x": "é\x7f\u2028", "y": [1]}})
-    assert text == '{"/r/a": {"ros__parameters": {"x": "é\\u007f\\u2028", "y": [1]}}}'
-    assert node_parameters(read(text), "/r/a") == {"x": "é\x7f\u2028", "y": [1]}
-    odd = "".join(map(chr, (0x80, 0x9F, 0xFEFF)))
-    assert json.loads(parameters_text({"a": {"x": odd}}))["a"]["ros__parameters"]["x"] == odd
-    assert parameters_text({"a": {"x": odd}}).isascii()

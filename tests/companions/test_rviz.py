@@ -14,9 +14,7 @@ from rviz_robots import robots_of
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.companions.names.robot_topics import robot_topic
 from multibot_rewrite.companions.rviz.read_config import palette, read_colour, rviz_data
 from multibot_rewrite.companions.rviz.rewrite import RvizText, read_for, rewrite_rviz, start_command
 from multibot_rewrite.companions.yaml_text import read_yaml
@@ -149,57 +147,6 @@ def test_what_is_said(how: dict[str, Any], code: str, is_said: bool) -> None:
     assert (code in codes(**how)) == is_said
 
 
-def test_a_group_for_each_robot_behind_what_all_share() -> None:
-    names = [(one["Class"].rpartition("/")[2], one["Name"]) for one in manager()["Displays"]]
-    assert names == [
-        ("Grid", "Grid"),
-        ("TF", "TF"),
-        ("Group", "Both"),
-        ("Group", "robot1"),
-        ("Group", "robot2"),
-    ]
-    assert [one["Name"] for one in group(1)["Displays"]] == ["Scan", "Both", "RobotModel"]
-
-
-def test_a_group_of_the_file_is_split_into_what_is_shared_and_what_is_not() -> None:
-    both = manager()["Displays"][2]
-    assert [one["Name"] for one in both["Displays"]] == ["Origin"]
-    assert [one["Name"] for one in group(2)["Displays"][1]["Displays"]] == ["robot2 Eye"]
-
-
-def test_comments_and_quotes_come_with_each_copy() -> None:
-    text = make()[0][0].text
-    assert text.count("# what the lidar sees") == len(ROBOTS)
-    assert text.count('Class: "rviz_default_plugins/LaserScan"') == len(ROBOTS)
-    assert text.count('Value: "/robot1/scan"  # absolute') == 1
-    assert text.count("Name: 'Scan'") == len(ROBOTS)
-    assert text.count("# stays once") == 1
-
-
-def test_line_ends_stay() -> None:
-    text = make(CONFIG.replace("\n", "\r\n"))[0][0].text
-    assert text.count("\n") == text.count("\r\n")
-    assert yaml.safe_load(text) == shown()
-
-
-def test_a_file_without_a_last_line_end() -> None:
-    assert shown(CONFIG.rstrip("\n")) == shown()
-    path = "    - Class: rviz_default_plugins/Path\n      Topic: /p"
-    tail = f"Visualization Manager:\n  Displays:\n{path}"
-    assert len(shown(tail)["Visualization Manager"]["Displays"]) == len(ROBOTS)
-
-
-def test_tools_publish_for_one_robot_each() -> None:
-    tools = [(tool["Class"].rpartition("/")[2], tool.get("Topic")) for tool in manager()["Tools"]]
-    assert tools == [
-        ("MoveCamera", None),
-        ("SetGoal", "/robot1/goal_pose"),
-        ("SetGoal", "/robot2/goal_pose"),
-        ("SetInitialPose", {"Value": "/robot1/initialpose"}),
-        ("SetInitialPose", {"Value": "/robot2/initialpose"}),
-    ]
-
-
 @pytest.mark.parametrize(
     ("tool", "written"),
     [
@@ -223,45 +170,6 @@ def test_a_tool_in_braces_gets_its_topic(tool: str, written: str) -> None:
     assert topics == ["/robot1/goal_pose", "/robot2/goal_pose"]
 
 
-def test_what_serves_one_process_is_left_out_with_a_comment() -> None:
-    made, findings = make()
-    for cls in ("Navigation 2", "GoalTool", "MotionPlanning", "SlamToolboxPlugin"):
-        assert f"{cls}" in str([line for line in made[0].text.splitlines() if "# left out" in line])
-    # All others are in the windows of the robots.
-    (line,) = (it.line for it in findings if it.code == "MF202")
-    assert "slam_toolbox" in CONFIG.splitlines()[line - 1]
-
-
-def test_what_serves_one_process_is_in_a_window_of_each_robot() -> None:
-    (_, *own), _ = make()
-    assert [(it.robot, it.namespace, it.remaps) for it in own] == [
-        ("robot1", "/robot1", ()),
-        ("robot2", "/robot2", ()),
-    ]
-    for it in own:
-        shown = str(yaml.safe_load(it.text))
-        assert all(cls in shown for cls in ("Navigation 2", "GoalTool", "MotionPlanning"))
-        assert f"/{it.robot}/scan" in shown
-        assert "SlamToolboxPlugin" not in shown
-
-
-def test_views_that_follow_a_robot() -> None:
-    views = manager()["Views"]
-    assert views["Current"]["Target Frame"] == "robot1/base_link"
-    saved = [(view["Name"], view["Target Frame"]) for view in views["Saved"]]
-    assert saved == [
-        ("robot1 Current View", "robot1/base_link"),
-        ("robot2 Current View", "robot2/base_link"),
-    ]
-    assert "MF213" in codes()
-    first = (
-        "      - Class: rviz_default_plugins/Orbit\n"
-        '        Name: "robot1 Current View"\n'
-        "        Target Frame: robot1/base_link\n"
-    )
-    assert first in make()[0][0].text
-
-
 def test_saved_views_are_there_for_each_robot() -> None:
     listed = (
         "Saved:\n      - Class: c\n        Name: near\n        Target Frame: base_scan\n"
@@ -276,16 +184,6 @@ def test_saved_views_are_there_for_each_robot() -> None:
         ("robot2 near", "robot2/base_scan"),
         ("far", "<Fixed Frame>"),
     ]
-
-
-def test_the_current_view_is_saved_for_each_robot_behind_those_that_are() -> None:
-    listed = "Saved:\n" + "".join(
-        f"      - Class: c\n        Name: {it}\n        Target Frame: map\n"
-        for it in ("near", "far")
-    )
-    made = manager(text=CONFIG.replace("Saved: ~", listed.rstrip()))["Views"]["Saved"]
-    names = [view["Name"] for view in made]
-    assert names == ["near", "far", "robot1 Current View", "robot2 Current View"]
 
 
 @pytest.mark.parametrize(
@@ -310,15 +208,6 @@ def test_a_colour_that_is_none(wrong: str) -> None:
 def test_a_thousand_colours_are_all_different() -> None:
     assert len({palette(at) for at in range(1000)}) >= 950
     assert len({palette(at) for at in range(30)}) == 30
-
-
-@pytest.mark.parametrize("layout", ["L1", "L3", "L4"])
-def test_a_tf_topic_for_each_robot_gives_a_config_for_each(layout: str) -> None:
-    # Bare frames cannot be relayed.
-    made, findings = make(layout=layout, relayed=layout == "L1")
-    assert [one.robot for one in made] == list(ROBOTS)
-    (found,) = [it for it in findings if it.code == "MF203"]
-    assert found.message.endswith("each robot has its own")
 
 
 def test_rules_of_an_rviz_of_its_own_come_behind_those_of_tf() -> None:
@@ -347,17 +236,6 @@ def test_the_topic_of_a_panel_is_the_robots_in_its_window() -> None:
     windows = [yaml.safe_load(it.text) for it in make(text, layout="L1")[0]]
     topics = [it["Topic"] for window in windows for it in window["Panels"] if "Topic" in it]
     assert topics == ["/robot1/cmd_vel", "/robot2/cmd_vel"]
-
-
-def test_relayed_tf_shows_all_robots_in_one_window() -> None:
-    made, findings = make(layout="L4", relayed=True)
-    assert [one.robot for one in made] == [""]
-    (found,) = [it for it in findings if it.code == "MF203"]
-    assert "relayed to /tf" in found.message and "relay /tf/robot1 /tf," in found.hint
-    assert made[0].relays[0] == ("/tf/robot1", "/tf")
-    assert [
-        one["Name"] for one in yaml.safe_load(made[0].text)["Visualization Manager"]["Displays"]
-    ][-2:] == ["robot1", "robot2"]
 
 
 NO_RVIZ = "name the node set rviz_moveit or rviz_nav2: each robot gets an rviz2 with its rules"
@@ -416,16 +294,6 @@ def test_what_is_said_of_a_window_for_all(
     assert [(lines[it.line - 1].strip(), it.code, it.message, it.hint) for it in found] == [*said]
 
 
-@pytest.mark.parametrize(("own", "told"), [((), 3), ((0,), 3), ((0, 1), 0)])
-def test_what_works_for_one_process_is_told_unless_each_robot_has_one(
-    own: tuple[int, ...], told: int
-) -> None:
-    robots = robots_of(declared(), "L4", ROBOTS)
-    given = [it._replace(rules=(("a", "b"),)) if at in own else it for at, it in enumerate(robots)]
-    _, found = rewrite_rviz(read_yaml(CONFIG.encode(), "one.rviz"), given, relayed=True)
-    assert len([it for it in found if it.code == "MF202" and it.hint == NO_RVIZ]) == told
-
-
 def test_what_is_said_of_a_camera_and_of_windows_of_their_own() -> None:
     hidden = config("Class: rviz_default_plugins/Camera\nTopic: /i\nVisibility:\n  it: false")
     (reset,) = (it for it in make(hidden)[1] if it.code == "MF212")
@@ -472,13 +340,6 @@ def test_what_is_said_of_a_camera_and_of_windows_of_their_own() -> None:
 )
 def test_findings(display: str, code: str) -> None:
     assert code in codes(config(display))
-
-
-def test_a_finding_says_where() -> None:
-    text = config("Class: rviz_default_plugins/Axes\nReference Frame: base_lin")
-    found = next(it for it in make(text)[1] if it.code == "MB853")
-    assert (found.file, found.line, found.column) == ("one.rviz", 5, 24)
-    assert "did you mean 'base_link'" in found.hint
 
 
 @pytest.mark.parametrize(
@@ -529,28 +390,6 @@ def test_no_robot_is_an_error() -> None:
         rewrite_rviz(read_yaml(CONFIG.encode(), "one.rviz"), [])
 
 
-def test_robots_of_two_kinds() -> None:
-    first = robots_of(declared(), "L2", ["robot1"])[0]
-    other = robots_of(defaultdict(dict, {"link": {"mast": None}, "joint": {}}), "L2", ["robot2"])[0]
-    text = rewrite_rviz(read_yaml(CONFIG.encode(), "one.rviz"), [first, other])[0][0].text
-    model = yaml.safe_load(text)["Visualization Manager"]["Displays"][-1]["Displays"][-1]
-    assert "base_link" in model["Links"]  # no link of this robot
-
-
-def test_frames_and_topics_may_have_two_words() -> None:
-    robots = robots_of(declared(), "L2", ["left"])
-    robot = robots[0]._replace(topics=robots[0].topics._replace(robot="fleet/l"))
-    text = rewrite_rviz(read_yaml(CONFIG.encode(), "one.rviz"), [robot])[0][0].text
-    assert '"/fleet/l/scan"' in text and "left/base_link" in text
-
-
-def test_names_follow_the_table_where_they_do_not_follow_the_rule() -> None:
-    names = robots_of(declared(), "L4", ["r"])[0].topics
-    known = {"/global_costmap/costmap": "/costmap_of_r"}
-    assert robot_topic(names, "/global_costmap/costmap") == "/global_costmap/costmap/r"
-    assert robot_topic(names, "global_costmap/costmap", known) == "/costmap_of_r"
-
-
 def test_known_classes_have_known_words() -> None:
     words = {word for names in rviz_data()["displays"].values() for word in names.values()}
     words |= set(rviz_data()["any"].values())
@@ -569,54 +408,6 @@ def test_known_classes_have_known_words() -> None:
         *("regex", "file", "siblings", "keep"),
     }
     assert set(rviz_data()["flags"].values()) == {"dock", "shared", "process", "absolute"}
-
-
-def test_a_map_that_is_shared_stays_once() -> None:
-    text = config("Class: rviz_default_plugins/Map\nTopic: /map\nUpdate Topic: /map_updates")
-    assert manager(text=text)["Displays"][0]["Name"] == "robot1"
-    robots = robots_of(declared(), "L2", ROBOTS)
-    naming = make_naming("L2", "prefix", shared_topics=("map", "map_updates"))
-    shared = [
-        it._replace(
-            names=it.names._replace(naming=naming), topics=it.topics._replace(naming=naming)
-        )
-        for it in robots
-    ]
-    assert rewrite_rviz(read_yaml(text.encode(), "one.rviz"), shared)[0][0].text == text
-
-
-def test_volatile_descriptions_are_reported_once() -> None:
-    model = (
-        "Class: rviz_default_plugins/RobotModel\nDescription Topic:\n  Durability Policy: Volatile"
-    )
-    other = "    - Name: two\n" + "".join(f"      {line}\n" for line in model.splitlines())
-    assert codes(config(model, other)).count("MB873") == 1
-
-
-def test_a_group_is_indented_as_rviz_does() -> None:
-    text = config("Class: rviz_default_plugins/Path\nTopic: /plan")
-    made = rewrite_rviz(read_yaml(text.encode(), "one.rviz"), robots_of(declared(), "L2", ["r"]))
-    assert made[0][0].text == (
-        "Visualization Manager:\n"
-        "  Displays:\n"
-        "    - Class: rviz_common/Group\n"
-        "      Displays:\n"
-        "        - Name: it\n"
-        "          Class: rviz_default_plugins/Path\n"
-        "          Topic: /r/plan\n"
-        "      Enabled: true\n"
-        "      Name: r\n"
-        "  Global Options:\n"
-        "    Fixed Frame: map\n"
-    )
-
-
-def test_a_block_of_text_ends_with_its_display() -> None:
-    block = "Class: rviz_default_plugins/Path\nTopic: /plan\nNote: |\n  one\n  two"
-    after = "    - Class: rviz_default_plugins/Grid\n      Name: Grid\n"
-    listed = manager(text=config(block, after))["Displays"]
-    assert [one["Name"] for one in listed] == ["Grid", *ROBOTS]
-    assert listed[1]["Displays"][0]["Note"] == "one\ntwo\n"
 
 
 TOKEN = st.from_regex(r"[a-z][a-z0-9]{0,5}", fullmatch=True)

@@ -6,7 +6,7 @@ from __future__ import annotations
 from types import SimpleNamespace
 
 import pytest
-from made_params import DECLARED, L1, L2, L3, L4, setting
+from made_params import DECLARED, L1, L2, L4, setting
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.companions.context import (
@@ -19,7 +19,6 @@ from multibot_rewrite.companions.names import by_kind
 from multibot_rewrite.companions.names.by_kind import SPELLERS, expressible
 from multibot_rewrite.companions.names.node_topics import TopicText, spell_topic
 from multibot_rewrite.companions.names.rename_map import companion_names, with_srdf
-from multibot_rewrite.companions.names.robot_topics import is_topic, robot_topic
 from multibot_rewrite.companions.params.shared_defaults import missing_defaults
 from multibot_rewrite.companions.sites import FROM_NODE, FROM_PARENT, IN_FULL
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts, Param
@@ -130,14 +129,6 @@ def test_a_prefix_cannot_be_a_postfix(policy: tuple[str, str], kind: str, can: b
     assert expressible(setting(policy), kind) is can
 
 
-def test_a_stem_of_joints_has_an_underscore_behind_it() -> None:
-    other = setting(L2)
-    naming = other.names.naming
-    dashed = naming._replace(separators={**naming.separators, "joint": "__"})
-    context = other._replace(names=other.names._replace(naming=dashed))
-    assert not expressible(context, "joint_stem") and expressible(context, "joint_prefix")
-
-
 def test_an_argument_of_the_xacro_is_the_prefix() -> None:
     own = {("joint", "elbow"): "left_elbow", ("link", "laser"): "laser"}
     context = setting(L2)
@@ -219,51 +210,6 @@ def test_a_topic_of_a_parameter(policy: tuple[str, str], value: str, reach: str,
     assert topic(policy, value, reach) == TopicText(
         text, made_absolute=reach == IN_FULL and not value.startswith("/")
     )
-
-
-def test_what_a_rule_moves_stays() -> None:
-    """In a namespace /scan:=scan is a rule; in the others a name is moved by its own rule."""
-    assert topic(L2, "/scan").text == f"/{SPACE}/scan"
-    assert topic(L4, "scan").text == "scan"
-    assert topic(L4, "odom").text == "odom"
-    # A rule without rostopic:// before it is for services, too.
-    assert topic(L4, "scan", kind="service").text == "scan"
-
-
-def test_a_topic_of_a_node_that_stands_apart_is_a_full_name() -> None:
-    assert topic(L4, "front", node=APART).text == f"/costmap/front/{SPACE}"
-    assert topic(L4, "front", FROM_PARENT, APART).text == f"/front/{SPACE}"
-    assert topic(L2, "front", node=APART).text == "front"
-
-
-def test_a_topic_that_a_rule_turns_into_another_is_told() -> None:
-    moved = NODE._replace(endpoints=(Endpoint(TOPIC, SUBSCRIBES, "scan", remapped="/front/scan"),))
-    found = topic(L2, "scan", node=moved)
-    assert found.text == "scan" and found.wrong_target == ""
-    shared = NODE._replace(shared=True)
-    assert topic(L4, "scan", node=shared).text == f"scan/{SPACE}"
-
-
-@pytest.mark.parametrize(
-    ("value", "is_one"),
-    [("scan", True), ("/a/b", True), ("", False), ("~/a", False), ("$(var a)", False),
-     ("a//b", False), ("1a", False), ("a b", False)],
-)  # fmt: skip
-def test_what_is_the_name_of_a_topic(value: str, is_one: bool) -> None:
-    assert is_topic(value) is is_one
-
-
-@pytest.mark.parametrize(
-    ("policy", "value", "new"),
-    [
-        (L2, "scan", f"/{SPACE}/scan"), (L2, "/scan", f"/{SPACE}/scan"), (L2, "/tf", "/tf"),
-        (L4, "scan", f"/scan/{SPACE}"), (L3, "/diagnostics", "/diagnostics"), (L2, "a b", "a b"),
-        (L2, "known", "/else"), (L2, "/same", "/same"), (L2, "same", "same"),
-    ],
-)  # fmt: skip
-def test_the_topic_of_a_robot_in_full(policy: tuple[str, str], value: str, new: str) -> None:
-    known = {"/known": "/else", "/same": "/same"}
-    assert robot_topic(setting(policy).topics, value, known) == new
 
 
 # What a default of a kind becomes with a prefix and with a postfix; None where no line is written.

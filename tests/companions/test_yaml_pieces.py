@@ -7,17 +7,11 @@ from pathlib import Path
 
 import pytest
 import yaml
-from paths import fixture_text
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions import named_file
 from multibot_rewrite.companions.bridge_entry import (
-    below as below_of,
     faults,
-    model_of,
-    models,
-    row_of,
-    text_in,
 )
 from multibot_rewrite.companions.context import (
     NAMESPACE_SLOT,
@@ -32,8 +26,6 @@ from multibot_rewrite.companions.yaml_text import (
     anchors,
     as_item,
     blocks,
-    cut_out,
-    is_block,
     is_text,
     items,
     line_of,
@@ -45,7 +37,6 @@ from multibot_rewrite.companions.yaml_text import (
     read_yaml,
     refuse_anchors,
     replaced,
-    spliced,
 )
 from multibot_rewrite.system.json import to_yaml
 from multibot_rewrite.system.records import System
@@ -90,12 +81,6 @@ def test_a_scalar_is_replaced_with_its_quotes() -> None:
         replaced(block, "y")
 
 
-def test_splices_are_made_in_their_order() -> None:
-    document = read("\ufeffabc: d\n")
-    assert spliced(document, [Splice(5, 6, "x"), Splice(0, 3, "key")]) == "\ufeffkey: x\n"
-    assert (document.bom, document.text) == ("\ufeff", "abc: d\n")
-
-
 def test_parts_of_a_document() -> None:
     document = read("a: 1\na: [x, 'y']\n? [b]\n: 2\n")
     found = pairs(document.root)
@@ -134,37 +119,6 @@ def test_anchors_and_aliases_are_found() -> None:
         "a.yaml:1: anchors and aliases are not allowed: &x; write the value out"
     )
     refuse_anchors(read("a: 1 & 2\n"))
-
-
-LIST = fixture_text("yaml_pieces_list.txt")
-
-
-def test_entries_are_whole_lines_with_the_comments_above_them() -> None:
-    document = read(LIST)
-    assert document.root is not None and is_block(document.root)
-    found = blocks(document, document.root)
-    assert [LIST[it.start : it.end] for it in found] == [
-        "- a: 1\n  b: |\n    text\n", "# about the second\n- {a: 2}\n", "\n- a: 3\n",
-    ]  # fmt: skip
-    assert {it.column for it in found} == {0}
-    after = read("\n- a: 1\n")
-    assert after.root is not None and blocks(after, after.root) == [(1, 8, 0)]
-    flow = read("[a, b]")
-    assert flow.root is not None and blocks(flow, flow.root) == [] and not is_block(flow.root)
-    assert not is_block(None)
-    maps = read("x:\n  a: 1\n  b: 2")
-    inner = pairs(maps.root)[0][1]
-    assert [(maps.text[it.start : it.end], it.column) for it in blocks(maps, inner)] == [
-        ("  a: 1\n", 2), ("  b: 2", 2),
-    ]  # fmt: skip
-
-
-def test_a_piece_ends_with_the_line_end_of_its_text() -> None:
-    document = read("a: 1\r\nb: 2")
-    assert newline(document) == "\r\n" and newline(read("a: 1")) == "\n"
-    assert cut_out(document, 6, 10) == "b: 2\r\n"
-    assert cut_out(document, 0, 6, [Splice(3, 4, "x")]) == "a: x\r\n"
-    assert cut_out(document, 3, 3) == ""
 
 
 def test_lines_are_moved_and_made_items() -> None:
@@ -237,19 +191,6 @@ def test_what_a_bridge_leaves_out(row: str, found: list[tuple[str, str]]) -> Non
     assert [(it.message, it.hint) for it in faults(entry(row))] == found
 
 
-def test_values_of_an_entry_and_its_model() -> None:
-    row = row_of(entry("- {a: 1, b: [2]}"))
-    assert [text_in(row, it) for it in "abc"] == ["1", "", ""]
-    text = (
-        "- {gz_topic_name: /world/w/clock}\n- {topic_name: /model/rover/odom}\n"
-        "- {gz_topic_name: /world/w/model/arm/x}\n- {topic_name: model/c}\n"
-        "- {gz_topic_name: '/model/${name}/x'}\n- {ros_topic_name: /model/d/x}\n"
-    )
-    assert [name for _, name in models(read(text))] == ["rover", "arm", "c"]
-    assert (model_of(read(text)), model_of(read("- {topic_name: /a}"))) == ("rover", "")
-    assert [below_of(*it) for it in (("a", "b"), ("/a", "b"), ("a", ""))] == ["/b/a", "/a", "a"]
-
-
 # ---------------------------------------------------------------- kinds of files
 
 
@@ -257,16 +198,6 @@ PARAMS, TREE = (
     "a:\n  ros__parameters:\n    x: 1\n",
     '<root BTCPP_format="4"><BehaviorTree ID="a"/></root>',
 )
-
-
-@pytest.mark.parametrize(
-    ("name", "is_one"),
-    [("a.yaml", True), ("A.YML", True), ("a.rviz", True), ("a.LUA", True), ("a.xml", False),
-     ("a.XML", False), ("a.urdf", False), ("yaml", False)],
-)  # fmt: skip
-def test_files_that_are_called_as_those_beside_a_description(name: str, is_one: bool) -> None:
-    assert named_file.is_named_beside(name) is is_one
-    assert named_file.is_beside(name) is is_one
 
 
 def test_xml_is_beside_a_description_where_it_is_a_tree(tmp_path: Path) -> None:
@@ -286,19 +217,6 @@ def test_xml_is_beside_a_description_where_it_is_a_tree(tmp_path: Path) -> None:
     ]
     texts = (TREE.encode(), b"\xef\xbb\xbf \n" + TREE.encode(), b"<robot/>", b"a: 1", b"")
     assert [named_file.is_beside(it) for it in texts] == [True, True, False, True, True]
-
-
-def test_of_yaml_in_a_folder_what_is_known_is_linted(tmp_path: Path) -> None:
-    known, other = tmp_path / "p.yaml", tmp_path / "o.yaml"
-    known.write_text(PARAMS)
-    other.write_text("a: 1\n")
-    found = (str(known), str(other), str(tmp_path / "gone.yaml"), str(tmp_path / "a.urdf"))
-    # What cannot be read is reported where it is read.
-    assert [named_file.is_linted(it) for it in found] == [True, False, True, True]
-    assert (named_file.kind_of(PARAMS.encode()), named_file.kind_of(b"a: 1")) == (
-        named_file.PARAMS,
-        "",
-    )
 
 
 @pytest.mark.parametrize("end", ["\r", "\r\n", "\x85", "\u2028"])

@@ -19,23 +19,8 @@ PLUGIN = """\
   </sensor>
 </gazebo>
 """
-CONTROL = """\
-<ros2_control name="sys" type="system">
-  <hardware><plugin>gazebo_ros2_control/GazeboSystem</plugin></hardware>
-</ros2_control>
-"""
-OTHER = """\
-<gazebo>
-  <plugin filename="libgazebo_ros_planar_move.so" name="drive"><ros/></plugin>
-</gazebo>
-"""
 
 
-SENSOR = """\
-<gazebo reference="base">
-  <sensor name="scan" type="ray"><plugin filename="libgazebo_ros_ray_sensor.so" name="scan"/></sensor>
-</gazebo>
-"""
 OF_ROS_1 = """\
 <gazebo><plugin filename="libgazebo_ros_control.so" name="control"/></gazebo>
 """
@@ -52,15 +37,6 @@ def imu_plugins(more: str, file: str = "", **given: str) -> list[bool]:
         (it.robot, it.text.partition("imu_plugin")[2].partition("</plugin>")[0]) for it in made
     )
     return [f"<namespace>/{robot}</namespace>" in plugin for robot, plugin in plugins]
-
-
-@pytest.mark.parametrize(
-    ("more", "is_ros_2"),
-    [("", False), (CONTROL, True), (OTHER, True), (SENSOR, True), (OF_ROS_1 + SENSOR, True)],
-    ids=["nothing", "control", "ros", "plugin", "both"],
-)
-def test_what_only_one_of_them_has_decides(more: str, is_ros_2: bool) -> None:
-    assert imu_plugins(more) == [is_ros_2, is_ros_2]
 
 
 @pytest.mark.parametrize("more", ["", OF_ROS_1])
@@ -92,15 +68,6 @@ MOVE = """\
 </plugin></gazebo>
 """
 BARE = PLUGIN.replace("<topicName>imu</topicName><bodyName>base</bodyName>", "")
-
-
-@pytest.mark.parametrize(("more", "is_open"), [("", True), (OF_ROS_1, False), (SENSOR, False)])
-def test_plugins_of_both_that_disagree_are_not_verified(more: str, is_open: bool) -> None:
-    text = f'<robot name="rover"><link name="base"/>\n{more}{MOVE}{BARE}</robot>'
-    one = rewrite(text, "robot1", layout="both")
-    assert ("1 plugin not known" in one.not_verified) == is_open
-    told = [it.message for it in one.findings if it.code == "MB902"]
-    assert [("planar_move" in it, "imu_sensor" in it) for it in told] == [(True, True)] * is_open
 
 
 def test_an_inserted_block_is_no_evidence_of_ros_2() -> None:

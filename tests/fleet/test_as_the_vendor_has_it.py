@@ -97,18 +97,33 @@ def test_what_the_vendor_has_is_told_and_built(
     assert all("warning: " in it and "for one robot, too" in it for it in told)
 
 
-def test_two_nodes_of_one_name_that_the_vendor_starts_are_told_and_built(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+PUBLISHER = LAUNCH[LAUNCH.index("        Node(") : LAUNCH.index("        ekf('ekf_local')")]
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        # His launch has one name for both, so that nobody sees two senders there.
+        (
+            PUBLISHER.replace(".read_text()", ".read_text().replace('rover', 'again')"),
+            "/robot1/robot_state_publisher_2",
+        ),
+        (
+            "Node(package='tf2_ros', executable='static_transform_publisher', name='s',"
+            "arguments=['0', '0,0', '0', '0', '0', '0', 'base_link', 'cam'])",
+            "0,0 is in the place of --y",
+        ),
+    ],
+)
+def test_what_is_wrong_with_nodes_of_the_vendor_stops_no_build(
+    more: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """His launch has one name for both, so that nobody sees two senders there."""
     folder(tmp_path, "both")
-    publisher = LAUNCH[LAUNCH.index("        Node(") : LAUNCH.index("        ekf('ekf_local')")]
-    again = publisher.replace("ROBOT.read_text()", "ROBOT.read_text().replace('rover', 'again')")
-    text = LAUNCH.partition("        ekf('ekf_local')")[0].replace(publisher, publisher + again)
+    text = LAUNCH.partition("        ekf('ekf_local')")[0].replace(PUBLISHER, PUBLISHER + more)
     (tmp_path / "up.launch.py").write_text(f"{text}    ])\n")
     assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out")]) == 0
-    told = [it for it in capsys.readouterr().err.splitlines() if "MG408" in it]
-    assert any("/robot1/robot_state_publisher_2" in it and "warning: " in it for it in told)
+    told = [it for it in capsys.readouterr().err.splitlines() if said in it]
+    assert any("warning: " in it and "for one robot, too" in it for it in told)
 
 
 def test_a_sender_that_the_vendor_has_elsewhere_is_an_error(fleet: Path) -> None:

@@ -15,7 +15,6 @@ from fleet_folder import built_fleet
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.fleet.build import Outputs
-from multibot_rewrite.fleet.file.fleet_file import read_fleet
 
 ROW = """\
 - ros_topic_name: {}
@@ -97,25 +96,6 @@ def test_a_row_follows_the_word_that_a_system_makes_its_topic_of(
     made = [it["gz_topic_name"] for it in yaml.safe_load(files["robot2/bridge.yaml"])]
     assert made[:2] == [f"/model/rov_robot2/joint/{joint}/cmd_thrust", "/model/robot2/odometry"]
     assert b"<namespace>rov_robot2</namespace>" in files["robot2/rov.urdf"]
-
-
-def test_topics_of_such_a_bridge_are_heard(tmp_path: Path) -> None:
-    """The filter reads /robot1/sensors/imu_0/data: with the namespace it is sent, without it is not."""
-
-    def unheard(outputs: Outputs) -> list[str]:
-        return [it.message for it in outputs.findings if "sensors/imu_0/data" in it.message]
-
-    assert unheard(made(tmp_path, "imu_0/data", "bridge_namespace: sensors\n")) == []
-    assert unheard(made(tmp_path, "imu_0/data")) != []
-
-
-@pytest.mark.parametrize("model", ["robot2//robot", "/robot2", "robot2/", "a b"])
-def test_a_model_is_no_odd_path(model: str, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="model"):
-        made(tmp_path, "x")
-        text = (tmp_path / "fleet.yaml").read_text().replace("robot2/robot", model)
-        (tmp_path / "fleet.yaml").write_text(text)
-        read_fleet(str(tmp_path / "fleet.yaml"), "", {})
 
 
 SYSTEM = """\

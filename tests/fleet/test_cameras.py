@@ -145,26 +145,6 @@ def test_a_node_that_waits_for_ever_is_told(
     assert heard(out, "/robot1/debayer_node", IMAGE) == {"/robot1/image_raw"}
 
 
-OWN = """\
-stacks:
-  seen:
-    about: The front camera alone
-    nodes:
-      - {node: DebayerNode, as: debayer_node, remaps: {image_raw: front/image_raw}}
-"""
-
-
-def test_one_of_several_cameras_is_named_in_a_stack_of_ones_own(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """What the hint says can be done."""
-    (tmp_path / "nodes.yaml").write_text(OWN)
-    description = robot(tmp_path, camera("front/image_raw"), camera("rear/image_raw"))
-    out = built(tmp_path, "humble", "both", "seen", description, "nodes: nodes.yaml\n")
-    assert heard(out, "/robot1/debayer_node", IMAGE) == {"/robot1/front/image_raw"}
-    assert WAITS not in capsys.readouterr().err
-
-
 def test_of_two_ends_none_is_surely_the_one_camera(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -174,10 +154,3 @@ def test_of_two_ends_none_is_surely_the_one_camera(
     infos = {"/robot1/depth/camera_info", "/robot1/rgb/camera_info"}
     assert heard(out, "/robot1/RegisterNode", INFO) == infos
     assert WAITS in capsys.readouterr().err
-
-
-def test_a_robot_with_its_camera_is_told_nothing(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    built(tmp_path, "humble", "both", "image_proc", robot(tmp_path, camera("front/image_raw")))
-    assert not {"MF861", "MG303"} & {*capsys.readouterr().err.split()}

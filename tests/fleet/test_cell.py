@@ -118,36 +118,6 @@ def refused(folder: Path, **changed: str) -> str:
     return str(error.value).partition(": ")[2]
 
 
-def test_arms_are_one_description_where_they_stand(tmp_path: Path) -> None:
-    files, findings = built(tmp_path)
-    assert [it for it in findings if it.level == "error"] == []
-    root = etree.fromstring(files["cell/cell.urdf"])
-    assert [it.get("name") for it in root.iter("link")] == [
-        *("map", "left/base", "left/hand", "right/base", "right/hand")
-    ]
-    edges = sorted(
-        (it.get("name"), it.find("parent").get("link"), it.find("child").get("link"))
-        for it in root.findall("joint")
-    )
-    assert edges == [
-        ("left_elbow", "left/base", "left/hand"),
-        ("left_mount", "map", "left/base"),
-        ("right_elbow", "right/base", "right/hand"),
-        ("right_mount", "map", "right/base"),
-    ]
-    places = [dict(it.attrib) for it in root.iterfind("joint/origin")]
-    assert places == [{"xyz": "0 0.5 0", "rpy": "0 0 1.5"}, {"xyz": "0 -0.5 0", "rpy": "0 0 0"}]
-
-
-def test_materials_are_declared_once_and_keep_their_colours(tmp_path: Path) -> None:
-    root = etree.fromstring(built(tmp_path)[0]["cell/cell.urdf"])
-    declared = {it.get("name"): it.find("color").get("rgba") for it in root.findall("material")}
-    assert declared == {"grey": "0.5 0.5 0.5 1", "paint": "1 0 0 1", "right_paint": "0 0 1 1"}
-    assert len(root.findall("material")) == 3
-    used = [it.get("name") for it in root.iterfind("link/visual/material")]
-    assert used == ["paint", "right_paint"]
-
-
 @pytest.mark.slow
 def test_a_referee_reads_the_joined_description(tmp_path: Path) -> None:
     yourdfpy = pytest.importorskip("yourdfpy")
@@ -156,24 +126,6 @@ def test_a_referee_reads_the_joined_description(tmp_path: Path) -> None:
     assert robot.base_link == "map"
     assert robot.actuated_joint_names == ["left_elbow", "right_elbow"]
     assert robot.get_transform("right/base", "map")[1][3] == -0.5
-
-
-def test_the_srdf_has_both_arms_and_a_group_of_both(tmp_path: Path) -> None:
-    root = etree.fromstring(built(tmp_path)[0]["cell/cell.srdf"])
-    groups = {
-        it.get("name"): [(part.tag, part.get("name")) for part in it]
-        for it in root.findall("group")
-    }
-    assert groups == {
-        "left_arm": [("joint", "left_elbow")],
-        "right_arm": [("joint", "right_elbow")],
-        "both": [("group", "left_arm"), ("group", "right_arm")],
-    }
-    # MoveIt counts a virtual joint only at the root link, which is the world here.
-    assert root.findall("virtual_joint") == []
-    pairs = [(it.get("link1"), it.get("link2")) for it in root.findall("disable_collisions")]
-    assert pairs == [("left/base", "left/hand"), ("right/base", "right/hand")]
-    assert [it.get("group") for it in root.findall("group_state")] == ["left_arm", "right_arm"]
 
 
 def test_feet_on_one_world_are_adjacent(tmp_path: Path) -> None:
@@ -185,34 +137,6 @@ def test_feet_on_one_world_are_adjacent(tmp_path: Path) -> None:
     root = etree.fromstring(built(tmp_path, **texts)[0]["cell/cell.srdf"])
     last = root.findall("disable_collisions")[-1]
     assert dict(last.attrib) == {"link1": "left/base", "link2": "right/base", "reason": "Adjacent"}
-
-
-def test_one_arm_names_the_parameter_above_its_limits_and_the_other_does_not(
-    tmp_path: Path,
-) -> None:
-    own = fleet("pose: {y: -0.5}", "pose: {y: -0.5}, companions: {moveit: [other.yaml]}")
-    text = "robot_description_planning:\n  joint_limits: {elbow: {max_velocity: 2.0}}\n"
-    files, _ = built(tmp_path, fleet_yaml=own, other_yaml=text)
-    limits = parameters(files)["robot_description_planning"]["joint_limits"]
-    assert [(it, limits[it]["max_velocity"]) for it in sorted(limits)] == [
-        ("left_elbow", 1.0),
-        ("right_elbow", 2.0),
-    ]
-
-
-def test_move_group_gets_all_files_joined(tmp_path: Path) -> None:
-    files, _ = built(tmp_path)
-    given = parameters(files)
-    assert given["robot_description"].encode() == files["cell/cell.urdf"]
-    assert given["robot_description_semantic"].encode() == files["cell/cell.srdf"]
-    assert set(given["robot_description_planning"]["joint_limits"]) == {"left_elbow", "right_elbow"}
-    simple = given["moveit_simple_controller_manager"]
-    # The action of /left/arm_controller, asked for by a node in /.
-    assert simple["controller_names"] == ["left/arm_controller", "right/arm_controller"]
-    assert simple["right/arm_controller"]["joints"] == ["right_elbow"]
-    assert set(simple) == {"controller_names", *simple["controller_names"]}
-    # servo runs for each arm.
-    assert "moveit_servo" not in given
 
 
 @pytest.mark.more
@@ -232,17 +156,6 @@ def test_one_move_group_is_planned_and_started(tmp_path: Path) -> None:
     given = "parameters=[file('cell/moveit_parameters.yaml'), CLOCK]"
     started = files["fleet.launch.py"].decode().partition("executable='move_group'")[2]
     assert given in started.partition("output=")[0]
-
-
-def test_one_window_plans_for_all_arms(tmp_path: Path) -> None:
-    files, _ = built(tmp_path)
-    assert [it for it in files if it.endswith("/moveit.rviz")] == ["cell/moveit.rviz"]
-    config = yaml.safe_load(files["cell/moveit.rviz"])["Visualization Manager"]
-    assert config["Global Options"] == {"Fixed Frame": "map"}
-    (display,) = config["Displays"]
-    assert display["Planning Request"] == {"Planning Group": "both"}
-    line = "rviz2 -d cell/moveit.rviz --ros-args --params-file cell/moveit_parameters.yaml"
-    assert line in files["commands.md"].decode()
 
 
 @pytest.mark.more

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -11,7 +10,6 @@ import pytest
 from lxml import etree
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.scripts import load_fleet
 
 ARM = """<robot name="arm">
   <link name="base_link">
@@ -179,15 +177,6 @@ def test_the_fleet_file_says_where_the_results_are_installed(package: Path) -> N
     assert found[1] == "/opt/ws/share/my_arm/fleet/robot2/arm.yaml"
 
 
-def test_where_they_are_installed_is_an_absolute_path(
-    package: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    (package / "urdf" / "arm.urdf").write_text(ARM.format("x"))
-    (package / "fleet.yaml").write_text(f"installed: fleet\n{FLEET}")
-    assert main(["build", str(package / "fleet.yaml"), "-o", str(package / "out")]) != 0
-    assert "fleet.yaml:1: installed" in capsys.readouterr().err
-
-
 @pytest.mark.more
 def test_a_path_is_escaped_and_the_rest_is_as_it_was(package: Path) -> None:
     path = "<!-- ours -->\n    ../config/arm.yaml <!-- theirs -->"
@@ -204,11 +193,3 @@ def test_a_second_build_finds_nothing_to_do(package: Path, monkeypatch: pytest.M
     built(package, "../config/arm.yaml")
     monkeypatch.chdir(package)
     assert main(["build", "fleet.yaml", "-o", "out", "--check"]) == 0
-
-
-def test_what_is_not_written_is_not_loaded(package: Path) -> None:
-    (package / "urdf" / "arm.urdf").write_text(ARM.format("../config/arm.yaml"))
-    fleet = load_fleet(os.fspath(package / "fleet.yaml"))
-    there = "<parameters>../config/arm.yaml</parameters>"
-    assert there in fleet.robot("robot1").description
-    assert there in fleet.text("robot1/arm.urdf")

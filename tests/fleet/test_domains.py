@@ -409,18 +409,3 @@ def test_check_launch_reads_the_files_of_domain_bridge(
     file.write_text("topics: [")
     assert main(check) == 3
     assert "domain_bridge does not read" in capsys.readouterr().err
-
-
-def test_robots_of_other_domains_are_not_missed_in_the_usual_one(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Nothing is planned for all robots, so no part of the plan is in domain 0."""
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "arm.urdf").write_text(KINDS["arm"].text.replace("ROBOT", "arm"))
-    (tmp_path / "fleet.yaml").write_text(
-        "layout: tf-per-robot\ndistro: humble\ndomains: {a: 11, b: 12}\ndescription: arm.urdf\n"
-        "robots: [{name: a}, {name: b, pose: {x: 3}}]\n"
-    )
-    assert main(["build", "fleet.yaml", "-o", "out", "-q"]) == 0
-    check = ["check-launch", "out/fleet.launch.py", "--plan", "out/plan.yaml"]
-    assert main(check) == 0

@@ -92,6 +92,7 @@ CASES = {
 }  # fmt: skip
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("case", CASES)
 def test_a_fleet_without_a_fault_builds(case: str, tmp_path: Path) -> None:
     judge(CASES[case], tmp_path)

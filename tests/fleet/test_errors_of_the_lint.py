@@ -72,24 +72,6 @@ LINK = '<link name="base"><inertial><mass value="1"/>{}</inertial></link>'
 SOLID = '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/>'
 
 
-@pytest.mark.parametrize(
-    ("simulator", "comment", "expected"),
-    [
-        ("gazebo", "", ["MB234"]),
-        ("none", "", []),
-        ("gazebo", "<!-- urdf-lint: ignore MB234 -->", []),
-    ],
-)
-def test_a_plugin_without_its_file_of_controllers(
-    simulator: str, comment: str, expected: list[str], tmp_path: Path
-) -> None:
-    """It counts where the plugin is loaded, and where no comment says that it is meant."""
-    file = tmp_path / "robot.urdf"
-    block = GAZEBO.format("").replace("  <plugin", f"  {comment}\n  <plugin")
-    file.write_text(f'<robot name="r">\n{LINK.format(SOLID)}\n{block}</robot>')
-    assert [it.code for it in said(file, simulator) if it.code == "MB234"] == expected
-
-
 MAY_BE = [it.code for it in RULES.values() if may_stop(it) and URDF in it.formats and it.page.bad]
 # A system of the world is moved from the description to the world; a file of MuJoCo that a relative
 # path names is next to the source alone.

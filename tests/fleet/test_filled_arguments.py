@@ -170,16 +170,6 @@ def test_a_value_of_the_fleet_file_wins(tmp_path: Path) -> None:
     assert said(outputs) == []
 
 
-@pytest.mark.sample(1)
-@pytest.mark.parametrize(("argument", "default"), [("tf_prefix", "ur_"), ("side", "")])
-def test_what_is_not_for_robots_is_left(argument: str, default: str, tmp_path: Path) -> None:
-    path = xacro(tmp_path, argument, ARM.replace("tf_prefix", argument), default)
-    outputs = made(path, **WITH_PREFIX)
-    assert names(outputs, "robot1", "link")[0] == f"robot1_{default}base_link"
-    assert nobodys(outputs, "robot1") == default
-    assert said(outputs) == []
-
-
 @pytest.mark.slow
 def test_a_prefix_that_misses_a_reference_is_not_filled(tmp_path: Path) -> None:
     """Kinova's gripper_joint_name is an argument of its own, with a name without the prefix."""

@@ -7,7 +7,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-import yaml
 from paths import ROOT
 from plans import ends_of
 
@@ -52,17 +51,11 @@ controller_server: {ros__parameters: {controller_frequency: 20.0}}
 behavior_server: {ros__parameters: {robot_base_frame: base_link}}
 velocity_smoother: {ros__parameters: {smoothing_frequency: 20.0}}
 """
-EKF = """\
-ekf_filter_node:
-  ros__parameters:
-    {odom_frame: odom, base_link_frame: base_link, world_frame: odom, odom0: odom, publish_tf: true}
-"""
 ROW = """\
 - {{ros_topic_name: {0}, gz_topic_name: {0}, direction: {1},
    ros_type_name: {2}, gz_type_name: {3}}}
 """
 PLAIN = ROW.format("cmd_vel", "ROS_TO_GZ", "geometry_msgs/msg/Twist", "gz.msgs.Twist")
-TF = ROW.format("tf", "GZ_TO_ROS", "tf2_msgs/msg/TFMessage", "gz.msgs.Pose_V")
 ROBOTS = "robots: [{name: robot1, pose: {y: 0.0}}, {name: robot2, pose: {y: 3.0}}]\n"
 
 
@@ -107,18 +100,6 @@ def test_nav2_drives_a_controller(release: str, layout: str, tmp_path: Path) -> 
     assert is_as_planned(tmp_path)
 
 
-@pytest.mark.parametrize("layout", ["postfix", "both"])
-def test_a_joystick_drives_a_controller(layout: str, tmp_path: Path) -> None:
-    """twist_mux sends to cmd_vel, which no node of this robot hears."""
-    text = f"layout: {layout}\ndistro: jazzy\nstack: teleop\ndescription: driven.urdf\n"
-    more = "companions: {params: controllers.yaml}\n"
-    assert build(tmp_path, text + more, driven_urdf=DRIVEN, controllers_yaml=CONTROLLERS) == 0
-    node, topic = ("/twist_mux_robot1", "/drive_robot1/cmd_vel")
-    if layout == "both":
-        node, topic = "/robot1/twist_mux", "/robot1/drive/cmd_vel"
-    assert ("publishes", topic) in ends(tmp_path, node)
-
-
 def test_a_section_without_the_type_takes_that_of_the_bridge(tmp_path: Path) -> None:
     """Kilted's Nav2 sends TwistStamped, the bridge file has Twist, and no file says otherwise."""
     text = f"layout: both\ndistro: kilted\nstack: navigation\ndescription: {ROVER}\n"
@@ -130,29 +111,6 @@ def test_a_section_without_the_type_takes_that_of_the_bridge(tmp_path: Path) -> 
         (one,) = (it for it in started if f"name='{node}'" in it)
         assert "'enable_stamped_cmd_vel': False" in one, node
     assert is_as_planned(tmp_path)
-
-
-def test_a_filter_of_the_files_places_the_robot(tmp_path: Path) -> None:
-    """The file says publish_tf: so the bridge of the build leaves the drive's transform out."""
-    text = f"layout: both\ndistro: jazzy\nstack: robot_localization\ndescription: {ROVER}\n"
-    assert build(tmp_path, text + "companions: {params: ekf.yaml}\n", ekf_yaml=EKF) == 0
-    rows = yaml.safe_load((tmp_path / "out" / "robot1" / "bridge.yaml").read_text())
-    assert "/robot1/odom" in {it["ros_topic_name"] for it in rows}
-    assert "tf2_msgs/msg/TFMessage" not in {it["ros_type_name"] for it in rows}
-    bare = text.replace("stack: robot_localization\n", "")
-    assert build(tmp_path, bare) == 0
-    rows = yaml.safe_load((tmp_path / "out" / "robot1" / "bridge.yaml").read_text())
-    assert "tf2_msgs/msg/TFMessage" in {it["ros_type_name"] for it in rows}
-
-
-def test_a_bridge_file_with_the_transform_is_a_second_sender(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Both are the user's, and only he knows which one is meant."""
-    text = f"layout: both\ndistro: jazzy\nstack: robot_localization\ndescription: {ROVER}\n"
-    more = "companions: {params: ekf.yaml, bridge: bridge.yaml}\n"
-    assert build(tmp_path, text + more, ekf_yaml=EKF, bridge_yaml=PLAIN + TF) == 1
-    assert "MG408" in capsys.readouterr().err
 
 
 def test_real_robots_in_domains_need_no_bridge_to_gazebo(tmp_path: Path) -> None:
@@ -171,24 +129,6 @@ def test_rviz_shows_what_its_file_has(tmp_path: Path) -> None:
     text = f"layout: both\ndistro: kilted\nstack: [nav2, rviz_nav2]\ndescription: {ROVER}\n"
     assert build(tmp_path, f"{text}companions: {{rviz: {RVIZ}}}\n") == 0
     assert is_as_planned(tmp_path)
-
-
-def test_an_input_that_is_called_as_the_commands_of_nav2_has_them(tmp_path: Path) -> None:
-    """The controller obeys a topic of its own, so that cmd_vel is free for an input of the mux."""
-    mux = (
-        "twist_mux: {ros__parameters: {use_stamped: true, topics: {"
-        "navigation: {topic: cmd_vel, timeout: 0.5, priority: 1},"
-        " joystick: {topic: joy_vel, timeout: 0.5, priority: 2}}}}\n"
-    )
-    text = "layout: tf-per-robot\ndistro: jazzy\nstack: [navigation, teleop]\n"
-    more = "description: driven.urdf\ncompanions: {params: [controllers.yaml, mux.yaml]}\n"
-    files = {"driven_urdf": DRIVEN, "controllers_yaml": CONTROLLERS, "mux_yaml": mux}
-    assert build(tmp_path, text + more, **files) == 0
-    plan = read_plan((tmp_path / "out" / "plan.yaml").read_bytes(), "plan.yaml")
-    sent = {(it.node, it.name) for it in plan.ends if it.role == "publishes"}
-    heard = {name for role, name in ends(tmp_path, "/robot1/twist_mux") if role == "subscribes"}
-    assert ("/robot1/twist_mux", "/robot1/drive/cmd_vel") in sent
-    assert ("/robot1/collision_monitor", "/robot1/cmd_vel") in sent and "/robot1/cmd_vel" in heard
 
 
 REAL = DRIVEN.replace("gz_ros2_control/GazeboSimSystem", "acme/Driver")
@@ -237,7 +177,7 @@ MUX = """twist_mux:
 """
 
 
-@pytest.mark.sample(2)
+@pytest.mark.sample(6)
 @pytest.mark.parametrize("stack", ["nav2", "[nav2, teleop]", "[navigation, twist_mux]"])
 @pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
 @pytest.mark.parametrize(
@@ -297,16 +237,3 @@ def test_the_launch_replaces_the_share_folders_in_a_parameter_file(
     # 3: the package may not be installed here.
     assert main(check) in (0, 3)
     assert " error: " not in capsys.readouterr().out
-
-
-def test_what_needs_an_argument_of_a_launch_is_named(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    own = "bt_navigator: {ros__parameters: {bt_search_directories: [$(var trees)/a, $(env HOME)/b]}}\n"
-    (tmp_path / "nav2.yaml").write_text(f"{NAV2}{own}")
-    (tmp_path / "fleet.yaml").write_text(
-        f"distro: lyrical\nlayout: both\nstack: nav2\ndescription: {ROVER}\n"
-        "companions: {params: [nav2.yaml]}\nrobots: [{name: a}, {name: b}]\n"
-    )
-    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out")]) == 1
-    assert "MB105 the placeholder $(var trees) stays" in capsys.readouterr().err

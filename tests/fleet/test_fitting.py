@@ -17,24 +17,6 @@ from multibot_rewrite.spelling.plan import read_plan
 ROVER = ROOT / "examples" / "launch_tutorial" / "rover.urdf"
 PLAIN, STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
 ROBOTS = "robots: [{name: robot1, pose: {y: 0.0}}, {name: robot2, pose: {y: 3.0}}]"
-# The servers of Nav2 that have commands, in a file that sets the type for three of them.
-SERVERS = ("controller_server", "behavior_server", "velocity_smoother")
-OTHERS = ("collision_monitor", "docking_server", "following_server")
-BRIDGE = (
-    "- {{ros_topic_name: cmd_vel, gz_topic_name: cmd_vel, direction: ROS_TO_GZ,\n"
-    "   ros_type_name: {}, gz_type_name: gz.msgs.Twist}}\n"
-)
-DRIVER = """\
-nodes:
-  driver:
-    package: my_driver
-    programs: [driver]
-    frames: {odom_frame: odom, base_frame: base_link}
-    sends: {odom_frame: base_frame}
-    with: [tf_broadcaster]
-    publishes: {odom: nav_msgs/msg/Odometry}
-    subscribes: {cmd_vel: geometry_msgs/msg/Twist}
-"""
 
 
 def built(folder: Path, text: str, robot: Path = ROVER) -> Path:
@@ -84,41 +66,6 @@ def test_the_bridge_takes_what_nav2_sends(release: str, type_: str, tmp_path: Pa
     assert stamped == (type_ == STAMPED)
 
 
-@pytest.mark.parametrize(
-    ("release", "value", "type_"), [("jazzy", True, STAMPED), ("lyrical", False, PLAIN)]
-)
-def test_servers_of_no_file_follow_those_of_the_file(
-    release: str, value: bool, type_: str, tmp_path: Path
-) -> None:
-    sections = {it: {"ros__parameters": {"enable_stamped_cmd_vel": value}} for it in SERVERS}
-    (tmp_path / "nav2.yaml").write_text(yaml.safe_dump(sections))
-    more = "companions: {params: nav2.yaml}"
-    out = built(tmp_path, f"distro: {release}\nstack: nav2\n{more}")
-    assert rows(out)["/robot1/cmd_vel"] == type_
-    there = OTHERS if release == "lyrical" else OTHERS[:2]
-    assert given(out, "enable_stamped_cmd_vel") == dict.fromkeys(there, str(value))
-
-
-@pytest.mark.parametrize(
-    ("release", "type_", "value"), [("jazzy", STAMPED, "True"), ("lyrical", PLAIN, "False")]
-)
-def test_nav2_sends_what_the_users_bridge_takes(
-    release: str, type_: str, value: str, tmp_path: Path
-) -> None:
-    (tmp_path / "bridge.yaml").write_text(BRIDGE.format(type_))
-    more = "companions: {bridge: bridge.yaml}"
-    out = built(tmp_path, f"distro: {release}\nstack: nav2\n{more}")
-    assert set(given(out, "enable_stamped_cmd_vel").values()) == {value}
-    assert planned(out, "/robot1/collision_monitor", "publishes", "/robot1/cmd_vel") == [type_]
-
-
-def test_nav2_sends_what_the_users_driver_takes(tmp_path: Path) -> None:
-    (tmp_path / "nodes.yaml").write_text(DRIVER)
-    more = "simulator: none\nnodes: nodes.yaml"
-    out = built(tmp_path, f"distro: lyrical\nstack: [nav2, driver]\n{more}")
-    assert set(given(out, "enable_stamped_cmd_vel").values()) == {"False"}
-
-
 def test_two_stacks_of_other_defaults_agree(tmp_path: Path) -> None:
     """Commands of Nav2 are stamped on Lyrical, those of twist_mux are not."""
     out = built(tmp_path, "distro: lyrical\nstack: [nav2, teleop]")
@@ -131,27 +78,6 @@ def test_a_filter_leaves_the_odometry_to_the_drive(release: str, tmp_path: Path)
     """Without a file both would send odom -> base_link (ros_filter.cpp: publish_tf)."""
     out = built(tmp_path, f"distro: {release}\nstack: robot_localization")
     assert given(out, "publish_tf") == {"ekf_filter_node": "False"}
-
-
-def test_a_filter_of_a_file_stays_as_the_file_has_it(tmp_path: Path) -> None:
-    """It sends the transform, so that the bridge, which is the build's own, does not."""
-    (tmp_path / "ekf.yaml").write_text("ekf_filter_node:\n  ros__parameters: {publish_tf: true}\n")
-    out = built(
-        tmp_path, "distro: jazzy\nstack: robot_localization\ncompanions: {params: ekf.yaml}"
-    )
-    assert not given(out, "publish_tf")
-    assert "tf2_msgs/msg/TFMessage" not in rows(out).values()
-
-
-def test_the_filter_of_a_real_robot_places_its_root(tmp_path: Path) -> None:
-    """base_link hangs on base_footprint there: a second parent tears the tree apart."""
-    robot = FIXTURES / "robots" / "rover_gz.urdf"
-    more = "simulator: none\nlayout: frames-per-robot"
-    text = f"distro: jazzy\nstack: robot_localization\n{more}"
-    out = built(tmp_path, text.replace("\nlayout: frames-per-robot", ""), robot)
-    params = yaml.safe_load((out / "robot1" / "params.yaml").read_text())
-    own = params["/robot1/ekf_filter_node"]["ros__parameters"]
-    assert own["base_link_frame"] == "base_footprint"
 
 
 @pytest.mark.parametrize(
@@ -176,15 +102,6 @@ def test_odometry_without_a_topic_comes_where_it_is_read(tmp_path: Path) -> None
     assert rows(out)["/robot1/odom"] == "nav_msgs/msg/Odometry"
     alone = built(tmp_path, "distro: jazzy\nstack: robot_state", FIXTURES / "robots" / "rover.sdf")
     assert rows(alone)["/robot1/odometry"] == "nav_msgs/msg/Odometry"
-
-
-def test_a_scan_of_another_name_is_heard(tmp_path: Path) -> None:
-    robot = tmp_path / "rover.urdf"
-    robot.write_text(ROVER.read_text().replace("<topic>scan</topic>", "<topic>front/lidar</topic>"))
-    out = built(tmp_path, "distro: jazzy\nstack: nav2", robot)
-    assert planned(out, "/robot1/amcl", "subscribes", "/robot1/front/lidar") == [
-        "sensor_msgs/msg/LaserScan"
-    ]
 
 
 def test_cartographer_gets_its_options(tmp_path: Path) -> None:
@@ -329,20 +246,6 @@ def test_a_keyboard_does_not_go_past_what_limits_or_chooses(
 @pytest.mark.parametrize(
     ("inputs", "topic"),
     [
-        (("navigation: nav_vel", "keyboard: typed"), "typed"),
-        (("navigation: nav_vel", "joystick: stick"), "key_vel"),
-    ],
-)
-def test_a_keyboard_sends_to_an_input_of_the_users_mux(
-    inputs: tuple[str, ...], topic: str, tmp_path: Path
-) -> None:
-    out = built(tmp_path, f"distro: jazzy\nstack: [nav2, teleop]\n{muxed(tmp_path, *inputs)}")
-    assert keyboard(out) == (f"/robot1/{topic}", False)
-
-
-@pytest.mark.parametrize(
-    ("inputs", "topic"),
-    [
         ({"stick": "joy", "other": "keys"}, "other"),
         ({"nav": "a", "joy_vel": "b"}, "joy_vel"),
         ({"plans": "a", "free": "b"}, "free"),
@@ -415,14 +318,3 @@ def test_a_filter_places_the_robot_where_the_bridge_has_no_tf(
     assert "MG408" not in told
     assert "MG406" not in told
     assert [*given(out, "publish_tf").values()] == ([] if places else ["False"])
-
-
-def test_a_static_transform_without_frames_is_left_out(tmp_path: Path) -> None:
-    """Its program ends at once without them; a file that names the node has it started."""
-    text = "distro: jazzy\nsimulator: gazebo\nstack: [static_tf]"
-    launch = (built(tmp_path, text) / "fleet.launch.py").read_text()
-    assert "Not started: static_transform_publisher" in launch
-    (tmp_path / "p.yaml").write_text(
-        "static_transform_publisher: {ros__parameters: {frame_id: base_link, child_frame_id: x}}\n"
-    )
-    built(tmp_path, f"{text}\ncompanions: {{params: p.yaml}}")

@@ -44,13 +44,6 @@ def robot(folder: Path, keys: str, above: str = "") -> RobotSpec:
 # ---------------------------------------------------------------- what it means
 
 
-def test_the_smallest_robot_has_its_name_everywhere(tmp_path: Path) -> None:
-    found = robot(tmp_path, "")
-    assert (found.name, found.namespace, found.tag, found.model) == ("a",) * 4
-    assert (found.pose, found.colour, found.stacks, dict(found.companions)) == (None, "", (), {})
-    assert (found.line, found.file) == (2, str(tmp_path / "fleet.yaml"))
-
-
 @pytest.mark.parametrize(
     ("keys", "above", "field", "value"),
     [
@@ -72,38 +65,6 @@ def test_the_smallest_robot_has_its_name_everywhere(tmp_path: Path) -> None:
 )
 def test_keys_of_a_robot(tmp_path: Path, keys: str, above: str, field: str, value: object) -> None:
     assert getattr(robot(tmp_path, keys, above), field) == value
-
-
-def test_arguments_are_text_as_xacro_takes_it(tmp_path: Path) -> None:
-    text = (
-        "arguments: {a: 1, b: true}\n"
-        "robots:\n  - {name: r, description: arm.urdf.xacro, arguments: {a: 2.5, c: x}}\n"
-    )
-    assert read(tmp_path, text).robots[0].arguments == {"a": "2.5", "b": "true", "c": "x"}
-
-
-def test_arguments_of_the_fleet_are_for_robots_that_are_xacro(tmp_path: Path) -> None:
-    text = f"arguments: {{tool: fork}}\n{ONE}  - {{name: r, description: arm.urdf.xacro}}\n"
-    assert [dict(it.arguments) for it in read(tmp_path, text).robots] == [{}, {"tool": "fork"}]
-
-
-def test_companions_of_a_robot_replace_those_of_the_fleet_kind_by_kind(tmp_path: Path) -> None:
-    text = (
-        "companions: {params: params.yaml, rviz: one_robot.rviz}\n"
-        "robots:\n  - {name: r, description: rover.urdf, companions: {params: []}}\n"
-    )
-    found = read(tmp_path, text).robots[0].companions
-    assert found == {"rviz": (str(tmp_path / "one_robot.rviz"),)}
-
-
-def test_what_is_included_gives_defaults_and_keeps_its_own_paths(tmp_path: Path) -> None:
-    (tmp_path / "site").mkdir()
-    (tmp_path / "site" / "common.yaml").write_text("layout: L3\ndescription: ../rover.urdf\n")
-    text = "include: site/common.yaml\nlayout: L2\nrobots:\n  - {name: a}\n"
-    found = read(tmp_path, text)
-    assert found.policy["layout"] == "L2"
-    assert Path(found.robots[0].description).samefile(tmp_path / "rover.urdf")
-    assert [Path(it).name for it in found.files] == ["fleet.yaml", "common.yaml"]
 
 
 def test_a_fault_in_an_included_file_has_its_name_and_line(tmp_path: Path) -> None:
@@ -506,11 +467,6 @@ def test_the_page_has_examples_and_the_line_for_editors() -> None:
     assert line is not None
     assert line[1] == editors.schema_name(editors.FLEET)
     assert yaml.safe_load(EXAMPLES[0])["robots"]
-
-
-def test_an_empty_text_is_told_in_words(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="write some text"):
-        read(tmp_path, "robots:\n  - {name: a, description: ''}\n")
 
 
 def fault(given: Any, validator: str, wanted: Any, **schema: Any) -> str:

@@ -14,13 +14,11 @@ import yaml
 from fleet_folder import SMALL, fleet_folder, mixed, planned_fleet
 from lxml import etree
 from named_ends import named_ends
-from paths import ROBOTS
 from plans import own
 
 from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.fleet import expected, planned
+from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.fleet.robots.robot_groups import split_per_robot
-from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
 from multibot_rewrite.system.json import from_yaml
 
 LAYOUTS = [("L1", "prefix"), ("L2", "prefix"), ("L3", "postfix"), ("L4", "postfix")]
@@ -228,33 +226,6 @@ def test_no_file_of_a_robot_has_a_word_of_another(fleet: tuple[str, dict[str, st
 # ---------------------------------------------------------------- what meets
 
 
-def test_two_stacks_whose_names_meet_are_reported(tmp_path: Path) -> None:
-    text = (
-        "layout: L2\naffix: prefix\nshared_topics: [/clock, /scan]\n"
-        "robots:\n  - {name: a, description: rover.urdf, stack: nav2}\n"
-        "  - {name: b, description: rover.urdf, stack: moveit}\n"
-    )
-    plan = planned_fleet(fleet_folder(tmp_path, text))
-    assert {it.robot for it in plan.fleet.table.runs} >= {"a", "b"}
-    assert not [it for it in plan.fleet.table.problems if it.code == "MG320"]
-
-
-def test_affixes_that_make_one_name_of_two_are_refused(tmp_path: Path) -> None:
-    """``arm_left`` of ``b`` and ``arm`` of ``left_b`` are both ``arm_left_b``."""
-    one = '<robot name="x"><link name="arm_left"/></robot>'
-    two = '<robot name="y"><link name="arm"/></robot>'
-    text = (
-        "layout: L3\nseparators: {link: _}\nrobots:\n"
-        "  - {name: one, postfix: b, description: one.urdf}\n"
-        "  - {name: two, postfix: left_b, description: two.urdf}\n"
-    )
-    plan = planned_fleet(fleet_folder(tmp_path, text, one__urdf=one, two__urdf=two))
-    (told,) = plan.fleet.table.problems
-    assert (told.code, told.level) == ("MG402", "error")
-    assert "one and two would both have the frame 'arm_left_b'" in told.message
-    assert (Path(told.file).name, told.line) == ("one.urdf", 1)
-
-
 @pytest.mark.more
 def test_companions_of_one_name_are_in_folders_of_their_own(tmp_path: Path) -> None:
     (tmp_path / "more").mkdir()
@@ -280,18 +251,6 @@ def test_folders_of_one_name_are_in_those_above_them(tmp_path: Path) -> None:
 # ---------------------------------------------------------------- the fleet as one, and alone
 
 
-def test_a_held_robot_is_a_planned_publisher(tmp_path: Path) -> None:
-    text = SMALL.replace("stack: nav2\n", "stack: no_robot_state_publisher\n").replace(
-        "  params: [params.yaml]\n", ""
-    )
-    plan = planned_fleet(fleet_folder(tmp_path, text))
-    found = with_start_pose_nodes(plan)
-    assert [it.name for it in found.table.runs] == ["start_pose"]
-    sent = found.edges["robot1", "start_pose"][0]
-    assert (sent.parent, sent.child) == ("map", "robot1/base_link")
-    assert with_start_pose_nodes(plan._replace(robots=())) == plan.fleet
-
-
 def test_each_robot_alone_is_the_fleet_in_parts(tmp_path: Path) -> None:
     plan = planned_fleet(fleet_folder(tmp_path, mixed()))
     parts = list(split_per_robot(plan))
@@ -301,22 +260,3 @@ def test_each_robot_alone_is_the_fleet_in_parts(tmp_path: Path) -> None:
         (it for it in named_ends(plan.fleet.table) if it.robot), key=str
     )
     assert {key for it in parts for key in it.fleet.edges} == set(plan.fleet.edges)
-
-
-def test_the_parameters_that_are_planned_of_nodes(tmp_path: Path) -> None:
-    """The clock that the fleet file says, but for a node in a plugin of the simulator, and what
-    robot_state_publisher puts before frames."""
-    text = (
-        "layout: frame-prefix\nuse_sim_time: true\ndistro: jazzy\ndescription: rover.urdf\n"
-        "stack: [robot_state, gz_ros2_control]\nrobots: [{name: r1}, {name: r2, prefix: p2}]\n"
-    )
-    files = {"rover__urdf": (ROBOTS / "rover_gz.urdf").read_text()}
-    folder = fleet_folder(tmp_path, text, **files)
-    plan = planned(planned_fleet(folder).fleet)
-    found = {(it.node, it.name): it.value for it in plan.parameters}
-    fronts = {node: it for (node, name), it in found.items() if name == "frame_prefix"}
-    assert fronts == {"/r1/robot_state_publisher": '"r1/"', "/r2/robot_state_publisher": '"p2/"'}
-    clocks = {node: it for (node, name), it in found.items() if name == "use_sim_time"}
-    assert {*clocks.values()} == {"true"} and {*fronts} <= {*clocks}
-    assert not [it for it in clocks if it.endswith("/controller_manager")]
-    assert len(found) == len(fronts) + len(clocks)

@@ -29,7 +29,6 @@ from multibot_rewrite.fleet.outputs.bridge_outputs import fill_bridge, merge_bri
 from multibot_rewrite.fleet.robots import start_poses
 from multibot_rewrite.spelling.bridged_topics import (
     BridgedTopic,
-    bridged_topics as generated_bridge,
 )
 from multibot_rewrite.spelling.start import shell_line
 
@@ -102,47 +101,6 @@ def test_names_of_an_entry(names: str, layout: str, ros: str, gz: str) -> None:
     assert one(names, layout, "base") == (ros, gz)
 
 
-def test_topic_name_is_split_where_the_sides_differ() -> None:
-    text = f"- topic_name: /model/rover/pose  # where\n{TYPES}"
-    made = fill_bridge(bridged(text).own.template, "ns", "word", "rover1")
-    assert made == (
-        "- ros_topic_name: /ns/model/rover/pose\n  gz_topic_name: /model/rover1/pose  # where\n"
-        + TYPES
-    )
-
-
-def test_an_entry_in_braces_is_split_too() -> None:
-    text = "- {topic_name: /model/a/p, ros_type_name: b, gz_type_name: c}\n"
-    assert own(text)[0] == {
-        "ros_topic_name": "/ns/model/a/p",
-        "gz_topic_name": "/model/rover1/p",
-        "ros_type_name": "b",
-        "gz_type_name": "c",
-    }
-
-
-def test_points_are_below_the_robots_topic() -> None:
-    text = (
-        "- topic_name: lidar/points\n  ros_type_name: a\n  gz_type_name: gz.msgs.PointCloudPacked\n"
-    )
-    assert own(text, "L4")[0]["gz_topic_name"] == "/lidar/ns/points"
-    assert own(text, "L2")[0]["topic_name"] == "/ns/lidar/points"
-
-
-@pytest.mark.parametrize("topic", ["/clock", "clock", "/stats", "/world/w/stats", "/world/w/clock"])
-@pytest.mark.parametrize("layout", LAYOUTS)
-def test_topics_of_the_world_are_bridged_once(topic: str, layout: str) -> None:
-    text = f"- ros_topic_name: /clock\n  gz_topic_name: {topic}\n{TYPES}- topic_name: a\n{TYPES}"
-    made = bridged(text, layout)
-    assert [it["gz_topic_name"] for it in yaml.safe_load(made.shared)] == [topic]
-    assert len(own(text, layout)) == 1
-
-
-def test_a_file_with_nothing_shared_or_nothing_own() -> None:
-    assert bridged(f"- topic_name: a\n{TYPES}").shared == ""
-    assert own(f"- topic_name: /clock\n{TYPES}") == []
-
-
 @pytest.mark.parametrize(
     ("entry", "code"),
     [
@@ -162,11 +120,6 @@ def test_a_file_with_nothing_shared_or_nothing_own() -> None:
 )
 def test_mistakes_in_an_entry_are_reported(entry: str, code: str) -> None:
     assert [it.code for it in findings_of(bridged(entry, "L2", "base").own)] == [code]
-
-
-def test_an_entry_that_does_not_load_is_left_out() -> None:
-    text = f"- topic_name: a\n  gz_topic_name: b\n{TYPES}- topic_name: good\n{TYPES}"
-    assert [it["topic_name"] for it in own(text)] == ["/ns/good"]
 
 
 @pytest.mark.parametrize(
@@ -203,33 +156,6 @@ def test_one_file_of_all_robots_and_of_what_descriptions_say() -> None:
     names = [it.get("topic_name") or it["gz_topic_name"] for it in yaml.safe_load(text)]
     assert names == ["/r1/scan", "/r2/scan", "/clock", "/r1/imu"] and not findings
     assert text.count("# lidar") == 2
-
-
-@pytest.mark.parametrize("layout", LAYOUTS)
-def test_generated_topics_follow_the_spawned_model(fleet: Any, layout: str) -> None:
-    plan = fleet(layout, body=DRIVE)
-    made = plan.fleet
-    carried, _ = generated_bridge(made.inventories, made.naming, made.models)
-    found = [it.gz for it in carried if it.gz.startswith("/model/")]
-    assert {name.split("/")[2] for name in found} == {"r1", "second"}
-
-
-@pytest.mark.parametrize("layout", LAYOUTS)
-def test_topics_of_a_model_of_sdf_follow_it_too(
-    layout: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    body = DRIVE.removeprefix("<gazebo>").removesuffix("</gazebo>")
-    sdf = f'<sdf version="1.9"><model name="X1"><link name="base"/>{body}</model></sdf>'
-    Path("x1.sdf").write_text(sdf)
-    side = "postfix" if layout == "L4" else "prefix"
-    robots = "robots:\n- {name: r1}\n- {name: r2, namespace: two, model: second}\n"
-    Path("fleet.yaml").write_text(f"layout: {layout}\naffix: {side}\ndescription: x1.sdf\n{robots}")
-    plan = planned_fleet("fleet.yaml")
-    made = plan.fleet
-    carried, _ = generated_bridge(made.inventories, made.naming, made.models)
-    found = [it.gz for it in carried if it.gz.startswith("/model/")]
-    assert {name.split("/")[2] for name in found} == {"r1", "second"}
 
 
 LISTENS = """<gazebo><plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive"/>
@@ -381,23 +307,6 @@ def test_a_pose_is_a_static_transform(
     assert words[20:] == ["--ros-args", *(text for rule in rules for text in ("-r", rule))]
 
 
-def test_odometry_of_a_node_of_the_stack(fleet: Any) -> None:
-    found = start_poses.start_poses(fleet("L2", "diff_drive_controller"))
-    assert [it.child for it in found.transforms] == ["r1/odom"]
-
-
-@pytest.mark.parametrize(
-    ("simulator", "level"),
-    [("", "note"), ("simulator: none\n", "warning"), ("simulator: gazebo\n", "note")],
-)
-def test_a_pose_in_a_simulator_is_of_use_beside_a_localisation(
-    fleet: Any, simulator: str, level: str
-) -> None:
-    found = start_poses.start_poses(fleet("L1", "nav2_slam", DRIVE, simulator))
-    assert [(it.code, it.level) for it in found.findings] == [("MF701", level)]
-    assert found.findings[0].hint.startswith("remove the pose") is (level == "warning")
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(("stack", "initial"), [("nav2", ["amcl"]), ("nav2_slam", [])])
 @pytest.mark.parametrize("layout", LAYOUTS)
@@ -437,26 +346,6 @@ def test_a_description_that_already_starts_with_the_world(fleet: Any) -> None:
     assert "fixes 'r1/base' to 'world'" in found.findings[0].message
 
 
-def test_the_fleets_world_frame_is_the_parent(fleet: Any) -> None:
-    found = start_poses.start_poses(fleet("L2", more="world: world\n"))
-    assert found.transforms[0].parent == "world"
-
-
-def test_a_robot_is_spawned_by_its_model_from_its_topic(fleet: Any) -> None:
-    made = spawn.spawns(fleet("L2"))[0]
-    assert [(it.model, it.topic) for it in made] == [
-        ("r1", "/r1/robot_description"), ("second", "/two/robot_description"),
-    ]  # fmt: skip
-    assert [*made[0].pose] == [1.0, -0.5, 0.25, 0.1, 0.2, 1.57]
-
-
-def test_the_postfix_layout_has_a_topic_for_each_description(fleet: Any) -> None:
-    assert [it.topic for it in spawn.spawns(fleet("L4"))[0]] == [
-        "/robot_description/r1",
-        "/robot_description/two",
-    ]
-
-
 def classic(*namespaces: str) -> str:
     """Plugins that no vocabulary has, so that nothing is inserted in them."""
     plugins = (
@@ -493,41 +382,10 @@ def test_what_is_in_a_comment_is_for_no_simulator(fleet: Any) -> None:
     assert [spawn.simulators(fleet("L2", body=it)) for it in bodies] == [["classic"], ["gz"]]
 
 
-@pytest.mark.parametrize(
-    ("other", "simulators"),
-    [
-        ("", ["classic"]),
-        ('<gazebo><plugin name="p" filename="gz-sim-acme-system"/></gazebo>', ["classic", "gz"]),
-        ('<gazebo reference="base"><sensor name="s" type="imu"/></gazebo>', ["classic", "gz"]),
-    ],
-)
-def test_what_says_nothing_of_a_simulator_is_in_that_of_the_others(
-    fleet: Any, tmp_path: Path, other: str, simulators: list[str]
-) -> None:
-    (tmp_path / "arm.urdf").write_text(ROVER.format(other))
-    more = "robots:\n  - {name: a, description: arm.urdf}\n"
-    fleet("L2", body=classic(SPACE))
-    text = (tmp_path / "fleet.yaml").read_text()
-    (tmp_path / "fleet.yaml").write_text(text.replace("robots:\n", more))
-    assert spawn.simulators(planned_fleet("fleet.yaml")) == simulators
-
-
 def test_no_namespace_where_nothing_needs_one(fleet: Any) -> None:
     for layout in LAYOUTS:
         made, _ = spawn.spawns(fleet(layout))
         assert "-robot_namespace" not in shell_line(spawn.spawner(made[0], classic=True))
-
-
-def test_driving(fleet: Any) -> None:
-    plan = fleet("L2", "nav2", more="distro: jazzy\n")
-    assert [shell_line(it.start) for it in teleop.teleops(plan)] == [
-        "ros2 run teleop_twist_keyboard teleop_twist_keyboard --ros-args "
-        f"-r cmd_vel:=/{it}/cmd_vel_nav"
-        for it in ("r1", "two")
-    ]
-    plan = fleet("L4")
-    assert teleop.teleops(plan) == ()
-    assert teleop.teleop(plan, plan.robots[0]).topic == "/cmd_vel/r1"
 
 
 def test_a_bridge_to_the_simulator_reads_commands(fleet: Any) -> None:
@@ -548,12 +406,6 @@ def test_a_bridge_to_the_simulator_reads_commands(fleet: Any) -> None:
         assert [it.topic for it in teleop.teleops(plan)][:1] == heard
 
 
-def test_a_controller_that_takes_stamped_commands_only(fleet: Any) -> None:
-    it = teleop.teleops(fleet("L2", "diff_drive_controller"))[0]
-    assert it.topic == "/r1/diff_drive_controller/cmd_vel"
-    assert it.start.words[3:] == ["-p", "stamped:=true", "-p", "frame_id:=r1/base"]
-
-
 @pytest.mark.parametrize(
     ("controller", "stamped", "heard"),
     [
@@ -572,14 +424,6 @@ def test_a_controller_of_humble(fleet: Any, controller: str, stamped: str, heard
     plan = fleet("L2", controller, more="distro: humble\ncompanions: {params: own.yaml}\n")
     it = teleop.teleops(plan)[0]
     assert (it.topic, it.stamped) == (f"/r1/{controller}/{heard}", "unstamped" not in heard)
-
-
-def test_a_bridge_that_takes_stamped_commands(fleet: Any) -> None:
-    row = f"- topic_name: cmd_vel\n{TYPES}  direction: ROS_TO_GZ\n"
-    Path("bridge.yaml").write_text(row.replace("a/msg/B", teleop.STAMPED))
-    first, *_ = teleop.teleops(fleet("L2", more="companions: {bridge: bridge.yaml}\n"))
-    assert (first.robot, first.topic) == ("r1", "/r1/cmd_vel")
-    assert (first.stamped, first.frame) == (True, "r1/base")
 
 
 @pytest.mark.more
@@ -618,13 +462,3 @@ def test_what_follows_a_spawner(it: spawn.Spawn, source: list[str]) -> None:
     assert spawn.spawner(it._replace(namespace=""), True).words == classic[:-2]
     assert made["gz"][:2] == ("ros_gz_sim", "create")
     assert made["classic"][:2] == ("gazebo_ros", "spawn_entity.py")
-
-
-@pytest.mark.parametrize(
-    ("name", "it_is"),
-    [("odom_frame", True), ("odom_frame_id", True), ("odometry_frame_name", True),
-     ("base.odom_frame", True),
-     ("my_odom_frame", True), ("myodom_frame", False), ("odom_frames", False), ("odom", False)],
-)  # fmt: skip
-def test_what_drivers_call_their_odometry_frame(name: str, it_is: bool) -> None:
-    assert bool(start_poses.ODOMETRY_FRAME.search(name)) is it_is

@@ -130,15 +130,6 @@ def test_each_robot_gets_its_rules(folder: Path, capsys: pytest.CaptureFixture[s
     assert "('/tf', f'/tf/{name}')" in launch
 
 
-def test_a_parameter_of_the_launch_makes_the_name(folder: Path) -> None:
-    file = folder / "acme/launch/acme.launch.py"
-    file.write_text(LAUNCH.replace("NODES", ONE.format("{'side': 'rear'}")))
-    assert main(["build", str(folder / "fleet.yaml"), "-o", str(folder / "built")]) == 0
-    launch = (folder / "built/fleet.launch.py").read_text()
-    assert "('rear/odom', f'rear/odom/{name}')" in launch
-    assert "left/odom" not in launch
-
-
 def test_a_frame_of_the_code_is_the_same_for_every_robot(folder: Path) -> None:
     assert main(["build", str(folder / "fleet.yaml"), "-o", str(folder / "built")]) == 0
     plan = (folder / "built/plan.yaml").read_text()
@@ -146,19 +137,6 @@ def test_a_frame_of_the_code_is_the_same_for_every_robot(folder: Path) -> None:
         sent = f"{{child: base_link, parent: odom, publishers: [/acme_driver_{robot}]}}"
         assert sent in plan
     assert "under a name made at run time" in plan
-
-
-def test_a_frame_in_a_file_is_each_robots_own(folder: Path) -> None:
-    file = folder / "acme/launch/acme.launch.py"
-    file.write_text(LAUNCH.replace("NODES", ONE.format("'PARAMS'")))
-    params = folder / "acme/config.yaml"
-    params.write_text("/**:\n  ros__parameters: {odom_frame: wheel_odom}\n")
-    file.write_text(file.read_text().replace("PARAMS", str(params)))
-    assert main(["build", str(folder / "fleet.yaml"), "-o", str(folder / "built")]) == 0
-    plan = (folder / "built/plan.yaml").read_text()
-    assert (
-        "{child: base_link, parent: wheel_odom/robot1, publishers: [/acme_driver_robot1]}" in plan
-    )
 
 
 DEAF = """
@@ -194,22 +172,6 @@ def test_a_fleet_that_nothing_moves_is_not_as_planned(folder: Path) -> None:
     what = "nothing reads cmd_vel of acme_driver and nothing sends odom of acme_driver"
     who = "robot 'robot1': all that it runs is known, and"
     assert found["MF865"] == f"warning {who} {what}".replace("acme_driver", "pilot_robot1")
-
-
-@pytest.mark.parametrize(
-    ("old", "new"),
-    [
-        pytest.param("print, 10)", "print, 10)\n        Part(self)", id="known-in-part"),
-        pytest.param('"odom"', "open('x').read()", id="a-name-of-a-run"),
-        pytest.param('Twist, "cmd_vel"', 'Twist, "plan"', id="no-command"),
-    ],
-)
-def test_what_is_known_in_part_may_be_moved(folder: Path, old: str, new: str) -> None:
-    node = DEAF.replace(old, new).replace(
-        "import rclpy\n", "import rclpy\nfrom other import Part\n"
-    )
-    found = gaps(folder, node)
-    assert "nothing reads" not in found.get("MF865", "")
 
 
 def test_two_programs_that_call_their_nodes_alike_are_both_known(

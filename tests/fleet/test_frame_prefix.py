@@ -16,7 +16,7 @@ import yaml
 from fleet_folder import built_fleet
 from plans import robot_named
 
-from multibot_rewrite import load_fleet, rewrite, strip
+from multibot_rewrite import load_fleet
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.fleet.build import Outputs
 from multibot_rewrite.spelling.plan import read_plan
@@ -76,15 +76,6 @@ def made(folder: Path, prefix: str = "rover", fleet: str = FLEET) -> Outputs:
 
 def text(outputs: Outputs, path: str) -> str:
     return next(it.data.decode() for it in outputs.files if it.path == path)
-
-
-def test_only_frames_and_topics_of_the_description_change() -> None:
-    new = ROVER.replace("_id>lidar_link", "_id>robot1/lidar_link").replace(
-        "<topic>scan", "<topic>robot1/scan"
-    )
-    made = rewrite(ROVER.encode(), "robot1", layout="frame-prefix", file="rover.urdf")
-    assert made.text == new
-    assert strip(made.data, "robot1", layout="L5", file="rover.urdf") == ROVER.encode()
 
 
 @pytest.mark.more

@@ -12,14 +12,13 @@ from pathlib import Path
 
 import pytest
 import yaml
-from fleet_folder import built_fleet, planned_fleet
+from fleet_folder import built_fleet
 from lxml import etree
 
 from multibot_rewrite import load_fleet
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.joining.from_file import _KEYS
-from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.file.fleet_data import schema
 from multibot_rewrite.fleet.file.fleet_file import input_files, read_fleet
 
@@ -246,13 +245,6 @@ def test_what_is_wrong_is_one_line(folder: Path, old: str, new: str, wanted: str
     assert "\n" not in str(found.value)
 
 
-def test_one_part_alone_is_refused(folder: Path) -> None:
-    alone = "join: [{description: parts/table.urdf}]\nrobots: [{name: a}]\n"
-    (folder / "fleet.yaml").write_text(f"{KEYS}{alone}")
-    with pytest.raises(InputError, match=r"fleet.yaml:7: join: .* is not valid; write 2 items"):
-        outputs()
-
-
 def test_a_list_in_a_list_is_refused(folder: Path) -> None:
     (folder / "parts/table.urdf.join").write_text(PARTS)
     (folder / "fleet.yaml").write_text(FLEET.replace("table.urdf", "table.urdf.join"))
@@ -260,38 +252,6 @@ def test_a_list_in_a_list_is_refused(folder: Path) -> None:
         InputError, match=r"fleet.yaml:20: parts/table.urdf.join is a list of parts"
     ):
         outputs()
-
-
-RVIZ = """\
-Visualization Manager:
-  Class: ""
-  Displays:
-    - Class: rviz_default_plugins/RobotModel
-      Name: RobotModel
-      Description Topic: {Value: robot_description}
-      Links: {left_tool: {Show Trail: false}, right_tool: {Show Trail: false}, table: {Value: true}}
-    - Class: rviz_default_plugins/TF
-      Name: TF
-      Frames: {left_base: {Value: true}, right_base: {Value: true}}
-  Global Options:
-    Fixed Frame: table
-  Views:
-    Current: {Class: rviz_default_plugins/Orbit, Target Frame: right_tool}
-"""
-
-
-def test_one_window_shows_both_parts(folder: Path) -> None:
-    """Names of the joined robot, in the one config that a person made of it, follow the robot."""
-    (folder / "dual.rviz").write_text(RVIZ)
-    text = FLEET.replace("stack:", "companions: {rviz: dual.rviz}\nstack:")
-    (folder / "fleet.yaml").write_text(text)
-    plan = planned_fleet("fleet.yaml")
-    made = make_outputs(plan)
-    (window,) = [it.data.decode() for it in made.files if it.path.endswith("dual.rviz")]
-    for name in ("left_base", "right_base", "left_tool", "right_tool", "table"):
-        assert window.count(f"cell1_{name}") == RVIZ.count(name)
-        assert f" {name}" not in window
-    assert [it for it in made.findings if it.code in ("MB853", "MB891")] == []
 
 
 @pytest.mark.slow

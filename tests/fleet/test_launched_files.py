@@ -65,32 +65,6 @@ def built(
     return texts, [it for it in plan.fleet.table.problems if it.code == "MF824"]
 
 
-def test_a_file_that_only_a_launch_names_is_written_for_each_robot(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    file = tmp_path / "drive.yaml"
-    file.write_text(FILLED)
-    found, notes = built(tmp_path, monkeypatch, ParameterText(str(file), FILLED, str(file)))
-    assert notes == []
-    assert "base_frame_id: robot2/base_link" in found["robot2/drive.yaml"]
-    assert "left_wheel_names: [robot2_wheel_joint]" in found["robot2/drive.yaml"]
-    assert "/robot1/drive:" in found["robot1/drive.yaml"]
-    # What a launch makes of a file counts, and the file is written.
-    made = ParameterText("", f"# made\n{FILLED}", str(file))
-    assert "robot1/drive.yaml" in built(tmp_path, monkeypatch, made)[0]
-
-
-def test_what_the_launch_fills_is_written_as_it_fills_it(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    file = tmp_path / "drive.yaml"
-    file.write_text(DRIVE.replace("SIDE", "$(var side)"))
-    found, notes = built(tmp_path, monkeypatch, ParameterText("", FILLED, str(file)))
-    assert notes == []
-    assert "base_frame_id: robot1/base_link" in found["robot1/drive.yaml"]
-    assert "$(var" not in found["robot1/drive.yaml"]
-
-
 @pytest.mark.parametrize("filled", [f"{FILLED}\n# more\n", DRIVE.replace("SIDE", "robot1_")])
 def test_a_file_that_is_filled_for_one_robot_is_left_out(
     filled: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -125,32 +99,6 @@ def test_a_file_without_parameters_is_passed_over(
     file.write_text("a: 1\n")
     found, notes = built(tmp_path, monkeypatch, ParameterText(str(file), "a: 1\n", str(file)))
     assert notes == [] and "robot1/flat.yaml" not in found
-
-
-def test_robots_that_launch_files_of_their_own_have_them(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def graph(order: LaunchOrder) -> LaunchGraph:
-        path = tmp_path / dict(order.arguments)["params"]
-        given = ParameterText(str(path), path.read_text(), str(path))
-        own = ("controller_manager", "ros2_control_node", "", "/", (), (given,))
-        return LaunchGraph((LaunchedNode(*own, "", (), "", AT),))
-
-    monkeypatch.setattr(launched_robot, "launch_graph", graph)
-    (tmp_path / "robot.urdf").write_text(DESCRIPTION)
-    (tmp_path / "bringup.launch.py").write_text("")
-    (tmp_path / "robot1.yaml").write_text(FILLED)
-    (tmp_path / "robot2.yaml").write_text(FILLED.replace("drive", "steer"))
-    fleet = FLEET.format(params="").replace("launch.py", "launch.py params:={robot}.yaml")
-    (tmp_path / "fleet.yaml").write_text(fleet)
-    plan = planned_fleet(tmp_path / "fleet.yaml")
-    paths = {it.path for it in make_outputs(plan).files}
-    assert {"robot1/robot1.yaml", "robot2/robot2.yaml"} <= paths
-    assert not {"robot2/robot1.yaml", "robot1/robot2.yaml"} & paths
-    controllers = {
-        (it.robot, it.name) for it in plan.fleet.table.runs if it.node in ("drive", "steer")
-    }
-    assert controllers == {("robot1", "drive"), ("robot2", "steer")}
 
 
 # By default all robots would have one.

@@ -876,6 +876,9 @@ CONDITIONS = """
         ExecuteProcess(cmd=['/usr/bin/thing'], condition=IfCondition(joy)),
         TimerAction(period=1.0, actions=[here('late')], condition=IfCondition(joy)),
         OpaqueFunction(function=lambda context: [here('made', condition=IfCondition(joy))]),
+        ComposableNodeContainer(package='rclcpp_components', executable='component_container',
+            name='box', namespace='', composable_node_descriptions=[
+                ComposableNode(package='acme', plugin='acme::P', condition=IfCondition(joy))]),
 """
 
 
@@ -886,7 +889,7 @@ def test_what_a_condition_keeps_out_is_named_with_the_arguments_that_decide(
     setup = """from launch.conditions import LaunchConfigurationEquals, UnlessCondition
     from launch.substitutions import PythonExpression
     joy, mode = LaunchConfiguration('joy'), LaunchConfiguration('mode')"""
-    assert told(actions(tmp_path, CONDITIONS, setup)) == ["yes"]
+    assert told(actions(tmp_path, CONDITIONS, setup)) == ["yes", "component_container"]
     text = (tmp_path / "out/fleet.launch.py").read_text()
     comments = " ".join(it.strip("# ") for it in text.splitlines() if it.strip()[:1] == "#")
     left = dict(it.split(" (", 1) for it in comments.split("Not started: ")[1:])
@@ -897,6 +900,7 @@ def test_what_a_condition_keeps_out_is_named_with_the_arguments_that_decide(
         "thing": "joy:=false",
         "acme late": "joy:=false",
         "acme made": "joy:=false",
+        "acme acme::P": "joy:=false",
     }, "joy decides more than what it turns on"
     capsys.readouterr()
     words = ["init", str(tmp_path), "--launch", str(tmp_path / "up.launch.py"), "-o", "-", "--yes"]
@@ -914,7 +918,7 @@ def test_what_a_condition_keeps_out_is_named_with_the_arguments_that_decide(
 SWITCHES = """
         *[DeclareLaunchArgument(it, default_value=value) for it, value in {
             'joy': 'true', 'mock': 'False', 'both': 'true', 'mode': 'a', 'sim': 'true',
-            'rviz': 'true', 'cam': 'false', 'two': 'False', 'log': 'false'}.items()],
+            'rviz': 'true', 'cam': 'false', 'two': 'False', 'log': 'false', 'part': 'true'}.items()],
         here('stick', condition=IfCondition(joy)),
         here('driver', condition=UnlessCondition(LaunchConfiguration('mock'))),
         here('fake', condition=IfCondition(PythonExpression(["'", both, "' == 'false'"]))),
@@ -926,6 +930,11 @@ SWITCHES = """
         GroupAction([first], condition=IfCondition(LaunchConfiguration('sim'))),
         here('map', condition=IfCondition(LaunchConfiguration('rviz'))),
         here('camera', condition=IfCondition(LaunchConfiguration('cam'))),
+        ComposableNodeContainer(package='rclcpp_components', executable='component_container',
+            name='box', namespace='', composable_node_descriptions=[ComposableNode(package='acme',
+                plugin='acme::P', name='p', condition=IfCondition(LaunchConfiguration('part')))]),
+        here('with_part', condition=IfCondition(LaunchConfiguration('part'))),
+        here('instead', condition=UnlessCondition(LaunchConfiguration('part'))),
         GroupAction([ExecuteProcess(cmd=['record', 'a']), IncludeLaunchDescription([
             FindPackageShare('gone'), '/launch/x.launch.py']),
             here('quiet', condition=IfCondition(LaunchConfiguration('log'))),
@@ -948,7 +957,7 @@ OFF = ["camera", "record", "IncludeLaunchDescription"]
         ({"joy": "false"}, ["stick", "inner", "TimerAction", "late", *OFF]),
         ({"mock": "true"}, ["driver", "inner", *OFF]),
         ({"sim": "0"}, ["OnProcessExit of first", "after", "first", *OFF]),
-        ({"mode": "b", "both": "false", "rviz": "false"}, OFF),
+        ({"mode": "b", "both": "false", "rviz": "false", "part": "false"}, OFF),
     ],
 )
 def test_a_launch_argument_turns_off_or_on_what_its_condition_starts(
@@ -962,14 +971,14 @@ def test_a_launch_argument_turns_off_or_on_what_its_condition_starts(
     first = here('first')"""
     found = told(actions(tmp_path, SWITCHES, setup, given={"robots": "2", **given}))
     every = ["stick", "driver", "real", "other", "inner", "TimerAction", "late", "first", "map"]
-    every += ["OnProcessExit of first", "after", *OFF]
+    every += ["OnProcessExit of first", "after", "with_part", *OFF]
     left = [it for it in every if it not in gone]
     assert {it: found.count(it) for it in every} == {it: 2 * (it in left) for it in every}
     text = (tmp_path / "out/fleet.launch.py").read_text()
     declared = text.split("def generate_launch_description")[1]
     own = {
         it: f"            '{it}',\n                default_value=" in declared
-        for it in ("joy", "mock", "sim", "both", "mode", "rviz", "cam", "two", "log")
+        for it in ("joy", "mock", "sim", "both", "mode", "rviz", "cam", "two", "log", "part")
     }
     kept = ("joy", "mock", "sim", "cam", "two")
     assert own == dict.fromkeys(own, False) | dict.fromkeys(kept, True)
@@ -994,21 +1003,25 @@ ODOMETRY = """<gazebo>
       <plugin filename="gz-sim-odometry-publisher-system" name="gz::sim::systems::OdometryPublisher">
       <odom_topic>/model/bot/odometry</odom_topic><odom_frame>odom</odom_frame>
       <robot_base_frame>base_link</robot_base_frame></plugin></gazebo></robot>"""
+TWO_OF_THEM = ODOMETRY.replace("</robot>", ODOMETRY.replace("<odom_frame>odom", "<odom_frame>map"))
 
 
-@pytest.mark.parametrize("is_bridged", [True, False])
+@pytest.mark.parametrize(
+    ("is_bridged", "systems"), [(True, ODOMETRY), (False, ODOMETRY), (False, TWO_OF_THEM)]
+)
 def test_transforms_of_a_system_are_bridged_where_no_node_sends_them(
-    is_bridged: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    is_bridged: bool, systems: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The vendor's bridge has other topics, and his filter places the robot: two would do so."""
+    """The vendor's bridge has other topics, and his filter places the robot, or another system does:
+    two would do so."""
     values = "{'world_frame': 'odom', 'base_link_frame': 'base_link', 'publish_tf': True}"
     body = """Node(package='ros_gz_bridge', executable='parameter_bridge',
             arguments=['/model/bot/odometry@nav_msgs/msg/Odometry[gz.msgs.Odometry']),"""
-    if not is_bridged:
+    if not is_bridged and systems == ODOMETRY:
         body += "Node(package='robot_localization', executable='ekf_node', name='ekf_filter_node',"
         body += f"parameters=[{values}]),"
     with pytest.MonkeyPatch.context() as patched:
-        patched.setitem(globals(), "DESCRIPTION", DESCRIPTION.replace("</robot>", ODOMETRY))
+        patched.setitem(globals(), "DESCRIPTION", DESCRIPTION.replace("</robot>", systems))
         actions(tmp_path, body, more="simulator: gazebo")
     rows = yaml.safe_load((tmp_path / "out/robot1/bridge.yaml").read_text())
     types = {it["ros_type_name"] for it in rows}
@@ -1089,6 +1102,30 @@ def test_a_command_asks_for_the_manager_of_its_robot(
     assert told == [it.format(manager) for it in expected]
 
 
+def test_a_manager_of_what_runs_once_for_all_runs_once(tmp_path: Path) -> None:
+    body = """Node(package='nav2_map_server', executable='map_server',
+            parameters=[{'yaml_filename': '/maps/hall.yaml'}]),
+        Node(package='nav2_lifecycle_manager', executable='lifecycle_manager', name='manager',
+            parameters=[{'autostart': True, 'node_names': ['map_server']}]), here('first'),"""
+    found = actions(tmp_path, body)
+    managers = [it.values for it in found if it.values.get("executable") == "lifecycle_manager"]
+    assert [it["parameters"][0]["node_names"] for it in managers] == [["map_server"]]
+    assert "Not started: manager (what it manages" in (tmp_path / "out/fleet.launch.py").read_text()
+
+
+@pytest.mark.parametrize(
+    ("layout", "windows"), [("both", ["robot1", "robot2"]), ("frames-per-robot", ["out"])]
+)
+def test_a_window_without_a_config_that_is_here_opens_for_each_robot_or_for_all(
+    layout: str, windows: list[str], tmp_path: Path
+) -> None:
+    body = """Node(package='rviz2', executable='rviz2', arguments=['-d', [
+        FindPackageShare('gone'), '/a.rviz']]), here('first'),"""
+    found = actions(tmp_path, body, layout=layout, given={"robots": "2"})
+    seen = [it.values for it in found if it.values.get("package") == "rviz2"]
+    assert [Path(it["arguments"][1]).parent.name for it in seen] == windows
+
+
 SHOWN = """Visualization Manager:
   Global Options:
     Fixed Frame: map
@@ -1132,19 +1169,26 @@ DOCK = (
 
 
 @pytest.mark.parametrize(
-    ("layout", "prefix"),
-    [("tf-per-robot", "dock/"), ("frames-per-robot", "robot2/dock/"), ("both", "robot2/dock/")],
+    ("layout", "prefix", "rule"),
+    [
+        ("tf-per-robot", "dock/", ""),
+        ("frames-per-robot", "robot2/dock/", ""),
+        ("both", "robot2/dock/", ""),
+        ("both", "robot2/dock/", "remappings=[('robot_description', 'dock_description')],"),
+    ],
 )
 def test_a_second_publisher_sends_what_the_launch_file_gives_it(
-    layout: str, prefix: str, tmp_path: Path
+    layout: str, prefix: str, rule: str, tmp_path: Path
 ) -> None:
     """The robot's own tree is sent once; two trees with one base_link would be one frame with two
-    parents."""
+    parents. By a rule for its topic it is the second one wherever it is."""
     (tmp_path / "dock.urdf").write_text(DOCK)
     given = f"'robot_description': open({str(tmp_path / 'dock.urdf')!r}).read()"
     rsp = "Node(package='robot_state_publisher', executable='robot_state_publisher'"
-    body = f"""{rsp}, parameters=[{{'robot_description': '<robot/>'}}]),
-        {rsp}, namespace='dock', parameters=[{{{given}, 'frame_prefix': 'dock/'}}]),"""
+    body = [
+        f"{rsp}, parameters=[{{'robot_description': '<robot/>'}}]),",
+        f"{rsp}, namespace='dock', {rule} parameters=[{{{given}, 'frame_prefix': 'dock/'}}]),",
+    ]
     own, dock = (
         {
             name: one
@@ -1152,7 +1196,9 @@ def test_a_second_publisher_sends_what_the_launch_file_gives_it(
             if isinstance(row, dict)
             for name, one in row.items()
         }
-        for it in actions(tmp_path, body, layout=layout)
+        for it in actions(tmp_path, "".join(body[:: -1 if rule else 1]), layout=layout)[
+            :: -1 if rule else 1
+        ]
         if it.values.get("package") == "robot_state_publisher"
     )
     assert own["robot_description"] == (tmp_path / "out/robot2/robot.urdf").read_text()

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import pytest
@@ -74,20 +73,6 @@ def build(folder: Path, rules: str, more: str = "", *words: str) -> int:
 
 def levels(text: str, code: str) -> set[str]:
     return {it.split(": ")[1] for it in text.splitlines() if f" {code} " in it}
-
-
-def test_what_all_robots_of_a_kind_have_names_all_of_them(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """They are judged once, as they have one description and one set of nodes."""
-    three = FLEET.replace("{name: robot2}", "{name: robot2}, {name: robot3}")
-    monkeypatch.setitem(globals(), "FLEET", three)
-    assert build(tmp_path, "", "", "--format", "json") == 1
-    said = capsys.readouterr().out
-    found = json.loads(said[said.index("{") :])["findings"]
-    named = [it["robots"] for it in found if it["code"] == "MG316"]
-    assert named
-    assert all(it == ["robot1", "robot2", "robot3"] for it in named)
 
 
 def test_a_rule_that_is_missing_is_an_error_and_nothing_is_written(

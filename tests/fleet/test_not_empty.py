@@ -19,7 +19,7 @@ from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.library import rewrite
 from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER, expected, facts_of, make_fleet
-from multibot_rewrite.spelling.plan import read_plan, to_yaml
+from multibot_rewrite.spelling.plan import to_yaml
 from multibot_rewrite.system.json import from_json, from_yaml, to_json
 
 COLLISION = FIXTURES / "graphs" / "MG402.json"
@@ -40,36 +40,6 @@ def run(capture: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str
     capture.readouterr()
     code = main(list(words))
     return code, *capture.readouterr()
-
-
-def test_a_plan_holds_what_robot_state_publisher_does(
-    rover: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    code, out, _ = run(capsys, "plan", rover, "robot1", "robot2", "--layout", "both")
-    plan = read_plan(out.encode(), "plan.yaml")
-    assert code == 0
-    assert [it.name for it in plan.robots] == ["robot1", "robot2"]
-    assert plan.robots[1].frames == ("base_link/robot2", "lidar_link/robot2")
-    assert own(plan, "robot2") == ("/robot2/robot_state_publisher",)
-    assert {(it.role, it.name) for it in plan.ends if it.node.startswith("/robot2/")} == {
-        ("publishes", "/robot2/robot_description"),
-        ("subscribes", "/robot2/joint_states"),
-        ("publishes", "/robot2/tf"),
-        ("publishes", "/robot2/tf_static"),
-    }
-
-
-@pytest.mark.parametrize("layout", ["tf-per-robot", "frames-per-robot", "both", "postfix"])
-def test_a_collision_is_found_without_any_stack(
-    rover: str, layout: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    plan = str(tmp_path / "plan.yaml")
-    assert main(["plan", rover, "robot1", "robot2", "--layout", layout, "-o", plan]) == 0
-    code, out, err = run(capsys, "check", plan, "--from", str(COLLISION))
-    assert code == 1
-    assert all(it in out for it in ("MG402 robot1 and robot2 send", "base_link"))
-    assert err.endswith("not as planned (ROS 2 lyrical)\n")
-    assert "2 robots" in err
 
 
 def test_the_frames_of_another_robot_are_not_missed_but_its_node_is(
@@ -110,53 +80,12 @@ def test_all_commands_have_the_same_robots(
     assert run(capsys, "check", file, "--from", str(graph))[0] == 0
 
 
-def test_a_state_publisher_of_the_users_own_is_the_only_one(tmp_path: Path, rover: str) -> None:
-    nodes = tmp_path / "nodes.yaml"
-    nodes.write_text(
-        "stacks:\n  mine:\n    about: x\n    nodes: [{node: " + PUBLISHER + ", as: rsp}]\n"
-    )
-    fleet = make_fleet(rover, ["a"], ["mine"], {}, nodes=str(nodes), release=NEWEST_LTS)
-    assert [it.name for it in fleet.facts] == ["rsp"]
-    assert [
-        it.name for it in make_fleet(rover, ["a"], ["robot_state"], {}, release=NEWEST_LTS).facts
-    ] == [PUBLISHER, "joint_state_publisher"]
-
-
 # ---------------------------------------------------------------- without it
-
-
-def test_it_is_left_out_by_a_stack(tmp_path: Path, rover: str) -> None:
-    assert PUBLISHER not in {
-        it.name for it in facts_of(["teleop", NO_STATE_PUBLISHER], None, NEWEST_LTS)
-    }
-    nodes = tmp_path / "nodes.yaml"
-    nodes.write_text(
-        f"stacks:\n  mine:\n    about: x\n    include: [teleop, {NO_STATE_PUBLISHER}]\n"
-    )
-    assert PUBLISHER not in {it.name for it in facts_of(["mine"], str(nodes), NEWEST_LTS)}
-    plan = expected(
-        make_fleet(rover, ["a"], ["teleop", NO_STATE_PUBLISHER], {}, release=NEWEST_LTS)
-    )
-    assert plan.robots[0].frames == ("base_link/a", "lidar_link/a")
 
 
 def test_it_cannot_be_asked_for_and_left_out() -> None:
     with pytest.raises(UsageError, match="asked for and left out; leave out one of the node sets"):
         facts_of([NO_STATE_PUBLISHER, "robot_state"], None, NEWEST_LTS)
-
-
-NOTHING = "every graph would be as planned"
-
-
-@pytest.mark.parametrize("command", ["plan", "rehearse"])
-@pytest.mark.parametrize("stacks", [NO_STATE_PUBLISHER, f"{NO_STATE_PUBLISHER},rviz"])
-def test_a_robot_without_a_node_of_its_own_is_an_error(
-    command: str, stacks: str, rover: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    code, out, err = run(capsys, command, rover, "robot1", "robot2", "--stack", stacks)
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert err.startswith("multibot: robot1, robot2 have no node that must run")
-    assert NOTHING in err and NO_STATE_PUBLISHER in err
 
 
 def test_one_such_robot_among_others_is_an_error_of_every_command(
@@ -189,40 +118,6 @@ def plan(rover: str) -> dict[str, Any]:
     made = expected(make_fleet(rover, ["robot1", "robot2"], [], {}, release=NEWEST_LTS))
     value: dict[str, Any] = yaml.safe_load(to_yaml(made))
     return value
-
-
-def checked(plan: object, folder: Path, capture: pytest.CaptureFixture[str]) -> str:
-    """The one line with which a check refuses a plan."""
-    path = folder / "edited.yaml"
-    path.write_text(yaml.safe_dump(plan))
-    with pytest.raises(InputError):
-        read_plan(path.read_bytes(), "edited.yaml")
-    code, out, err = run(capture, "check", str(path), "--from", str(COLLISION))
-    assert (code, out, err.count("\n")) == (2, "", 1)
-    assert NOTHING in err and str(path) in err
-    return err
-
-
-def test_a_plan_of_no_robot(
-    plan: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert "no robot is planned" in checked({**plan, "robots": []}, tmp_path, capsys)
-
-
-def test_a_plan_of_robots_without_nodes(
-    plan: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    del plan["robots"][1]["nodes"]
-    assert "robot2 has no node that must run" in checked(plan, tmp_path, capsys)
-
-
-def test_a_plan_of_nodes_that_may_all_be_missing(
-    plan: dict[str, Any], tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    for robot in plan["robots"]:
-        for node in robot["nodes"]:
-            node["sure"] = "may"
-    assert "robot1, robot2 have no node" in checked(plan, tmp_path, capsys)
 
 
 def test_a_fleet_file_of_no_robot(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

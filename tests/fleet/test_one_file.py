@@ -97,36 +97,11 @@ def test_a_description_is_asked_for_only_where_names_rest_on_it() -> None:
     assert "/robot1/scan" in row.text
 
 
-def test_what_is_wrong_in_it_is_told_and_it_is_not_proved() -> None:
-    text = NAV.replace("base_footprint", "base_lnik").replace("scan\n", "<area>/scan\n")
-    made = rewrite_file(text.encode(), "robot1", urdf=ROVER, layout="both", file="nav.yaml")
-    assert [(it.code, it.file, it.line) for it in made.findings] == [
-        ("MB853", "nav.yaml", 3),
-        ("MB105", "nav.yaml", 4),
-    ]
-    assert made.not_verified == (
-        "1 frame in no description",
-        "1 placeholder that a launch file has to replace",
-    )
-
-
 def test_a_name_that_stays_is_not_called_proved() -> None:
     """rcl reads a block with its line break: the frame is not that of the robot."""
     block = NAV.replace("base_frame_id: base_footprint", "base_frame_id: |\n      base_footprint")
     made = rewrite_file(block.encode(), "robot1", urdf=ROVER, layout="both")
     assert made.not_verified == ("1 frame in no description", "1 name in a block of text")
-
-
-def test_the_clock_is_bridged_by_the_first_alone() -> None:
-    rows = ROW.format("topic_name", "/clock") + ROW.format("topic_name", "scan")
-    one, other = rewrite_files(rows.encode(), ["a", "b"], layout="both")
-    topics = [[it["topic_name"] for it in yaml.safe_load(made.text)] for made in (one, other)]
-    assert topics == [["/clock", "/a/scan"], ["/b/scan"]]
-
-
-def test_robots_differ_in_their_names_alone() -> None:
-    one, other = rewrite_files(NAV.encode(), ["robot1", "zorba"], urdf=ROVER, **BOTH)
-    assert one.text.replace("robot1", "zorba") == other.text
 
 
 def test_the_command_writes_a_file_for_each(

@@ -74,28 +74,6 @@ SEEN = """\
 """
 
 
-@pytest.mark.parametrize(
-    ("said", "simulator", "silent"),
-    [
-        ("", "gazebo", False),
-        ("", "none", True),
-        ("<gz_frame_id>nowhere</gz_frame_id>", "gazebo", True),
-    ],
-)
-def test_a_sensor_that_names_no_frame_is_told(
-    said: str, simulator: str, silent: bool, tmp_path: Path
-) -> None:
-    (tmp_path / "dog.urdf").write_text(SEEN.format(said))
-    head = f"layout: tf-per-robot\nsimulator: {simulator}\n"
-    (tmp_path / "fleet.yaml").write_text(f"{head}robots: [{{name: r1, description: dog.urdf}}]\n")
-    found = built_fleet(tmp_path / "fleet.yaml", "jazzy").findings
-    lines = [it for it in found if it.code == "MG412"]
-    assert silent == (not lines)
-    for it in lines:
-        assert "is r1/base_link/eye" in it.message and it.hint.count(">head<") == 1
-        assert (it.level, it.line, it.file) == ("warning", 3, str(tmp_path / "dog.urdf"))
-
-
 COSTMAP = """\
 amcl: {ros__parameters: {base_frame_id: base_link, odom_frame_id: odom}}
 local_costmap: {local_costmap: {ros__parameters: {robot_base_frame: base_link}}}

@@ -94,24 +94,6 @@ def test_the_argument_is_filled_so_one_manager_is_there(tmp_path: Path) -> None:
     assert "ros2_control_node" not in launch
 
 
-@pytest.mark.parametrize(
-    ("inside", "made"),
-    [
-        (INSIDE.format("diffbot"), "/robot1/diffbot/controller_manager"),
-        ("<controller_manager_name>cm</controller_manager_name>", "/robot1/cm"),
-    ],
-)
-def test_a_manager_that_nobody_asks_is_an_error_in_one_line(
-    inside: str, made: str, tmp_path: Path
-) -> None:
-    first, second = said(planned(xacro(tmp_path, "", inside)))
-    message = f"the plugin makes {made}, but spawners ask /robot1/controller_manager"
-    assert (first.message, first.level) == (message, "error")
-    assert second.message == message.replace("robot1", "robot2")
-    # The line of the first robot is that of both: a report joins them.
-    assert (first.file, first.line) == (second.file, second.line)
-
-
 def test_a_report_names_the_first_robot(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     xacro(tmp_path, "", INSIDE.format("diffbot"))
     robots = ", ".join(f"{{name: r{at}}}" for at in range(1, 7))
@@ -136,8 +118,3 @@ def test_the_plugin_of_classic_is_a_node_besides_its_manager(
     found = said(planned(path, stack="gazebo_ros2_control", distro="humble"))
     wanted = {f"/robot{at}/stick/controller_manager" for at in (1, 2)} if wrong else set()
     assert {it.message.split()[3].rstrip(",") for it in found} == wanted
-
-
-@pytest.mark.parametrize("keys", [{"simulator": "none"}, {"stack": "navigation"}])
-def test_without_the_plugins_manager_nothing_is_said(keys: dict[str, Any], tmp_path: Path) -> None:
-    assert said(planned(xacro(tmp_path, "", INSIDE.format("diffbot")), **keys)) == []

@@ -20,8 +20,7 @@ from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.sources import job
-from multibot_rewrite.description.sources.read import SourceText
-from multibot_rewrite.description.sources.whole import read_whole
+from multibot_rewrite.description.sources.read import SourceText, read_whole
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.robots.rewritten_robots import read_jobs
 
@@ -143,39 +142,6 @@ robots: [{{name: robot1, pose: {{x: 1}}}}, {{name: robot2, pose: {{x: 2}}}}]
     root = etree.fromstring(made.robot("robot2").description.encode())
     assert [it.text for it in root.iter("namespace")] == ["robot2", "/robot2"]
     assert worth_a_look(made.made.findings) == []
-
-
-MASS = (
-    '<inertial><mass value="1"/>'
-    '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
-)
-BOAT = f"""\
-<robot name="boat" xmlns:xacro="http://www.ros.org/wiki/xacro">
-  <xacro:arg name="namespace" default="wamv"/>
-  <link name="base_link">{MASS}</link><link name="prop">{MASS}</link>
-  <joint name="turn" type="continuous"><parent link="base_link"/><child link="prop"/></joint>
-  <gazebo><plugin filename="libgz-sim-thruster-system.so" name="gz::sim::systems::Thruster">
-    <namespace>$(arg namespace)</namespace><joint_name>turn</joint_name>
-  </plugin></gazebo>
-  <gazebo reference="base_link"><sensor name="bump" type="contact"><contact>
-    <collision>hull</collision><topic>/vrx/contacts</topic>
-  </contact></sensor></gazebo>
-</robot>
-"""
-
-
-def test_a_name_that_is_then_below_that_of_an_argument(tmp_path: Path) -> None:
-    """After the rewrite, /robot1/vrx/contacts begins as <namespace> says: it is the topic it was."""
-    (tmp_path / "boat.urdf.xacro").write_text(BOAT)
-    text = """\
-affix: prefix
-description: boat.urdf.xacro
-arguments: {namespace: '{robot}'}
-robots: [{name: robot1}, {name: robot2}]
-"""
-    made = load_fleet(fleet(tmp_path, text))
-    root = etree.fromstring(made.robot("robot2").description.encode())
-    assert [it.text for it in root.iter("namespace", "topic")] == ["robot2", "/robot2/vrx/contacts"]
 
 
 @pytest.mark.more

@@ -52,21 +52,6 @@ def children(folder: Path, parameters: str, more: str = "", sends: str = "") -> 
     return [words[words.index("--child-frame-id") + 1]] if words else []
 
 
-@pytest.mark.parametrize(
-    "parameters",
-    ["{odom_frame: odom}", "{tf: {odom_frame_id: odom}}", "{odometry_frame: robot_odom}"],
-)
-def test_a_driver_that_nothing_is_known_of_may_send_the_base(
-    parameters: str, tmp_path: Path
-) -> None:
-    assert children(tmp_path, parameters) == []
-
-
-@pytest.mark.parametrize("parameters", ["{rate: 5}", "{odom_frame: ''}", "{odom_topic: odom}"])
-def test_other_parameters_say_nothing_of_odometry(parameters: str, tmp_path: Path) -> None:
-    assert children(tmp_path, parameters) == ["robot1/base_link"]
-
-
 @pytest.mark.more
 def test_the_pose_is_that_of_the_odometry_frame_that_it_sends(tmp_path: Path) -> None:
     sends = "sends: {odom_frame: base_frame}"

@@ -16,7 +16,7 @@ from fleet_folder import planned_fleet
 from lxml import etree
 
 from multibot_rewrite import rewrite, rewrite_all, strip
-from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.fleet.build import make_outputs
 
@@ -46,14 +46,6 @@ def _ports(texts: list[str], tag: str) -> list[str | None]:
     return [etree.fromstring(it.encode()).findtext(f".//plugin/{tag}") for it in texts]
 
 
-def test_an_autopilot_of_each_instance_meets_its_model(tmp_path: Path) -> None:
-    texts, said = _built(tmp_path, dict.fromkeys(("a", "b", "c"), ARDUPILOT))
-    assert _ports(texts, "fdm_port_in") == ["9002", "9012", "9022"]
-    (note,) = (it for it in said if it.code == "MF845")
-    assert note.message == "fdm_port_in is numbered: a 9002, b 9012, c 9022"
-    assert not [it for it in said if it.level == ERROR]
-
-
 @pytest.mark.parametrize(("tcp", "tag", "first"), [("0", "udp", 14560), ("1", "tcp", 4560)])
 def test_a_port_that_the_model_leaves_to_its_default(
     tmp_path: Path, tcp: str, tag: str, first: int
@@ -61,27 +53,6 @@ def test_a_port_that_the_model_leaves_to_its_default(
     plugin = MAVLINK.format(f"<use_tcp>{tcp}</use_tcp>")
     texts, _ = _built(tmp_path, {"a": plugin, "b": plugin}, "humble")
     assert _ports(texts, f"mavlink_{tag}_port") == [None, str(first + 1)]
-
-
-def test_numbers_that_differ_stay_and_are_not_given_again(tmp_path: Path) -> None:
-    other = ARDUPILOT.replace("9002", "9012")
-    texts, _ = _built(tmp_path, {"a": ARDUPILOT, "b": other, "c": ARDUPILOT})
-    assert _ports(texts, "fdm_port_in") == ["9002", "9012", "9022"]
-
-
-def test_two_ports_of_one_robot_stay_two(tmp_path: Path) -> None:
-    two = MAVLINK.format("<mavlink_udp_port>14560</mavlink_udp_port>")
-    two += two.replace("14560", "14561").replace('"m"', '"n"')
-    texts, _ = _built(tmp_path, {"a": two, "b": two}, "humble")
-    roots = [etree.fromstring(it.encode()) for it in texts]
-    ports = [it.text for root in roots for it in root.iter("mavlink_udp_port")]
-    assert len({*ports}) == 4 and ports[:2] == ["14560", "14561"]
-
-
-def test_a_fleet_of_robots_with_ports_of_their_own_says_nothing(tmp_path: Path) -> None:
-    texts, said = _built(tmp_path, {"a": ARDUPILOT, "b": ARDUPILOT.replace("9002", "9300")})
-    assert _ports(texts, "fdm_port_in") == ["9002", "9300"]
-    assert "MF845" not in {it.code for it in said}
 
 
 HARDWARE = (

@@ -16,11 +16,10 @@ from built_faults import FLEET, OUT, Edit, edited, fleet, in_file, in_launch, no
 from fleet_folder import planned_fleet
 from paths import ROOT
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING
+from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.cli import build
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.build import Outputs, make_outputs
-from multibot_rewrite.fleet.checks import read_back as back
 from multibot_rewrite.fleet.checks.read_back import read_back
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 
@@ -299,38 +298,6 @@ def test_a_filter_whose_file_is_there_runs_or_its_lack_is_told(
     assert f"{tmp_path}/fleet/.." not in said
     assert "there are 2 more such notes in the file, at lines 9, 10 " in said
     assert max(map(len, (out / "fleet.launch.py").read_text().splitlines())) < 100
-
-
-def test_a_warning_of_one_is_true_of_its_sort(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Drivers that send the odometry are started apart. To read all for that costs seconds."""
-    names = ("robot3", "robot4", "robot5", "robot1", "robot2")
-    (tmp_path / "rover.urdf").write_text(
-        '<robot name="r"><link name="base_link"/><link name="laser"/><joint name="j" type="fixed">'
-        '<parent link="base_link"/><child link="laser"/></joint></robot>'
-    )
-    rows = ", ".join(f"{{name: {it}, pose: {{x: {it[-1]}}}}}" for it in names)
-    (tmp_path / "fleet.yaml").write_text(
-        "layout: tf-per-robot\ndistro: jazzy\ndescription: rover.urdf\nstack: [nav2]\n"
-        f"robots: [{rows}]\n"
-    )
-    plan = planned_fleet(tmp_path / "fleet.yaml", around=os.environ)
-    made = make_outputs(plan, OUT)
-    counts: list[int] = []
-    read = back._read
-    monkeypatch.setattr(
-        back,
-        "_read",
-        lambda plan, made, at: counts.append(len(made.planned.robots)) or read(plan, made, at),
-    )
-    told = [(it.code, it.level, it.robots) for it in read_back(plan, made, OUT)]
-    assert counts == [2]
-    others = ("robot5", "robot1", "robot2")
-    assert told == [
-        ("MG406", WARNING, ("robot3", "robot4", *others)),
-        ("MG406", WARNING, ("robot4", "robot3", *others)),
-    ]
 
 
 @pytest.mark.parametrize(("frame", "code"), [("odom", 0), ("odo", 1)])

@@ -21,7 +21,7 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.fleet.scripts import LoadedFleet
 from multibot_rewrite.spelling.bridged_topics import TF_TYPE
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Edge, End, System
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, End, System
 
 RVIZ = "Visualization Manager:\n  Displays: []\n  Global Options: {Fixed Frame: map}\n"
 
@@ -49,28 +49,6 @@ def relayed(plan: System) -> System:
     graph = as_planned(plan)
     copies = (it._replace(topic="/tf_static" if it.static else "/tf") for it in graph.edges)
     return sent(graph._replace(edges=(*graph.edges, *copies)))
-
-
-@pytest.mark.parametrize(
-    ("layout", "source", "name"),
-    [
-        ("both", "/robot2/tf", "/robot2/tf_relay"),
-        ("postfix", "/tf/robot2", "/tf_relay_robot2"),
-    ],
-)
-def test_a_relay_reads_the_robots_tf_and_writes_tf(
-    tmp_path: Path, layout: str, source: str, name: str
-) -> None:
-    robot = fleet(tmp_path, layout).robot("robot2")
-    told = robot.relays["tf_relay"].start.parameters
-    assert told == ({"input_topic": source, "output_topic": "/tf"},)
-    assert robot.relays["tf_static_relay"].start.parameters[0]["output_topic"] == "/tf_static"
-    assert robot.table.full_name("tf_relay") == name
-    # A rule for the name that it reads would move /tf as well.
-    assert robot.table.for_node("tf_relay") == []
-    plan = expected(robot._fleet.plan.fleet)
-    ends = {(it.role, it.name) for it in plan.ends if it.node == name}
-    assert ends == {(SUBSCRIBES, source), (PUBLISHES, "/tf")}
 
 
 @pytest.mark.parametrize("layout", ["both", "postfix", "tf-per-robot"])
@@ -112,50 +90,6 @@ def test_a_layout_that_has_nothing_to_relay_is_refused(tmp_path: Path) -> None:
 def test_the_bridge_reads_tf_in_its_namespace_only(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="remove topics, or take layout both"):
         fleet(tmp_path, "tf-per-robot\ntopics: postfix")
-
-
-def test_bare_frames_are_bridged(tmp_path: Path) -> None:
-    robot = fleet(tmp_path, "tf-per-robot").robot("robot2")
-    bridge, world = robot.relays.values()
-    assert (bridge.run.full_name, world.run.full_name) == (
-        "/robot2/tf_namespace_bridge",
-        "/robot2/bridged_world",
-    )
-    # The world of one without the bridge hangs on nothing.
-    assert bridge.start.needs == world.start.needs == "tf_namespace_bridge"
-    plan = expected(robot._fleet.plan.fleet)
-    ends = {(it.role, it.name) for it in plan.ends if it.node == bridge.run.full_name}
-    assert ends == {
-        *((SUBSCRIBES, f"/robot2/{it}") for it in ("tf", "tf_static")),
-        *((PUBLISHES, f"/{it}") for it in ("tf", "tf_static")),
-    }
-    # Every robot's map is below that of the fleet; the bridge has given it the robot's name.
-    assert world.start.arguments == ("--frame-id", "map", "--child-frame-id", "robot2/map")
-
-
-def bridged(plan: System) -> System:
-    """The graph as planned, with what the bridges and the transforms beside them send."""
-    graph = as_planned(plan)
-    copies = [
-        Edge(f"{robot}/{it.child}", f"{robot}/{it.parent}", f"/{topic}", it.static, ())
-        for it in graph.edges
-        for _, robot, topic in [it.topic.split("/")]
-    ]
-    worlds = [Edge(f"{it.name}/map", "map", "/tf_static", True, ()) for it in plan.robots]
-    return sent(graph._replace(edges=(*graph.edges, *copies, *worlds)))
-
-
-def test_a_bridged_graph_is_as_planned_and_a_leak_is_none(tmp_path: Path) -> None:
-    plan = expected(fleet(tmp_path, "tf-per-robot").plan.fleet)
-    graph = bridged(plan)
-    assert [it for it in compare(plan, graph) if it.level != NOTE] == []
-    # Without the remap rule a robot's frames are on /tf, with bare names.
-    state = next(it for it in own(plan, plan.robots[0].name) if "robot_state" in it)
-    leak = End(TOPIC, PUBLISHES, "/tf", TF_TYPE, "", state, None, "")
-    bare = Edge("base_link", "odom", "/tf", False, ())
-    spoiled = graph._replace(ends=(*graph.ends, leak), edges=(*graph.edges, bare))
-    (said,) = (it for it in compare(plan, sent(spoiled)) if it.code == "MG405")
-    assert (said.node, said.names[0]) == (state, "/tf")
 
 
 @pytest.mark.more

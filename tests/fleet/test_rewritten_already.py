@@ -38,23 +38,3 @@ BOTH = "{name: r7, namespace: site7, prefix: s1}"
 def test_refused(tmp_path: Path, robot: str, link: str, namespace: str, of: str) -> None:
     with pytest.raises(RewriteRefused, match=f"MB106 .*already rewritten for {of}: "):
         planned(tmp_path, robot, link, namespace)
-
-
-@pytest.mark.parametrize(
-    ("link", "namespace"),
-    [
-        pytest.param("site7/a", "/x", id="the-namespace-in-a-link"),
-        pytest.param("a", "/s1", id="the-tag-in-a-namespace"),
-        pytest.param("r7_a", "/r7", id="the-name-that-is-in-no-name"),
-    ],
-)
-def test_a_word_counts_where_it_would_be_added(tmp_path: Path, link: str, namespace: str) -> None:
-    (robot,) = planned(tmp_path, BOTH, link, namespace).robots
-    text = robot.description.decode()
-    assert f'"s1/{link}"' in text
-    assert f"<namespace>/site7{namespace}</namespace>" in text
-
-
-def test_a_second_robot_is_looked_at_as_well(tmp_path: Path) -> None:
-    with pytest.raises(RewriteRefused, match="already rewritten for r8"):
-        planned(tmp_path, "{name: r7}, {name: r8}", "r8_a", "/x")

@@ -31,34 +31,6 @@ def poses(robots: list[dict[str, Any]], choice: Choice) -> dict[str, tuple[float
     return {it.name: (it.pose.x, it.pose.y) if it.pose else None for it in fleet.robots}
 
 
-def test_a_pattern_stands_for_its_robots(here: Path) -> None:
-    wanted = {"robot1": (1, 0), "robot2": (1.5, 2), "robot3": (2, 4)}
-    assert poses([PATTERN], Choice()) == wanted
-    assert list(poses([PATTERN], Choice(number=20)))[-1] == "robot20"
-    assert poses([{"name": "leader"}, PATTERN], Choice(number=1)) == {
-        "leader": None,
-        "robot1": (1, 0),
-    }
-
-
-def test_robots_are_said_as_nav2_says_them(here: Path) -> None:
-    text = "robot2={x: 1.0, y: -2}; scout={yaw: 1.5}; plain"
-    robots = [{"name": "robot1"}, {"name": "robot2", "description": "own.urdf", "pose": {"x": 9}}]
-    assert poses(robots, Choice(text)) == {"robot2": (1, -2), "scout": (0, 0), "plain": None}
-    file = {"description": "r.urdf", "robots": robots}
-    fleet = read_fleet(file, "jazzy", {}, Choice("robot2; new"))
-    assert [(it.description, it.pose and it.pose.x) for it in fleet.robots] == [
-        ("own.urdf", 9.0),
-        ("r.urdf", None),
-    ]
-    pattern = {**PATTERN, "description": "own.urdf"}
-    fleet = read_fleet({"robots": [pattern]}, "jazzy", {}, Choice("a={y: 4}; robot2"))
-    assert [(it.name, it.description, it.pose and it.pose.y) for it in fleet.robots] == [
-        ("a", "own.urdf", 4.0),
-        ("robot2", "own.urdf", 2.0),
-    ]
-
-
 def test_a_fleet_of_a_dict_is_that_of_its_file(here: Path) -> None:
     data = {"description": "r.urdf", "layout": "frames-per-robot", "robots": [PATTERN]}
     (here / "fleet.yaml").write_text(yaml.safe_dump(data))
@@ -79,12 +51,6 @@ def test_numbered_robots_go_on(here: Path) -> None:
     assert list(four) == ["r1", "r2", "r3", "r4"]
     assert four["r4"] == (2.5, 6.0)
     assert list(poses(two, Choice(number=1))) == ["r1"]
-
-
-def test_the_first_robots_need_no_numbers(here: Path) -> None:
-    named = [{"name": "rover", "pose": {"x": 1.0}}, {"name": "scout", "pose": {"y": 2.0}}]
-    assert list(poses(named, Choice(number=1))) == ["rover"]
-    assert list(poses(named, Choice(number=2))) == ["rover", "scout"]
 
 
 @pytest.mark.parametrize(

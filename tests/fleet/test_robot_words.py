@@ -15,12 +15,9 @@ from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import (
     OutputFile,
-    expanded_name,
     line_in_source,
     path_for,
 )
-from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.rules.settings import Settings
 
 
 def planned(folder: Path, text: str = SMALL, **files: str) -> FleetPlan:
@@ -95,13 +92,6 @@ def test_a_value_of_a_description_is_told_at_its_line(case: str, tmp_path: Path)
     assert (code, 3) in found_in(tmp_path, "rover.urdf", text, rover__urdf=plugin(value))
 
 
-@pytest.mark.parametrize("case", [it for it in WRONG if WRONG[it][2] == "MB863"])
-def test_the_lint_says_the_same_of_a_parameter_file(case: str, tmp_path: Path) -> None:
-    (tmp_path / "p.yaml").write_text(params(WRONG[case][0]))
-    found = lint_file(str(tmp_path / "p.yaml"), Settings(robots=("robot1", "robot2")))
-    assert ("MB863", 3) in {(it.code, it.line) for it in found}
-
-
 RIGHT = {
     "comment": "what: 1  # robot2/base_link, robot1odom",
     "file": "map_file: /maps/robot2/site.yaml",
@@ -151,69 +141,6 @@ def test_nothing_is_said_of_a_right_fleet(layout: str, affix: str, tmp_path: Pat
     assert [str(it) for it in found if it.code in OURS] == []
 
 
-IMU = """\
-<sdf version="1.9"><model name="cart"><link name="base_link"><sensor name="imu" type="imu">
-  <topic>imu</topic>
-</sensor></link></model></sdf>
-"""
-
-
-def test_a_topic_that_is_called_as_a_sensor_is_right(tmp_path: Path) -> None:
-    (tmp_path / "cart.sdf").write_text(IMU)
-    robots = f"robots: [{{name: robot1, description: {tmp_path}/cart.sdf}}]"
-    found = make_outputs(planned(tmp_path, f"layout: frames-per-robot\n{robots}\n")).findings
-    assert [str(it) for it in found if it.code in OURS] == []
-
-
-PARTS = """\
-<robot name="rover">
-  <link name="base_link"/>
-  <link name="left_wheel"/>
-  <joint name="axle" type="fixed"><parent link="base_link"/><child link="left_wheel"/></joint>
-  <gazebo reference="base_link">
-    <sensor name="lidar" type="gpu_lidar"><topic>left_scan</topic></sensor>
-  </gazebo>
-</robot>
-"""
-SIDES = """\
-layout: LAYOUT
-affix: prefix
-separators: {link: _}
-description: rover.urdf
-robots: [{name: left}, {name: right}]
-companions: {params: params.yaml}
-"""
-OWN_SCAN = "collision_monitor:\n  ros__parameters: {scan: {type: scan, topic: /left_scan}}\n"
-
-
-@pytest.mark.parametrize("layout", ["L1", "L2", "L3", "L4"])
-def test_a_part_called_like_its_robot_is_no_fault(layout: str, tmp_path: Path) -> None:
-    text = SIDES.replace("LAYOUT", layout)
-    plan = planned(tmp_path, text, rover__urdf=PARTS, params__yaml=OWN_SCAN)
-    made = make_outputs(plan)
-    params = next(it.data.decode() for it in made.files if it.path == "left/params.yaml")
-    assert "/left/left_scan" in params
-    assert [it for it in made.findings if it.code in OURS] == []
-
-
-@pytest.mark.parametrize(
-    "name", ["left_left_base_link", "left/left_base_link", "left/left/lamp", "/left/left/lamp"]
-)
-def test_a_robot_called_like_a_part_in_a_name(name: str, tmp_path: Path) -> None:
-    text = SIDES.replace("LAYOUT", "L2")
-    files = {"rover__urdf": PARTS, "params__yaml": params(f"what: {name}")}
-    assert ("MB863", 3) in found_in(tmp_path, "params.yaml", text, **files)
-
-
-def test_an_author_s_own_prefix_in_a_parameter_is_an_error(tmp_path: Path) -> None:
-    """The parameter's own finding is a warning: it names no frame."""
-    own = "amcl: {ros__parameters: {base_frame_id: left_base_link}}\n"
-    text = SIDES.replace("LAYOUT", "L2")
-    made = make_outputs(planned(tmp_path, text, rover__urdf=PARTS, params__yaml=own))
-    levels = {it.code: it.level for it in made.findings}
-    assert (levels["MB863"], levels["MB853"]) == ("error", "warning")
-
-
 NAMED_ROBOT1 = '<robot name="x"><link name="robot1"/><link name="base_link"/></robot>'
 
 
@@ -257,17 +184,6 @@ def test_files_of_one_name_are_in_as_many_folders_as_tell_them_apart(
     places = (("r.rviz", "config/r.rviz"),)
     robot = SimpleNamespace(spec=SimpleNamespace(name="r", companions=ALIKE, places=places))
     assert path_for(robot, source) == path  # type: ignore[arg-type]
-
-
-@pytest.mark.parametrize(
-    ("path", "name"),
-    [
-        ("a/r.urdf.xacro", "r.urdf"), ("a/r.xacro", "r.urdf"), ("r.urdf", "r.urdf"),
-        ("a/r.sdf", "r.sdf"), ("r.urdf.join", "r.urdf"), ("r.join", "r.urdf"), ("r.srdf", "r.srdf"),
-    ],
-)  # fmt: skip
-def test_what_is_expanded_is_called_as_what_it_is(path: str, name: str) -> None:
-    assert expanded_name(path) == name
 
 
 @pytest.mark.more

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from lxml import etree
 
-from multibot_rewrite.description.checks.shapes import filled_by, reach_of
+from multibot_rewrite.description.checks.shapes import filled_by
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
@@ -24,16 +24,6 @@ CART = """\
   <gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"/></gazebo>
 </robot>
 """
-
-
-def test_how_far_a_robot_reaches() -> None:
-    """The mast stands half a metre ahead, and a turned origin puts its cylinder to the left."""
-    assert reach_of(etree.fromstring(CART)) == pytest.approx(hypot(0.55, 0.15))
-    without = etree.fromstring(CART)
-    for it in without.findall("link/collision"):
-        it.tag = "visual"
-    assert reach_of(without) == pytest.approx(hypot(0.55, 0.15))
-    assert reach_of(etree.fromstring('<robot name="r"><link name="a"/></robot>')) == 0
 
 
 SDF = """\
@@ -68,21 +58,6 @@ def found(
     file.write_text(f"layout: both\ndescription: {description}\n{more}robots:\n{robots}")
     made = make_outputs(plan_fleet(read_fleet(str(file), "", {})))
     return [it.message for it in made.findings if it.code == code]
-
-
-@pytest.mark.parametrize(("place", "near"), [("0.3", True), ("0.5", True), ("0.7", False)])
-def test_robots_that_overlap_are_told(place: str, near: bool, tmp_path: Path) -> None:
-    robots = f"  - {{name: a, pose: {{x: 1}}}}\n  - {{name: b, pose: {{x: 1, y: -{place}}}}}\n"
-    said = found(tmp_path, robots)
-    assert bool(said) is near
-    if near:
-        assert said == [
-            f"robot 'b' starts {float(place):.2f} m from robot 'a'; their shapes need 0.57 m"
-        ]
-
-
-def test_one_above_the_other_is_apart(tmp_path: Path) -> None:
-    assert found(tmp_path, "  - {name: a, pose: {z: 2}}\n  - {name: b, pose: {x: 0}}\n") == []
 
 
 @pytest.mark.more

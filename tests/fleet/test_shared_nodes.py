@@ -11,6 +11,7 @@ from nav2_graphs import ROVER
 from plans import own
 
 from multibot_rewrite.base.model import InputError
+from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.system.records import System
 
@@ -85,3 +86,18 @@ def test_a_name_that_no_robot_runs_is_refused(tmp_path: Path) -> None:
         InputError, match=r"shared_nodes: no robot has a node 'map_servr'.*map_server"
     ):
         planned(tmp_path, "both", "map_servr")
+
+
+@pytest.mark.parametrize(("value", "is_told"), [("map.yaml", False), ("''", True), (None, True)])
+def test_a_map_server_without_a_map_is_told(
+    value: str | None, is_told: bool, tmp_path: Path
+) -> None:
+    """nav2_map_server map_server.cpp: with an empty yaml_filename it waits for a service call."""
+    text = FLEET.format(layout="tf-per-robot", rover=ROVER, shared="map_server")
+    if value is not None:
+        own_file = f"map_server: {{ros__parameters: {{yaml_filename: {value}}}}}\n"
+        (tmp_path / "own.yaml").write_text(own_file)
+        text += "companions: {params: own.yaml}\n"
+    (tmp_path / "fleet.yaml").write_text(text)
+    found = make_outputs(planned_fleet(tmp_path / "fleet.yaml")).findings
+    assert [it.level for it in found if it.code == "MF857"] == ["note"] * is_told

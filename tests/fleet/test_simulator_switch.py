@@ -84,12 +84,6 @@ def test_arguments_that_may_switch(arguments: str, more: str, given: str, found:
     assert made == found.split()
 
 
-def test_so_many_arguments_are_tried() -> None:
-    declared = "".join(f'<xacro:arg name="sim{at}" default="true"/>' for at in range(9))
-    text = f'<robot xmlns:xacro="http://www.ros.org/wiki/xacro">{declared}</robot>'
-    assert len([*switch._switches({"r": text.encode()}, {})]) == 8
-
-
 MANAGED = """\
 <robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:arg name="{name}" default="{default}"/>

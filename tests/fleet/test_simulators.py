@@ -10,16 +10,15 @@ import yaml
 from fleet_folder import planned_fleet
 from nav2_graphs import environment
 from paths import ROBOTS
-from plans import optional, own
+from plans import optional
 
-from multibot_rewrite import InputError, compare
+from multibot_rewrite import compare
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.build import Outputs, make_outputs
 from multibot_rewrite.fleet.checks.closed_plan import closed_plan
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.system.records import RUNS, Node, System
+from multibot_rewrite.system.records import Node, System
 
 # A drive that is a ROS node, and a sensor whose topic a bridge has to carry.
 DESCRIPTION = """\
@@ -66,32 +65,6 @@ def bridged(plan: System) -> list[str]:
     return [it.name for it in plan.topics if it.bridge]
 
 
-def test_a_real_robot_has_nothing_that_is_for_a_simulator(tmp_path: Path) -> None:
-    plan = expectation(tmp_path, "simulator: none\n")
-    assert [DRIVE in own(plan, it.name) for it in plan.robots] == [False, False]
-    assert bridged(plan) == []
-    assert not [it for it in plan.ends if it.node == DRIVE]
-    # Its links are there all the same.
-    assert "base_link" in plan.robots[0].frames
-
-
-@pytest.mark.parametrize("more", ["", "simulator: gazebo\n", f"simulator: gazebo\n{LAUNCH}"])
-def test_a_simulated_robot_has_it(more: str, tmp_path: Path) -> None:
-    plan = expectation(tmp_path, more)
-    assert {it.name: it for it in plan.nodes}[DRIVE].sure == RUNS
-    assert {SCAN, "/r2/scan", "/clock"} <= set(bridged(plan))
-    assert asked(plan_of(tmp_path, more)) == []
-
-
-def test_launch_files_without_a_simulator_leave_it_open(tmp_path: Path) -> None:
-    plan = expectation(tmp_path, LAUNCH)
-    assert [optional(plan, it.name) for it in plan.robots] == [(DRIVE,), ("/r2/drive",)]
-    assert bridged(plan) == []
-    (found,) = asked(plan_of(tmp_path, LAUNCH))
-    assert (found.level, found.line) == ("note", 4)
-    assert "simulator: none" in found.hint and "simulator: gazebo" in found.hint
-
-
 @pytest.mark.more
 @pytest.mark.parametrize("launched", [AMCL + SPAWN, AMCL + BRIDGE])
 def test_launch_files_with_a_simulator_or_a_bridge_say_that_it_is_one(
@@ -103,48 +76,6 @@ def test_launch_files_with_a_simulator_or_a_bridge_say_that_it_is_one(
     assert asked(plan_of(tmp_path, LAUNCH, launched)) == []
 
 
-def test_launch_files_that_are_not_known_whole_say_nothing(tmp_path: Path) -> None:
-    plan = expectation(tmp_path, LAUNCH, AMCL + "    /d: {exec: ./start.sh}\n")
-    assert DRIVE not in optional(plan, plan.robots[0].name) and SCAN in bridged(plan)
-
-
-def test_a_bridge_file_says_that_robots_are_simulated(tmp_path: Path) -> None:
-    row = "{ros_topic_name: scan, gz_topic_name: scan, ros_type_name: sensor_msgs/msg/LaserScan"
-    (tmp_path / "b.yaml").write_text(f"- {row}, gz_type_name: gz.msgs.LaserScan}}\n")
-    more = f"{LAUNCH}companions: {{bridge: b.yaml}}\n"
-    assert DRIVE not in optional(expectation(tmp_path, more), "r1")
-    assert asked(plan_of(tmp_path, more)) == []
-
-
-def test_one_robot_may_be_real_and_another_simulated(tmp_path: Path) -> None:
-    fleet = FLEET.replace("{name: r1,", "{name: r1, simulator: none,")
-    plan = expected(closed_plan(plan_of(tmp_path, fleet=fleet)))
-    assert [len(own(plan, it.name)) for it in plan.robots] == [1, 2]
-    assert SCAN not in bridged(plan) and "/r2/scan" in bridged(plan)
-
-
-def test_what_is_open_for_one_robot_is_not_for_another(tmp_path: Path) -> None:
-    fleet = FLEET.replace("{name: r2,", "{name: r2, simulator: gazebo,")
-    plan = expected(closed_plan(plan_of(tmp_path, LAUNCH, fleet=fleet)))
-    assert [optional(plan, it.name) for it in plan.robots] == [(DRIVE,), ()]
-    assert SCAN not in bridged(plan) and {"/r2/scan", "/clock"} <= set(bridged(plan))
-
-
-def outputs(folder: Path, more: str) -> Outputs:
-    return make_outputs(plan_of(folder, more))
-
-
-def test_build_spawns_and_bridges_simulated_robots_only(tmp_path: Path) -> None:
-    real, made = (
-        {it.path: it.data.decode() for it in outputs(tmp_path, more).files}
-        for more in ("simulator: none\n", LAUNCH)
-    )
-    assert {"bridge.yaml", "r1/bridge.yaml", "r2/bridge.yaml"} == made.keys() - real.keys()
-    assert "spawn_entity" in made["commands.md"] and "spawn" not in real["commands.md"]
-    # The description is what it was: who simulates the robot some day needs it.
-    assert real["r1/robot.urdf"] == made["r1/robot.urdf"]
-
-
 def test_no_bridge_is_missing_for_a_real_robot(tmp_path: Path) -> None:
     state = [f"/{robot}/robot_state_publisher" for robot in ("r1", "r2")]
     seen = System(tuple(Node(it, it) for it in state), (), (), environment())
@@ -154,12 +85,6 @@ def test_no_bridge_is_missing_for_a_real_robot(tmp_path: Path) -> None:
 
     simulated, real = codes("simulator: gazebo\n"), codes("simulator: none\n")
     assert simulated - real == {"MG101", "MG126"} and real <= simulated
-
-
-@pytest.mark.parametrize("value", ["None", "false", "real", "isaac", "[none]", "~"])
-def test_another_word_is_refused_with_its_line(value: str, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"fleet.yaml:6: .*simulator"):
-        plan_of(tmp_path, f"simulator: {value}\n")
 
 
 def test_no_controller_sent_joint_states_before_a_rewrite_either(

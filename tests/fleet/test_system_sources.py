@@ -11,11 +11,9 @@ from paths import FIXTURES, ROOT
 from multibot_rewrite import (
     InputError,
     System,
-    UsageError,
     compare,
     judge,
     system_of_bag,
-    system_of_description,
     system_of_files,
     system_of_fleet,
     system_of_folder,
@@ -24,7 +22,6 @@ from multibot_rewrite import (
 )
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.producers.ros import child
-from multibot_rewrite.system.records import MAY
 
 ROVER = FIXTURES / "robots" / "rover.urdf"
 GRAPHS = FIXTURES / "graphs"
@@ -45,13 +42,6 @@ def generate_launch_description():
 
 def healthy() -> System:
     return system_of_files(GRAPHS / "both" / "healthy.json")
-
-
-def test_a_plan_and_a_snapshot_are_told_apart_by_what_is_in_them() -> None:
-    plan = system_of_files(GRAPHS / "both" / "plan.yaml")
-    assert [it.name for it in plan.robots] == ROBOTS
-    assert healthy().robots == ()
-    assert compare(plan, healthy()) == []
 
 
 @pytest.mark.more
@@ -82,15 +72,6 @@ def test_what_is_wrong_is_what_the_commands_say(capsys: pytest.CaptureFixture[st
     main(["check", "--from", str(broken)])
     said = capsys.readouterr().out.splitlines()
     assert [str(it) for it in judge(system_of_files(broken))] == said
-
-
-def test_a_description_with_its_stacks_is_a_plan() -> None:
-    plan = system_of_description(ROVER, ROBOTS, stacks=["robot_state"], policy={"layout": "both"})
-    nodes = {it.name: it.sure for it in plan.nodes}
-    assert nodes["/robot1/joint_state_publisher"] == MAY
-    assert nodes["/robot2/robot_state_publisher"] != MAY
-    with pytest.raises(UsageError, match="nav3"):
-        system_of_description(ROVER, ["robot1"], stacks=["nav3"])
 
 
 @pytest.mark.more

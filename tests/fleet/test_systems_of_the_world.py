@@ -58,29 +58,6 @@ def _systems(out: Path) -> Counter[str]:
     return Counter(it.get("filename") or "" for root in roots for it in root.iter("plugin"))
 
 
-@pytest.mark.parametrize(
-    ("distro", "library"),
-    [
-        ("jazzy", "gz-sim-sensors-system"),
-        ("jazzy", "libgz-sim8-sensors-system.so"),
-        ("humble", "libignition-gazebo6-sensors-system.so"),
-    ],
-)
-def test_the_world_loads_it_once_with_its_settings(
-    distro: str, library: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    plugin = SENSORS.format(library, "ogre")
-    out = _built(tmp_path, plugin + DRIVE, DRIVE + plugin, distro=distro)
-    found = _systems(out)
-    assert [it for it in found if "sensors" in it] == [library] and found[library] == 1
-    assert found["gz-sim-diff-drive-system"] == 2
-    world = etree.parse(out / "world.sdf").getroot()
-    assert world.findtext(f"world/plugin[@filename='{library}']/render_engine") == "ogre"
-    said = capsys.readouterr().err
-    assert said.count("MF847") == 1 and "MB416" not in said
-    assert "gz-sim-sensors-system" in said
-
-
 def test_a_system_without_a_sensor_is_moved_too(tmp_path: Path) -> None:
     name = "gz::sim::systems::WindEffects"
     wind = f'<plugin name="{name}" filename="gz-sim-wind-effects-system"><x>1</x></plugin>'
@@ -96,13 +73,6 @@ def test_the_worlds_own_stays(tmp_path: Path) -> None:
     assert etree.parse(out / "world.sdf").findtext("world/plugin/render_engine") == "ogre2"
 
 
-def test_a_world_without_it_gets_it(tmp_path: Path) -> None:
-    out = _built(tmp_path, OGRE, OGRE, world=WORLD.format(""))
-    found = _systems(out)
-    # To a world that names no system gz-sim gives its own, and to others none (server.config).
-    assert found["gz-sim-sensors-system"] == found["gz-sim-physics-system"] == 1
-
-
 def test_other_settings_of_the_second_robot_are_said(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -111,17 +81,3 @@ def test_other_settings_of_the_second_robot_are_said(
     assert etree.parse(out / "world.sdf").findtext("world/plugin/render_engine") == "ogre"
     said = capsys.readouterr().err
     assert "warning: MF847 r2 has other settings of gz-sim-sensors-system" in said
-
-
-def test_blanks_are_no_other_settings(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    _built(tmp_path, OGRE, OGRE.replace('" filename', '"\n   filename'))
-    assert "other settings" not in capsys.readouterr().err
-
-
-def test_real_robots_and_classic_keep_their_files(tmp_path: Path) -> None:
-    real = _built(tmp_path, OGRE, OGRE, simulator="none")
-    assert _systems(real)["gz-sim-sensors-system"] == 2
-    (tmp_path / "classic").mkdir()
-    ros = '<plugin name="f" filename="libgazebo_ros_factory.so"/>'
-    classic = _built(tmp_path / "classic", ros, ros, distro="humble", sensor="")
-    assert _systems(classic)["libgazebo_ros_factory.so"] == 2

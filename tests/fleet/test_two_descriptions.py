@@ -142,12 +142,6 @@ def test_a_fault_of_either_is_an_error(tmp_path: Path) -> None:
     assert wrong() == {("MB501", "rover.urdf"), ("MB124", "rover.sdf.xacro")}
 
 
-def test_a_real_robot_has_no_model(tmp_path: Path) -> None:
-    _, text = made(tmp_path, "tf-per-robot", joint="axle", more="simulator: none\n")
-    assert "robot1/rover.sdf" not in text
-    assert "create" not in text["commands.md"]
-
-
 @pytest.mark.more
 def test_a_script_spawns_the_text(tmp_path: Path) -> None:
     robot = load_fleet(written(tmp_path, "L2")).robot("robot1")

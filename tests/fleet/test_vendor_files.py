@@ -12,8 +12,6 @@ from named_ends import named_ends
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.fleet.robots.robot_nodes import companion_nodes
-from multibot_rewrite.knowledge.records import NodeFacts
 
 SENSOR = """\
 <robot name="r">
@@ -98,11 +96,6 @@ def test_frames_that_a_node_puts_its_own_prefix_before_stay(tmp_path: Path) -> N
     made = planned_fleet(tmp_path / "fleet.yaml", "jazzy")
     (text,) = (it.data for it in make_outputs(made).files if it.path == "robot1/p.yaml")
     assert b"{frame_id: odom, x_frame: robot1/odom}" in text
-
-
-def test_a_node_below_the_robot_may_have_a_section() -> None:
-    below, beside = (NodeFacts(it, "acme", ()) for it in ("front/driver", "driver"))
-    assert list(companion_nodes([below, beside], [])) == [below]
 
 
 @pytest.mark.parametrize(("stamped", "type_"), [("true", "TwistStamped"), ("false", "Twist")])
@@ -226,10 +219,3 @@ def test_a_launch_file_that_gives_the_state_publisher_a_prefix(
     assert [(Path(it.file).name, it.line) for it in found] == (
         [("system_model.yaml", 3)] if told else []
     )
-
-
-def test_a_prefix_in_a_parameter_file_is_rewritten_there(tmp_path: Path) -> None:
-    (tmp_path / "system_model.yaml").write_text(OWN_MANAGER)
-    params = "robot_state_publisher:\n  ros__parameters: {frame_prefix: old/}\n"
-    made = plan(tmp_path, SENSOR, "launch: system_model.yaml\n", params)
-    assert said(made, "MF841") == []

@@ -7,13 +7,11 @@ import json
 from pathlib import Path
 
 import pytest
-from lint_calls import Settings, lint_file
 
 from multibot_rewrite import UsageError
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.lint.config.baseline import (
     FORMAT,
-    Baseline,
     baseline_text,
     beyond,
     read_baseline,
@@ -95,32 +93,6 @@ def test_files_hang_on_the_folder_of_the_baseline(
     assert beyond([finding(file=f"../{file}")], read_baseline(there), there) == ([], 0)
 
 
-def test_the_file_is_sorted_a_line_each() -> None:
-    found = [B, finding(file="0.urdf", message="z"), A, A, finding(message="é\u2028\n\ud800")]
-    text = baseline_text(found, "b.json")
-    assert text == baseline_text(reversed(found), "b.json")
-    assert text.decode().split("\n")[:3] == [
-        "{",
-        '"urdf-lint-baseline": 1,',
-        '"findings": [',
-    ]
-    entries = json.loads(text)["findings"]
-    assert [(it["file"], it["code"], it["count"]) for it in entries] == [
-        ("0.urdf", "MB501", 1),
-        ("a.urdf", "MB501", 2),
-        ("a.urdf", "MB501", 1),
-        ("a.urdf", "MB502", 1),
-    ]
-    assert len([line for line in text.split(b"\n") if line.startswith(b"  {")]) == 4
-    fewer = baseline_text([it for it in found if it != B], "b.json").split(b"\n")
-    assert len(set(text.split(b"\n")) - set(fewer)) <= 2
-
-
-def test_an_empty_one_is_a_baseline() -> None:
-    assert kept([], []) == (0, 0)
-    assert read_baseline("b.json") == Baseline({})
-
-
 def test_of_files_that_were_not_linted_nothing_is_gone(tmp_path: Path) -> None:
     known = [finding(file="a.urdf"), finding(file="b.urdf"), finding(file="deleted.urdf")]
     for name in ("a.urdf", "b.urdf"):
@@ -130,19 +102,6 @@ def test_of_files_that_were_not_linted_nothing_is_gone(tmp_path: Path) -> None:
     assert beyond([], baseline, "b.json") == ([], 3)
     assert beyond([], baseline, "b.json", ["./a.urdf"]) == ([], 2)
     assert beyond([], baseline, "b.json", []) == ([], 1)
-
-
-def test_lines_of_a_real_file_may_move(tmp_path: Path) -> None:
-    robot = tmp_path / "a.urdf"
-    text = '<robot name="r">\n<link name="a"/>\n<link name="b"/>\n<link name="b"/></robot>'
-    settings = Settings(select=("MB2", "MB5"))
-    robot.write_text(text)
-    before = lint_file(str(robot), settings)
-    assert before
-    robot.write_text(text.replace("<link", "\n\n  <link"))
-    after = lint_file("a.urdf", settings)
-    assert before != after
-    assert kept(before, after) == (0, 0)
 
 
 def entry(**other: object) -> str:
@@ -188,9 +147,3 @@ def test_what_is_not_a_baseline_is_one_line(text: str | bytes, words: str) -> No
 def test_a_baseline_that_is_not_there_is_one_line(path: str, words: str) -> None:
     with pytest.raises(UsageError, match=f"{path}: cannot be read: .*{words}"):
         read_baseline(path)
-
-
-def test_entries_that_a_merge_left_twice_add_up() -> None:
-    one = json.loads(entry())["findings"][0]
-    Path("b.json").write_text(json.dumps({FORMAT: 1, "findings": [one, one]}))
-    assert list(read_baseline("b.json").counts.values()) == [2]

@@ -17,7 +17,6 @@ from multibot_rewrite.companions.named_file import BRIDGE, MOVEIT, PARAMS, RVIZ,
 from multibot_rewrite.knowledge.declared import FILE, is_known
 from multibot_rewrite.knowledge.nodl.lookup import INDEX
 from multibot_rewrite.lint.check import lint_data, lint_file
-from multibot_rewrite.lint.run import lint_files
 from multibot_rewrite.rules.files.bounds import beyond
 from multibot_rewrite.rules.settings import Settings
 from tools.interfaces.declared_table import ID, plugin_owners, table
@@ -421,14 +420,6 @@ def test_an_installed_nodl_document_adds_to_what_is_known(
     assert found(text, tmp_path) == []
 
 
-def test_parameters_are_those_of_the_release(tmp_path: Path) -> None:
-    """collision_monitor has ``enabled`` from Lyrical on."""
-    file = tmp_path / "nav.yaml"
-    file.write_text("collision_monitor:\n  ros__parameters: {enable: true}\n")
-    codes = {it: lint_file(str(file), Settings(distro=it)) for it in ("jazzy", "lyrical")}
-    assert [len(its) for its in codes.values()] == [0, 1]
-
-
 @pytest.mark.parametrize(
     ("check", "arguments", "value", "expected"),
     [
@@ -493,82 +484,12 @@ def test_controllers_of_moveit_are_those_of_the_parameters_beside_them(tmp_path:
     assert found(right.replace("arm", "amr"), tmp_path) == []
 
 
-def test_a_hint_has_the_path_from_the_current_folder(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (tmp_path / "config").mkdir()
-    (tmp_path / "config/controllers.yaml").write_text(CONTROLLERS)
-    file = tmp_path / "config/moveit.yaml"
-    file.write_text(
-        "moveit_simple_controller_manager:\n  controller_names: [drives]\n"
-        "  drives: {type: FollowJointTrajectory, action_ns: follow_joint_trajectory}\n"
-    )
-    settings = Settings(select=("MB857",))
-    monkeypatch.chdir(tmp_path)
-    (below,) = lint_file(str(file), settings)
-    monkeypatch.chdir("/")
-    (elsewhere,) = lint_file(str(file), settings)
-    place = "config/controllers.yaml:4"
-    assert below.hint == f"did you mean drive ({place})?"
-    assert elsewhere.hint == f"did you mean drive ({tmp_path.relative_to('/')}/{place})?"
-
-
 def test_sizes_are_those_of_one_of_several_descriptions(tmp_path: Path) -> None:
     (tmp_path / "urdf").mkdir()
     wide = (ROBOTS / "rover_gz.urdf").read_text().replace("0.17 0", "0.25 0")
     (tmp_path / "urdf/wide.urdf").write_text(wide)
     assert found(CONTROLLERS.replace("0.34", "0.5"), tmp_path) == []
     assert found(CONTROLLERS.replace("0.34", "0.8"), tmp_path) == ["MB856:10"]
-
-
-def test_a_comment_at_the_end_of_the_line_silences_its_codes(tmp_path: Path) -> None:
-    text = CONTROLLERS.replace("0.07", "-0.07")
-    for comment, expected in (
-        ("", ["MB120:10", "MB125:11"]),
-        ("# urdf-lint: ignore MB120 - why", ["MB125:11"]),
-        ("# urdf-lint: ignore MB110, MB120", ["MB125:11"]),
-        ("# urdf-lint: ignore MB125", ["MB120:10", "MB125:11"]),
-        ("# ignore MB120", ["MB120:10", "MB125:11"]),
-    ):
-        assert (
-            found(text.replace("0.34", f"1 {comment}"), tmp_path, NAMES[CONTROLLERS]) == expected
-        ), comment
-
-
-def test_bad_input_is_one_finding(tmp_path: Path) -> None:
-    for name, data in (
-        ("broken.yaml", b"a:\n  ros__parameters: [\n"),
-        ("other.yaml", b"image: map.pgm\n"),
-        ("letters.yaml", b"a:\n  ros__parameters: {b: \xff}\n"),
-        ("deep.yaml", b"a:\n  ros__parameters: " + b"[" * 100_000),
-    ):
-        (tmp_path / name).write_bytes(data)
-        (it,) = lint_file(str(tmp_path / name), Settings())
-        assert (it.code, it.level) == ("MB101", "error"), name
-        assert it.message
-
-
-def test_a_file_is_judged_with_the_descriptions_beside_it(tmp_path: Path) -> None:
-    found(NAV.replace("base_footprint", "base_footprnt"), tmp_path)
-    paths = [str(tmp_path / "file.yaml"), str(tmp_path / "urdf/rover.urdf")]
-    assert [it.code for it in lint_files(paths, Settings(select=("MB85",)))] == ["MB853"]
-
-
-def test_a_file_is_held_against_the_description_that_is_named(tmp_path: Path) -> None:
-    """Where none of its joints is there, too: without --urdf it may be another robot's."""
-    (tmp_path / "arm.urdf").write_text(
-        '<robot name="arm"><link name="a"/><link name="b"/><joint name="ur_shoulder" type="fixed">'
-        '<parent link="a"/><child link="b"/></joint></robot>'
-    )
-    file = tmp_path / "control.yaml"
-    file.write_text(
-        "jtc:\n  ros__parameters: {joints: [shoulder], command_interfaces: [position]}\n"
-    )
-    named = Settings(select=("MB854",), urdf=str(tmp_path / "arm.urdf"))
-    assert [it.message for it in lint_file(str(file), named)] == [
-        "joint 'shoulder' is in no description"
-    ]
-    assert lint_file(str(file), named._replace(urdf="")) == []
 
 
 @pytest.mark.slow
@@ -617,15 +538,6 @@ def test_a_trajectory_controller_without_joints_is_told_by_its_release(
     file.write_text(CONTROLLERS.replace("    joints: [left_wheel_joint, right_wheel_joint]\n", ""))
     (it,) = lint_file(str(file), Settings(distro=release, select=("MB115",)))
     assert it.message == "arm: joints is missing"
-
-
-def test_another_class_of_that_name_is_not_asked_for_what_this_one_needs(tmp_path: Path) -> None:
-    """A mecanum drive of before that of ros2_controllers, with its own names for the wheels."""
-    file = tmp_path / "drive.yaml"
-    head = "controller_manager:\n  ros__parameters:\n    drive: {type: mecanum_drive_controller/Mecanum"
-    own = "".join(f"    {it}_wheel_of_ours: a\n" for it in ("fl", "fr", "rl", "rr", "spare"))
-    file.write_text(f"{head}DriveController}}\ndrive:\n  ros__parameters:\n{own}")
-    assert lint_file(str(file), Settings(select=("MB115",))) == []
 
 
 def test_a_class_is_not_asked_for_what_another_one_of_its_package_needs(tmp_path: Path) -> None:

@@ -116,33 +116,6 @@ def test_a_file_that_an_argument_names_may_be_of_another_robot(
     assert [it.code for it in lint_file(str(path), settings)] == found
 
 
-def test_both_lines_are_named(tmp_path: Path) -> None:
-    (it,) = lint(tmp_path, SYSTEM + LOADS.format("controllers.yaml"), COMMAND="positon")
-    assert it.hint == "did you mean j/position (line 4)?"
-    (it,) = lint(tmp_path, SYSTEM + LOADS.format("controllers.yaml"), COMMAND="effort")
-    assert it.hint == "name an interface that is there (line 4), or add it"
-
-
-def test_the_one_file_beside_where_none_is_named(tmp_path: Path) -> None:
-    (it,) = lint(tmp_path, SYSTEM, "my_controllers.yml", COMMAND="velocity")
-    assert (it.line, it.message.partition(":")[0]) == (2, "my_controllers.yml")
-
-
-def test_of_two_files_beside_it_is_not_known_which(tmp_path: Path) -> None:
-    (tmp_path / "your_controllers.yaml").write_text("")
-    assert lint(tmp_path, SYSTEM, "my_controllers.yml", COMMAND="velocity") == []
-
-
-def test_a_file_beside_that_is_for_another_robot(tmp_path: Path) -> None:
-    assert lint(tmp_path, SYSTEM, JOINT="other_joint") == []
-
-
-def test_a_file_that_is_not_there_or_no_parameters(tmp_path: Path) -> None:
-    assert lint(tmp_path, SYSTEM + LOADS.format("missing.yaml"), "other.yaml") == []
-    (tmp_path / "list.yaml").write_text("- [")
-    assert lint(tmp_path, SYSTEM + LOADS.format("list.yaml"), "other.yaml") == []
-
-
 @pytest.mark.slow
 def test_without_ros2_control_nothing_is_read(tmp_path: Path) -> None:
     assert lint(tmp_path, LOADS.format("controllers.yaml"), JOINT="other") == []

@@ -12,7 +12,7 @@ import pytest
 from paths import ROOT
 
 from multibot_rewrite import UsageError
-from multibot_rewrite.base.findings.selection import is_on, level_of
+from multibot_rewrite.base.findings.selection import is_on
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.configured import (
@@ -23,7 +23,7 @@ from multibot_rewrite.lint.config.configured import (
 )
 from multibot_rewrite.lint.config.values import READERS, find_lint_codes
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.rules.settings import ArgumentSet, Settings, is_silent, matches
+from multibot_rewrite.rules.settings import is_silent
 
 PAGE = (ROOT / "docs" / "lint.md").read_text().partition("## pre-commit and CI")[0]
 TWO_ROOTS = '<robot name="r"><link name="a"/><link name="b"/></robot>'
@@ -52,123 +52,7 @@ def codes(path: Path, it: Configured) -> list[str]:
 # Where it is found.
 
 
-def test_without_a_file_the_defaults_hold(tmp_path: Path) -> None:
-    assert configured(str(tmp_path), None) == Configured()
-    assert Configured().settings == Settings()
-    assert Configured().fail_on == "warning"
-
-
-def test_the_nearest_one_counts(project: Path) -> None:
-    (project / "urdf-lint.toml").write_text('ignore = ["MB5"]')
-    (project / "robots" / "urdf-lint.toml").write_text('ignore = ["MB6"]')
-    assert configured(str(project / "robots" / "deep"), None).settings.ignore == ("MB6",)
-    assert configured(str(project / "data"), None).settings.ignore == ("MB5",)
-
-
-def test_of_two_in_one_folder_the_own_file_counts(project: Path) -> None:
-    (project / "pyproject.toml").write_text('[tool.urdf-lint]\nignore = ["MB6"]')
-    assert configured(str(project), None).settings.ignore == ("MB6",)
-    assert read(project, 'ignore = ["MB5"]').settings.ignore == ("MB5",)
-
-
-def test_a_project_file_without_the_table_is_passed_over(project: Path) -> None:
-    (project / "pyproject.toml").write_text('[tool.urdf-lint]\nignore = ["MB6"]')
-    (project / "robots" / "pyproject.toml").write_text('[project]\nname = "urdf-lint-rules"\n')
-    found = configured(str(project / "robots"), None)
-    assert (found.settings.ignore, found.file) == (("MB6",), str(project / "pyproject.toml"))
-
-
-def test_a_given_file_may_have_any_name(project: Path) -> None:
-    (project / "urdf-lint.toml").write_text('ignore = ["MB5"]')
-    (project / "data" / "strict.toml").write_text('select = ["MB2"]\nbaseline = "known.json"')
-    found = configured(str(project), str(project / "data" / "strict.toml"))
-    assert (found.settings.select, found.settings.ignore) == (("MB2",), ())
-    assert found.baseline == str(project / "data" / "known.json")
-
-
-def test_a_given_file_may_be_relative(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (project / "data" / "own.toml").write_text('exclude = ["x"]\nbaseline = "b.json"')
-    monkeypatch.chdir(project)
-    found = configured(".", "data/own.toml")
-    assert is_excluded("data/x/a.urdf", found)
-    assert not is_excluded("x/a.urdf", found)
-    assert found.baseline == str(project / "data" / "b.json")
-
-
-def test_vocabulary_of_the_project_is_added(project: Path) -> None:
-    (project / "data" / "other.vocab").write_text("")
-    table = '[tool.multibot-rewrite]\nvocabulary = ["data/mine.vocab"]\n'
-    (project / "pyproject.toml").write_text(table)
-    found = read(project, 'vocabulary = ["data/other.vocab", "data/mine.vocab"]')
-    both = (str(project / "data/mine.vocab"), str(project / "data/other.vocab"))
-    assert found.settings.vocabulary == both
-
-
 # What its keys say.
-
-
-def test_plain_keys(project: Path) -> None:
-    text = """\
-        select = ["MB2", "MB501"]
-        robots = ["r1", "r2"]
-        targets = ["mjcf"]
-        roots = ["external", "."]
-        urdf = "robots/rover.urdf"
-        fail-on = "error"
-        seconds = 5
-        levels = {MB5 = "note", MB501 = "error", MB6 = "off"}
-    """
-    found = read(project, text)
-    it = found.settings
-    assert (it.select, it.robots, it.targets) == (("MB2", "MB501"), ("r1", "r2"), ("mjcf",))
-    assert [Path(root).resolve() for root in it.roots] == [project / "external", project]
-    assert (it.urdf, it.seconds) == (str(project / "robots/rover.urdf"), 5.0)
-    assert (found.fail_on, found.file) == ("error", str(project / "urdf-lint.toml"))
-    assert [level_of(it, code, "?") for code in ("MB501", "MB502", "MB115", "MB201")] == [
-        *("error", "note", "?", "?")
-    ]
-
-
-def test_the_naming_is_that_of_the_options_of_urdf_postfix(project: Path) -> None:
-    text = """\
-        layout = "L4"
-        affix = "prefix"
-        topics = "namespace"
-        groups = "rename"
-        separators = {link = "_", sensor = "__"}
-        shared-frames = ["map"]
-        shared-topics = []
-    """
-    marks = {"link": "_", "sensor": "__"}
-    wanted = make_naming("L4", "prefix", "namespace", marks, ["map"], [], "rename")
-    assert read(project, text).settings.naming == wanted
-    assert read(project, 'affix = "prefix"').settings.naming == make_naming(affix="prefix")
-
-
-ON = [
-    ("", "MB501", True),
-    ('select = ["MB5"]', "MB501", True),
-    ('select = ["MB5"]', "MB201", False),
-    ('ignore = ["MB5"]', "MB501", False),
-    ('select = ["MB501"]\nignore = ["MB5"]', "MB501", True),
-    ('select = ["MB5"]\nignore = ["MB5"]', "MB501", False),
-    ('levels = {MB5 = "off"}', "MB501", False),
-    ('levels = {MB5 = "off", MB501 = "note"}', "MB501", True),
-    ('levels = {MB5 = "note", MB501 = "off"}', "MB501", False),
-    ('levels = {MB5 = "note", MB501 = "off"}', "MB502", True),
-    ('select = ["MB501"]\nlevels = {MB5 = "off"}', "MB501", True),
-    ('ignore = ["MB501"]\nlevels = {MB501 = "error"}', "MB501", False),
-]
-
-
-@pytest.mark.parametrize(("text", "code", "on"), ON)
-def test_which_rules_are_on(project: Path, text: str, code: str, on: bool) -> None:
-    assert is_on(read(project, text).settings, code) is on
-
-
-def test_a_rule_that_is_on_again_keeps_its_own_level(project: Path) -> None:
-    settings = read(project, 'select = ["MB501"]\nlevels = {MB5 = "off"}').settings
-    assert level_of(settings, "MB501", "error") == "error"
 
 
 # Pattern, path below the configuration's folder, is it matched; a folder counts with its content.
@@ -212,42 +96,12 @@ def test_patterns_hang_on_the_folder_of_the_file(
         assert not is_silent(found.settings, written, "MB115")
 
 
-def test_a_pattern_of_a_caller_may_be_relative() -> None:
-    assert matches("robots/a.urdf", "robots/*")
-    assert not matches("robots/a.urdf", "obots/*")
-
-
 def test_folders_above_the_configuration_are_not_meant(tmp_path: Path) -> None:
     project = tmp_path / "build" / "project[1]"
     (project / "robots").mkdir(parents=True)
     found = read(project, 'exclude = ["build", "project*"]')
     assert not is_excluded(str(project / "robots" / "a.urdf"), found)
     assert is_excluded(str(project / "robots" / "build" / "a.urdf"), found)
-
-
-def test_xacro_argument_sets(project: Path) -> None:
-    text = """\
-        [[xacro]]
-        files = "robots/*.xacro"
-        arguments = {sim = "gz", joints = 6, fake = true, scale = 0.5}
-        [[xacro]]
-        arguments = {}
-    """
-    found = read(project, text).settings.arguments
-    # One expansion each, not one for each way to reach the file.
-    first, second = found
-    assert str(first) == "sim:=gz joints:=6 fake:=true scale:=0.5"
-    assert matches(str(project / "robots" / "a.xacro"), first.pattern)
-    assert not matches(str(project / "vendor" / "a.xacro"), first.pattern)
-    assert second == ArgumentSet("*", ())
-
-
-def test_settings_do_what_they_say(project: Path) -> None:
-    rover = project / "robots" / "rover.urdf"
-    assert codes(rover, read(project, 'select = ["MB501"]')) == ["MB501"]
-    assert codes(rover, read(project, 'levels = {MB = "off", MB501 = "note"}')) == ["MB501"]
-    per_file = "select = ['MB501']\n[per-file-ignores]\n'robots/*' = ['MB5']"
-    assert codes(rover, read(project, per_file)) == []
 
 
 # What is wrong with it.
@@ -432,11 +286,6 @@ def test_the_command_replaces_or_adds(project: Path) -> None:
     assert settings.roots == (str(project / "external"),)
     assert settings.vocabulary == (str(project / "data/mine.vocab"), "more.vocab")
     assert [str(given) for given in settings.arguments] == ["sim:=gz", "fake:=true"]
-
-
-def test_a_command_that_says_nothing_changes_nothing(project: Path) -> None:
-    it = read(project, 'select = ["MB5"]\naffix = "prefix"')
-    assert with_options(it, select=(), layout=None, vocabulary=(), arguments=(), urdf="") == it
 
 
 @pytest.mark.parametrize(

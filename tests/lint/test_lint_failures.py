@@ -24,7 +24,6 @@ from multibot_rewrite.base.model import (
 )
 from multibot_rewrite.lint.failures import breakdown, failure, lost, too_long
 
-MADE = "a template, in which another program fills in what is missing"
 LACKS = InputError(
     "a.xacro:3: xacro failed: unknown macro name: xacro:arm; is it included?", NOT_DEFINED, "arm"
 )
@@ -108,38 +107,6 @@ def test_the_finding_of_a_file_that_cannot_be_read(
 ) -> None:
     found = failure(path, error, Settings())
     assert (found if isinstance(expected, Finding) else (found.code, found.level)) == expected
-
-
-@pytest.mark.parametrize(
-    ("ending", "is_template"),
-    [*((it, True) for it in ("in", "jinja", "jinja2", "j2", "erb", "em")), ("xml", False)],
-)
-def test_a_file_that_another_program_fills_in_is_told_by_its_name(
-    ending: str, is_template: bool
-) -> None:
-    """CMake, Jinja, Ruby and empy."""
-    path = f"a.urdf.{ending}"
-    found = failure(path, InputError(f"{path}:2: it is not well-formed; see"), Settings())
-    hint = "lint what it makes"
-    wrong = Finding("MB101", ERROR, "it is not well-formed", "see", path, 2, 1)
-    assert found == (Finding("MB105", NOTE, MADE, hint, path, 1, 1) if is_template else wrong)
-
-
-@pytest.mark.parametrize(
-    ("made", "level"),
-    [
-        ('<xacro:macro name="arm">', NOTE), ("<xacro:property x='1' name='arm'>", NOTE),
-        ('<xacro:arg name="arm">', NOTE), ('<xacro:macro name="arms">', WARNING),
-        ('<xacro:arm name="arm">', WARNING), ("", WARNING),
-    ],
-)  # fmt: skip
-def test_a_macro_of_another_file_of_the_folder_may_be_meant(
-    made: str, level: str, tmp_path: Path
-) -> None:
-    path = str(tmp_path / "a.xacro")
-    (tmp_path / "a.xacro").write_text('<xacro:macro name="arm">')
-    (tmp_path / "b.xacro").write_text(made)
-    assert failure(path, LACKS, Settings()).level == level
 
 
 def test_a_lint_that_stops_says_why() -> None:

@@ -142,11 +142,6 @@ def test_leftover_xacro_is_told_once(body: str, expected: tuple[int, int] | None
     assert [(it.line - 1, it.column) for it in found] == ([expected] if expected else [])
 
 
-def test_a_substitution_is_no_wrong_number() -> None:
-    body = '<link name="a"><inertial><mass value="${m}"/><origin xyz="0 0"/></inertial></link>'
-    assert codes(f'<robot name="r">{body}</robot>', "MB12", "MB105") == ["MB105", "MB120"]
-
-
 def test_faults_of_an_expansion_are_told_in_the_source(tmp_path: Path) -> None:
     file = tmp_path / "r.urdf.xacro"
     body = '<xacro:macro name="m" params="n">\n<link name="${n}"><inertail/></link></xacro:macro>'
@@ -154,12 +149,6 @@ def test_faults_of_an_expansion_are_told_in_the_source(tmp_path: Path) -> None:
     found = lint_file(str(file), ONE)
     assert {(it.code, it.line, it.column) for it in found} == {("MB110", 2, 19)}
     assert all(it.calls and not it.edits for it in found)
-
-
-def test_a_namespace_is_told_where_it_is_declared() -> None:
-    source = b'<robot name="r"\n    xmlns:xacro="x"><link name="a"/></robot>'
-    (found,) = lint_data("r.urdf", source, Settings(select=("MB142",)))
-    assert (found.line, found.column) == (2, 5)
 
 
 def test_what_is_no_utf_8_is_an_error_where_python_reads_it(tmp_path: Path) -> None:

@@ -16,7 +16,6 @@ from multibot_rewrite.cli.urdf_lint import main
 from multibot_rewrite.lint import fix as fixing
 
 SAMPLE = 120
-BOM = b"\xef\xbb\xbf"
 # A prefix that is not used, twice, and a comment that suppresses nothing.
 FIXABLE = (
     b'<?xml version="1.0"?>\r\n'
@@ -65,21 +64,6 @@ def check(path: str, data: bytes) -> bool:
     assert not counted(left) - counted(before)
     assert counted(before) - counted(left) >= fixable
     return bool(fixable)
-
-
-def test_what_is_fixed_and_nothing_else() -> None:
-    assert fix("r.urdf", FIXABLE, Settings())[0] == FIXED
-    assert check("r.urdf", FIXABLE)
-    assert not check("r.urdf", FIXED)
-
-
-@pytest.mark.parametrize(
-    "data", [FIXABLE, FIXABLE.replace(b"\r\n", b"\n"), BOM + FIXABLE, FIXABLE + b"\n\n"]
-)
-def test_marks_and_line_ends_around_it_stay(data: bytes) -> None:
-    assert check("r.urdf", data)
-    fixed = fix("r.urdf", data, Settings())[0]
-    assert fixed.removeprefix(BOM).count(b"\r") == data.count(b"\r") - (1 if b"\r" in data else 0)
 
 
 @pytest.mark.deep
@@ -154,6 +138,9 @@ def test_fix_writes_and_tells_what_is_left(
     assert (file.stat().st_mode & 0o777, other.read_bytes()) == (0o640, FIXED)
     assert [line.split()[2] for line in out.splitlines() if "note:" not in line] == ["MB501"]
     assert f"fixed {file}" in err and "other.urdf" not in err
+    for words in (["--fix"], ["--fix", "--diff"]):
+        main([str(other), *words])
+        assert "urdf-lint: nothing that --fix can fix\n" in capsys.readouterr().err
 
 
 @pytest.mark.slow

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import pytest
 
-from multibot_rewrite import rewrite
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.cli.urdf_lint import main
@@ -233,21 +232,3 @@ def test_a_switch_is_on_where_its_reader_says_so(
     given = [] if value is None else [("publish_odom_tf", value)]
     body = LINKS + plugin(file, *given)
     assert lines(tmp_path, capsys, "MB408", body) == ([4] if on else [])
-
-
-@pytest.mark.parametrize(
-    ("value", "shared"), [("true", True), ("1", True), ("false", False), ("0", False)]
-)
-def test_a_default_that_hangs_on_a_switch_is_inserted_where_it_is_on(
-    value: str, shared: bool
-) -> None:
-    """Without a topic every robot's controllers take the commands of /actuators."""
-    switched = plugin(
-        "gz-sim-joint-controller-system",
-        ("joint_name", "j"),
-        ("use_actuator_msg", value),
-        ("actuator_number", "0"),
-    )
-    text = f'<robot name="r">\n{LINKS}{joint("j")}{switched}</robot>'
-    made = rewrite(text, "robot1", layout="postfix").text
-    assert ("<topic>/actuators/robot1</topic>" in made) == shared

@@ -777,14 +777,6 @@ def test_a_type_that_a_plugin_of_classic_adds_is_left_alone_in_humble() -> None:
     assert codes(sensor("dsros_dvl")) == ["MB124"]
 
 
-def test_models_of_sdf_are_read_as_well() -> None:
-    text = (
-        '<sdf version="1.9"><model name="m"><link name="l">'
-        '<sensor name="s" type="imu"><update_rate>x</update_rate></sensor></link></model></sdf>'
-    )
-    assert [it.code for it in lint_data("model.sdf", text.encode(), NEW)] == ["MB120"]
-
-
 def test_a_class_of_hardware_in_a_model_is_no_plugin_of_gazebo() -> None:
     inside = hardware("gz_ros2_control/GazeboSimSystem")
     text = f'<sdf version="1.9"><model name="m"><link name="l"/>{inside}</model></sdf>'
@@ -814,26 +806,6 @@ def test_every_value_of_a_plugin_has_a_source() -> None:
     ]
     assert len(places) > 4000
     assert [it for it in places if not re.fullmatch(r"[\w/.+-]+:[1-9]\d*", it[2])] == []
-
-
-@pytest.mark.sample(1)
-@pytest.mark.parametrize(
-    ("value", "code"),
-    [("4.5", ""), ("9", "MB125"), ("fast", "MB120"), ("", "")],
-)
-def test_values_of_a_file_of_a_user_are_looked_at(tmp_path: Path, value: str, code: str) -> None:
-    vocabulary = tmp_path / "acme.vocab"
-    vocabulary.write_text("[plugin acme_winch]\nspeed  value number range=0..5\n")
-    inside = classic("acme_winch", f"<speed>{value}</speed>")
-    text = f'<robot name="r">{LINK}{inside}</robot>'
-    settings = NEW._replace(vocabulary=(str(vocabulary),))
-    assert [it.code for it in lint_data("r.urdf", text.encode(), settings)] == [code] * bool(code)
-
-
-def test_nothing_is_loaded_for_a_robot_without_gazebo() -> None:
-    chunks.cache_clear()
-    assert codes("") == []
-    assert chunks.cache_info().currsize == 0
 
 
 # Where sdformat's parser_urdf.cc reads each tag of a <gazebo>: of a joint, a link or both.

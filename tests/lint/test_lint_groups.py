@@ -12,13 +12,10 @@ from pkgutil import walk_packages
 import pytest
 
 from multibot_rewrite.base.findings.finding import URDF, Rule
-from multibot_rewrite.lint.files.subjects import read_subjects
 from multibot_rewrite.lint.groups import GROUPS, active_rules, rules_of
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.rules import description as rules, files
-from multibot_rewrite.rules.description.meshes.paths import used_files
 from multibot_rewrite.rules.settings import Settings
-from multibot_rewrite.rules.subject import Subject
 
 MESHES = b"""<robot name="r"><link name="a"><visual><geometry><mesh filename="a.stl"/></geometry>
 </visual></link></robot>"""
@@ -73,14 +70,3 @@ def test_no_file_of_rules_is_left_out_of_its_group() -> None:
     written = (vars(import_module(name)).values() for name in names)
     declared = {it.code for values in written for it in values if isinstance(it, Rule)}
     assert declared == set(RULES)
-
-
-def test_memos_are_of_one_subject_each() -> None:
-    """Two documents that are alike are not one: what is found must be elements of the right one."""
-    first, second = (next(read_subjects("a.urdf", MESHES, Settings())) for _ in range(2))
-    assert isinstance(first, Subject)
-    assert isinstance(second, Subject)
-    found = used_files(first)
-    assert [it.element for it in found] == list(first.document.root.iter("mesh"))
-    assert used_files(first) is found
-    assert [it.element for it in used_files(second)] == list(second.document.root.iter("mesh"))

@@ -134,15 +134,3 @@ POSES = system("pose-publisher", "PosePublisher")
 )
 def test_two_systems_that_send_on_one_topic(robot: str, distro: str, number: int) -> None:
     assert found(chain() + robot, ("MB243",), distro) == [("MB243", "warning")] * number
-
-
-def test_the_build_says_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "r.urdf").write_text(
-        f'<robot name="r">{chain()}{POSES}{system(*PUBLISHER)}</robot>'
-    )
-    fleet = tmp_path / "fleet.yaml"
-    fleet.write_text(
-        "simulator: gazebo\ndistro: humble\ndescription: r.urdf\nrobots: [{name: r1}]\n"
-    )
-    assert main(["build", str(fleet), "-o", str(tmp_path / "out")]) == 0
-    assert "warning: MB243 gz-sim-odometry-publisher-system sends" in capsys.readouterr().err

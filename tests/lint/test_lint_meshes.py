@@ -7,7 +7,6 @@ Of ``rules/description/meshes``: boxes, lookup, paths, shared.
 from __future__ import annotations
 
 import re
-from os import mkfifo
 from pathlib import Path
 from struct import pack
 
@@ -175,26 +174,6 @@ def test_what_is_said_of_meshes(names: str, workspace: Path) -> None:
     assert {text[it.column - 1 :].partition("=")[0] for it in found} == {"filename"}
 
 
-def test_its_own_package_is_found_without_roots(workspace: Path) -> None:
-    name = "package://arm/meshes/{}.stl"
-    assert linted(workspace, name.format("Base"), name.format("No"), roots=False) == ["MB701"]
-    assert linted(workspace, "package://hand/meshes/No.stl", roots=False) == ["MB702"]
-
-
-def test_packages_of_the_environment(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    manifest(workspace / "install/leg/share/leg", "leg")
-    monkeypatch.setenv("AMENT_PREFIX_PATH", f"{workspace}/install/leg:/nowhere")
-    assert linted(workspace, "package://leg/a.stl", roots=False) == ["MB701"]
-    monkeypatch.setenv("ROS_PACKAGE_PATH", str(workspace / "src/deep"))
-    assert linted(workspace, "package://hand/meshes/Base.stl", roots=False) == []
-
-
-def test_a_package_that_is_there_twice_is_searched_twice(workspace: Path) -> None:
-    other = manifest(workspace / "src/copy/hand", "hand")
-    (other / "new.stl").write_text("solid")
-    assert linted(workspace, "package://hand/new.stl", "package://hand/meshes/Base.stl") == []
-
-
 def test_what_is_wrong_in_many_places_is_told_once(workspace: Path) -> None:
     names = [f"package://leg/{at}.glb" for at in range(5)]
     assert sorted(linted(workspace, *names)) == ["MB702", "MB708"]
@@ -252,24 +231,8 @@ def binary_stl(x: float, y: float, z: float) -> bytes:
     return b"solid by chance".ljust(80) + pack("<I", 2) + b"".join(triangles)
 
 
-def text_stl(x: float, y: float, z: float) -> bytes:
-    corners = "".join(f"vertex {it}\n" for it in ("0 0 0", f"{x:e} 0 0", f"{x} {y} {z}"))
-    return f"solid a\nfacet normal 0 0 1\nouter loop\n{corners}endloop\nendfacet\n".encode()
-
-
 def obj(x: float, y: float, z: float) -> bytes:
     return f"# v 9 9 9\nvn 0 0 1\nv 0 0 0\nv {x} {y} {z} 1.0\nf 1 2 1\n".encode()
-
-
-@pytest.mark.parametrize(
-    ("name", "data"),
-    [("a.stl", binary_stl(*SIDES)), ("a.STL", text_stl(*SIDES)), ("a.obj", obj(*SIDES))],
-)
-def test_the_box_around_a_mesh(tmp_path: Path, name: str, data: bytes) -> None:
-    file = tmp_path / name
-    file.write_bytes(data)
-    for whole in (True, False):
-        assert mesh_box(str(file), whole) == ((0.0, 0.0, 0.0), SIDES)
 
 
 @pytest.mark.parametrize(
@@ -295,15 +258,6 @@ def test_a_mesh_is_read_up_to_four_megabytes(more: int, known: bool, tmp_path: P
     file.write_bytes(obj(*SIDES).ljust(4 * 2**20 + more))
     assert (mesh_box(str(file)) is not None) == known
     assert mesh_box(str(file), whole=False) == ((0.0, 0.0, 0.0), SIDES)
-
-
-def test_the_beginning_of_a_mesh_has_64_kilobytes(tmp_path: Path) -> None:
-    last = b"\nv 900 900 900\n"
-    for size, high in ((2**16, (900.0, 900.0, 900.0)), (2**16 + len(last), SIDES)):
-        file = tmp_path / f"{size}.obj"
-        file.write_bytes(obj(*SIDES).ljust(size - len(last)) + last)
-        box = mesh_box(str(file), whole=False)
-        assert box is not None and box.high == high
 
 
 CUBE = """<geometry id="cube"><mesh>
@@ -417,33 +371,6 @@ def test_a_collada_scene_that_cannot_be_measured_has_no_box(tmp_path: Path, data
     assert mesh_box(str(tmp_path / "a.dae")) is None
 
 
-def test_a_collada_file_over_the_limit_is_not_read(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    file = tmp_path / "a.dae"
-    file.write_bytes(collada())
-    monkeypatch.setattr("multibot_rewrite.rules.description.meshes.lookup.MOST_BYTES", 100)
-    assert mesh_box(str(file), whole=False) is None
-
-
-def test_a_large_mesh_is_read_in_part_alone(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("multibot_rewrite.rules.description.meshes.lookup.MOST_BYTES", 100)
-    file = tmp_path / "a.stl"
-    file.write_bytes(binary_stl(*SIDES))
-    assert mesh_box(str(file)) is None
-    assert mesh_box(str(file), whole=False) is not None
-
-
-def test_a_mesh_that_was_written_anew_is_read_again(tmp_path: Path) -> None:
-    file = tmp_path / "a.obj"
-    file.write_bytes(obj(*SIDES))
-    assert mesh_box(str(file)) == ((0.0, 0.0, 0.0), SIDES)
-    file.write_bytes(obj(1, 2, 3) + b"# more")
-    assert mesh_box(str(file)) == ((0.0, 0.0, 0.0), (1, 2, 3))
-
-
 @pytest.mark.parametrize(
     ("data", "scale", "expected"),
     [
@@ -480,16 +407,3 @@ def test_a_collision_away_from_a_mesh(xyz: str, expected: list[str], workspace: 
     )
     found = lint_file(str(file), Settings(select=("MB631",), roots=(str(workspace),)))
     assert [it.code for it in found] == expected
-
-
-@pytest.mark.parametrize(("unit", "expected"), [("100", ["MB714"]), ("0.01", [])])
-def test_a_collada_file_says_its_unit(unit: str, expected: list[str], workspace: Path) -> None:
-    (workspace / "src/arm/meshes/a.dae").write_bytes(collada(unit=unit))
-    assert linted(workspace, "package://arm/meshes/a.dae", select="MB714") == expected
-
-
-def test_a_pipe_is_no_mesh(workspace: Path) -> None:
-    pipe = workspace / "src/arm/meshes/pipe.stl"
-    mkfifo(pipe)
-    names = (f"file://{pipe}", "package://arm/meshes/pipe.stl")
-    assert linted(workspace, *names, select="MB714") == []

@@ -203,16 +203,6 @@ def test_the_drive_of_a_model_is_measured(text: str, codes: list[str]) -> None:
 
 
 @pytest.mark.parametrize(("distro", "level"), [("humble", "note"), ("jazzy", "error")])
-def test_a_mass_of_nothing_hurts_no_static_model_of_classic(distro: str, level: str) -> None:
-    text = model("0", "0.02").replace('<model name="m">', '<model name="m"><static>1</static>')
-    settings = Settings(distro=distro, select=("MB606",))
-    assert [it.level for it in lint_data("m.sdf", text.encode(), settings)] == [level]
-    moving = text.replace("<static>1</static>", "")
-    moves = "warning" if distro == "humble" else level
-    assert [it.level for it in lint_data("m.sdf", moving.encode(), settings)] == [moves]
-
-
-@pytest.mark.parametrize(("distro", "level"), [("humble", "note"), ("jazzy", "error")])
 def test_a_range_that_classic_does_not_know_is_a_note_there(distro: str, level: str) -> None:
     friction = "<surface><friction><ode><mu>-1</mu></ode></friction></surface>"
     collision = f'<collision name="c"><geometry><box/></geometry>{friction}</collision>'

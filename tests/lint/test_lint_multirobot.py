@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from lint_calls import Settings, lint_data, lint_file
+from lint_calls import Settings, lint_file
 
 from multibot_rewrite.base.naming import make_naming
 
@@ -308,15 +308,6 @@ def test_prefixes_of_files(inside: str, expected: list[str], tmp_path: Path) -> 
     assert codes(tmp_path, text, "MB417 MB418") == expected
 
 
-def test_an_included_file_may_use_the_prefix(tmp_path: Path) -> None:
-    (tmp_path / "arm.xacro").write_text(f'<robot {XACRO}><link name="$(arg prefix)a"/></robot>')
-    text = (
-        f'<robot name="r" {XACRO}><xacro:arg name="prefix" default=""/>'
-        '<xacro:include filename="arm.xacro"/><link name="b"/></robot>'
-    )
-    assert codes(tmp_path, text, "MB418") == []
-
-
 # ---------------------------------------------------------------- robots with names
 
 ARMS = '<link name="arm"/><link name="arm_left"/>'
@@ -395,20 +386,3 @@ def test_hardware_without_sensors_looks_none_up(tmp_path: Path) -> None:
     other = IMU.replace("gz_ros2_control/GazeboSimSystem", "mock_components/GenericSystem")
     for options in ({}, {"robots": TWO, "naming": BARE}):
         assert codes(tmp_path, other, "MB001 MB415 MB425", **options) == []  # type: ignore[arg-type]
-
-
-SYSTEM = '<plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>'
-
-
-@pytest.mark.parametrize(
-    ("text", "found"),
-    [
-        (f'<world name="w">{SYSTEM}</world>', []),
-        (f'<world name="w"><model name="m">{SYSTEM}<link name="a"/></model></world>', ["MB416"]),
-        (f'<model name="m">{SYSTEM}<link name="a"/></model>', ["MB416"]),
-    ],
-)
-def test_a_world_is_where_its_systems_belong(text: str, found: list[str]) -> None:
-    source = f'<?xml version="1.0"?><sdf version="1.9">{text}</sdf>'.encode()
-    settings = Settings(select=("MB416", "MB109"))
-    assert [it.code for it in lint_data("w.sdf", source, settings)] == found

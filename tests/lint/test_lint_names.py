@@ -203,11 +203,6 @@ def test_a_slash_in_front_goes_where_that_is_safe(body: str, fixed: bool) -> Non
     assert bool(left) is not fixed
 
 
-def test_shared_frames_keep_their_slash() -> None:
-    body = plugin("<frameName>/world</frameName>", "libgazebo_ros_p3d.so")
-    assert codes(body) == []
-
-
 def test_a_lone_slash_is_no_frame() -> None:
     assert codes(plugin("<frame_name>/</frame_name>")) == []
 

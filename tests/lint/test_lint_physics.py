@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from lint_calls import RULES, Settings, lint_file
 
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
+from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.rules.description.physics.inertia import eigenvalues
 
 GROUP = Settings(select=("MB6", "MB115", "MB125"), ignore=("MB609", "MB610", "MB611"))
@@ -228,21 +228,6 @@ def test_what_is_found_and_what_is_not(body: str, expected: str, tmp_path: Path)
 )
 def test_the_robot_as_a_whole(body: str, expected: str, tmp_path: Path) -> None:
     assert reported(found(body, tmp_path, WHOLE)) == expected
-
-
-@pytest.mark.parametrize(
-    ("inside", "level"),
-    [
-        ('<ros2_control name="c" type="system"><sensor name="s"/></ros2_control>', NOTE),
-        ('<gazebo reference="a1"><sensor name="s" type="imu"/></gazebo>', ERROR),
-    ],
-)
-def test_a_sensor_of_hardware_is_none_of_a_simulator(
-    inside: str, level: str, tmp_path: Path
-) -> None:
-    body = robot("", MOVES, "") + inside
-    (finding,) = found(body, tmp_path, Settings(select=("MB610",)))
-    assert finding.level == level
 
 
 def test_how_much_gazebo_leaves_out_is_told(tmp_path: Path) -> None:

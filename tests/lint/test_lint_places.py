@@ -12,7 +12,7 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.steps.document import read_document
-from multibot_rewrite.lint.check import FEW, numbered, placed
+from multibot_rewrite.lint.check import numbered, placed
 from multibot_rewrite.lint.files.subjects import make_subject, read_subjects
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.rules.settings import Settings
@@ -52,18 +52,6 @@ def test_a_problem_is_where_it_stands_in_the_text(
     assert found == expected._replace(edits=edits)
     bare = placed(subject, {element: number}, problem._replace(hint=""), RULES["MB201"])
     assert bare.hint == RULES["MB201"].advice
-
-
-def test_elements_are_numbered_one_by_one_or_all_at_once() -> None:
-    text = f"<robot>{'<link/>' * 10}</robot>".encode()
-    subject = make_subject(read_document(text, "r.urdf"), Settings())
-    every = subject.document.elements
-    for many in (1, FEW, FEW + 1):
-        asked = [Problem(it, "") for it in every[-many:]]
-        found = numbered(subject, asked)
-        assert {every.index(it): found[it] for it in every[-many:]} == {
-            at: at for at in range(11 - many, 11)
-        }
 
 
 XACRO = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">

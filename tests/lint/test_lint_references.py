@@ -185,33 +185,6 @@ def test_frames(tmp_path: Path, frame: str, codes: list[str]) -> None:
     assert found(tmp_path, ROBOT + PLUGIN.format("gazebo_ros_p3d", P3D.format(frame))) == codes
 
 
-@pytest.mark.parametrize(
-    ("name", "near"),
-    [("Tip", "tip"), ("x::arm_link", "arm_link"), ("arm-link", "arm_link"), ("zzz", "")],
-)
-def test_the_hint_is_the_name_that_was_meant(tmp_path: Path, name: str, near: str) -> None:
-    (it,) = lint(tmp_path, ROBOT + BLOCK.format(name, ""))
-    assert it.code == "MB202"
-    assert it.hint == (
-        f"did you mean {near!r}?"
-        if near
-        else "correct the name, declare the link, or delete the block"
-    )
-
-
-def test_the_attribute_at_fault_is_the_place(tmp_path: Path) -> None:
-    (it,) = lint(
-        tmp_path, '<robot name="r">\n <link name="a"/>\n  <gazebo\n reference="b"/></robot>'
-    )
-    assert (it.line, it.column) == (4, 2)
-
-
-def test_a_text_at_fault_is_the_place(tmp_path: Path) -> None:
-    body = f'<robot name="r">{ROBOT}\n' + DRIVE.format("x") + "</robot>"
-    (it,) = lint(tmp_path, body)
-    assert body.splitlines()[1][it.column - 1 :].startswith("x</left_joint>")
-
-
 def test_where_the_first_one_stands_is_told(tmp_path: Path) -> None:
     (it,) = lint(tmp_path, '<robot name="r">\n<link name="a"/>\n<link name="a"/></robot>')
     assert (it.code, it.line) == ("MB201", 3)
@@ -244,15 +217,6 @@ def test_each_property_is_known_by_all_its_tags(tmp_path: Path) -> None:
         blocks = (f"<{one}>1</{one}>\n<{other}>2</{other}>" for one, other in pairs)
         seen = lint(tmp_path, ROBOT + BLOCK.format("tip", "".join(blocks)), ("MB210",))
         assert [it.message.split()[0] for it in seen] == [other for _, other in pairs]
-
-
-def test_xacro_in_a_comment_leaves_nothing_unexpanded(tmp_path: Path) -> None:
-    """xacro keeps comments, also those that hold an include."""
-    joint = '<joint name="j" type="fixed"><parent link="c"/><child link="b"/></joint>'
-    text = f'<robot name="r"><!-- <xacro:include filename="x"/> --><link name="b"/>{joint}</robot>'
-    (tmp_path / "r.urdf").write_text(text)
-    found = lint_file(str(tmp_path / "r.urdf"), Settings(select=("MB202",)))
-    assert [it.code for it in found] == ["MB202"]
 
 
 @pytest.mark.parametrize(

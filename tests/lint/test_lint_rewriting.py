@@ -74,7 +74,7 @@ def test_only_what_ros_2_does_not_read_is_named(tmp_path: Path) -> None:
 
 
 @pytest.mark.more
-@pytest.mark.sample(1)
+@pytest.mark.sample(4)
 @pytest.mark.parametrize(
     ("row", "text", "line"),
     [

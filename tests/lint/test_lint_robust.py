@@ -459,6 +459,7 @@ def test_a_container_has_as_many_workers_as_its_quota(
     assert workers.processors() == many
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("form", FORMATS)
 def test_the_number_of_workers_changes_no_byte(form: str, by_jobs: list[list[Finding]]) -> None:
     report = Report("urdf-lint", ["a.urdf"], RULES)

@@ -3,14 +3,13 @@
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 
 import pytest
 from lint_calls import ArgumentSet, Settings, lint_file, lint_files
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.lint.files.named import descriptions_below, robot_name
+from multibot_rewrite.lint.files.named import robot_name
 from multibot_rewrite.lint.files.pairing import described, named_urdfs
 
 SHAPE = "<collision><geometry><sphere radius='1'/></geometry></collision>"
@@ -134,31 +133,6 @@ def codes_of(found: object, file: str) -> list[str]:
     return [it.code for it in found if it.file == file]  # type: ignore[attr-defined]
 
 
-def test_the_nearest_urdf_of_the_name_is_taken(tmp_path: Path) -> None:
-    srdf = write(tmp_path, "one/moveit/r.srdf", f'<robot name="r">{STATE.format("jl", 2)}</robot>')
-    wide = URDF.format("r").replace('upper="1"', 'upper="3"')
-    paths = [
-        write(tmp_path, "one/description/r.urdf", wide),
-        write(tmp_path, "two/r.urdf", URDF.format("r")),
-        write(tmp_path, "one/moveit/other.urdf", URDF.format("other")),
-        srdf,
-    ]
-    settings = SETTINGS
-    assert lint_files(paths, settings, jobs=1) == []
-    assert [it.code for it in lint_files(paths[1:], settings, jobs=1)] == ["MB813"]
-
-
-def test_the_urdf_that_has_the_names_is_taken(tmp_path: Path) -> None:
-    srdf = write(tmp_path, "a/r.srdf", f'<robot name="r">{ARM}</robot>')
-    near = write(tmp_path, "a/r.urdf", '<robot name="r"><link name="base"/></robot>')
-    far = write(tmp_path, "b/c/r.urdf", URDF.format("r"))
-    settings = SETTINGS
-    assert lint_files([srdf, near, far], settings, jobs=1) == []
-    # One that lacks nearly all is that of another robot.
-    write(tmp_path, "a/r.urdf", '<robot name="r"><link name="x"/></robot>')
-    assert codes_of(lint_files([srdf, near], settings, jobs=1), srdf) == ["MB801"]
-
-
 @pytest.mark.slow
 def test_workers_find_the_same(tmp_path: Path) -> None:
     paths = []
@@ -170,16 +144,6 @@ def test_workers_find_the_same(tmp_path: Path) -> None:
     alone, many = (lint_files(paths, settings, jobs=jobs) for jobs in (1, 2))
     assert alone == many
     assert len(alone) == 12
-
-
-@pytest.mark.parametrize("place", ["config", "urdf", "../arm_description/urdf"])
-def test_a_urdf_beside_is_found(tmp_path: Path, place: str) -> None:
-    srdf = write(tmp_path, "arm_moveit/config/a.srdf", f'<robot name="r">{ARM}</robot>')
-    write(tmp_path, f"arm_moveit/{place}/arm.urdf", URDF.format("r"))
-    assert lint_file(srdf, SETTINGS) == []
-    shutil.rmtree(tmp_path / "arm_moveit" / place)
-    write(tmp_path, "arm_moveit/config/a.srdf", f'<robot name="r">{ARM}</robot>')
-    assert codes_of(lint_file(srdf, SETTINGS), srdf) == ["MB801"]
 
 
 def test_a_urdf_of_the_same_file_name_tells_the_other_name(tmp_path: Path) -> None:
@@ -224,12 +188,6 @@ def test_a_file_that_is_not_there_has_no_name(tmp_path: Path) -> None:
     assert robot_name(str(tmp_path / "nothing.urdf")) == ""
 
 
-def test_a_joint_that_cannot_move_has_limits_too(tmp_path: Path) -> None:
-    urdf = URDF.format("r").replace('lower="-1" upper="1"', 'lower="0.5" upper="0.5"')
-    assert "MB813" in lint(tmp_path, STATE.format("jl", "0"), urdf)
-    assert "MB813" not in lint(tmp_path, STATE.format("jl", "0.5"), urdf)
-
-
 def test_a_xacro_that_another_includes_is_no_urdf_of_an_srdf(tmp_path: Path) -> None:
     """An included URDF may be a robot by itself, as one that a world or a cell takes in."""
     for name in ("arm.urdf", "arm.xacro", "part.xacro", "part.urdf", "nameless.urdf", "arm.srdf"):
@@ -272,19 +230,3 @@ def test_a_description_is_read_with_the_arguments_that_it_needs(
     text, said = described(path, settings)
     assert f'name="{found}"' in text.decode()
     assert said == (path if "$" in found else f"{path} (expanded)")
-
-
-def test_the_descriptions_of_a_package_are_its_first_ones(tmp_path: Path) -> None:
-    """Four levels of folders, none of what is built or only tested, sixty files at most."""
-    deep = ("a.urdf", "a/b.xacro", "a/a/c.urdf", "a/a/a/d.urdf")
-    skipped = ("meshes", "mesh", "test", "tests", "build", "install", "log", "worlds", "a.b")
-    others = ("a/a/a/a/e.urdf", "a/f.sdf", "urdf", *(f"{it}/x.urdf" for it in skipped))
-    for name in (*deep, *others):
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_text("<robot/>")
-    assert descriptions_below(str(tmp_path)) == [str(tmp_path / it) for it in deep]
-    many = tmp_path / "a" / "many"
-    many.mkdir()
-    for at in range(70):
-        (many / f"m{at:02}.urdf").write_text("<robot/>")
-    assert descriptions_below(str(many)) == [str(many / f"m{at:02}.urdf") for at in range(60)]

@@ -13,7 +13,6 @@ from lxml import etree
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.description.checks.links_and_joints import loops, read_robot
-from multibot_rewrite.description.checks.numbers import number, vector
 
 GROUP = Settings(select=("MB5", "MB115", "MB124", "MB125", "MB170"))
 BODY = '<visual><geometry><box size="1 1 1"/></geometry></visual>'
@@ -240,27 +239,6 @@ def test_each_joint_but_the_first_is_told_of_a_child(
     assert all(f"of 'j{at}' and of 'j0'" in it.message for at, it in enumerate(told, 1))
 
 
-def test_the_message_names_the_loop_and_the_way(tmp_path: Path) -> None:
-    body = links("abcd") + joint("j", "bc") + joint("k", "cd") + joint("l", "db")
-    (finding,) = found(body, tmp_path)
-    assert "'b' -> 'c' -> 'd' -> 'b'" in finding.message
-    assert finding.message.startswith("joint 'l' closes a loop of 3 joints")
-
-
-def test_a_root_that_a_misspelt_child_makes_is_left_to_mb202(tmp_path: Path) -> None:
-    body = '<link name="base"/><link name="wheel_link"/>' + (
-        '<joint name="j" type="fixed"><parent link="base"/><child link="wheel_lnik"/></joint>'
-    )
-    assert found(body, tmp_path) == []
-    (other,) = found(body.replace("wheel_lnik", "castor"), tmp_path)
-    assert (other.code, other.hint) == ("MB501", "add a joint that connects it")
-
-
-def test_a_type_is_proposed(tmp_path: Path) -> None:
-    (finding,) = found(links("ab") + joint("j", "ab", "Revolut"), tmp_path)
-    assert finding.hint == "did you mean 'revolute'?"
-
-
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("name", ["lower", "upper", "effort", "velocity", "xyz", "multiplier"])
 @pytest.mark.parametrize(
@@ -327,19 +305,6 @@ def test_large_robots_take_steps_as_many_as_they_have_links(shape: Callable[[int
 @pytest.mark.parametrize("shape", [chain, star, ring])
 def test_no_depth_or_width_is_too_much(shape: Callable[[int], str], tmp_path: Path) -> None:
     assert "MB001" not in {it.code for it in found(shape(2000), tmp_path)}
-
-
-@pytest.mark.parametrize(
-    ("text", "value"),
-    [(" 1.5 ", 1.5), ("1e-3", 1e-3), ("1_0", None), ("nan", None), ("1e400", None), (None, None)],
-)
-def test_numbers(text: str | None, value: float | None) -> None:
-    assert number(text) == value
-
-
-def test_vectors() -> None:
-    assert vector(" 1 2\n3") == (1, 2, 3)
-    assert vector("1 2") is vector("1 2 x") is vector(None) is None
 
 
 def test_every_rule_of_the_group_is_in_a_case() -> None:

@@ -15,10 +15,10 @@ from multibot_rewrite.base.findings.finding import Finding, Rule
 from multibot_rewrite.base.findings.selection import is_on
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.lint.check import lint_file, unsuppressed
-from multibot_rewrite.lint.config.directives import ALWAYS_REPORTED, read_directives
+from multibot_rewrite.lint.config.directives import ALWAYS_REPORTED
 from multibot_rewrite.lint.fix import fix
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.rules.settings import ArgumentSet, Settings
+from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.rules.subject import Subject
 
 PAGE = (ROOT / "docs" / "lint.md").read_text()
@@ -112,19 +112,6 @@ REACH = [
 @pytest.mark.parametrize(("body", "wanted"), REACH)
 def test_what_a_comment_reaches(tmp_path: Path, body: str, wanted: list[str], end: str) -> None:
     assert reported(linted(tmp_path, robot(body).replace("\n", end))) == wanted
-
-
-def test_children_and_the_end_tag_are_reached(tmp_path: Path) -> None:
-    text = robot(f'{HERE}\n<link name="a">\n  <visual/>\n  <a>\n</a></link>')
-    (it,) = read_directives(text.encode())
-    assert it.element is not None
-    assert text[slice(*it.element)].startswith("<link")
-    assert text[slice(*it.element)].endswith("</a></link>")
-    finding = Finding("MB501", "error", "m", "", "f", 6, 5)
-    for line, column, left in ((6, 4, 0), (6, 5, 0), (6, 10, 0), (6, 12, 1), (7, 1, 1)):
-        there = finding._replace(line=line, column=column)
-        settings = Settings(select=("MB501",))
-        assert len(unsuppressed([there], {"f": text.encode()}, settings)) == left
 
 
 def test_before_the_root_it_is_for_all_of_it(tmp_path: Path) -> None:
@@ -276,15 +263,6 @@ def test_a_rule_without_its_settings_is_not_asked(
     assert reported(linted(tmp_path, text, robots=("r1",))) == ["MB002:2"]
 
 
-def test_a_rule_that_asks_for_other_files_is_not_judged(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    text = robot(f"{HERE}\n<gazebo/>")
-    assert reported(linted(tmp_path, text)) == ["MB002:2"]
-    monkeypatch.setitem(RULES, "MB501", RULES["MB501"]._replace(examples="MB701"))
-    assert linted(tmp_path, text) == []
-
-
 def test_a_file_that_was_not_looked_at_to_its_end_is_not_judged() -> None:
     source = {"f": f'<robot name="r">\n{HERE}\n<link name="base"/></robot>'.encode()}
     settings = Settings(select=ON)
@@ -334,13 +312,6 @@ def test_an_unused_code_is_taken_out(before: str, after: str | None, end: str) -
     assert [it for it in left if it.edits] == []
 
 
-def test_at_the_edges_of_the_file() -> None:
-    text = '<robot name="r"/>'
-    for before, after in ((f"{HERE}\n", ""), ("", f"\n{HERE}\n"), ("", f"\n{HERE}")):
-        data, _ = fix("f.urdf", f"{before}{text}{after}".encode(), Settings(select=ON))
-        assert data.decode().strip() == text
-
-
 # In xacro: the body on line 2 of a file whose root has a name, MB501 or MB002 by line.
 IF = '<xacro:if value="0">'
 MACRO = '<xacro:macro name="m">\n<link name="a"/>\n</xacro:macro>\n'
@@ -371,18 +342,6 @@ def test_in_xacro_it_stands_in_the_source(tmp_path: Path, body: str, wanted: lis
     assert reported(linted(tmp_path, text, "a.urdf.xacro")) == wanted
 
 
-def test_in_an_included_file_it_holds_for_that_file(tmp_path: Path) -> None:
-    part = f'{XACRO}\n{HERE}\n<link name="a"/>\n{HERE}\n<gazebo/>\n<link name="b"/></robot>'
-    (tmp_path / "part.xacro").write_text(part)
-    text = f'{XACRO}<link name="base"/>\n<xacro:include filename="part.xacro"/>\n</robot>'
-    found = linted(tmp_path, text, "a.urdf.xacro")
-    assert [(Path(it.file).name, it.code, it.line) for it in found] == [("part.xacro", "MB501", 6)]
-    # For the whole file it is for that one only.
-    (tmp_path / "part.xacro").write_text(f"{XACRO}{FILE}\n<link name='a'/></robot>")
-    found = linted(tmp_path, text.replace("</robot>", '<link name="c"/></robot>'), "a.urdf.xacro")
-    assert [(Path(it.file).name, it.line) for it in found] == [("a.urdf.xacro", 3)]
-
-
 def test_a_part_of_some_robot_is_not_judged(tmp_path: Path) -> None:
     part = f"{XACRO}\n{HERE}\n<gazebo/></robot>"
     assert reported(linted(tmp_path, part, "a.xacro")) == ["MB002:2"]
@@ -390,25 +349,6 @@ def test_a_part_of_some_robot_is_not_judged(tmp_path: Path) -> None:
     path = str(tmp_path / "a.xacro")
     (tmp_path / "a.xacro").write_text(part)
     assert lint_file(path, Settings(select=ON, included=frozenset({path}))) == []
-
-
-def test_a_comment_that_one_of_the_expansions_needs_is_used(tmp_path: Path) -> None:
-    text = (
-        f'{XACRO}<xacro:arg name="two" default="base"/>\n<link name="base"/>\n'
-        f'{HERE}\n<link name="$(arg two)"/></robot>'
-    )
-    assert reported(linted(tmp_path, text, "a.xacro")) == ["MB002:3"]
-    two = ArgumentSet("*", (("two", "b"),))
-    assert linted(tmp_path, text, "a.xacro", arguments=(two,)) == []
-
-
-def test_files_without_the_word_are_not_read_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    def never(_: bytes) -> list[object]:
-        raise AssertionError
-
-    monkeypatch.setattr("multibot_rewrite.lint.config.comments.read_directives", never)
-    finding = Finding("MB501", "error", "m", "", "f", 1, 1)
-    assert unsuppressed([finding], {"f": b"<robot/>"}, Settings()) == [finding]
 
 
 @pytest.mark.parametrize(

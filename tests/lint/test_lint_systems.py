@@ -145,15 +145,6 @@ def test_what_controllers_need_has_to_be_there(defect: str, tmp_path: Path) -> N
     assert set(codes(text + gz(), tmp_path, controllers)) == {"MB229"}
 
 
-def test_a_broadcaster_that_has_the_name_of_its_sensor_needs_it_as_well(tmp_path: Path) -> None:
-    type_ = "imu_sensor_broadcaster/IMUSensorBroadcaster"
-    controllers = (
-        f"controller_manager: {{ros__parameters: {{i: {{type: {type_}}}}}}}\n"
-        "i: {ros__parameters: {sensor_name: i}}\n"
-    )
-    assert codes(system(GZ, joint("j") + IMU) + gz(), tmp_path, controllers) == ["MB229"]
-
-
 HEALTHY = {
     "one interface as command and state": system(
         MOCK, joint("j", VELOCITY.format("command") + VELOCITY.format("state"))

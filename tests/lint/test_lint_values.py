@@ -58,7 +58,7 @@ def test_the_robot_without_a_fault_has_no_warning() -> None:
 
 
 @pytest.mark.more
-@pytest.mark.sample(26)
+@pytest.mark.sample(80)
 @pytest.mark.parametrize("fault", EVERY, ids=lambda it: it.name)
 def test_a_fault_is_told(fault: Fault) -> None:
     quiet = (SILENT,) if fault.name in UNTOLD else (NOTE,)
@@ -67,7 +67,7 @@ def test_a_fault_is_told(fault: Fault) -> None:
 
 
 @pytest.mark.more
-@pytest.mark.sample(26)
+@pytest.mark.sample(60)
 @pytest.mark.parametrize("fault", ODD, ids=lambda it: it.name)
 def test_what_is_odd_and_healthy_is_left_alone(fault: Fault) -> None:
     assert [it for it in found_for(fault) if it.level != NOTE] == []

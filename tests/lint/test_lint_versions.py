@@ -86,15 +86,6 @@ def test_links_are_judged_as_urdfdom_does(case: str, version: str, tmp_path: Pat
     assert said.complains == bool(complaints(text, version))
 
 
-def test_a_valid_file_of_the_newest_version_has_no_finding() -> None:
-    arm = joint(
-        '<origin quat_xyzw="0 0 0.6 0.8"/><axis xyz="0 0 1"/>'
-        '<limit lower="-1" upper="1" effort="1" velocity="1" acceleration="2" jerk="5"/>'
-    )
-    # Links without an inertial are no matter of the version.
-    assert codes(robot("1.2", arm)) == {"MB610"}
-
-
 @pytest.mark.parametrize(
     ("distro", "found"),
     [
@@ -332,15 +323,6 @@ def test_a_collision_that_a_sensor_names_keeps_its_capsule() -> None:
     text = robot("1.1", f"{body}{named}</sensor></gazebo>")
     assert fixed(text) == text
     assert "capsule" not in fixed(robot("1.1", f"{body}<gazebo/>"))
-
-
-@pytest.mark.parametrize(
-    ("more", "plain"), [("<verbose/>", True), ('<material name="m"/>', True), ("<sensor/>", False)]
-)
-def test_a_capsule_beside_something_else(more: str, plain: bool) -> None:
-    """What a sphere may do without, and what it may not."""
-    body = visual('<capsule length="1" radius="1"/>').replace("</visual>", f"{more}</visual>")
-    assert ("capsule" not in fixed(robot("1.1", f"{body}<gazebo/>"))) is plain
 
 
 def test_two_rotations_of_which_one_is_ignored_differ() -> None:

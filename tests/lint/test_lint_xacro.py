@@ -102,37 +102,6 @@ def test_a_macro_is_told_with_its_calls(tmp_path: Path) -> None:
     assert found.calls == ("parts/arms.xacro:5: arm", "robot.xacro:4: arms")
 
 
-def test_a_block_is_told_where_the_caller_wrote_it(tmp_path: Path) -> None:
-    macro = (
-        '<xacro:macro name="m" params="*inside">\n<xacro:insert_block name="inside"/></xacro:macro>'
-    )
-    body = f'{macro}\n<link name="a"/>\n<xacro:m>\n  {LOST}\n</xacro:m>'
-    found = one(tmp_path, {"r.xacro": xacro(body)}, select=("MB202",))
-    assert (found.line, found.column) == (6, 40)
-    assert found.calls == ("r.xacro:5: m",)
-
-
-def test_a_loop_of_a_macro_has_all_of_its_calls(tmp_path: Path) -> None:
-    macro = (
-        '<xacro:macro name="m" params="n"><link name="l${n}"/>\n'
-        '<xacro:if value="${n}"><xacro:m n="${n - 1}"/></xacro:if></xacro:macro>'
-    )
-    body = f'{macro}\n<xacro:m n="1"/>'
-    found = one(tmp_path, {"r.xacro": xacro(body)}, select=("MB501",))
-    assert (found.line, found.calls) == (2, ("r.xacro:3: m", "r.xacro:4: m"))
-
-
-def test_one_place_in_a_macro_is_one_finding(tmp_path: Path) -> None:
-    """Whatever its calls, and from however many files."""
-    calls = "".join(f'<xacro:arm side="{it}"/>' for it in ("left", "right", "third"))
-    robot = xacro(f'<link name="base"/><xacro:include filename="arm.xacro"/>\n{calls}')
-    files = {"one.xacro": robot, "two.xacro": robot, "arm.xacro": xacro(MACRO, "")}
-    found = one(tmp_path, files, select=("MB501",))
-    assert found.message.startswith("link 'left_arm'")
-    assert found.hint.endswith("and 2 more from other calls of the macro")
-    assert found.calls == ("one.xacro:3: arm",)
-
-
 def test_what_a_second_call_repeats_is_one_finding(tmp_path: Path) -> None:
     macro = (
         '<xacro:macro name="m"><link name="a"/>\n<link name="b"/>\n<link name="c"/></xacro:macro>'
@@ -199,17 +168,6 @@ def test_an_argument_without_default(
     assert [(it.code, it.arguments) for it in found] == expected
 
 
-def test_a_set_that_fails_leaves_the_others(tmp_path: Path) -> None:
-    body = SIM + "<xacro:if value=\"${'$(arg sim)' == 'bad'}\"><link name=\"${x}\"/></xacro:if>"
-    write(tmp_path, {"r.xacro": xacro(body)})
-    given = sets(("*", {"sim": "bad"}), ("*", {"sim": "gz"}))
-    found = linted(tmp_path, "r.xacro", arguments=given)
-    assert [(it.code, it.arguments) for it in found] == [
-        ("MB202", "sim:=gz"),
-        ("MB103", "sim:=bad"),
-    ]
-
-
 @pytest.mark.more
 def test_arguments_on_the_command_line_and_in_the_configuration(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
@@ -248,15 +206,6 @@ def test_a_part_is_judged_where_it_is_included(tmp_path: Path, part: str, space:
     write(tmp_path, {"r.xacro": xacro(include + joint + links), "p.xacro": part})
     assert linted(tmp_path, "p.xacro", "r.xacro") == []
     assert linted(tmp_path, "p.xacro") != [] or "name" not in part
-
-
-def test_a_urdf_that_is_a_part_is_judged_where_it_is_included(tmp_path: Path) -> None:
-    part = f'<robot name="p"><link name="b"/>{LOST.replace("gone", "base")}</robot>'
-    joint = '<joint name="k" type="fixed"><parent link="a"/><child link="b"/></joint>'
-    body = f'<xacro:include filename="p.urdf"/><link name="base"/><link name="a"/>{joint}'
-    write(tmp_path, {"r.xacro": xacro(body), "p.urdf": part})
-    assert linted(tmp_path, "p.urdf", "r.xacro") == []
-    assert [it.code for it in linted(tmp_path, "p.urdf")] == ["MB202", "MB202"]
 
 
 def packages(tmp_path: Path) -> None:
@@ -311,30 +260,6 @@ def test_packages_are_found_without_ros(
     assert found.file == above
 
 
-def test_a_package_that_nobody_has_is_named(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
-    packages(tmp_path)
-    (found,) = linted(tmp_path, "ws/robot/urdf/far.xacro")
-    # A checkout need not have it: that fails no CI by default.
-    assert (found.code, found.level, found.line) == ("MB119", NOTE, 2)
-    assert found.message.startswith("xacro failed: package 'far' is not found")
-    assert "roots" in found.hint
-
-
-def test_a_package_that_a_macro_or_an_included_file_asks_for_is_a_note_too(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
-    lost = '<xacro:include filename="$(find far)/p.xacro"/>'
-    macro = f'<xacro:macro name="m" params="">{lost}</xacro:macro>'
-    write(tmp_path, {"a.xacro": xacro(f"{macro}<xacro:m/>"), "part.xacro": xacro(lost)})
-    write(tmp_path, {"b.xacro": xacro('<xacro:include filename="part.xacro"/>')})
-    for name in ("a.xacro", "b.xacro"):
-        assert [it.code for it in linted(tmp_path, name)] == ["MB119"]
-
-
 def test_a_part_whose_name_is_filled_in_is_judged_where_it_is_included(tmp_path: Path) -> None:
     include = '<xacro:include filename="parts/rover_$(arg kind)_parts.xacro"/>'
     write(tmp_path, {"r.xacro": xacro(include)})
@@ -373,16 +298,6 @@ def test_which_files_a_filled_in_include_may_mean(
     assert found == {str(tmp_path / it) for it in parts}
 
 
-def test_installed_packages_are_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    packages(tmp_path)
-    share = tmp_path / "install" / "share"
-    share.mkdir(parents=True)
-    (tmp_path / "elsewhere" / "far").rename(share / "far")
-    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "install"))
-    (found,) = linted(tmp_path, "ws/robot/urdf/far.xacro", select=("MB202",))
-    assert found.file == "install/share/far/p.xacro"
-
-
 def test_a_repository_of_one_package_looks_at_no_neighbours(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -391,15 +306,6 @@ def test_a_repository_of_one_package_looks_at_no_neighbours(
     (tmp_path / "ws" / "robot" / ".git").mkdir()
     (found,) = linted(tmp_path, "ws/robot/urdf/next.xacro")
     assert found.code == "MB119"
-
-
-def test_what_xacro_warns_about_is_not_printed(
-    tmp_path: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
-    body = '<xacro:property name="pi" value="3"/><link name="a"/><xacro:property name="q" x="1"/>'
-    write(tmp_path, {"r.xacro": xacro(body)})
-    linted(tmp_path, "r.xacro")
-    assert capfd.readouterr().err == ""
 
 
 def test_messages_hold_no_path_of_this_machine(tmp_path: Path) -> None:
@@ -456,18 +362,6 @@ def test_controllers_that_cmake_installs_from_elsewhere_are_there(tmp_path: Path
     assert [(it.code, it.file) for it in found] == [("MB234", "robot/urdf/b.xacro")]
 
 
-@pytest.mark.parametrize(("included", "codes"), [("part.urdf.xacro", []), ("o.xacro", ["MB202"])])
-def test_a_part_alone_is_known_by_what_includes_it(
-    included: str, codes: list[str], tmp_path: Path
-) -> None:
-    joint = '<joint name="j" type="fixed"><parent link="base"/><child link="l"/></joint>'
-    includes = f'<xacro:include filename="{included}"/><link name="base"/>'
-    files = {"part.urdf.xacro": xacro(f'<link name="l"/>{joint}'), "r.xacro": xacro(includes)}
-    write(tmp_path, {"package.xml": MANIFEST % "p", **files})
-    found = linted(tmp_path, "part.urdf.xacro", select=("MB202",))
-    assert [it.code for it in found] == codes
-
-
 LACKS = {
     "r.urdf": (f'<link name="a"/><link name="base"/>{LOST}', "error"),
     "r.xacro": (f'<link name="a"/><link name="base"/>{LOST}', "warning"),
@@ -488,15 +382,6 @@ def test_a_name_that_nothing_makes_stops_no_more_than_that_file(
 ) -> None:
     found = one(tmp_path, {file: xacro("<xacro:m/>", "r"), "x/a.urdf": xacro("")}, file)
     assert (found.code, found.level) == ("MB103", level)
-
-
-def test_a_macro_of_another_file_of_the_package_makes_a_part(tmp_path: Path) -> None:
-    made = xacro('<xacro:macro name="m"><link name="a"/></xacro:macro>')
-    write(
-        tmp_path, {"package.xml": MANIFEST % "p", "m.xacro": made, "r.xacro": xacro("<xacro:m/>")}
-    )
-    found = lint_files([str(tmp_path / "r.xacro")], Settings(select=("MB103",)))
-    assert [it.level for it in found] == [NOTE]
 
 
 def test_a_value_that_an_argument_gives_is_no_error(tmp_path: Path) -> None:

@@ -14,12 +14,14 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.cli.multibot import main as multibot
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.system.json import to_json
-from multibot_rewrite.system.records import Heard, Parameter, System
+from multibot_rewrite.system.records import Description, Heard, Parameter, System
 
 TWIST, ODOM, SCAN = (
     "geometry_msgs/msg/Twist", "nav_msgs/msg/Odometry", "sensor_msgs/msg/LaserScan",
 )  # fmt: skip
 TF = "tf2_msgs/msg/TFMessage"
+MODEL = "/robot1/robot_description"
+PATH = "/robot1/follow_path nav2_msgs/action/FollowPath"
 GOAL, STOP = "geometry_msgs/msg/PoseStamped", "std_msgs/msg/Bool"
 ROBOTS = [
     line.format(it)
@@ -35,6 +37,7 @@ ROBOTS = [
         f"/{{0}}/pilot publishes /{{0}}/cmd_vel {TWIST}",
         f"/{{0}}/rsp publishes /tf_static {TF}",
         f"/{{0}}/rsp subscribes /tf {TF}",
+        "/{0}/pilot serves /{0}/follow_path nav2_msgs/action/FollowPath",
         "transform world -> {0}/base_link on /tf_static by /robot1/rsp, /robot2/rsp",
         "transform {0}/base_link -> {0}/laser on /tf_static at 0 0 1 by /robot1/rsp, /robot2/rsp",
     )
@@ -52,10 +55,6 @@ def codes(found: list[Finding]) -> list[tuple[str, str, str]]:
     return [(it.code, it.level, it.node) for it in found]
 
 
-def test_nothing_is_said_where_nothing_changed() -> None:
-    assert held() == []
-
-
 @pytest.mark.parametrize(
     ("line", "node"),
     [
@@ -64,11 +63,13 @@ def test_nothing_is_said_where_nothing_changed() -> None:
         (f"running: /rqt_gui_py_node_12 publishes /robot2/cmd_vel {TWIST}", "/rqt_gui_py_node_12"),
         (f"running: /rviz2 publishes /robot1/goal_pose {GOAL}", "/rviz2"),
         (f"running: /domain_bridge publishes /robot1/goal_pose {GOAL}", "/domain_bridge"),
+        (f"running: /zenoh_bridge_ros2dds publishes /robot1/odom {ODOM}", "/zenoh_bridge_ros2dds"),
+        (f"running: /foxglove_bridge calls {PATH}", "/foxglove_bridge"),
     ],
 )  # fmt: skip
 def test_a_tool_that_commands_a_robot_is_a_new_sender(line: str, node: str) -> None:
-    ((_, level, told),) = codes(held(line))
-    assert (level, told) == (ERROR, node)
+    (it,) = held(line)
+    assert it.level == ERROR and node in f"{it.node}: {it.message}"
 
 
 @pytest.mark.parametrize(
@@ -108,6 +109,18 @@ def test_a_root_that_all_share_is_missed() -> None:
     assert "world -> robot1/base_link, and does not" in it.hint
 
 
+def test_transforms_that_are_gone_are_one_finding() -> None:
+    """The senders on a topic of all are known, not which of them sent a transform."""
+    sent = "earlier: transform world -> {} on /tf_static by /robot1/rsp, /robot2/rsp"
+    (it,) = held(*map(sent.format, ("dock", "gate")))
+    assert (it.code, it.node, it.robot, it.names) == ("MG130", "", "", ("dock", "gate"))
+    assert "world -> dock, world -> gate on /tf_static are gone" in it.message
+    # What a node that is gone may have sent is gone with it.
+    dead = sent.format("dock").replace("/robot1/rsp", "/robot2/mapper")
+    found = held(dead, f"earlier: /robot2/mapper subscribes /tf {TF}")
+    assert {it.code for it in found} == {"MG101"}
+
+
 def test_a_part_is_elsewhere() -> None:
     def moved(graph: System) -> System:
         turned = (0.0, 0.0, 1.2, 0.0, 0.0, 0.0, 1.0)
@@ -124,7 +137,11 @@ def test_other_qos_frames_and_parameters() -> None:
     text = "\n".join(f"as before: {it}" for it in ROBOTS)
     before, after = read_looks(text)
     own = Parameter("/robot1/pilot", "max_speed", "0.5")
-    before = before._replace(parameters=(own,), heard=(Heard("/robot1/scan", "robot1/laser"),))
+    before = before._replace(
+        parameters=(own,),
+        heard=(Heard("/robot1/scan", "robot1/laser"),),
+        descriptions=(Description(MODEL, ("robot1/base_link", "robot1/laser")),),
+    )
     lidar = f"earlier: /robot2/lidar publishes /robot2/low_scan {SCAN} best_effort"
     was, _ = read_looks(lidar)
     now, _ = read_looks(lidar.replace("best_effort", "reliable"))
@@ -133,6 +150,7 @@ def test_other_qos_frames_and_parameters() -> None:
         ends=(*after.ends, *now.ends),
         parameters=(own._replace(value="2.0"),),
         heard=(Heard("/robot1/scan", "robot1/base_link"),),
+        descriptions=(Description(MODEL, ("robot1/base_link", "robot1/lidar")),),
     )
     found = check(seen_plan(diagnose(before)), after, before=before)
     assert {(it.code, it.node, it.names): it.message for it in found} == {
@@ -143,6 +161,11 @@ def test_other_qos_frames_and_parameters() -> None:
             "",
             ("/robot1/scan",),
         ): "messages on /robot1/scan are of robot1/base_link, and were of robot1/laser",
+        (
+            "MG130",
+            "",
+            (MODEL,),
+        ): f"messages on {MODEL} are of robot1/lidar, and were of robot1/laser",
         ("MG130", "/robot1/pilot", ()): "max_speed is 2.0, and was 0.5",
     }
 

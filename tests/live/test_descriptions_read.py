@@ -9,7 +9,7 @@ from collections.abc import Callable
 import pytest
 from graph_examples import read_system
 
-from multibot_rewrite.producers.ros.described import DescriptionSamples, described
+from multibot_rewrite.producers.ros.headers import DescriptionSamples, described
 from multibot_rewrite.rules.check import judge
 from multibot_rewrite.system.domains import named, side_by_side, space_of
 from multibot_rewrite.system.json import from_json, to_json
@@ -158,13 +158,3 @@ def test_several_who_send_joints_have_them_together(heard: list[str], wrong: boo
     found = judge(read_system("\n".join(f"running: {it}" for it in lines)))
     assert [it.code for it in found] == ["MG420"] * wrong
     assert all("/robot1/jsb, /robot1/more sends head, neck" in it.message for it in found)
-
-
-def test_who_waits_for_an_empty_one_is_named() -> None:
-    lines = [
-        ROBOT[0].format("robot1"),
-        "/robot1/move_group subscribes /robot1/robot_description std_msgs/msg/String",
-        "description on /robot1/robot_description: no links",
-    ]
-    (it,) = judge(read_system("\n".join(f"running: {it}" for it in lines)))
-    assert "/robot1/move_group has no model" in it.message

@@ -12,10 +12,8 @@ from graph_calls import (
     GuessedRobot,
     check,
     diagnose,
-    from_json,
     from_yaml,
     guess_robots,
-    questions,
     survey,
     to_json,
     with_answers,
@@ -34,15 +32,11 @@ from healthy_systems import (
 )
 from node_answers import told
 
-from multibot_rewrite.base.findings.finding import INCONCLUSIVE
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.producers.bags.read import RECORDER
 from multibot_rewrite.producers.ros.tf_subscriptions import Voices
 from multibot_rewrite.system.records import (
     PUBLISHES,
-    SERVES,
-    Caveat,
-    Edge,
     System,
 )
 
@@ -88,23 +82,10 @@ def test_parts_of_a_robot_are_no_robots() -> None:
     assert [it.name for it in guess_robots(graph)] == ["two_finger_arm1", "two_finger_arm2"]
 
 
-def test_a_robot_that_has_just_started_is_one_by_its_number() -> None:
-    graph = with_node(nav2_with_tools(), "/robot3/lidar", (PUBLISHES, "/robot3/scan", SCAN))
-    assert [it.name for it in guess_robots(graph)] == ["robot1", "robot2", "robot3"]
-
-
 def test_names_to_which_nobody_listens_are_no_robot() -> None:
     ends = [(PUBLISHES, f"/robot_2/{it}", TWIST) for it in ("cmd_vel", "odom")]
     graph = with_node(nav2_with_tools(), "/fleet_manager", *ends)
     assert [it.name for it in guess_robots(graph)] == ["robot1", "robot2"]
-
-
-def test_the_frames_of_robots_called_otherwise_than_their_namespace() -> None:
-    graph = nav2_with_tools("L1")
-    seen = diagnose(graph)
-    assert seen.whose.robot("/robot1/scan") == "robot1"
-    assert seen.whose.plain("/robot1/scan") == "/scan"
-    assert seen.whose.robot("/fleet_manager") == ""
 
 
 # ---------------------------------------------------------------- close to a fault, and none
@@ -121,22 +102,6 @@ def test_one_robot_may_have_plain_frames_beside_robots_that_have_not() -> None:
         for it in graph.edges
     ]
     assert diagnose(graph._replace(edges=tuple(frames))).findings == ()
-
-
-def test_a_command_typed_under_a_wrong_name_is_an_error() -> None:
-    """``ros2 topic pub /cmd_vel``: its node is hidden, and no viewer that sends when it is asked."""
-    graph = with_node(nav2_with_tools(), "/_ros2cli_4711", (PUBLISHES, "/cmd_vel", TWIST))
-    found = diagnose(graph).findings
-    assert [(it.node, it.level) for it in found] == [("/_ros2cli_4711", "error")]
-    assert "/robot1/cmd_vel" in str(found[0])
-
-
-def test_what_is_not_seen_may_be_missing_only_in_the_view() -> None:
-    fault = next(it for it in FAULTS if it.code == "MG501")
-    graph = fault.change(fault.system())
-    doubt = Caveat("not-settled", True, "still changing")
-    partial = graph._replace(environment=graph.environment._replace(caveats=(doubt,)))
-    assert {it.level for it in diagnose(partial).findings} == {INCONCLUSIVE}
 
 
 def second_lidar(graph: System) -> System:
@@ -208,12 +173,6 @@ def faulty(code: str, level: str = "error") -> System:
     return fault.change(fault.system())
 
 
-def test_a_healthy_system_ends_with_0(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert multibot.main(["check", "--from", saved(tmp_path, nav())]) == 0
-    out, err = capsys.readouterr()
-    assert out == "" and err.endswith("; 0 findings: nothing wrong seen\n")
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("fault", "more", "code"),
@@ -229,12 +188,6 @@ def test_a_healthy_system_ends_with_0(tmp_path: Path, capsys: pytest.CaptureFixt
 def test_the_exit_code(fault: tuple[str, str], more: list[str], code: int, tmp_path: Path) -> None:
     graph = saved(tmp_path, faulty(*fault))
     assert multibot.main(["check", "--from", graph, *more]) == code
-
-
-def test_an_incomplete_view_is_inconclusive(tmp_path: Path) -> None:
-    doubt = Caveat("not-settled", True, "still changing")
-    graph = nav()._replace(environment=environment(doubt))
-    assert multibot.main(["check", "--from", saved(tmp_path, graph)]) == 3
 
 
 @pytest.mark.more
@@ -279,16 +232,6 @@ def test_a_plan_of_the_same_fleet_is_not_needed() -> None:
 
 
 # ---------------------------------------------------------------- states
-
-
-def test_whom_to_ask() -> None:
-    """Of two nodes with one name either may answer: none of them is asked."""
-    managed, plain = "lifecycle_msgs/srv/GetState", "rcl_interfaces/srv/GetParameters"
-    ends = ((SERVES, "/robot1/amcl/get_state", managed), (SERVES, "/elsewhere/get_state", managed))
-    graph = with_node(EMPTY, "/robot1/amcl", *ends)
-    wanted = {("/robot1/amcl/get_state", managed), ("/robot1/amcl/get_parameters", plain)}
-    assert {(it.service, it.type) for it in questions(graph)} == wanted
-    assert list(questions(graph._replace(nodes=(*graph.nodes, *graph.nodes)))) == []
 
 
 def test_a_healthy_robot_by_its_states() -> None:
@@ -349,22 +292,3 @@ def test_the_numbers_of_messages_tell_several_senders(
     for mark in marks:
         heard = heard.after(mark)
     assert heard.several(latched) is several
-
-
-def test_whether_several_send_a_transform_is_kept_in_a_file() -> None:
-    frame = Edge("base_link", "odom", "/tf", False, ("/ekf", "/driver"), True)
-    graph = EMPTY._replace(edges=(frame, frame._replace(child="laser", several=False)))
-    assert from_json(to_json(graph), "graph.json") == graph
-
-
-def test_a_recording_has_no_nodes_to_count() -> None:
-    recorded = System((), (), (), environment()._replace(rmw="rosbag2"))
-    said = "a recording, no name of a robot in them: one robot, or several that share all names"
-    assert [*survey(diagnose(recorded))] == [said]
-
-
-def test_the_layout_and_tf_topics_are_told() -> None:
-    said = list(survey(diagnose(nav2_with_tools("L1"))))
-    assert said[0] == "2 robots by their namespaces: robot1, robot2"
-    assert "tf-per-robot (L1" in said[1]
-    assert "tf on /robot1/tf: 3 nodes of robot1" in said

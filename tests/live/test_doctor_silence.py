@@ -7,8 +7,7 @@ from collections.abc import Callable
 
 import pytest
 from fault_changes import CHANGE_STATE, added, both
-from graph_calls import diagnose, guess_robots, seen_plan
-from graph_cases import environment, sent
+from graph_calls import diagnose
 from healthy_systems import (
     CLOCK,
     NAVIGATE,
@@ -23,10 +22,9 @@ from healthy_systems import (
     nav2_with_tools,
 )
 
-from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, Edge, Node, System
+from multibot_rewrite.system.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, Node, System
 
 IMU = "sensor_msgs/msg/Imu"
-EMPTY = System((), (), (), environment())
 
 
 def two_windows(graph: System) -> System:
@@ -118,15 +116,6 @@ def test_it_is_no_fault(name: str) -> None:
     assert [str(it) for it in diagnose(SILENT[name](nav2_with_tools())).findings] == []
 
 
-def test_a_robots_own_server_is_not_started() -> None:
-    graph = both(
-        added("/robot1/patrol", (CALLS, "/robot1/look_around", NAVIGATE)),
-        added("/robot2/camera", (SERVES, "/robot2/look_around", NAVIGATE)),
-    )(nav2_with_tools())
-    (it,) = diagnose(graph).findings
-    assert (it.code, it.level, it.node) == ("MG322", "error", "")
-
-
 @pytest.mark.more
 def test_an_idle_input_of_a_mux_is_not_one_that_it_has() -> None:
     inputs = [(SUBSCRIBES, f"/robot1/cmd_vel_{it}", TWIST) for it in ("tab", "tag")]
@@ -138,32 +127,3 @@ def test_an_idle_input_of_a_mux_is_not_one_that_it_has() -> None:
 def test_a_bag_with_odometry_is_a_bag() -> None:
     graph = added("/rosbag2_player", (PUBLISHES, "/robot1/odom", ODOMETRY))(nav2_with_tools())
     assert {it.code for it in diagnose(graph).findings} == {"MG313"}
-
-
-def test_both_robots_may_send_the_world_above_them() -> None:
-    ends = (PUBLISHES, "/tf_static", TF)
-    graph = EMPTY
-    for robot in ("robot1", "robot2"):
-        odometry = (PUBLISHES, f"/{robot}/odom", ODOMETRY)
-        velocity = (SUBSCRIBES, f"/{robot}/cmd_vel", TWIST)
-        graph = added(f"/{robot}/localizer", ends, odometry, velocity)(graph)
-    world = Edge("map", "world", "/tf_static", True, ())
-    graph = sent(graph._replace(edges=(world,)))
-    assert [it.name for it in guess_robots(graph)] == ["robot1", "robot2"]
-    assert diagnose(graph).findings == ()
-
-
-def test_a_namespace_with_odometry_alone_is_no_robot() -> None:
-    graph = added("/visual/tracker", (PUBLISHES, "/visual/odom", ODOMETRY))(nav2_with_tools())
-    assert [it.name for it in guess_robots(graph)] == ["robot1", "robot2"]
-
-
-def test_what_is_called_after_a_robot_inside_another_namespace_is_not_its_own() -> None:
-    graph = added("/fleet/monitor", (PUBLISHES, "/fleet/pose_robot1", ODOMETRY))(nav2_with_tools())
-    assert diagnose(graph).whose.robot("/fleet/pose_robot1") == ""
-
-
-def test_the_plan_of_what_is_seen_leaves_out_what_every_node_has() -> None:
-    plan = seen_plan(diagnose(nav2_with_tools()))
-    assert [it for it in plan.ends if it.type.startswith("rcl_interfaces/")] == []
-    assert "/rosout" not in {it.name for it in plan.ends}

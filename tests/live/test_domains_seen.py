@@ -9,7 +9,6 @@ import pytest
 from plans import PlannedRobot, planned, planned_end
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.cli import live
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.live.diagnose import diagnose, diagnose_domains
 from multibot_rewrite.rules.check import check_domains
@@ -166,41 +165,6 @@ def test_all_as_planned_is_quiet() -> None:
     assert found_in(as_planned()) == []
 
 
-def test_one_name_in_two_domains_is_no_clash() -> None:
-    """A tool and a topic with one name in each of two domains; in one domain they are two nodes."""
-    seen = as_planned()
-    for number in (11, 12):
-        here = seen[number]
-        end = End(TOPIC, PUBLISHES, "/initialpose", "t/msg/T", "", "/rviz2", None, "")
-        seen[number] = here._replace(nodes=(*here.nodes, Node("/rviz2")), ends=(*here.ends, end))
-    assert [it.code for it in found_in(seen)] == []
-    twice = seen[11]._replace(nodes=(*seen[11].nodes, Node("/robot1/drive", "other")))
-    assert "MG301" in {it.code for it in found_in({**seen, 11: twice})}
-
-
-def test_a_topic_that_has_to_cross_is_looked_for_on_both_sides() -> None:
-    seen = as_planned()
-    seen[10] = without(seen[10], "/robot1_bridge_10")
-    (here,) = (it for it in found_in(seen) if it.code == "MG101")
-    assert here.node == "/robot1_bridge_10"
-    assert (here.level, here.message[-14:]) == ("error", ", in domain 10")
-    seen = as_planned()
-    seen[12] = without(seen[12], "/robot2_bridge_12")
-    told = found_in(seen)
-    assert {it.node for it in told if it.code == "MG101"} == {"/robot2_bridge_12"}
-    assert all(it.message.endswith(", in domain 12") for it in told)
-
-
-def test_a_topic_that_a_bridge_does_not_bring() -> None:
-    """The bridge runs, and its file lacks the topic."""
-    seen = as_planned()
-    seen[11] = seen[11]._replace(ends=tuple(it for it in seen[11].ends if "bridge" not in it.node))
-    told = found_in(seen)
-    assert {(it.node, *it.names) for it in told if it.code == "MG102"} == {
-        ("/robot1_bridge_11", "/map", "/robot1/odom")
-    }
-
-
 def test_a_robot_in_the_domain_of_another_is_told_once() -> None:
     seen = as_planned()
     moved = [it for it in seen[12].nodes if it.name.startswith("/robot2/")]
@@ -211,18 +175,6 @@ def test_a_robot_in_the_domain_of_another_is_told_once() -> None:
     hints = {it.hint for it in about if it.code in ("MG101", "MG109")}
     assert hints == {"it runs in domain 11: start it with ROS_DOMAIN_ID=12"}
     assert not [it for it in found_in(seen) if it.code == "MG108"]
-
-
-def test_robots_of_several_domains_are_held_against_each_other() -> None:
-    """With the domain of all or without it; of one domain alone there is nothing to compare."""
-    seen = as_planned()
-    for number, node, speed in ((11, "/robot1/drive", "1.0"), (12, "/robot2/drive", "5.0")):
-        seen[number] = seen[number]._replace(parameters=(Parameter(node, "max_vel", speed),))
-    both = {number: seen[number] for number in (11, 12)}
-    for view in (seen, both):
-        (told,) = (it for it in found_in(view) if it.names)
-        assert (told.code, {*told.names}) == ("MG328", {"max_vel"})
-    assert found_in({11: seen[11]}) == []
 
 
 def saved(folder: Path, seen: dict[int, System]) -> list[str]:
@@ -306,30 +258,6 @@ def test_without_a_plan_each_domain_is_judged_and_its_robot_held_against_the_oth
     assert (tmp_path / "one" / "plan.yaml").exists()
 
 
-def test_a_robot_without_a_name_that_vanishes_is_called_by_its_domain(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    both = {at: running(at) for at in (11, 12)}
-    gone = {**both, 12: both[12]._replace(nodes=(), ends=())}
-    monkeypatch.setattr(live, "watched", lambda _, domains: (it for it in (both, gone)))
-    assert main(["check", "--domain", "11,12", "--watch", "--suggest", str(tmp_path)]) == 1
-    assert {it.parent.name for it in tmp_path.rglob("plan.yaml")} == {"domain11", "domain12"}
-    assert "domain 12: error: MG109 domain 12 is gone: none" in capsys.readouterr().out
-
-
-def test_names_are_those_of_their_domain() -> None:
-    """What is told of /scan in one domain is not told of /scan in another."""
-    views = {at: running(at) for at in (11, 12, 13)} | {14: running(14, left_out="lidar")}
-    ends = [
-        it._replace(name="/lidar/laser") if it.node == "/lidar" else it for it in views[13].ends
-    ]
-    views[13] = views[13]._replace(ends=tuple(ends))
-    found = diagnose_domains({it: diagnose(view) for it, view in views.items()}).findings
-    (renamed, lost) = sorted(found, key=lambda it: it.code)
-    assert renamed.message.endswith("/lidar publishes /lidar/laser, in domain 13")
-    assert lost.message.startswith("domain 14 has no lidar, as domain 11 has")
-
-
 def test_what_a_robot_lacks_and_another_domain_has_is_told_with_it() -> None:
     """A lidar that was started with another ROS_DOMAIN_ID."""
     whole = running(12, "/robot2")
@@ -345,23 +273,3 @@ def test_what_a_robot_lacks_and_another_domain_has_is_told_with_it() -> None:
     found = diagnose_domains({it: diagnose(view) for it, view in seen.items()}).findings
     hints = {it.hint for it in found if "/robot2/scan" in it.names}
     assert hints == {"/robot2/lidar of domain 0 has it: start both in one domain, or bridge it"}
-
-
-def test_a_plan_of_one_robot_holds_for_each_domain(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Robots without names: the same plan for all."""
-    ends = tuple(planned_end("/drive", TOPIC, PUBLISHES, "/odom", ODOM, "odom") for _ in (1,))
-    one = planned("both", [PlannedRobot("robot", ("/drive",), (), "/tf")], (), (), (), ends)
-    (tmp_path / "plan.yaml").write_text(to_yaml(one))
-    own = tuple(it._replace(code_name="") for it in ends)
-    seen = {
-        at: System((Node("/drive", "p"),), own, environment=Environment(domain=at))
-        for at in (11, 12)
-    }
-    words = ["check", str(tmp_path / "plan.yaml"), "--domain", "11,12"]
-    assert main([*words, *saved(tmp_path, seen)]) == 0
-    seen[12] = seen[12]._replace(ends=())
-    assert main([*words, *saved(tmp_path, seen)]) == 1
-    (line,) = capsys.readouterr().out.splitlines()
-    assert line.startswith("/drive: error: MG102") and "in domain 12" in line

@@ -9,13 +9,11 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from graph_calls import check, read_plan
-from graph_examples import read_example
+from graph_calls import read_plan
 from lxml import etree
 from paths import FIXTURES
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.spelling.enclaves import to_policy
 from multibot_rewrite.system.records import System, surely
 
 ROVER = str(FIXTURES / "robots" / "rover.urdf")
@@ -154,22 +152,6 @@ def test_an_endpoint_by_parameter_is_allowed_although_it_only_may_be_there(tmp_p
     assert {"rt/robot1/odom", "rt/robot1/debug"} <= dds_topics(policy.read_text())["/robot1"][0]
 
 
-def test_shared_nodes_have_an_enclave_of_their_own() -> None:
-    plan, _ = read_example(
-        "planned: /robot1/driver publishes /robot1/odom nav_msgs/msg/Odometry\n"
-        "planned: /manager subscribes /robot1/odom nav_msgs/msg/Odometry\n"
-    )
-    topics = dds_topics(to_policy(plan))
-    assert "rt/robot1/odom" in topics["/shared"][1]
-    assert "rt/robot1/odom" not in topics["/shared"][0] | topics["/robot1"][1]
-
-
-def test_names_are_escaped() -> None:
-    plan, _ = read_example("planned: /robot1/a publishes /robot1/x std_msgs/msg/String\n")
-    bad = tuple(it._replace(name='/<&">') for it in plan.ends)
-    assert 'rt/<&">' in dds_topics(to_policy(plan._replace(ends=bad)))["/robot1"][0]
-
-
 @pytest.mark.skipif("MULTIBOT_SOURCES" not in os.environ, reason="MULTIBOT_SOURCES is not set")
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_sros2_takes_it_and_means_the_same(layout: str) -> None:
@@ -193,8 +175,3 @@ def _without_import(schema: str) -> str:
     before, _, rest = schema.partition("<xs:import")
     kept = before + rest.partition("/>")[2]
     return kept.replace('<xs:attribute ref="xml:base" />', "")
-
-
-def test_without_enclaves_nothing_is_said() -> None:
-    plan, graph = read_example("as planned: /robot1/a\nas planned: /robot2/a\n")
-    assert check(plan, graph) == []

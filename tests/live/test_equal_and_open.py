@@ -33,11 +33,6 @@ def found(text: str) -> list[Finding]:
     return [*diagnose(read_system("".join(lines)).system).findings]
 
 
-def test_the_twins_are_quiet() -> None:
-    assert found(FIRST + SECOND) == []
-    assert found(ALONE) == []
-
-
 # What is otherwise in the second of two robots: the old words, the new ones, the code.
 OTHERWISE = {
     "a node is off": (
@@ -105,14 +100,6 @@ def test_open_ends_of_one_robot_without_a_name_are_told_with_both_names(what: st
     (it,) = found(ALONE.replace(old, new))
     assert it.code in ("MG303", "MG304", "MG306")
     assert all(name in it.message for name in named)
-
-
-def test_a_node_without_its_namespace_is_told_the_names_of_the_robot_that_lacks_it() -> None:
-    for robot in ("/robot1", "/robot2"):
-        lost = (FIRST + SECOND).replace(f"{robot}/amcl", "/amcl")
-        told = found(lost.replace(f"/amcl subscribes {robot}", "/amcl subscribes "))
-        about = [it.message for it in told if it.node == "/amcl"]
-        assert len(about) == 2 and all(robot in it for it in about), told
 
 
 # Nodes that compare the time of messages with their own, by their code: tf2 buffers and filters.
@@ -192,12 +179,3 @@ def test_a_small_graph_with_one_fault_has_one_finding(what: str) -> None:
     assert (it.level == "note") == (code == "MG408")
     if "tf_static that is not kept" in what:
         assert it.node == "/a"
-
-
-def test_a_leading_slash_is_as_tf2_takes_it() -> None:
-    """BufferCore strips it (setTransformImpl, stripSlash)."""
-    text = (
-        f"/a publishes /tf {TF}\n/l subscribes /tf {TF}\n"
-        "transform /odom -> /base_link on /tf by /a\ntransform base_link -> laser on /tf by /a\n"
-    )
-    assert found(text) == []

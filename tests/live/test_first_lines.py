@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import small_fleet
-
 from multibot_rewrite.live.diagnose import diagnose, survey
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Edge, End, Node, System
 
@@ -31,14 +29,3 @@ def test_robots_that_only_frames_name() -> None:
         "layout: frames have the robot's name, topics and nodes have not",
         "tf on /tf: 1 node of no robot",
     ]
-
-
-def test_robots_that_share_all_frames() -> None:
-    graph = small_fleet.healthy("L2")
-    bare = (
-        it._replace(child=it.child.split("/")[0], parent=it.parent.split("/")[0])
-        for it in graph.edges
-    )
-    assert said(graph._replace(edges=tuple(bare)))[1] == (
-        "layout: none of those known: neither tf topics nor frames have the robot's name"
-    )

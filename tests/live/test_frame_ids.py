@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 import struct
 import time
 from collections.abc import Callable
@@ -17,20 +16,15 @@ from graph_examples import read_system
 from node_answers import told
 from open_faults import without_edge
 
-from multibot_rewrite.base.findings.finding import WARNING, Finding
+from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.producers.ros.headers import (
     HeaderSamples,
-    SensorTopic,
     pose_in,
-    sensor_topics,
 )
-from multibot_rewrite.producers.zenoh.cdr import read_header_frame
 from multibot_rewrite.system.records import (
     PUBLISHES,
-    SERVICE,
-    SUBSCRIBES,
     TOPIC,
     End,
     Heard,
@@ -72,12 +66,6 @@ def heard(graph: System, topic: str, frame: str) -> System:
     return graph._replace(heard=(Heard(topic, frame),))
 
 
-def codes(text: str, topic: str, frame: str) -> list[str]:
-    """Of an example in which a message on ``topic`` names ``frame``."""
-    seen = read_system(text)
-    return [it.code for it in judge(index(heard(seen.system, topic, frame), Whose(*seen[1:6])))]
-
-
 def test_a_map_that_nothing_joins_with_its_robot_is_one_finding() -> None:
     graph = without_edge("odom", "/robot2/tf")(nav())
     assert [it.code for it in diagnose(graph).findings] == ["MG415"]
@@ -89,58 +77,6 @@ def test_another_robots_frame_is_named_with_both() -> None:
     (it,) = found("frame_id robot2/camera_link on /robot1/image")
     assert (it.code, it.robot) == ("MG411", "robot1")
     assert "a frame of robot2; sent by /robot1/camera" in it.message
-
-
-def test_a_name_like_none_is_a_warning() -> None:
-    (it,) = found("frame_id thermal on /robot1/image")
-    assert (it.code, it.level) == ("MG412", WARNING)
-    assert "send a transform for it" in it.hint
-
-
-# Messages with a std_msgs/Header that says where they were measured, and some whose word is none of tf:
-# joint_state_broadcaster, joy, teleop_twist_joy and nmea_navsat_driver write their own.
-MEASURED = (
-    "sensor_msgs/msg/LaserScan", "nav_msgs/msg/Odometry", "geometry_msgs/msg/PoseStamped",
-    "stereo_msgs/msg/DisparityImage", "vision_msgs/msg/Detection2DArray", "radar_msgs/msg/RadarScan",
-    "map_msgs/msg/OccupancyGridUpdate", "nav2_msgs/msg/Costmap", "grid_map_msgs/msg/GridMap",
-    "octomap_msgs/msg/Octomap", "visualization_msgs/msg/Marker", "trajectory_msgs/msg/JointTrajectory",
-    JOINTS, "sensor_msgs/msg/MultiDOFJointState",
-)  # fmt: skip
-NOT_MEASURED = (
-    "std_msgs/msg/String", "sensor_msgs/msg/Joy", "sensor_msgs/msg/TimeReference",
-    "sensor_msgs/msg/BatteryState", "geometry_msgs/msg/TwistStamped",
-    "geometry_msgs/msg/AccelStamped", "tf2_msgs/msg/TFMessage",
-)  # fmt: skip
-
-
-def test_messages_that_say_where_they_were_measured_are_read_sensors_first() -> None:
-    every = enumerate(reversed(MEASURED + NOT_MEASURED))
-    ends = [End(TOPIC, PUBLISHES, f"/t{at}", it, "", "/a", None, "") for at, it in every]
-    read = [it.type for it in sensor_topics(ends)]
-    packages = list(dict.fromkeys(it.partition("/")[0] for it in MEASURED))
-    assert {*read} == {*MEASURED}
-    assert list(dict.fromkeys(it.partition("/")[0] for it in read)) == packages
-
-
-def test_the_clock_is_read_first_and_topics_of_tools_never() -> None:
-    clock = "rosgraph_msgs/msg/Clock"
-    ends = [
-        end("/b"), end("/a", node="/x"), end("/a", node="/y"), end("/clock", clock),
-        end("/other", clock),
-        end("/a/_hidden"), end("/c", node="/transform_listener_impl_55d0"), end("/clock2", clock),
-        end("/d")._replace(role=SUBSCRIBES), end("/e")._replace(kind=SERVICE),
-        end("/latched")._replace(qos=qos(durability="TRANSIENT_LOCAL")),
-        *(end("/half", node=f"/{it}")._replace(qos=qos(durability=it)) for it in (
-            "TRANSIENT_LOCAL", "VOLATILE",
-        )),
-    ]  # fmt: skip
-    assert [*sensor_topics(ends)] == [
-        SensorTopic("/clock", clock, False, 1),
-        SensorTopic("/a", SCAN, False, 2),
-        SensorTopic("/b", SCAN, False, 1),
-        SensorTopic("/half", SCAN, False, 2),
-        SensorTopic("/latched", SCAN, True, 1),
-    ]
 
 
 # What vendors' descriptions call the frame of such a sensor.
@@ -165,49 +101,11 @@ def test_the_one_frame_of_such_a_sensor_is_named_as_the_remedy() -> None:
             assert it.hint.endswith(f" to robot1/{frame}"), it
 
 
-def test_a_robots_tf_topic_is_its_own_whoever_sends_there() -> None:
-    """A relay of all robots sends robot1's tf, as rmw or a bridge does."""
-    text = (
-        "running: /relay publishes /robot1/tf tf2_msgs/msg/TFMessage\n"
-        "running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan\n"
-        "running: transform base_link -> laser on /robot1/tf by /relay\n"
-    )
-    assert codes(text, "/robot1/scan", "laser") == []
-    assert codes(text, "/robot1/scan", "lidar") == ["MG412"]
-
-
 # ---------------------------------------------------------------- what is received
 
 
 def end(topic: str, type_: str = SCAN, node: str = "/a") -> End:
     return End(TOPIC, PUBLISHES, topic, type_, "", node, None, "")
-
-
-def test_one_message_of_one_publisher_ends_its_subscription() -> None:
-    callbacks, ended, subscribed = {}, [], []
-
-    def subscribe(topic: str, type_: str, latched: bool, callback: object) -> object:
-        callbacks[topic] = callback
-        subscribed.append(topic)
-        return lambda: ended.append(topic)
-
-    samples = HeaderSamples(subscribe)  # type: ignore[arg-type]
-    ends = [
-        end("/scan"),
-        end("/two"),
-        end("/two", node="/b"),
-        end("/joy", "sensor_msgs/msg/Joy"),
-        end("/silent"),
-    ]
-    for _ in range(2):
-        samples.update(ends)
-    assert sorted(subscribed) == ["/scan", "/silent", "/two"]
-    for frame in ("x", "y"):
-        callbacks["/two"](serialized(frame))  # type: ignore[operator]
-    callbacks["/scan"](serialized("laser"))  # type: ignore[operator]
-    assert ended == ["/scan"]
-    assert [it[:2] for it in samples.heard()] == [("/scan", "laser"), ("/two", "x"), ("/two", "y")]
-    assert samples.keep_waiting(1000) and not samples.keep_waiting(0)
 
 
 def rate_of(messages: list[tuple[int | None, float]], type_: str = SCAN, senders: int = 1) -> float:
@@ -262,37 +160,6 @@ def test_one_message_in_a_while_is_a_slow_sensor(monkeypatch: pytest.MonkeyPatch
     assert not samples.keep_waiting(1.5) and samples.heard()[0].rate == 0.4
 
 
-def test_images_and_topics_of_two_have_no_rate() -> None:
-    second = [(1, 10.0), (11, 11.0)]
-    assert rate_of(second) == 10.0
-    for large in (
-        *(f"sensor_msgs/msg/{it}" for it in ("Image", "CompressedImage", "PointCloud2")),
-        *("nav_msgs/msg/OccupancyGrid", "stereo_msgs/msg/DisparityImage"),
-    ):
-        assert rate_of(second, large) == 0.0
-    assert rate_of(second, senders=2) == 0.0
-
-
-def test_what_is_latched_has_no_rate() -> None:
-    topic = SensorTopic("/scan", SCAN, False, 1)
-    assert topic.has_rate and not topic._replace(latched=True).has_rate
-
-
-def test_numbers_that_stand_end_the_subscription() -> None:
-    assert rate_of([(1, 10.0)] * 100 + [(11, 11.0)]) == 0.0
-    assert rate_of([(1, 10.0)] * 98 + [(11, 11.0)]) == 10.0
-
-
-def test_the_child_of_odometry_is_heard() -> None:
-    receive: list[Callable[[bytes], None]] = []
-    samples = HeaderSamples(lambda *it: receive.append(it[3]) or (lambda: None))  # type: ignore[arg-type, func-returns-value]
-    samples.update([end("/odom", "nav_msgs/msg/Odometry"), end("/scan")])
-    child = struct.pack("<I", 5) + b"base\0"
-    for at in range(2):
-        receive[at](serialized("odom", rest=b"\0" * 3 + child))
-    assert [(it.frame, it.child) for it in samples.heard()] == [("odom", "base"), ("odom", "")]
-
-
 def slower(
     rate: float, topic: str = "scan", type_: str = SCAN, read: bool = False
 ) -> list[Finding]:
@@ -317,28 +184,6 @@ def test_a_sensor_that_is_three_times_slower_than_a_siblings_is_told() -> None:
     # So many are usual, or nobody knows, or what it sends is no measure of a sensor.
     assert not slower(3.4) and not slower(0.0)
     assert not slower(1.0, "goal", "geometry_msgs/msg/PoseStamped")
-
-
-def test_a_child_frame_of_another_robot_is_told() -> None:
-    text = (
-        "running: transform robot1/odom -> robot1/base_link on /tf\n"
-        "running: transform robot2/odom -> robot2/base_link on /tf\n"
-        "running: /robot1/drive publishes /robot1/odom nav_msgs/msg/Odometry\n"
-    )
-    graph = read_system(text)
-
-    def with_child(child: str) -> list[str]:
-        heard = (Heard("/robot1/odom", "robot1/odom", child=child),)
-        found = judge(index(graph.system._replace(heard=heard), Whose(*graph[1:6])))
-        return [f"{it.code} {it.message}" for it in found]
-
-    assert with_child("robot1/base_link") == []
-    (it,) = with_child("robot2/base_link")
-    assert it.startswith(
-        "MG411 child_frame_id of /robot1/odom is robot2/base_link, a frame of robot2"
-    )
-    (it,) = with_child("base_link")
-    assert it.startswith("MG412 child_frame_id of /robot1/odom is base_link")
 
 
 # ---------------------------------------------------------------- the file
@@ -411,10 +256,6 @@ def test_a_message_has_the_age_of_its_stamp(
     assert heard.age == age
 
 
-def test_a_stamp_of_zero_has_no_end() -> None:
-    assert [it.age for it in sampled(0.0)] == [math.inf]
-
-
 def sampled(stamp: float, latched: bool = False) -> tuple[Heard, ...]:
     """What is kept of one message."""
     calls: list[Callable[[bytes], None]] = []
@@ -439,10 +280,3 @@ def test_a_pose_stands_behind_the_frames_of_its_message(type_: str, frames: int)
     data = struct.pack("<ii", 1, 2) + struct.pack("<I4s", 4, b"map\0") * frames
     data += bytes(-len(data) % 8) + struct.pack("<7d", 1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)
     assert pose_in(type_, b"\0\1\0\0" + data + bytes(36 * 8)) == (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)
-
-
-@pytest.mark.parametrize(
-    "data", [b"", b"\x00\x01", serialized("lidar")[:18], b"\x00\x07" + b"\x00" * 40]
-)
-def test_what_is_no_header_has_no_frame(data: bytes) -> None:
-    assert read_header_frame(data) is None

@@ -101,12 +101,3 @@ def test_a_broken_fleet_is_not_more_lines_with_its_plan(case: Case) -> None:
     plan, seen = read_plan(case.layout), case.broken(healthy(case.layout))
     found = [it for it in check(plan, seen) if it.code != STRANGER]
     assert len(found) <= max(1, len(diagnose(seen).findings)), [*map(str, found)]
-
-
-def test_what_nobody_planned_is_found_as_without_a_plan() -> None:
-    """A static transform of a frame of nobody, sent by two nodes with other values."""
-    graph = healthy("frames-per-robot")
-    dock = graph.edges[0]._replace(child="dock", parent="map", several=True, static=True)
-    doubled = graph._replace(edges=(*graph.edges, dock._replace(topic="/tf_static")))
-    assert {it.code for it in diagnose(doubled).findings} == {"MG408"}
-    assert "MG408" in {it.code for it in check(read_plan("frames-per-robot"), doubled)}

@@ -23,15 +23,10 @@ from multibot_rewrite.knowledge.node_library import NodeLibrary, stack_of
 from multibot_rewrite.knowledge.records import MANAGER, TRANSPORTS, Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, user_stack
 from multibot_rewrite.live.learning.choosing import (
-    _nodes_by_process,
     choose_nodes,
-    helpers_without_owner,
-    left_out,
-    namespace_prefix,
 )
 from multibot_rewrite.live.learning.learn import LearnedNode, learn
 from multibot_rewrite.live.learning.nodes_file import to_yaml
-from multibot_rewrite.spelling.bridged_topics import TF_TYPE
 from multibot_rewrite.spelling.of_runs import expanded, parsed
 from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.spelling.table import build_table
@@ -60,7 +55,6 @@ UNKNOWN = NodeLibrary(built_in(NEWEST_LTS).parts, {}, {})
 TEXT, IMAGE, TRIGGER = "std_msgs/msg/String", "sensor_msgs/msg/Image", "std_srvs/srv/Trigger"
 FETCH = "acme_msgs/action/Fetch"
 EVERY_NODE = tuple(end for end in built_in(NEWEST_LTS).parts["every_node"] if end.name != "/clock")
-LIFECYCLE = built_in(NEWEST_LTS).parts["lifecycle"]
 
 
 # Node, kind, role and name.
@@ -300,89 +294,7 @@ def test_the_file_does_not_depend_on_the_order_of_the_snapshot(
 # ---------------------------------------------------------------- what cannot be told apart
 
 
-@pytest.mark.parametrize(
-    ("code", "layout", "leads"),
-    [
-        pytest.param("driver/x", "L4", "/driver/x", id="literal in the postfix layout"),
-        pytest.param("/driver/x", "L1", "/driver/x", id="absolute below its own name"),
-    ],
-)
-def test_a_name_below_the_nodes_own_is_taken_for_private(
-    code: str, layout: str, leads: str
-) -> None:
-    """The difference that the page tells: such a name is not moved until the file says it."""
-    own = node(publishes(code))
-    found = one(graph(own))
-    assert spelled(found) == [(PUBLISHES, "~/x")]
-    table = build_table(ROBOTS, [found.facts], make_naming(layout), release=NEWEST_LTS)
-    assert {name for *_, name in led([own], table)} == {leads}
-    written = build_table(
-        ROBOTS, [node(publishes("/driver/x"))], make_naming(layout), release=NEWEST_LTS
-    )
-    assert led([own], written) == said(written)
-
-
-def test_a_relative_shared_topic_in_the_root_is_taken_for_the_shared_one() -> None:
-    own = node(publishes("diagnostics"))
-    assert spelled(one(graph(own))) == [(PUBLISHES, "/diagnostics")]
-    assert spelled(one(graph(own, base="/old"), base="/old")) == [(PUBLISHES, "diagnostics")]
-
-
-def test_tf_is_absolute_wherever_it_was_seen() -> None:
-    own = node(publishes("tf", TF_TYPE), publishes("tf_static", TEXT))
-    found = one(graph(own, base="/old"), base="/old")
-    assert found.parts == ("tf_broadcaster",)
-    assert spelled(found) == [(PUBLISHES, "tf_static")]
-
-
-def test_the_code_of_a_known_node_is_known() -> None:
-    """slam_toolbox says /scan, and slam_toolbox/ before its services, whatever led them where."""
-    own = node(subscribes("scan"), publishes("slam_toolbox/x"), name="slam_toolbox")
-    found = one(graph(own, base="/old"), base="/old", library=built_in(NEWEST_LTS))
-    assert (SUBSCRIBES, "/scan") in spelled(found)
-    known = node(publishes("slam_toolbox/scan_visualization"), name="slam_toolbox")
-    found = one(graph(known), library=built_in(NEWEST_LTS))
-    assert spelled(found) == [(PUBLISHES, "/slam_toolbox/scan_visualization")]
-
-
 # ---------------------------------------------------------------- spelling
-
-
-def test_in_the_root_a_name_gets_the_rule_that_serves_both_ways_to_write_it() -> None:
-    own = node(publishes("odom"), subscribes("/cmd_vel"), publishes("~/state"))
-    found = one(graph(own))
-    assert spelled(found) == [
-        (PUBLISHES, "/odom"), (PUBLISHES, "~/state"), (SUBSCRIBES, "/cmd_vel"),
-    ]  # fmt: skip
-    assert found.facts.note == "seen as /driver"
-
-
-def test_in_the_robots_namespace_names_tell_how_they_are_written() -> None:
-    own = node(publishes("odom"), subscribes("/cmd_vel"), publishes("~/state"))
-    found = one(graph(own, base="/old"), base="/old")
-    assert found.facts.name == "driver"
-    assert spelled(found) == [
-        (PUBLISHES, "odom"), (PUBLISHES, "~/state"), (SUBSCRIBES, "/cmd_vel"),
-    ]  # fmt: skip
-
-
-def test_a_node_in_a_namespace_of_its_own_keeps_it() -> None:
-    costmap = node(publishes("costmap"), subscribes("/scan"), name="local_costmap/local_costmap")
-    for base in ("", "/old"):
-        found = one(graph(costmap, base=base), base=base or "/")
-        assert found.facts.name == "local_costmap/local_costmap"
-        assert spelled(found) == [(PUBLISHES, "costmap"), (SUBSCRIBES, "/scan")]
-
-
-def test_what_the_robot_has_above_a_nodes_namespace_is_absolute() -> None:
-    seen = graph(node(name="local_costmap/local_costmap"), base="/old")
-    who = "/old/local_costmap/local_costmap"
-    seen = with_end(
-        seen,
-        (who, TOPIC, SUBSCRIBES, "/old/scan", TEXT),
-        (who, TOPIC, SUBSCRIBES, "/older/scan", TEXT),
-    )
-    assert spelled(one(seen, base="/old")) == [(SUBSCRIBES, "/older/scan"), (SUBSCRIBES, "/scan")]
 
 
 def test_two_names_with_the_same_name_in_code_become_one() -> None:
@@ -399,24 +311,6 @@ def test_two_names_with_the_same_name_in_code_become_one() -> None:
 # ---------------------------------------------------------------- what is one thing
 
 
-@pytest.mark.parametrize("role", [SERVES, CALLS])
-def test_five_parts_are_an_action(role: str) -> None:
-    own = node(Endpoint(ACTION, role, "fetch", FETCH), Endpoint(ACTION, role, "~/near", FETCH))
-    found = one(graph(own))
-    assert spelled(found) == [(role, "/fetch"), (role, "~/near")]
-    assert {(end.kind, end.type) for end in found.own} == {(ACTION, FETCH)}
-
-
-def test_an_action_is_known_by_its_parts_and_by_its_record_alone() -> None:
-    whole = graph(node(Endpoint(ACTION, SERVES, "fetch", FETCH)))
-    parts = whole._replace(ends=tuple(e for e in whole.ends if e.kind != ACTION))
-    record = whole._replace(ends=tuple(e for e in whole.ends if e.kind == ACTION))
-    for seen in (parts, record):
-        assert [(end.kind, end.name, end.type) for end in one(seen).own] == [
-            (ACTION, "/fetch", FETCH)
-        ]
-
-
 def test_who_listens_to_an_action_is_no_client_of_it() -> None:
     """rcl lists everybody who subscribes to the feedback among the clients."""
     whole = graph(node(Endpoint(ACTION, CALLS, "fetch", FETCH)))
@@ -427,36 +321,12 @@ def test_who_listens_to_an_action_is_no_client_of_it() -> None:
     ]  # fmt: skip
 
 
-def test_server_and_client_of_one_action_are_two() -> None:
-    own = node(Endpoint(ACTION, SERVES, "fetch", FETCH), Endpoint(ACTION, CALLS, "fetch", FETCH))
-    assert spelled(one(graph(own))) == [(SERVES, "/fetch"), (CALLS, "/fetch")]
-
-
 def test_an_action_and_a_service_of_one_name_become_one() -> None:
     own = node(
         Endpoint(ACTION, SERVES, "fetch", FETCH), Endpoint(SERVICE, SERVES, "fetch", TRIGGER)
     )
     (end,) = one(graph(own)).own
     assert (end.kind, end.note) == (ACTION, "there is a service with this name too")
-
-
-def test_an_image_brings_its_transports() -> None:
-    own = node(publishes("~/image", IMAGE, transport=True), publishes("image", IMAGE))
-    plain, image = one(graph(own)).own
-    assert (plain.name, plain.transport) == ("/image", False)
-    assert (image.name, image.transport) == ("~/image", True)
-
-
-def test_only_an_image_has_transports() -> None:
-    own = node(publishes("cloud"), publishes("cloud/zstd"), publishes("x/compressed", IMAGE))
-    names = [name for _, name in spelled(one(graph(own)))]
-    assert names == ["/cloud", "/cloud/zstd", "/x/compressed"]
-
-
-def test_a_transport_without_a_rule_of_its_own_stays() -> None:
-    """A table makes rules for TRANSPORTS: what it does not know would be lost."""
-    own = node(publishes("image", IMAGE, transport=True), publishes("image/ffmpeg"))
-    assert [name for _, name in spelled(one(graph(own)))] == ["/image", "/image/ffmpeg"]
 
 
 def test_what_every_node_has_is_a_part_where_it_is_whole() -> None:
@@ -473,44 +343,6 @@ def test_what_every_node_has_is_a_part_where_it_is_whole() -> None:
     assert found.own[1].when == "run: simulated"
 
 
-@pytest.mark.parametrize("base", ["", pytest.param("/old", marks=pytest.mark.deep)])
-@pytest.mark.parametrize(
-    "part", ["lifecycle", "bond", "tf_listener", "tf_broadcaster", "diagnostics", "tf_buffer"]
-)
-def test_a_part_that_is_whole_is_named(part: str, base: str) -> None:
-    whole = built_in(NEWEST_LTS).parts[part]
-    found = one(graph(node(*whole), base=base), base=base or "/")
-    assert (found.parts, found.own) == ((part,), ())
-    assert found.facts.endpoints == whole
-
-
-def test_in_a_namespace_an_absolute_name_is_not_a_parts_relative_one() -> None:
-    bond = [end._replace(name="/bond") for end in built_in(NEWEST_LTS).parts["bond"]]
-    assert one(graph(node(*bond))).parts == ("bond",)
-    assert one(graph(node(*bond), base="/old"), base="/old").parts == ()
-    assert one(graph(node(*bond, name="front/driver")), "/front/driver").parts == ()
-
-
-def test_a_part_that_is_not_whole_or_of_another_type_is_written_out() -> None:
-    found = one(graph(node(*LIFECYCLE[1:], publishes("bond"), subscribes("bond"))))
-    assert found.parts == ()
-    assert len(found.own) == len(LIFECYCLE) + 1
-
-
-def test_types_that_are_none_or_many() -> None:
-    seen = with_end(
-        graph(node(publishes("two"))),
-        ("/driver", TOPIC, PUBLISHES, "/two", IMAGE),
-        ("/driver", TOPIC, PUBLISHES, "/none", ""),
-        ("/driver", TOPIC, PUBLISHES, "/odd", "std_msgs/String"),
-        ("/driver", SERVICE, CALLS, "/wrong", TEXT),
-    )
-    found = {end.name: (end.type, end.also) for end in one(seen).own}
-    assert found == {
-        "/two": (IMAGE, (TEXT,)), "/none": ("", ()), "/odd": ("", ()), "/wrong": ("", ()),
-    }  # fmt: skip
-
-
 # ---------------------------------------------------------------- helper nodes
 
 LISTENER = NodeFacts(
@@ -520,79 +352,12 @@ LISTENER = NodeFacts(
 )
 
 
-def test_a_helper_in_the_process_of_one_node_is_that_nodes() -> None:
-    found = one(graph(node(publishes("x")), LISTENER, process="p"))
-    assert found.parts == ("tf_helper",)
-    assert {end.name for end in found.facts.endpoints if end.helper} == {"/tf", "/tf_static"}
-    assert found.remarks == ()
-
-
-def test_a_helper_of_several_nodes_is_added_to_each_with_a_remark() -> None:
-    seen = graph(node(name="one"), node(name="two"), LISTENER, process="p")
-    for found in (*learned(seen), one(seen, "/one")):
-        assert found.parts == ("tf_helper",)
-        bare, remark = found.remarks
-        assert bare == "only its name is seen, no endpoints"
-        assert (
-            "each gets the endpoints of the helper nodes there: /transform_listener_impl_55d0c0ffee"
-            in remark
-        )
-
-
-def test_a_helper_of_another_process_is_not_taken() -> None:
-    seen = graph(node(publishes("x")), LISTENER)
-    assert one(seen).parts == ()
-    assert helpers_without_owner(seen, ["/driver"]) == ("/transform_listener_impl_55d0c0ffee",)
-    assert helpers_without_owner(graph(node(), LISTENER, process="p"), ["/driver"]) == ()
-
-
-def test_helpers_are_those_of_their_process_in_whatever_namespace() -> None:
-    names = (
-        "/r/driver",
-        "/r/transform_listener_impl_55d0",
-        "/r/_hidden",
-        "/transform_listener_impl_ff",
-    )
-    nodes = [Node(it, "p") for it in names] + [Node("/away"), Node("/other", "q")]
-    asked = ["/r/driver", "/transform_listener_impl_ff"]
-    inside, mains = _nodes_by_process(System(tuple(nodes)), asked)
-    assert (inside, mains) == ({"p": ["/r/transform_listener_impl_55d0"]}, {"p": 2, "q": 1})
-
-
-def test_what_a_node_asks_for_itself_is_not_its_helpers() -> None:
-    seen = graph(node(*built_in(NEWEST_LTS).parts["tf_listener"]), LISTENER, process="p")
-    found = one(seen)
-    assert found.parts == ("tf_listener",)
-    assert not any(end.helper for end in found.facts.endpoints)
-
-
-def test_a_helper_that_is_named_is_a_node() -> None:
-    seen = graph(node(), LISTENER, process="p")
-    driver, helper = learned(seen, "/driver", "/transform_listener_impl_55d0c0ffee")
-    assert driver.facts.endpoints == ()
-    assert helper.parts == ("tf_listener", "every_node")
-
-
 def test_a_hidden_node_has_no_helper() -> None:
     found = one(graph(node(publishes("x")), node(name="_hidden"), LISTENER, process="p"))
     assert (found.parts, found.remarks) == (("tf_helper",), ())
 
 
-def test_half_a_listener_is_written_out_as_a_helpers() -> None:
-    half = LISTENER._replace(endpoints=(subscribes("/tf", TF_TYPE),))
-    (end,) = one(graph(node(), half, process="p")).own
-    assert (end.name, end.helper) == ("/tf", True)
-    assert end.note == "asked for by transform_listener_impl_<address>"
-
-
 # ---------------------------------------------------------------- which nodes
-
-
-def test_all_nodes_but_tools_are_learned() -> None:
-    tools = ("_ros2cli_7", "launch_ros_12", "rqt_gui_py_node_3", "rviz2", "rosbag2_recorder")
-    seen = graph(*(node(name=name) for name in ("b", "a", *tools, "foxglove_bridge")), LISTENER)
-    assert choose_nodes(seen, (), "/") == ("/a", "/b")
-    assert choose_nodes(seen, ("/rviz2",), "/") == ("/rviz2",)
 
 
 # What people run beside a robot: no part of it, whatever namespace it runs in.
@@ -608,25 +373,6 @@ def test_what_the_check_ignores_is_not_learned_unless_asked_for_by_name(tool: st
     assert is_tool(f"/r1/{tool}")
     assert choose_nodes(seen, (), "/") == ("/driver",)
     assert choose_nodes(seen, (f"/r1/{tool}",), "/") == (f"/r1/{tool}",)
-
-
-@pytest.mark.parametrize("name", ["driver", "joint_state_broadcaster", "gazer", "bridge_driver"])
-def test_nodes_of_a_robot_are_no_tools(name: str) -> None:
-    assert not is_tool(f"/r1/{name}")
-
-
-def test_tools_that_may_be_a_robots_are_named() -> None:
-    """Not the hidden ones, launch and tf listeners: nobody plans those."""
-    names = ("driver", "can_bridge", "joy_node", "_ros2cli_7", "launch_ros_12")
-    seen = graph(*(node(name=name) for name in names), LISTENER)
-    assert left_out(seen, ["/driver"], "/") == ("/can_bridge", "/joy_node")
-    assert left_out(seen, ["/driver", "/joy_node"], "/") == ("/can_bridge",)
-
-
-def test_all_nodes_of_a_namespace_are_learned() -> None:
-    seen = graph(node(name="r1/a"), node(name="r1/eye/b"), node(name="r11/c"), node(name="r1"))
-    for namespace in ("/r1", "/r1/"):
-        assert choose_nodes(seen, (), namespace) == ("/r1/a", "/r1/eye/b")
 
 
 @pytest.mark.parametrize(
@@ -667,34 +413,6 @@ def test_an_endpoint_that_no_node_can_have(end: tuple[str, str, str, str], said:
     assert said in str(caught.value)
 
 
-def test_a_known_node_is_compared() -> None:
-    (amcl,) = stacks()["amcl"]
-    found = one(graph(amcl), library=built_in(NEWEST_LTS))
-    assert found.remarks == ("known as amcl of nav2_amcl; as described there",)
-    some = tuple(end for end in amcl.endpoints if end.name != "scan")
-    found = one(graph(node(*some, publishes("~/x"), name="amcl")), library=built_in(NEWEST_LTS))
-    (remark,) = found.remarks
-    assert remark.endswith("; additional: publishes ~/x; not seen: subscribes scan")
-
-
-def test_conditions_and_the_clock_are_no_news() -> None:
-    (amcl,) = stacks()["amcl"]
-    always = tuple(end for end in amcl.endpoints if not end.when)
-    assert always != amcl.endpoints
-    clock = subscribes("/clock", "rosgraph_msgs/msg/Clock")
-    found = one(graph(amcl._replace(endpoints=(*always, clock))), library=built_in(NEWEST_LTS))
-    assert found.remarks[0].endswith("as described there")
-
-
-def test_what_is_made_at_run_time_is_no_news() -> None:
-    (costmap,) = stacks()["local_costmap/local_costmap"]
-    more = (publishes("my_layer"), subscribes("/robot/front"))
-    found = one(
-        graph(costmap._replace(endpoints=costmap.endpoints + more)), library=built_in(NEWEST_LTS)
-    )
-    assert found.remarks[0].endswith("as described there")
-
-
 # ---------------------------------------------------------------- the file
 
 
@@ -704,13 +422,6 @@ def test_a_file_that_reads_otherwise_is_not_written() -> None:
     for wrong in (end._replace(name="/y"), end._replace(type="no type")):
         with pytest.raises(ProofError, match="the learned nodes"):
             to_yaml([found._replace(own=(wrong,))], "mine", UNKNOWN)
-
-
-@pytest.mark.parametrize("name", ["on", "null", "y", "x1e3"])
-def test_words_of_yaml_are_names_like_others(name: str) -> None:
-    found = one(graph(node(publishes(name), publishes(f"~/{name}"), name=name)))
-    assert found.facts.name == name
-    assert to_yaml([found], "no", UNKNOWN)
 
 
 # ---------------------------------------------------------------- the command
@@ -751,22 +462,6 @@ def test_what_is_learned_gives_the_whole_table(
         assert out.count(rule) == len(ROBOTS)
 
 
-def test_one_node_goes_to_standard_output(shot: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert (
-        main(["snapshot", "--form", "nodes", "--from", str(shot), "--node", "/eye", "-o", "-"]) == 0
-    )
-    out, err = capsys.readouterr()
-    assert main(["snapshot", "--form", "nodes", "--from", str(shot), "--node", "/eye"]) == 0
-    assert capsys.readouterr().out == out
-    assert "# Of: /eye\n" in out
-    assert (
-        "nodes:\n  eye:\n    note: seen as /eye\n    with: [every_node]\n    publishes:\n"
-        "      ~/image: {type: sensor_msgs/msg/Image, transport: true}\n\nstacks:\n  learned:\n"
-        "    about: Learned from a running graph\n    nodes:\n      - eye\n"
-    ) in out
-    assert err == "multibot: 1 node learned as node set learned (ROS 2 lyrical)\n"
-
-
 def test_an_incomplete_view_is_written_and_reported(
     shot: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -777,20 +472,6 @@ def test_an_incomplete_view_is_written_and_reported(
     assert main(["snapshot", "--form", "nodes", "--from", str(shot), "-o", str(mine)]) == 3
     assert "multibot: incomplete: it still changed\n" in capsys.readouterr().err
     assert "/odom" in mine.read_text()
-
-
-def test_nodes_of_one_robot_without_its_namespace_get_a_hint(
-    shot: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    hint = "add --namespace /old"
-    shot.write_bytes(to_json(graph(node(), node(name="eye/camera"), base="/old")))
-    for more, hinted in (
-        ([], True),
-        (["--namespace", "/old"], False),
-        (["--namespace", "/"], False),
-    ):
-        assert main(["snapshot", "--form", "nodes", "--from", str(shot), *more]) == 0
-        assert (hint in capsys.readouterr().err) is hinted
 
 
 def test_helpers_without_a_node_are_reported(
@@ -830,13 +511,6 @@ def test_wrong_use_is_one_line(
     assert said in err
 
 
-def test_the_snapshot_is_never_written_over(shot: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    before = shot.read_bytes()
-    assert main(["snapshot", "--form", "nodes", "--from", str(shot), "-o", str(shot)]) == 2
-    assert "is a file that is read" in capsys.readouterr().err
-    assert shot.read_bytes() == before
-
-
 @pytest.mark.parametrize("data", [b"", b"{}", b"[1]", b'{"schema": 1}', b"\xff"])
 def test_what_is_no_snapshot_is_one_line(
     shot: Path, data: bytes, capsys: pytest.CaptureFixture[str]
@@ -863,21 +537,6 @@ def test_what_a_node_that_stands_apart_writes_without_a_slash_is_known() -> None
     assert more.remarks == (
         "known as eye of eyes; additional: publishes /more; not seen: publishes image",
     )
-
-
-def test_types_are_in_order() -> None:
-    types = [f"a/msg/{it}" for it in "GFEDCBA"]
-    ends = [("/driver", TOPIC, PUBLISHES, "/many", it) for it in types]
-    (end,) = one(with_end(graph(node()), *ends)).own
-    assert (end.type, *end.also) == tuple(sorted(types))
-
-
-@pytest.mark.parametrize(
-    ("namespace", "base"),
-    [("/", ""), ("", ""), ("/old", "/old"), ("/old/", "/old"), ("/a/b", "/a/b")],
-)
-def test_a_namespace_has_no_slash_at_its_end(namespace: str, base: str) -> None:
-    assert namespace_prefix(namespace) == base
 
 
 FILE = """

@@ -23,34 +23,11 @@ def join(*looks: System) -> System:
     return merged([Look(f"{name}.json", it) for name, it in zip("abcd", looks, strict=False)])
 
 
-def test_one_look_is_left_as_it_is() -> None:
-    alone = look(node("robot1"), range="SUBNET")
-    assert join(alone) is alone
-
-
-def test_a_node_in_both_looks_is_one_node() -> None:
-    for first, second in permutations((look(node("robot1", ONE)), look(node("robot1", ONE)))):
-        assert join(first, second).nodes == (node("robot1", ONE),)
-
-
 def test_a_node_whose_process_one_look_does_not_know_is_one_node() -> None:
     for first, second in permutations((look(node("robot1")), look(node("robot1", ONE)))):
         both = join(first, second)
         assert both.nodes == (node("robot1", ONE),)
         assert {it.process for it in both.ends} == {ONE}
-
-
-def test_two_processes_are_two_nodes_of_one_name() -> None:
-    """What no single machine sees: both robots run without their name."""
-    both = join(look(node("robot1", ONE)), look(node("robot1", TWO)))
-    assert both.nodes == (node("robot1", ONE), node("robot1", TWO))
-
-
-def test_two_nodes_of_a_name_in_one_look_stay_two() -> None:
-    twice = look(node("robot1", ONE), node("robot1", TWO))
-    assert join(twice, look(node("robot1", ONE))).nodes == twice.nodes
-    nameless = look(node("robot1"), node("robot1"))
-    assert join(nameless, look(node("robot1"))).nodes == nameless.nodes
 
 
 def test_the_look_that_knows_more_of_an_endpoint_counts() -> None:
@@ -85,15 +62,6 @@ def test_what_was_around_the_looks_is_that_of_all() -> None:
             settled="timeout",
             seconds=9.0,
         )
-
-
-def test_a_transform_is_kept_from_the_look_that_has_it() -> None:
-    plain = Edge("base", "odom", "/tf", False, ())
-    numbers = (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)
-    looks = [look(node("robot1", ONE))._replace(edges=(it,)) for it in (plain, plain)]
-    looks[1] = looks[1]._replace(edges=(plain._replace(transform=numbers),))
-    for first, second in permutations(looks):
-        assert [it.transform for it in join(first, second).edges] == [numbers]
 
 
 def test_two_domains_are_refused() -> None:
@@ -158,18 +126,6 @@ def test_the_command_joins_and_check_takes_all(
     joined = from_json(target.read_bytes(), "all.json")
     assert len(joined.nodes) == len(whole.nodes)
     assert len(joined.ends) == len(whole.ends)
-
-
-def test_the_table_says_how_many_machines_were_seen(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    files = [tmp_path / "one.json", tmp_path / "two.json"]
-    for file, robot, process in zip(files, ("robot1", "robot2"), (ONE, TWO), strict=True):
-        file.write_bytes(to_json(look(node(robot, process))))
-    assert main(["snapshot", *(it for path in files for it in ("--from", str(path)))]) == 0
-    assert "2 nodes in 2 participants on 2 machines after" in capsys.readouterr().out
-    assert main(["snapshot", "--from", str(files[0])]) == 0
-    assert "machine" not in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

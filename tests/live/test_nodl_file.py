@@ -84,41 +84,6 @@ def test_names_are_those_of_the_code_and_qos_is_as_seen() -> None:
     ]
 
 
-def test_a_depth_that_is_not_announced_is_not_written() -> None:
-    qos = WHOLE._replace(depth=0)
-    (found,) = section("publishers", end("topic", "publishes", "/robot1/x", "a/msg/B", qos))
-    given = found["qos"]
-    assert isinstance(given, dict)
-    assert (given["history"], given.get("depth")) == ("SYSTEM_DEFAULT", None)
-
-
-@pytest.mark.parametrize("first", [True, False])
-def test_the_qos_is_that_of_the_node_and_of_no_other(first: bool) -> None:
-    own = end("topic", "publishes", "/robot1/x", "a/msg/B", WHOLE._replace(depth=3))
-    other = own._replace(node="/robot1/aaa", qos=WHOLE._replace(depth=9))
-    (found,) = section("publishers", *((own, other) if first else (other, own)))
-    given = found["qos"]
-    assert isinstance(given, dict) and given["depth"] == 3
-
-
-def test_a_depth_of_one_is_a_depth() -> None:
-    qos = WHOLE._replace(depth=1)
-    (found,) = section("publishers", end("topic", "publishes", "/robot1/x", "a/msg/B", qos))
-    given = found["qos"]
-    assert isinstance(given, dict)
-    assert (given["history"], given["depth"]) == ("KEEP_LAST", 1)
-
-
-def test_two_types_are_two_entries_and_the_clock_is_left_out() -> None:
-    found = section(
-        "subscriptions",
-        end("topic", "subscribes", "/robot1/x", "a/msg/B"),
-        end("topic", "subscribes", "/robot1/x", "a/msg/C"),
-        end("topic", "subscribes", "/clock", CLOCK),
-    )
-    assert [it["type"] for it in found] == ["a/msg/B", "a/msg/C"]
-
-
 def test_an_action_is_one_entry_and_an_image_has_its_transports() -> None:
     action = "/robot1/go/_action"
     ends = (

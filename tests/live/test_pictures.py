@@ -20,9 +20,6 @@ from graph_calls import to_json, to_yaml
 from hypothesis import given, settings, strategies as st
 from lxml import html
 from page_calls import (
-    CLASH,
-    FAULTY,
-    MISSING,
     OK,
     DrawnGroup,
     Scene,
@@ -39,7 +36,7 @@ from plans import own as nodes_of
 
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.pages.svg import NODE_ROW, ROW, lay_out
-from multibot_rewrite.system.records import Edge, Node, System, surely
+from multibot_rewrite.system.records import Edge, System
 
 # What a page is made of.
 TAGS = frozenset(
@@ -54,14 +51,6 @@ TAGS = frozenset(
 
 def group(scene: Scene, robot: str) -> DrawnGroup:
     return next(group for group in scene.groups if group.robot == robot)
-
-
-def states(scene: Scene, robot: str) -> dict[str, set[str]]:
-    """The states of a group's edges, by name."""
-    found: dict[str, set[str]] = {}
-    for edge in group(scene, robot).edges:
-        found.setdefault(edge.name, set()).add(edge.state)
-    return found
 
 
 def node_states(scene: Scene) -> dict[str, str]:
@@ -104,32 +93,6 @@ def test_a_healthy_fleet_has_nothing_in_red(layout: str) -> None:
         assert drawn == set(nodes_of(plan, robot.name))
 
 
-def test_a_tool_with_nothing_of_its_own_is_put_away_and_an_unknown_node_is_not() -> None:
-    plan = nav2_graphs.nav2()
-    graph = nav2_graphs.healthy(plan)
-    for node in ("/rqt_gui", "/robot1/gripper"):
-        log = next(it for it in graph.ends if it.name == "/rosout")._replace(node=node)
-        seen = (*graph.nodes, Node(node, ""))
-        graph = graph._replace(nodes=seen, ends=(*graph.ends, log))
-    scene = nav2_graphs.scene(plan, graph)
-    light = {n.name for one in scene.groups for n in without_common(one).nodes}
-    more = {n.name for one in scene.groups for n in only_common(one).nodes}
-    assert "/robot1/gripper" in light and "/rqt_gui" not in light and "/rqt_gui" in more
-
-
-def test_the_light_picture_and_the_rest_are_the_whole() -> None:
-    plan = nav2_graphs.nav2()
-    for one in nav2_graphs.scene(plan, nav2_graphs.spoiled(plan)).groups:
-        light, more = without_common(one), only_common(one)
-        merged = {name for it in light.names for name in it.merged}
-        shown = {n.name for n in light.names if not n.merged}
-        assert shown | {name.name for name in more.names} == {name.name for name in one.names}
-        assert merged <= {name.name for name in more.names}
-        assert not any(name in shown for name in ("/rosout", "/parameter_events"))
-        # What is wrong is never put away.
-        assert {e.name for e in more.edges if e.state in FAULTY - {MISSING}} == set()
-
-
 # ---------------------------------------------------------------- places
 
 
@@ -162,20 +125,6 @@ def test_nothing_overlaps_and_everything_has_a_place() -> None:
 def assert_apart(places: list[float], gap: float) -> None:
     order = sorted(places)
     assert all(b - a >= gap - 0.01 for a, b in itertools.pairwise(order))
-
-
-def test_the_order_leaves_fewer_crossings_than_the_alphabet() -> None:
-    plan = nav2_graphs.nav2()
-    one = without_common(group(nav2_graphs.scene(plan, nav2_graphs.healthy(plan)), "robot1"))
-    place = lay_out(one)
-    rows = {(n.kind, n.name): y for n, y in place.names}
-    left = {n.name: y for n, y in place.left}
-    alphabet = {key: at for at, key in enumerate(sorted(rows))}
-    names = {node: at for at, node in enumerate(sorted(left))}
-    ends = [(e.node, (e.kind, e.name)) for e in one.edges if e.role in ("publishes", "serves")]
-    mine = crossings([(left[node], rows[key]) for node, key in ends])
-    plainly = crossings([(names[node], alphabet[key]) for node, key in ends])
-    assert mine < plainly / 4
 
 
 def crossings(edges: list[tuple[float, float]]) -> int:
@@ -284,12 +233,6 @@ def test_a_hundred_robots_are_a_small_page() -> None:
     data = to_html(scene)
     assert len(data) < 1_000_000
     assert unfolded(page(scene)) == ["g2", "shared"]
-
-
-def test_a_plan_without_robots_is_drawn() -> None:
-    empty = System(layout="L2")
-    scene = nav2_graphs.scene(empty, System((), (), (), nav2_graphs.environment()))
-    assert pick(page(scene), "header") and not pick(page(scene), "svg", "overview")
 
 
 # ---------------------------------------------------------------- the same bytes
@@ -440,36 +383,8 @@ def test_a_snapshot_with_unsafe_names_works_with_the_command(
     assert {element.tag for element in tree.iter()} <= TAGS
 
 
-ABSENT = "/robot2/bt_navigator"
-
-
 def test_faults_are_at_the_top() -> None:
     plan = nav2_graphs.nav2()
     scene = nav2_graphs.scene(plan, nav2_graphs.spoiled(plan))
     order = [name for name, _ in lay_out(without_common(group(scene, "robot1"))).names]
     assert [name.name for name in order[:2]] == ["/cmd_vel", "/robot1/cmd_vel"]
-
-
-def test_a_node_that_is_not_there_is_drawn_with_its_names() -> None:
-    plan = nav2_graphs.nav2()
-    scene = nav2_graphs.scene(plan, nav2_graphs.without_node(nav2_graphs.healthy(plan), ABSENT))
-    assert node_states(scene)[ABSENT] == MISSING
-    own = {e.name for e in surely(plan).ends if e.node == ABSENT}
-    missing = {e.name for e in group(scene, "robot2").edges if e.state == MISSING}
-    assert missing == {name for name in own if "robot2" in name} | {"/tf", "/tf_static"}
-    shown = {
-        edge.name for edge in without_common(group(scene, "robot2")).edges if edge.state == MISSING
-    }
-    # Nobody misses the life cycle of a node that is not there.
-    assert shown == {name for name in missing if "/bt_navigator/" not in name and "tf" not in name}
-
-
-def test_a_frame_with_two_parents_is_red_below_both() -> None:
-    scene = with_frames(nav2_graphs.nav2(), Edge("imu_link/robot1", "map", "/tf", False, ()))
-    (first, second) = (
-        row for tree in scene.trees for row in tree.rows if row.frame == "imu_link/robot1"
-    )
-    assert (first.state, first.faults) == (CLASH, ("two parents",))
-    assert second.repeated and not first.repeated
-    red = [row.frame for tree in scene.trees for row in tree.rows if row.state == CLASH]
-    assert set(red) == {"imu_link/robot1"}

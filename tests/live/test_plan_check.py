@@ -201,25 +201,6 @@ def sources(path: Path) -> dict[str, str]:
     return places(from_yaml(path.read_bytes(), "plan"))
 
 
-def test_the_plan_has_the_lines_of_the_users_file(plan: Path) -> None:
-    found = sources(plan)
-    assert len(found) == 10
-    lines = Path(ROVER).read_text().splitlines()
-    for node, place in found.items():
-        file, _, line = place.rpartition(":")
-        assert file == ROVER
-        assert f'<plugin name="{node.rpartition("/")[2]}"' in lines[int(line) - 1]
-
-
-@pytest.mark.parametrize("layout", ["tf-per-robot", "frames-per-robot", "both", "postfix"])
-def test_inserted_lines_do_not_move_them(layout: str, tmp_path: Path) -> None:
-    path = tmp_path / "plan.yaml"
-    assert main(["plan", str(ROVER), "robot1", "robot2", "--layout", layout, "-o", str(path)]) == 0
-    assert sorted({int(place.rpartition(":")[2]) for place in sources(path).values()}) == [
-        88, 97, 106, 118, 126,
-    ]  # fmt: skip
-
-
 @pytest.mark.slow
 def test_the_lines_of_a_xacro_are_those_of_the_expanded_text(tmp_path: Path) -> None:
     path = tmp_path / "plan.yaml"
@@ -237,34 +218,6 @@ def test_a_cause_names_the_line(plan: Path, capsys: pytest.CaptureFixture[str]) 
 
 
 # ---------------------------------------------------------------- what a plan has besides
-
-
-def test_a_node_under_a_condition_is_optional(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    plan = tmp_path / "plan.yaml"
-    command = ["plan", str(ROVER), "robot1", "--stack", "robot_state", "--layout", "L2"]
-    assert main([*command, "-o", str(plan)]) == 0
-    node = "/robot1/joint_state_publisher"
-    assert optional(from_yaml(plan.read_bytes(), "plan"), "robot1") == (node,)
-    assert held(plan, without_node(as_planned(plan), node), capsys)[0] == 0
-
-
-def test_types_by_parameter_are_all_in_the_plan(plan: Path) -> None:
-    ends = from_yaml(plan.read_bytes(), "plan").ends
-    (end,) = (e for e in ends if (e.node, e.code_name) == ("/robot1/velocity_smoother", "cmd_vel"))
-    assert (end.type, *end.also) == ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
-
-
-def test_frames_that_parameters_name_are_other_frames(tmp_path: Path) -> None:
-    path = tmp_path / "plan.yaml"
-    bare = tmp_path / "bare.urdf"
-    bare.write_text('<robot name="r"><link name="base_link"/></robot>')
-    command = ["plan", str(bare), "robot1", "--stack", "localization", "--layout", "L2"]
-    assert main([*command, "-o", str(path)]) == 0
-    (robot,) = from_yaml(path.read_bytes(), "plan").robots
-    assert {"base_footprint/robot1"} <= {*robot.frames, *robot.other_frames}
-    assert not {"map", "map/robot1"} & {*robot.frames, *robot.other_frames}
 
 
 @pytest.mark.more

@@ -4,13 +4,12 @@
 from __future__ import annotations
 
 import pytest
-from graph_calls import check, read_plan, to_json, to_yaml
+from graph_calls import check, read_plan
 from graph_cases import environment, qos
-from plans import own, planned_end
 
 from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.system.records import End, Node, System, Topic, alternatives
+from multibot_rewrite.system.records import End, Node, System
 
 PLAN = """\
 schema: 3
@@ -45,24 +44,6 @@ topics:
 
 def plan(text: str = PLAN) -> bytes:
     return text.encode()
-
-
-def test_what_is_written_is_read() -> None:
-    found = read_plan(plan(), "plan.yaml")
-    assert own(found) == ("/map_server", "/fleet_manager", "/rviz2")
-    assert (
-        planned_end(
-            "/map_server", "topic", "publishes", "/map", "nav_msgs/msg/OccupancyGrid", "map"
-        )
-        in found.ends
-    )
-    assert found.topics == (
-        Topic("/robot1/cmd_vel", ("/robot1/mux", "/robot1/teleop_*"), True),
-        Topic("/map", qos=(("durability", "TRANSIENT_LOCAL"), ("reliability", "RELIABLE"))),
-    )
-    assert alternatives(found) == (("/robot1/amcl", "/robot1/slam_toolbox"),)
-    assert read_plan(to_yaml(found).encode(), "again.yaml") == found
-    assert read_plan(to_json(found), "again.json") == found
 
 
 @pytest.mark.parametrize(
@@ -114,18 +95,6 @@ NODES = ("/rviz2", "/robot1/amcl")
 
 def codes(found: System) -> list[tuple[str, str]]:
     return [(it.code, it.node) for it in check(read_plan(plan(), "plan.yaml"), found)]
-
-
-def test_a_system_as_planned() -> None:
-    assert codes(graph(*RUNNING, more=NODES)) == []
-
-
-def test_a_shared_node_that_calls_another_robot() -> None:
-    """The planned call is missing, and the cause is the name it has in its place."""
-    wrong = ("/fleet_manager", "calls", "/robot_1/dock", "std_srvs/srv/Trigger")
-    findings = check(read_plan(plan(), "p"), graph(MAP, wrong, *DRIVER, more=NODES))
-    assert [(it.code, it.node) for it in findings] == [("MG304", "/fleet_manager")]
-    assert "/robot_1/dock instead" in findings[0].hint
 
 
 def test_a_shared_node_without_its_topic() -> None:

@@ -14,20 +14,17 @@ from graph_examples import read_example
 from node_answers import told
 from paths import ROBOTS
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.fleet.outputs.built_states import with_built
 from multibot_rewrite.producers.ros import ask
 from multibot_rewrite.producers.ros.observe import AGAIN_SECONDS, Answers
-from multibot_rewrite.producers.ros.request import Request, from_text, to_text
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.spelling.plan import read_plan, to_yaml
 from multibot_rewrite.system.json import to_json
-from multibot_rewrite.system.parameters import Answer, Question, questions, with_answers
+from multibot_rewrite.system.parameters import Answer, Question, with_answers
 from multibot_rewrite.system.records import (
     PUBLISHES,
-    SERVES,
-    SERVICE,
     SUBSCRIBES,
     TOPIC,
     End,
@@ -158,46 +155,6 @@ def test_planned_clocks_are_seen_without_asking(
 # ---------------------------------------------------------------- the plan's own
 
 
-def test_states_are_written_and_read() -> None:
-    planned = plan(STATES)
-    nodes = {it.name: it for it in planned.nodes}
-    amcl, driver = nodes["/robot1/amcl"], nodes["/robot1/driver"]
-    assert (driver.lifecycle, driver.host) == ("", "robot1_pc")
-    assert (amcl.lifecycle, amcl.host) == ("active", "robot1_pc")
-    assert {it.name: it.value for it in planned.parameters if it.node == amcl.name} == {
-        "use_sim_time": "false",
-        "base_frame_id": '"robot1/base_link"',
-        "a.rate": "2.5",
-        "word": '"true"',
-        "list": "[1, 2]",
-        "names": '["a", "1"]',
-    }
-    assert read_plan(to_yaml(planned).encode(), "y") == planned
-    assert read_plan(to_json(planned), "j") == planned
-    assert "parameters" not in to_yaml(plan())
-
-
-def test_what_the_plan_says_of_states_is_meant() -> None:
-    """A node that is planned to wait is no danger, and one that answers nothing is not known."""
-    waiting = plan({"/robot1/amcl": "lifecycle: inactive"})
-    assert found(waiting, Answer("/robot1/amcl", "inactive")) == []
-    assert found(plan(STATES), Answer("/robot1/amcl"), Answer("/robot1/driver", "active")) == []
-    (it,) = found(plan(), Answer("/robot1/amcl", "inactive"))
-    assert it.code == "MG511"
-    (it,) = found(waiting, Answer("/robot1/amcl", "active"))
-    assert (it.code, it.robot, it.node) == ("MG511", "robot1", "/robot1/amcl")
-    assert "is active, not inactive" in it.message
-
-
-def test_planned_simulated_time_is_compared_alone() -> None:
-    mixed = (told("/robot1/amcl", sim_time=True), told("/robot1/driver", sim_time=False))
-    assert [it.code for it in found(plan(), *mixed)] == ["MG514"]
-    (it,) = found(plan(STATES), *mixed)
-    assert (it.code, it.level) == ("MG132", ERROR)
-    assert "use_sim_time is true, planned is false" in it.message
-    assert found(plan(STATES), mixed[1]) == []
-
-
 @pytest.mark.parametrize(
     ("name", "value", "differs"),
     [
@@ -282,29 +239,6 @@ def test_two_files_that_disagree_plan_nothing(built: Path) -> None:
     }
 
 
-def test_a_node_without_its_file_is_named_with_both_values(built: Path) -> None:
-    planned = with_built(plan(), str(built))
-    right = having("/robot1/amcl", base_frame_id='"robot1/base_link"', alpha1="0.2", other="1")
-    assert found(planned, right) == []
-    (it,) = found(planned, having("/robot1/amcl", base_frame_id='"base_link"', alpha1="0.9"))
-    assert (it.code, it.level, it.node) == ("MG132", ERROR, "/robot1/amcl")
-    place = f"({built}/robot1/nav2.yaml:4)"
-    assert f'base_frame_id is "base_link", planned is "robot1/base_link" {place}' in it.message
-    assert it.message.index("base_frame_id") < it.message.index("alpha1 is 0.9")
-    assert f"start it with {built}/robot1/nav2.yaml" in it.hint
-
-
-def test_a_tuned_value_is_a_warning(built: Path) -> None:
-    (it,) = found(with_built(plan(), str(built)), having("/robot1/amcl", alpha1="0.9"))
-    assert it.level == WARNING
-
-
-def test_the_file_of_another_robot_is_recognized(built: Path) -> None:
-    planned = with_built(plan(), str(built))
-    (it,) = found(planned, having("/robot1/amcl", base_frame_id='"robot2/base_link"'))
-    assert "has it the parameters of robot2?" in it.hint
-
-
 def test_check_finds_the_files_beside_the_plan(
     built: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -323,16 +257,6 @@ def test_check_finds_the_files_beside_the_plan(
     capsys.readouterr()
     assert multibot.main(["check", "plan.yaml", "--from", "g.json"]) == 2
     assert "robot1/nav2.yaml:1:19: not valid YAML" in capsys.readouterr().err
-
-
-def test_a_saved_graph_has_no_states(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("plan.yaml").write_text(PLAN)
-    Path("g.json").write_text("{}")
-    assert multibot.main(["check", "plan.yaml", "--state", "--from", "g.json"]) == 2
-    assert "--state asks nodes of the live graph" in capsys.readouterr().err
 
 
 class Asked:
@@ -378,20 +302,6 @@ def test_nobody_is_asked_without_state() -> None:
     answers = Answers(nodes, None)
     assert not answers.old(100.0) and not answers.update(BOTH, quiet=True, now=100.0)
     assert nodes.times == 0
-
-
-def test_what_is_to_be_asked_reaches_the_child() -> None:
-    asked = Request(3.0, watch=True, asks={"/a": ["rate"]})
-    assert from_text(to_text(asked)) == asked
-    assert from_text(to_text(Request(3.0))).asks is None
-
-
-def test_a_node_is_asked_for_what_is_planned() -> None:
-    type_ = "rcl_interfaces/srv/GetParameters"
-    end = End(SERVICE, SERVES, "/a/get_parameters", type_, "", "/a", None, "")
-    seen = System((Node("/a", ""),), (end,), (), environment())
-    (it,) = questions(seen, {"/a": ["rate", "use_sim_time"], "/b": ["x"]})
-    assert it.parameters == ("rate", "use_sim_time")
 
 
 def test_a_node_that_lacks_one_parameter_is_asked_for_the_others() -> None:

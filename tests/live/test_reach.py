@@ -10,12 +10,9 @@ import pytest
 from live_commands import write_plan
 from looks import ONE, end, look, node
 
-from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan import read_plan
 from multibot_rewrite.system.json import to_json
-from multibot_rewrite.system.records import Caveat, End, System
+from multibot_rewrite.system.records import End, System
 
 
 def seen(*robots: tuple[str, str], **around: Any) -> System:
@@ -43,17 +40,3 @@ def test_the_command_ends_inconclusive(tmp_path: Path, capsys: pytest.CaptureFix
     assert "robot2: inconclusive: MG109" in shown.out
     assert "inconclusive, the view may be incomplete" in shown.err
     assert main(["check", str(plan), "--from", str(graph), "--ignore", "MG109"]) == 0
-
-
-def absent(tmp_path: Path, graph: System) -> Finding:
-    """The one finding about robot2."""
-    path = write_plan(tmp_path / "plan.yaml", ("robot1", "robot2"))
-    (found,) = check(read_plan(path.read_bytes(), str(path)), graph)
-    assert (found.code, found.robot) == ("MG109", "robot2")
-    return found
-
-
-def test_several_looks_have_missed_it(tmp_path: Path) -> None:
-    joined = Caveat("looks-merged", False, "made of 2 looks: a.json, b.json")
-    graph = seen(("robot1", ONE), range="SUBNET", caveats=(joined,))
-    assert absent(tmp_path, graph).level == ERROR

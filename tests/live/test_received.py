@@ -212,12 +212,6 @@ def samples_of(topic: str, type_: str, *messages: bytes) -> tuple[Heard, ...]:
     return samples.heard()
 
 
-def test_joints_are_heard_and_no_frame_of_them() -> None:
-    """joint_state_broadcaster has a word of its own in frame_id."""
-    (it,) = samples_of("/joint_states", JOINTS, joint_state("a", "b", frame="odd", seconds=1e9))
-    assert (it.topic, it.frame, it.joints) == ("/joint_states", "", ("a", "b"))
-
-
 @pytest.mark.parametrize(
     ("type_", "messages", "told"),
     [

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import os
-import re
 from pathlib import Path
 
 import nav2_graphs
@@ -121,26 +120,6 @@ def test_a_danger_is_drawn_and_concerns_a_robot(fault: Fault) -> None:
 # ---------------------------------------------------------------- what a plan may have
 
 
-def test_robots_in_namespaces_of_two_levels_with_all_that_a_plan_may_have() -> None:
-    scene = report_pages.rich(report_pages.rich_graph())
-    # Nothing is known of amcl and slam_toolbox here but their names.
-    assert head(scene) == ("good", "as planned as far as known")
-    assert {*edge_states(scene).values(), *node_states(scene).values()} == {OK}
-    assert scene.robots == ("fleet_a/robot1", "fleet_a/robot2")
-    text = to_html(scene).decode()
-    assert f'<tspan class="dim">{FIRST}</tspan>/topic0' in text
-    first = re.search('<p class="one-of">(.*)</p>', text)
-    assert first and first[1].endswith(f'<em class="good">{FIRST}/amcl runs</em>')
-
-
-def test_what_a_shared_node_lacks_is_dashed() -> None:
-    graph = report_pages.rich_graph()
-    ends = (it for it in graph.ends if it.name != "/map")
-    scene = report_pages.rich(graph._replace(ends=tuple(ends)))
-    assert edge_states(scene)["/map_server", "/map"] == MISSING
-    assert cards(scene) == {"shared, or of no robot": "bad", "fleet_a/robot1": "good"}
-
-
 @pytest.mark.more
 def test_a_frame_that_is_not_received_is_drawn_with_its_finding() -> None:
     plan = nav2_graphs.nav2()
@@ -218,23 +197,6 @@ def test_the_open_ends_of_a_plan_are_on_the_page(
     assert f": {words} (" in capsys.readouterr().err
     assert [it.get("data-robot") for it in tree.find_class("finding")] == ["1"]
     assert tree.find(".//header").get("class") == "unsure"
-
-
-def test_the_doctor_says_its_own_words(tmp_path: Path) -> None:
-    code, tree = drawn(tmp_path, "check", "--from", str(GRAPHS / "healthy.json"), "-q")
-    assert (code, tree.find(".//h1").text) == (0, "nothing wrong seen")
-    assert tree.find(".//header/p").text == "multibot check"
-    assert "as planned" not in tree.find("body").text_content().partition('"use strict"')[0]
-
-
-def test_a_finding_shows_the_line_of_the_description(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(ROOT)
-    given = ("check", str(GRAPHS / "plan.yaml"), "--from", str(GRAPHS / "MG310.json"))
-    _, tree = drawn(tmp_path, *given)
-    marked = {it.text.strip() for it in tree.xpath("//pre/b")}
-    assert '88     <plugin name="diff_drive" filename="libgazebo_ros_diff_drive.so">' in marked
 
 
 def test_snippets_are_short_and_of_files_that_are_there(tmp_path: Path) -> None:

@@ -16,7 +16,7 @@ from paths import FIXTURES
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.producers.rosgraph.reading import NO_FRAMES, ONLY_TOPICS, from_yaml
+from multibot_rewrite.producers.rosgraph.reading import NO_FRAMES, from_yaml
 from multibot_rewrite.producers.rosgraph.writing import to_yaml
 from multibot_rewrite.producers.snapshot_file import read_snapshot
 from multibot_rewrite.system.records import End, Node, Qos, System
@@ -123,11 +123,6 @@ def test_the_policies_of_a_profile_are_those_of_rmw_by_number(field: str) -> Non
         from_yaml(beyond, "g")
 
 
-def test_what_is_written_is_read_back() -> None:
-    once = from_yaml(MESSAGE, "graph.yaml")
-    assert from_yaml(to_yaml(once).decode(), "again.yaml") == once
-
-
 @pytest.mark.sample(2)
 @pytest.mark.slow
 @pytest.mark.parametrize("layout", ["L1", "L4"])
@@ -141,35 +136,11 @@ def test_the_graph_of_nav2_keeps_its_endpoints(layout: str) -> None:
     assert [it.name for it in again.nodes] == [it.name for it in graph.nodes]
 
 
-def test_a_server_of_an_action_publishes_its_topics() -> None:
-    swapped = MESSAGE.replace("  action_servers: []\n", "").replace(
-        "action_clients:", "action_servers:"
-    )
-    value = swapped.replace("service_clients: []", "service_clients: []\n  action_clients: []")
-    roles = {it.name.rpartition("/")[2]: it.role for it in from_yaml(value, "f").ends}
-    assert (roles["go"], roles["send_goal"], roles["status"]) == ("serves", "serves", "publishes")
-
-
-def test_a_policy_that_the_message_does_not_have_is_unknown() -> None:
-    qos = Qos("KEEP_LAST", 1, "RELIABLE", "OF_TOMORROW", INF, INF, "AUTOMATIC", INF)
-    ends = (End("topic", "publishes", "/x", "a/msg/B", "", "/a", qos, ""),)
-    graph = System((Node("/a", ""),), ends, (), environment())
-    (found,) = from_yaml(to_yaml(graph).decode(), "f").ends
-    assert found.qos == qos._replace(durability="UNKNOWN")
-
-
 def test_topics_of_an_action_without_the_action_stay_topics() -> None:
     name = "/go/_action/feedback"
     end = End("topic", "subscribes", name, "a/action/Go_FeedbackMessage", "", "/a", None, "")
     graph = System((Node("/a", ""),), (end,), (), environment())
     assert from_yaml(to_yaml(graph).decode(), "f").ends == (end,)
-
-
-def test_a_monitor_of_topics_alone_gives_an_incomplete_view() -> None:
-    value = yaml.safe_load(MESSAGE.removesuffix("---\n"))
-    value["nodes"][0].update(service_servers=[], action_clients=[])
-    found = from_yaml(yaml.safe_dump(value), "f")
-    assert found.environment.caveats == (NO_FRAMES, ONLY_TOPICS)
 
 
 # ---------------------------------------------------------------- the commands

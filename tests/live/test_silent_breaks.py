@@ -6,30 +6,26 @@ robot2 alone is broken in each; the finding has to say that, and who or what it 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 
 import pytest
 from graph_cases import (
-    as_planned,
     healthy,
-    moved,
     read_plan,
     reframed,
     sent,
-    with_node,
     without_node,
 )
 from graph_examples import read_example
 
-from multibot_rewrite.base.findings.finding import ERROR, Finding
+from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.rules.check import check, side_by_side
 from multibot_rewrite.rules.system.tf_pieces import tf_tree_in_pieces
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Edge, System, Topic
+from multibot_rewrite.system.records import PUBLISHES, Edge, System, Topic
 
 LAYOUTS = ("frames-per-robot", "tf-per-robot", "both", "postfix")
 # Those in which frames have the robot's name.
 NAMED = ("frames-per-robot", "both", "postfix")
-TWIST, SCAN = "geometry_msgs/msg/Twist", "sensor_msgs/msg/LaserScan"
 
 
 def named(layout: str, name: str) -> str:
@@ -66,45 +62,6 @@ def test_the_description_of_robot1_is_recognized_by_its_frames(layout: str) -> N
     (finding,) = hints(layout, reframed(lost)(healthy(layout)), "MG208")
     publisher = named(layout, "robot_state_publisher")
     assert finding.hint.startswith(f"{publisher} has the description of robot1")
-
-
-@pytest.mark.parametrize("layout", LAYOUTS)
-def test_a_lidar_without_its_rule(layout: str) -> None:
-    driver = named(layout, "lidar_driver")
-    graph = moved(healthy(layout), named(layout, "scan"), f"{driver}/out", driver)
-    (finding,) = check(read_plan(layout), graph)
-    assert (finding.code, finding.robot) == ("MG303", "robot2")
-    assert f"by the plan {driver} should publish topic {named(layout, 'scan')}" in finding.hint
-    assert "~/out:=" in finding.hint
-    assert "rover.urdf:106" in finding.hint
-
-
-def bridged(plan: System, names: Iterable[str]) -> System:
-    """The plan with topics that a bridge has to carry."""
-    roles = {"cmd_vel": (SUBSCRIBES, TWIST), "scan": (PUBLISHES, SCAN)}
-    topics = []
-    for name in names:
-        role, type_ = next(it for key, it in roles.items() if key in name)
-        topics.append(Topic(name, bridge=(role,), type=type_))
-    return plan._replace(topics=tuple(topics))
-
-
-@pytest.mark.parametrize("layout", LAYOUTS)
-def test_a_bridge_without_cmd_vel_of_robot2(layout: str) -> None:
-    other = [named(layout, it).replace("robot2", "robot1") for it in ("cmd_vel", "scan")]
-    lost = named(layout, "cmd_vel")
-    plan = bridged(read_plan(layout), (*other, lost, named(layout, "scan")))
-    # The drive of Gazebo Classic reads it: in a gz there is nothing but the bridge.
-    ends = [
-        it
-        for it in as_planned(plan).ends
-        if (it.kind, it.role, it.name) != (TOPIC, SUBSCRIBES, lost)
-    ]
-    graph = with_node(as_planned(plan)._replace(ends=tuple(ends)), "/ros_gz_bridge")
-    (finding,) = (it for it in check(plan, graph) if it.code == "MG126")
-    assert (finding.robot, finding.level) == ("robot2", ERROR)
-    assert lost in finding.message
-    assert "/ros_gz_bridge" in finding.hint
 
 
 # Causes name the node, by the plan, and its line; nothing points to other findings.
@@ -220,84 +177,6 @@ def test_a_bridge_that_was_not_started(layout: str, type_: str) -> None:
     assert f"nothing publishes {name}, which a ros_gz_bridge has to bridge" in finding.hint
 
 
-@pytest.mark.parametrize("layout", LAYOUTS)
-def test_two_parents_name_the_robots_own_nodes_first(layout: str) -> None:
-    plan = read_plan(layout)
-    footprint, own = spelled(layout, "base_footprint"), plan.robots[1].tf_topic
-    graph = reframed(lambda it: it, Edge(footprint, "map", own, False, ()))(healthy(layout))
-    (finding,) = (it for it in check(plan, graph) if it.code == "MG401")
-    publishers = finding.hint.partition(f"send on {own}: ")[2]
-    assert publishers.startswith(f"{named(layout, 'diff_drive')}, ")
-    assert "robot1" not in ", ".join(publishers.split(", ")[:2])
-
-
-def test_two_parents_name_senders_of_this_topic_alone() -> None:
-    """Frames without the robot are alike in all robots; each has a topic of its own."""
-    plan = read_plan("tf-per-robot")
-    again = [f"/{robot}/base_again" for robot in ("robot1", "robot2")]
-    added = [Edge("base_footprint", "base", "", False, (it,)) for it in again]
-    plan = plan._replace(edges=(*plan.edges, *added))
-    own, node = plan.robots[1].tf_topic, named("tf-per-robot", "diff_drive")
-    both = (node, "/robot2/base_again")
-
-    graph = healthy("tf-per-robot")
-    frames = [it._replace(publishers=both) if it.topic == own else it for it in graph.edges]
-    again = Edge("base_footprint", "base", own, False, both)
-    graph = graph._replace(edges=(*frames, again))
-    (finding,) = (it for it in check(plan, graph) if it.code == "MG401")
-    said = finding.hint.partition("two of the nodes")[0]
-    assert "/robot1/" not in said
-    assert f"{node} sends odom -> base_footprint" in said
-    assert "/robot2/base_again sends base -> base_footprint" in said
-
-
-# robot_state_publisher.cpp: frame_prefix is put in front of both ends, as it is written.
-@pytest.mark.sample(1)
-@pytest.mark.parametrize("layout", LAYOUTS)
-@pytest.mark.parametrize("prefix", ["robot2/", "foo/", "foo", "my_"])
-def test_a_frame_prefix_beside_a_rewritten_description(layout: str, prefix: str) -> None:
-    def change(frame: Edge) -> Edge:
-        odometry = frame.child.startswith("base_footprint")
-        if odometry or not is_of("robot2", frame):
-            return frame
-        return frame._replace(parent=prefix + frame.parent, child=prefix + frame.child)
-
-    (finding,) = check(read_plan(layout), reframed(change)(healthy(layout)))
-    assert (finding.code, finding.level, finding.robot) == ("MG407", ERROR, "robot2")
-    assert "frame_prefix" in finding.hint
-
-
-def test_a_frame_prefix_where_the_tag_is_another_word() -> None:
-    """Frames end with robot2_tf, nodes with robot2; the prefix is the robot's name."""
-    plan = read_plan("postfix")
-    last = plan.robots[1]
-    frames = tuple(f"{it}_tf" for it in last.frames)
-    other = last._replace(frames=frames, other_frames=(), tag="robot2_tf")
-    plan = plan._replace(robots=(plan.robots[0], other))
-
-    def change(frame: Edge) -> Edge:
-        if not is_of("robot2", frame):
-            return frame
-        ends = (f"{it}_tf" for it in (frame.parent, frame.child))
-        odometry = frame.child.startswith("base_footprint")
-        parent, child = (it if odometry else f"robot2/{it}" for it in ends)
-        return frame._replace(parent=parent, child=child)
-
-    (finding,) = check(plan, reframed(change)(healthy("postfix")))
-    assert finding.code == "MG407"
-    assert "'robot2/'" in finding.hint
-
-
-def test_a_second_sensor_is_no_prefix() -> None:
-    """front_camera_link beside camera_link: a frame of its own, to be planned."""
-    more = (
-        Edge(f"front_{it}/robot2", "base_link/robot2", "/tf_static/robot2", True, ())
-        for it in ("camera_link", "lidar_link")
-    )
-    graph = reframed(lambda it: it, *more)(healthy("postfix"))
-    assert {it.code for it in check(read_plan("postfix"), graph)} == {"MG204"}
-
-
 ONE_TF = """\
 planned: frames of robot1 on /tf: robot1_base_link, robot1_arm, robot1_hand
 planned: frames of robot2 on /tf: robot2_base_link, robot2_arm, robot2_hand
@@ -313,17 +192,6 @@ def said(lines: str) -> dict[str, str]:
     return {it.code: it.hint for it in check(*read_example(lines))}
 
 
-def test_a_prefix_before_names_that_have_the_robots_inside() -> None:
-    """By its name alone `foo_robot2_arm` is of no robot: the word is neither first nor last."""
-    found = said(
-        ONE_TF
-        + "running: transform foo_robot2_base_link -> foo_robot2_arm on /tf\n"
-        + "running: transform foo_robot2_arm -> foo_robot2_hand on /tf\n"
-    )
-    assert "frame_prefix of /robot2/robot_state_publisher is 'foo_'" in found["MG407"]
-    assert "MG208" not in found
-
-
 def test_another_robots_description_beside_the_own_odometry() -> None:
     """The root of the description comes with the odometry, so not all of its frames are missing."""
     found = said(
@@ -332,18 +200,6 @@ def test_another_robots_description_beside_the_own_odometry() -> None:
         + "running: transform robot1_base_link -> robot1_sensor on /tf_static twice\n"
     )
     assert "has the description of robot1" in found["MG208"]
-
-
-def test_the_odometry_of_a_simulated_robot_names_its_bridge() -> None:
-    found = said(
-        ONE_TF.replace("on /tf: robot1_", "on /tf: robot1_odom, robot1_")
-        + "planned: topic /tf over a bridge that publishes tf2_msgs/msg/TFMessage\n"
-        + "running: /ros_gz_bridge publishes /tf tf2_msgs/msg/TFMessage\n"
-        + "running: transform map -> robot1_odom on /tf\n"
-        + "running: transform robot2_base_link -> robot2_arm on /tf\n"
-        + "running: transform robot2_arm -> robot2_hand on /tf\n"
-    )
-    assert "comes over /ros_gz_bridge" in found["MG406"]
 
 
 LOOSE = ONE_TF.replace("on /tf: robot1_", "on /tf: robot1_odom, robot1_x, robot1_y, robot1_").replace(
@@ -374,17 +230,3 @@ READ = "as planned: /robot1/robot_state_publisher subscribes /robot1/joints {}\n
 def test_odometry_that_nobody_sends_is_the_cause(more: str, said_: str) -> None:
     """Of the robot itself: robot2's odometry is sent, and its frames are no cause."""
     assert said(LOOSE + more)["MG406"].startswith(said_)
-
-
-@pytest.mark.parametrize("layout", LAYOUTS)
-def test_the_description_of_robot1_in_both_publishers(layout: str) -> None:
-    """Its tree is sent twice, that of robot2 not at all, but for the odometry of its driver."""
-
-    def lost(frame: Edge) -> Edge | None:
-        mine = is_of("robot2", frame) and not frame.child.startswith("base_footprint")
-        return None if mine else frame
-
-    (finding,) = hints(layout, reframed(lost)(healthy(layout)), "MG208")
-    assert (finding.robot, finding.level) == ("robot2", ERROR)
-    publisher = named(layout, "robot_state_publisher")
-    assert finding.hint == f"has {publisher} the description of robot2, or that of another robot?"

@@ -21,11 +21,9 @@ from multibot_rewrite.producers.ros import child
 from multibot_rewrite.producers.ros.assemble import (
     LastChange,
     ObservationClock,
-    ReceivedTransform,
     cut_short,
     endpoints_with_process,
     frames,
-    merged,
     nodes_with_process,
     not_heard,
     processes_by_node,
@@ -57,7 +55,6 @@ from multibot_rewrite.system.records import (
 )
 
 QOS = Qos("UNKNOWN", 0, "RELIABLE", "VOLATILE", math.inf, 10.0, "AUTOMATIC", math.inf)
-HIDDEN = Caveat("nothing-seen", True, "no node was seen")
 HARMLESS = Caveat("frames-not-read", False, "tf2_msgs is not there")
 AROUND = Environment(
     7, "LOCALHOST", ("10.0.0.1",), "rmw_fastrtps_cpp", "", False, 2, QUIET, 3.61, (HARMLESS,)
@@ -114,22 +111,6 @@ def test_any_snapshot_survives_the_file(node: Node, qos: Qos, frame: Edge, cavea
     ends = (end(node.name, "/x", qos=qos, process=node.process),)
     any_ = System((node, node), ends, (frame,), AROUND._replace(caveats=(caveat,)))
     assert from_json(to_json(any_), "graph.json") == any_
-
-
-def test_the_file_is_plain_json_with_null_for_no_limit() -> None:
-    value = json.loads(to_json(SNAPSHOT))
-    assert value["schema"] == 3
-    assert value["ends"][0]["qos"]["deadline"] is None
-    assert value["ends"][0]["qos"]["lifespan"] == 10.0
-    # A record a line, so that two snapshots can be compared line by line.
-    assert to_json(SNAPSHOT).count(b'{"name": "/robot1/amcl"') == 2
-
-
-def test_equal_texts_and_profiles_are_in_memory_once() -> None:
-    ends = tuple(end(f"/a{at}", "/x", qos=QOS) for at in range(3))
-    found = from_json(to_json(SNAPSHOT._replace(ends=ends)), "graph.json").ends
-    assert found == ends
-    assert len({id(it.name) for it in found}) == len({id(it.qos) for it in found}) == 1
 
 
 def changed(*path: str | int, to: Any = ...) -> bytes:
@@ -204,12 +185,6 @@ def test_a_wrong_file_is_reported_with_its_key(data: bytes, message: str) -> Non
     assert str(error.value).startswith("g.json")
     assert message in str(error.value)
     assert "\n" not in str(error.value)
-
-
-def test_only_what_hides_something_makes_a_view_incomplete() -> None:
-    assert incomplete(SNAPSHOT) == ()
-    around = AROUND._replace(caveats=(HARMLESS, HIDDEN))
-    assert incomplete(SNAPSHOT._replace(environment=around)) == (HIDDEN,)
 
 
 # --- the environment
@@ -287,21 +262,6 @@ def test_when_the_observation_ends(
     assert why_settled(now, LastChange(*changed_), complete, 9.0) == why
 
 
-def test_a_look_without_a_processor_is_not_quiet() -> None:
-    changed_ = LastChange(0.0, 0.0)
-    found = [why_settled(it, changed_, False, 9.0, unsure=True) for it in (3.5, 8.9, 9.0)]
-    assert found == ["", "", TIMEOUT]
-
-
-def test_only_what_comes_after_the_last_change_is_starved() -> None:
-    at_change = late_by(*[0.3] * 40)
-    clock = at_change
-    for _ in range(40):
-        clock = clock.after(clock.last + 0.1, 0.1)
-    assert [*clock.starved()] and not [*clock.since(at_change).starved()]
-    assert clock.since(at_change).observed == pytest.approx(4.0)
-
-
 @pytest.mark.parametrize(
     ("expected", "met", "of"),
     [
@@ -340,24 +300,8 @@ ENDS = [
 ]
 
 
-def test_the_slow_query_is_made_only_where_it_is_worth_it() -> None:
-    asked = topics_to_query(["/a", "/b"], ENDS, TOPICS, [])
-    latched = ["/robot1/amcl_pose", "/robot1/map"]
-    assert asked == ["/both", "/nobody", *latched, "/robot1/tf", "/rosout"]
-    assert "/one" in topics_to_query(["/a", "/b"], ENDS, TOPICS, ["/one"])
-    assert "/gone" not in topics_to_query(["/a"], ENDS, TOPICS, ["/gone"])
-
-
 def test_two_nodes_of_one_name_hide_topics_so_all_are_queried() -> None:
     assert topics_to_query(["/a", "/a", "/b"], ENDS, TOPICS, []) == sorted(TOPICS)
-
-
-def test_endpoints_by_topic_replace_those_by_node() -> None:
-    better = [end("/a", "/both", qos=QOS), end("/a", "/both", qos=QOS, process="2")]
-    service = end("/a", "/both", "serves")
-    result = merged([*ENDS, service], {"/both": better, "/one": []})
-    assert [it for it in result if it.name == "/both"] == [service, *better]
-    assert not [it for it in result if it.name == "/one"]
 
 
 def test_nodes_of_one_name_are_spread_over_its_processes() -> None:
@@ -381,21 +325,6 @@ def test_an_endpoint_gets_its_nodes_process_only_beyond_doubt() -> None:
     ]
 
 
-def test_a_transform_is_there_once_a_topic_and_static_if_latched() -> None:
-    heard = [
-        ReceivedTransform("/tf", False, "odom", "base_link"),
-        ReceivedTransform("/tf", False, "odom", "base_link"),
-        ReceivedTransform("/tf_static", True, "base_link", "lidar"),
-        # A subscription that takes what is sent now hears what is kept, too.
-        ReceivedTransform("/tf_static", False, "base_link", "lidar"),
-    ]
-    ends = [end("/b", "/tf"), end("/a", "/tf"), end("/c", "/tf", "subscribes")]
-    assert list(frames(heard, ends)) == [
-        Edge("base_link", "odom", "/tf", False, ("/a", "/b")),
-        Edge("lidar", "base_link", "/tf_static", True, ()),
-    ]
-
-
 def test_a_transform_has_the_numbers_that_came_last() -> None:
     session = TfSubscriptions(
         lambda _topic, _type, _latched, callback: calls.append(callback) or bool
@@ -413,22 +342,6 @@ def test_a_transform_has_the_numbers_that_came_last() -> None:
         "base": (2.123456789, 0, 0, 0, 0, 0, 1),
         **dict.fromkeys(("imu", "gps", "lost"), (math.inf, 0, 0, 0, 0, 0, 1)),
     }
-
-
-@pytest.mark.parametrize(("second", "kept"), [(1.0, (1.0, 0, 0, 0, 0, 0, 1)), (2.0, ())])
-def test_a_static_transform_of_two_senders_is_known_if_they_agree(
-    second: float, kept: tuple[float, ...]
-) -> None:
-    calls: list[Any] = []
-    session = TfSubscriptions(
-        lambda _topic, _type, _latched, callback: calls.append(callback) or bool
-    )
-    qos = QOS._replace(durability="TRANSIENT_LOCAL")
-    session.update([end("/a", "/tf_static", type="tf2_msgs/msg/TFMessage", qos=qos)], False)
-    # Each publisher counts its messages from 1.
-    for x in (1.0, second):
-        calls[0](SimpleNamespace(transforms=[stamped("base", "laser", x)]), 1)
-    assert [*session.last.values()] == [kept]
 
 
 def stamped(parent: str, child: str, x: float) -> SimpleNamespace:
@@ -487,12 +400,6 @@ def late_by(*seconds: float) -> ObservationClock:
     for late in seconds:
         clock = clock.after(clock.last + 0.1 + late, 0.1)
     return clock
-
-
-def test_time_without_a_processor_is_not_observed() -> None:
-    assert late_by(*[0.0] * 10).observed == pytest.approx(1.0)
-    assert late_by(*[0.3] * 10).observed == pytest.approx(1.0)
-    assert late_by(60.0).observed == pytest.approx(0.1)
 
 
 def test_a_look_that_is_late_again_and_again_is_starved() -> None:

@@ -191,22 +191,6 @@ def test_what_a_helper_node_has_is_its_own(monkeypatch: pytest.MonkeyPatch) -> N
     assert found[-1] == (private[1], "subscribes", "/ns/a/scene", EMPTY)
 
 
-def test_clients_of_a_helper_node_are_not_on_a_listener(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As bt_navigator calls them from bt_navigator_navigate_to_pose_rclcpp_node."""
-    node = stub(
-        Endpoint(SERVICE, CALLS, "spin", EMPTY_SERVICE, helper=True),
-        Endpoint(TOPIC, SUBSCRIBES, "/tf", EMPTY, helper=True),
-    )
-    found = rows(monkeypatch, Ros(), node)
-    made = [str(it[1]) for it in found if it[0] == "node"]
-    assert made[:2] == ["a", "a_rclcpp_node"]
-    assert made[2].startswith("transform_listener_impl_")
-    assert [it[:3] for it in found[1:] if it[0] != "node"] == [
-        ("a_rclcpp_node", "calls", "spin"),
-        (made[2], "subscribes", "/tf"),
-    ]
-
-
 @pytest.mark.parametrize(
     ("topic", "absent", "sent"),
     [

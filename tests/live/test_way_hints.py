@@ -46,10 +46,6 @@ def test_a_components_rule_is_for_its_loading() -> None:
     assert "ComposableNode" in hint(plan("lyrical", "nav2_composed"), "amcl")
 
 
-def test_a_process_takes_it_as_it_is_started() -> None:
-    assert "pass it with --ros-args -r /tf:=tf" in hint(plan("lyrical", "nav2"), "amcl")
-
-
 COSTMAP = "local_costmap/local_costmap"
 
 

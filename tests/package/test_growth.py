@@ -22,8 +22,8 @@ from rosbags.rosbag2 import Reader
 
 from multibot_rewrite import MultibotError, load_fleet, rewrite, rewrite_file
 from multibot_rewrite.base import nearest
-from multibot_rewrite.base.chains import chain_ends
 from multibot_rewrite.base.findings.finding import locate
+from multibot_rewrite.base.grouping import chain_ends
 from multibot_rewrite.base.nearest import HINTED, Guesses
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.checks import audit, references

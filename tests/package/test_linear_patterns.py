@@ -149,6 +149,7 @@ SLOW = {
 }
 
 
+@pytest.mark.sample(6)
 @pytest.mark.parametrize("name", SLOW)
 def test_a_slow_pattern_is_noticed(name: str) -> None:
     pattern, flags, use = SLOW[name]

@@ -16,7 +16,7 @@ import said_texts
 from parsed import sources
 from paths import ROOT
 
-from multibot_rewrite.base.other_words import other_words
+from multibot_rewrite.base.nearest import other_words
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 from multibot_rewrite.cli.multibot import overview
 from multibot_rewrite.cli.parser import make_parser

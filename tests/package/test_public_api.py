@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import inspect
+import io
 import re
 import subprocess
 import sys
@@ -11,8 +12,10 @@ from collections.abc import Callable, Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import pytest
+from lxml import etree
 from paths import ROOT
 from public_calls import FLEET, PARAMS, ROVER, SMALL
 
@@ -157,11 +160,25 @@ def test_every_option_of_a_wrong_type_is_named(call: Callable[..., Any]) -> None
 
 
 @pytest.mark.parametrize("call", CALLS)
-@pytest.mark.parametrize("source", [None, 3, ["r.urdf"], bytearray(b"<robot/>"), True])
+@pytest.mark.parametrize(
+    "source", [None, 3, ["r.urdf"], bytearray(b"<robot/>"), True, "", io.StringIO()]
+)
 def test_a_wrong_source_is_named(call: Callable[..., Any], source: object) -> None:
     second: dict[str, object] = {"explain": 1, "rewrite_all": ["r1"]}
     with pytest.raises(UsageError, match=r"\(\): source is .*; write a path, XML text or bytes"):
         call(source, second.get(call.__name__, "r1"))
+
+
+@pytest.mark.parametrize("read", [etree, ElementTree], ids=["lxml", "python"])
+def test_what_is_open_or_parsed_is_a_source(read: Any, tmp_path: Path) -> None:
+    text = rewrite(SMALL, "r1").text
+    (tmp_path / "small.urdf").write_text(SMALL)
+    with open(tmp_path / "small.urdf") as file, open(tmp_path / "small.urdf", "rb") as binary:
+        for source in (file, binary, io.StringIO(SMALL), io.BytesIO(SMALL.encode())):
+            assert rewrite(source, "r1").text == text
+    root = read.fromstring(SMALL)
+    for source in (root, read.ElementTree(root)):
+        assert rewrite(source, "r1").text == rewrite(read.tostring(root), "r1").text
 
 
 @pytest.mark.parametrize("call", [rewrite, strip])

@@ -16,10 +16,10 @@ from typing import Any
 
 import pytest
 
-from multibot_rewrite.base.model import InputError, Unusable
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.producers.bags import read
-from multibot_rewrite.producers.bags.read import RECORDER, RecordedTopic, Recording
-from multibot_rewrite.system.records import Caveat, Edge, Qos
+from multibot_rewrite.producers.bags.read import RecordedTopic, Recording
+from multibot_rewrite.system.records import Caveat, Qos
 
 IMAGE, STRING = "sensor_msgs/msg/Image", "std_msgs/msg/String"
 JOINTS, TF = "sensor_msgs/msg/JointState", "tf2_msgs/msg/TFMessage"
@@ -84,23 +84,6 @@ def recorded(*connections: Any, duration: int = 2_500_000_000) -> Recording:
     return read._recording(reader)
 
 
-def test_topics_are_read_by_name_with_the_frames_of_their_first_messages() -> None:
-    """Five messages of a topic are read; a name without a slash is that of the root."""
-    images = [Cdr().header(it).message for it in ("b", "a", "b", "c", "d", "e")]
-    found = recorded(
-        connection("image", IMAGE, *images[:2]), connection("/image", IMAGE, *images[2:]),
-        connection("/a", STRING, b"x"), duration=-5,
-    )  # fmt: skip
-    assert found == Recording(
-        (
-            RecordedTopic("/a", STRING, 1),
-            RecordedTopic("/image", IMAGE, 6, frames=("b", "a", "c", "d")),
-        ),
-        (), 0.0,
-    )  # fmt: skip
-    assert recorded(connection("/a", STRING, b"x")).seconds == 2.5
-
-
 @pytest.mark.parametrize(
     ("type_", "text", "there"),
     [
@@ -137,22 +120,6 @@ def test_joints_a_clock_and_a_pose_are_read() -> None:
             "/odom", ODOMETRY, 3, frames=("odom",), pose=(inf, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
         ),
     )
-
-
-@pytest.mark.parametrize(
-    ("topic", "static"),
-    [
-        ("/tf", False), ("/tf_static", True), ("/r/tf_static", True), ("/tf_static/r", True),
-        ("/my_tf_static", False),
-    ],
-)  # fmt: skip
-def test_transforms_are_as_they_were_at_last(topic: str, static: bool) -> None:
-    """Ten messages in nine seconds are one a second; what is static has no rate."""
-    often = [transform("odom", "base", float(at), at + 1) for at in range(10)]
-    (edge,) = recorded(connection(topic, TF, *often)).transforms
-    last = (9.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)
-    rate = 0.0 if static else 1.0
-    assert edge == Edge("base", "odom", topic, static, (RECORDER,), transform=last, rate=rate)
 
 
 def test_what_is_no_transform_ends_the_reading_and_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -339,12 +306,3 @@ def test_a_bag_is_read_in_one_process_that_may_unpack_forty_times_its_largest_fi
             read.read_bag(str(path))
         assert str(refused.value) == f"{path}: the process that read it was ended by signal 9"
         assert asked.pop() == (read._read, True, most, [str(path)], 1)
-
-
-def test_what_reads_bags_may_be_missing(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "rosbags", None)
-    with pytest.raises(Unusable) as refused:
-        read.read_bag("a.mcap")
-    said = str(refused.value)
-    assert said.startswith("a bag cannot be read: ")
-    assert said.endswith("; pip install 'multibot_rewrite[bags]'")

@@ -157,16 +157,3 @@ def test_what_a_vendors_launch_files_start_is_left_to_them(
     launched = ["check-launch", str(out / "fleet.launch.py"), "--plan", str(out / "plan.yaml")]
     assert main(launched) == 3
     assert "error: MG101" not in capsys.readouterr().out
-
-
-@pytest.mark.parametrize("stack", ["controllers", "gazebo_ros2_control"])
-def test_controllers_without_a_manager_are_not_built(
-    stack: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    command = rovers(tmp_path, f"distro: jazzy\nstack: {stack}")
-    assert main(command) == 1
-    assert not (tmp_path / "out").exists()
-    said = "error: MG723 nothing starts /robot1/controller_manager: joint_state_broadcaster"
-    assert said in capsys.readouterr().err
-    # Another launch file starts it.
-    assert main([*command, "--ignore", "MG723"]) == 0

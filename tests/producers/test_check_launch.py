@@ -13,7 +13,6 @@ from pathlib import Path
 import pytest
 import yaml
 from launched_nodes import AT
-from paths import ROBOTS
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.knowledge.parameters import load_known_nodes
@@ -29,12 +28,11 @@ from multibot_rewrite.producers.launch.records import (
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import launched
 from multibot_rewrite.rules.launch.judge import judge_launch
-from multibot_rewrite.system.records import RUNS, TOPIC, End, Sure, System, clocks
+from multibot_rewrite.system.records import System, clocks
 
 TF = (("/tf", "tf"), ("/tf_static", "tf_static"))
 URDF = '<robot name="r"><link name="base_link"/><link name="laser"/><joint name="j" type="fixed">\
 <parent link="base_link"/><child link="laser"/></joint></robot>'
-MANAGER = "/controller_manager"
 Graph = Callable[..., System]
 
 
@@ -63,38 +61,6 @@ def node(
     return LaunchedNode(*given)  # type: ignore[arg-type]
 
 
-def test_an_end_that_only_may_be_there_is_no_cause_of_a_finding(run: Graph) -> None:
-    """The tools of rviz2 publish, where its configuration has them."""
-    amcl = (node("nav2_amcl/amcl", "amcl", f"/robot{it}") for it in (1, 2))
-    made = run(node("rviz2/rviz2", "rviz2", "/"), *amcl)
-    (pose,) = (it for it in made.ends if (it.node, it.name) == ("/rviz2", "/initialpose"))
-    assert (pose.role, pose.sure.word, bool(pose.sure.why)) == ("publishes", "may", True)
-    sure = tuple(it._replace(sure=RUNS) if it == pose else it for it in made.ends)
-    for ends, told in ((made.ends, False), (sure, True)):
-        found = diagnose(made._replace(ends=ends)).findings
-        assert any(pose.name in it.names for it in found) is told
-
-
-def test_what_two_robots_only_may_share_is_no_finding(run: Graph) -> None:
-    made = run(*(node("nav2_amcl/amcl", "amcl", f"/robot{it}") for it in (1, 2)))
-    twist = "geometry_msgs/msg/Twist"
-    both = [End(TOPIC, "subscribes", "/cmd_vel", twist, node=it.name) for it in made.nodes]
-    for sure, told in ((RUNS, True), (Sure("may", "x set"), False)):
-        ends = (*made.ends, *(it._replace(sure=sure) for it in both))
-        found = diagnose(made._replace(ends=ends)).findings
-        assert any("/cmd_vel" in it.names for it in found) is told
-
-
-def test_an_end_that_only_may_be_there_may_give_what_others_need(run: Graph) -> None:
-    made = run(node("nav2_amcl/amcl", "amcl"))
-    scan = next(it for it in made.ends if it.name == "/robot1/scan")
-    giver = scan._replace(role="publishes", node="/robot1/driver")
-    for sure, there in ((RUNS, True), (Sure("may", "x set"), True), (None, False)):
-        more = (giver._replace(sure=sure),) if sure else ()
-        found = diagnose(made._replace(ends=(*made.ends, *more))).findings
-        assert any(scan.name in it.names for it in found) is not there
-
-
 def publisher(space: str, rules: object = (), **more: object) -> LaunchedNode:
     more = {"robot_description": URDF, **more}
     return node("robot_state_publisher/robot_state_publisher", "rsp", space, rules, **more)
@@ -106,39 +72,6 @@ def codes(made: System) -> set[str]:
 
 def names(made: System, of: str) -> set[tuple[str, str]]:
     return {(it.role, it.name) for it in made.ends if it.node == of}
-
-
-def test_names_are_those_that_rcl_makes_of_the_rules(run: Graph) -> None:
-    made = run(publisher("/robot1", TF, use_sim_time=True))
-    assert names(made, "/robot1/rsp") >= {
-        ("publishes", "/robot1/tf"),
-        ("publishes", "/robot1/tf_static"),
-        ("publishes", "/robot1/robot_description"),
-        ("subscribes", "/robot1/joint_states"),
-        ("subscribes", "/clock"),
-    }
-    (edge,) = made.edges
-    assert (edge.parent, edge.child, edge.topic) == ("base_link", "laser", "/robot1/tf_static")
-    assert made.environment.caveats == ()
-
-
-def test_a_prefix_of_frames_counts(run: Graph) -> None:
-    loose = URDF.replace("<robot ", '<robot gz:kept="true" ')  # TinyXML-2 asks for no declaration.
-    prefixed = publisher("/robot1", frame_prefix="robot1/", robot_description=loose)
-    (edge,) = run(prefixed).edges
-    assert (edge.parent, edge.child) == ("robot1/base_link", "robot1/laser")
-    assert (edge.topic, edge.publishers) == ("/tf_static", ("/robot1/rsp",))
-
-
-def test_two_robots_on_one_tf_collide_before_anything_starts(run: Graph) -> None:
-    assert "MG402" in codes(run(publisher("/robot1"), publisher("/robot2")))
-    joints = [
-        node("joint_state_publisher/joint_state_publisher", "joints", it)
-        for it in ("/robot1", "/robot2")
-    ]
-    assert codes(run(publisher("/robot1", TF), publisher("/robot2", TF), *joints)) == set()
-    prefixed = [publisher(f"/{it}", frame_prefix=f"{it}/") for it in ("robot1", "robot2")]
-    assert codes(run(*prefixed, *joints)) == set()
 
 
 def test_robots_whose_frames_all_differ_may_share_one_tf(run: Graph) -> None:
@@ -182,67 +115,6 @@ def test_a_program_has_its_own_topics(run: Graph, program: str, hears: bool) -> 
     assert (("subscribes", "/robot1/initialpose") in names(made, "/robot1/slam_toolbox")) is hears
 
 
-def test_a_component_has_its_own_rules_and_its_helper_those_of_the_container(run: Graph) -> None:
-    container = node("rclcpp_components/component_container_isolated", "box", "/robot1", TF)
-    server = node(
-        "nav2_controller/nav2_controller::ControllerServer",
-        *("controller_server", "/robot1", (("cmd_vel", "cmd_vel_nav"),)),
-        container="/robot1/box",
-    )
-    made = run(container, server)
-    assert ("publishes", "/robot1/cmd_vel_nav") in names(made, "/robot1/controller_server")
-    costmap = names(made, "/robot1/local_costmap/local_costmap")
-    assert ("subscribes", "/robot1/tf") in costmap
-    bare = run(container._replace(remappings=()), server._replace(remappings=TF))
-    assert ("subscribes", "/tf") in names(bare, "/robot1/local_costmap/local_costmap")
-
-
-def test_an_absolute_topic_in_a_parameter_is_one_for_all_robots(run: Graph) -> None:
-    spaces = ("/robot1", "/robot2")
-    bt = [node("nav2_bt_navigator/bt_navigator", "bt", it, TF, odom_topic="/odom") for it in spaces]
-    made = run(*bt, *(publisher(it, TF) for it in spaces))
-    assert ("subscribes", "/odom") in names(made, "/robot1/bt")
-    assert "MG320" in codes(made)
-    right = [
-        node("nav2_bt_navigator/bt_navigator", "bt", it, TF, odom_topic="odom") for it in spaces
-    ]
-    assert "MG320" not in codes(run(*right, *(publisher(it, TF) for it in spaces)))
-
-
-def test_a_static_transform_is_that_of_the_arguments(run: Graph) -> None:
-    flags = ("--x", "1", "--frame-id", "map", "--child-frame-id", "robot1/odom")
-    words = ("1", "0", "0", "0", "0", "0", "map", "robot2/odom")
-    program = "tf2_ros/static_transform_publisher"
-    made = run(node(program, "a", "/", arguments=flags), node(program, "b", "/", arguments=words))
-    assert [(it.parent, it.child) for it in made.edges] == [
-        ("map", "robot1/odom"),
-        ("map", "robot2/odom"),
-    ]
-
-
-def test_two_clock_bridges_are_two_clocks(run: Graph) -> None:
-    clock = ("/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock",)
-    bridges = [
-        node("ros_gz_bridge/parameter_bridge", "b", it, arguments=clock)
-        for it in ("/robot1", "/robot2")
-    ]
-    assert "MG502" in codes(run(*bridges))
-    assert "MG502" not in codes(run(bridges[0]))
-
-
-def test_an_ekf_with_a_prefix_has_frames_of_its_own(run: Graph) -> None:
-    made = run(node("robot_localization/ekf_node", "ekf", "/robot1", tf_prefix="robot1"))
-    assert [(it.parent, it.child) for it in made.edges] == [("robot1/odom", "robot1/base_link")]
-
-
-@pytest.mark.parametrize(("stamped", "type_"), [(True, "TwistStamped"), (False, "Twist")])
-def test_a_parameter_chooses_the_type(run: Graph, stamped: bool, type_: str) -> None:
-    ekf = node("robot_localization/ekf_node", "ekf", use_control=True, stamped_control=stamped)
-    made = run(ekf)
-    (found,) = {it.type for it in made.ends if it.name == "/robot1/cmd_vel"}
-    assert found == f"geometry_msgs/msg/{type_}"
-
-
 @pytest.mark.parametrize(("release", "wanted"), [("jazzy", "Twist"), ("kilted", "TwistStamped")])
 def test_the_type_that_a_release_has_by_default(release: str, wanted: str) -> None:
     """nav2_util twist_publisher.hpp: false in 1.3.13, true in 1.4.2."""
@@ -267,29 +139,6 @@ def test_a_controller_that_two_spawners_load_is_told(known: Knowledge) -> None:
     both = [node("controller_manager/spawner", "", "/robot2", arguments=("drive",)) for _ in "ab"]
     assert said(*both) == ["/robot2/controller_manager gets drive from 2 spawners"]
     assert said(both[0], both[0]._replace(namespace="/robot1")) == []
-
-
-def test_a_controller_runs_beside_its_manager_with_the_rules_of_both(run: Graph) -> None:
-    manager = node(
-        *("controller_manager/ros2_control_node", "controller_manager", "/robot1", TF),
-    )
-    typed = "controller_manager: {ros__parameters: {drive: {type: diff_drive_controller/%s}}}"
-    texts = (ParameterText("", f"/**/{typed % 'DiffDriveController'}"),)
-    manager = manager._replace(parameters=texts)
-    spawner = node(
-        *("controller_manager/spawner", "", "/robot1"),
-        arguments=("drive", "--controller-ros-args", "-r ~/odom:=odom"),
-    )
-    made = run(manager, spawner)
-    own = names(made, "/robot1/drive")
-    assert {("publishes", "/robot1/odom"), ("publishes", "/robot1/tf")} <= own
-    assert not made.environment.caveats
-    (edge,) = made.edges
-    assert (edge.parent, edge.child) == ("robot1/odom", "robot1/base_link")
-    # A simulator's plugin makes the manager: its rules are not those of the launch.
-    (caveat,) = run(spawner).environment.caveats
-    assert "/robot1/controller_manager" in caveat.message
-    assert "drive" in caveat.message
 
 
 @pytest.mark.parametrize(
@@ -408,21 +257,6 @@ def test_controllers_of_a_simulators_plugin_are_those_of_its_description(known: 
     assert timed["/robot1/rsp"] is False
 
 
-def test_a_description_that_is_published_and_spawned_from_its_file_has_one_manager(
-    known: Knowledge, tmp_path: Path
-) -> None:
-    """It runs in the simulator once; where another launch file spawns it, there it is as well."""
-    text = (ROBOTS / "rover_gz.urdf").read_text()
-    (tmp_path / "rover.urdf").write_text(text)
-    create = node("ros_gz_sim/create", "create", arguments=("-file", str(tmp_path / "rover.urdf")))
-    spawner = node("controller_manager/spawner", "s", arguments=("drive", "-c", MANAGER))
-    every = (publisher("/", robot_description=text), create, spawner)
-    for nodes in (every, (every[0], spawner)):
-        made = launched(LaunchGraph(nodes, ()), known).system
-        assert [it.name for it in made.nodes].count(MANAGER) == 1
-        assert "MG301" not in codes(made)
-
-
 def test_a_spawner_that_asks_for_another_manager_is_told(known: Knowledge) -> None:
     made = controlled(known, "other", "controller_manager")
     assert [it.name for it in made.nodes] == ["/robot1/rsp"]
@@ -481,22 +315,6 @@ def test_a_bridge_sends_what_systems_of_the_spawned_model_do(run: Graph) -> None
     assert made.environment.caveats == ()
 
 
-@pytest.mark.parametrize(
-    ("bridged", "words", "said"),
-    [
-        ("other", CREATE, "the transforms that the simulator sends are not known: /b"),
-        ("robot1", (), "the transforms that the simulator sends are not known: /b"),
-        ("robot1", ("-topic", "/other"), "its description is not"),
-    ],
-)
-def test_a_model_that_is_not_known_is_said(
-    bridged: str, words: tuple[str, ...], said: str, run: Graph
-) -> None:
-    made = bridged_model(run, bridged, *words)
-    assert made.edges == ()
-    assert any(said in it.message for it in made.environment.caveats)
-
-
 LASER = """<robot name="r"><link name="base_link"/><gazebo reference="base_link"><sensor name="s"
  type="ray"><plugin name="laser" filename="libgazebo_ros_ray_sensor.so"><ros>
  <namespace>{0}</namespace><remapping>~/out:=scan</remapping></ros></plugin></sensor></gazebo></robot>"""
@@ -535,47 +353,7 @@ def test_who_has_the_clock_of_gazebo_classic(
     assert [(it.node, it.type) for it in found] == [("/gazebo", "rosgraph_msgs/msg/Clock")] * sent
 
 
-@pytest.mark.parametrize(
-    ("base", "found"), [("robot1/base_footprint", {"MG413"}), ("robot1/base_link", set())]
-)
-def test_a_frame_that_a_node_asks_for_and_nobody_sends(
-    base: str, found: set[str], run: Graph
-) -> None:
-    """bt_navigator asks tf for robot_base_frame; the odometry is the filter's."""
-    ekf = node(
-        "robot_localization/ekf_node", "ekf_filter_node",
-        odom_frame="robot1/odom", base_link_frame="robot1/base_link", world_frame="robot1/odom",
-    )  # fmt: skip
-    navigator = node("nav2_bt_navigator/bt_navigator", "bt_navigator", robot_base_frame=base)
-    made = run(publisher("/robot1", frame_prefix="robot1/"), ekf, navigator)
-    assert ("/robot1/bt_navigator", base) in {(it.node, it.frame) for it in made.lookups}
-    assert codes(made) & {"MG413"} == found
-
-
-ARM = """<robot name="arm"><link name="base"/><ros2_control name="arm" type="system"><hardware>
-<plugin>franka_hardware/FrankaHardwareInterface</plugin><param name="robot_ip">%s</param>
-</hardware></ros2_control></robot>"""
 BRIDGE = "rosbridge_server/rosbridge_websocket"
-
-
-@pytest.mark.parametrize(
-    ("second", "found"),
-    [
-        ({"port": 9090}, ["port 9090"]),
-        ({"port": 9091}, []),
-        ({"port": 9090, "space": "/robot1"}, []),
-    ],
-)
-def test_a_port_that_two_robots_open(
-    second: dict[str, object], found: list[str], run: Graph
-) -> None:
-    made = run(
-        node(BRIDGE, "bridge", "/robot1", port=9090),
-        node(BRIDGE, "bridge2", **{"space": "/robot2", **second}),  # type: ignore[arg-type]
-        *(publisher(space) for space in ("/robot1", "/robot2")),
-    )
-    told = [it for it in diagnose(made).findings if it.code == "MB412"]
-    assert [it.message.rpartition(": ")[2] for it in told] == found
 
 
 def test_a_port_in_a_file_for_all_is_that_of_the_nodes_that_read_it(run: Graph) -> None:
@@ -589,17 +367,6 @@ def test_a_port_in_a_file_for_all_is_that_of_the_nodes_that_read_it(run: Graph) 
         )
     )
     assert {it.node for it in made.addresses} == {"/robot1/n2", "/robot2/n2"}
-
-
-@pytest.mark.parametrize(("address", "levels"), [("10.0.0.2", ["warning"]), ("10.0.0.3", [])])
-def test_an_arm_that_two_robots_command(address: str, levels: list[str], run: Graph) -> None:
-    made = run(
-        publisher("/robot1", robot_description=ARM % "10.0.0.2"),
-        publisher("/robot2", robot_description=ARM % address),
-    )
-    told = [it for it in diagnose(made).findings if it.code == "MB412"]
-    assert [it.level for it in told] == levels
-    assert {(it.robot, it.node) for it in told} <= {("robot2", "/robot2/rsp")}
 
 
 CLASSIC = """<robot name="r"><link name="base_link"/><gazebo>
@@ -675,18 +442,6 @@ def test_mavros_plugins_are_in_the_namespace_of_their_process(run: Graph) -> Non
         ("subscribes", "/uav1/mavros/setpoint_velocity/cmd_vel"),
         ("serves", "/uav1/mavros/cmd/arming"),
     }
-
-
-def test_one_vehicle_has_one_mavros(run: Graph) -> None:
-    """mavconn opens ``fcu_url``: a serial port or a bound UDP port."""
-    urls = [{"fcu_url": "udp://:14540@", "tgt_system": it} for it in (1, 2)]
-    other = {"fcu_url": "udp://:14541@", "tgt_system": 2}
-    assert "MB412" in codes(
-        run(*of_vehicles(mavros("/uav1", **urls[0]), mavros("/uav2", **urls[1])))
-    )
-    assert "MB412" not in codes(
-        run(*of_vehicles(mavros("/uav1", **urls[0]), mavros("/uav2", **other)))
-    )
 
 
 CAMERA, LIDAR = "realsense2_camera/realsense2_camera_node", "ouster_ros/os_driver"

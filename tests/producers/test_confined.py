@@ -337,5 +337,5 @@ def test_what_a_package_makes_that_is_not_here_stops_nothing(kept: Path) -> None
     (found,) = read_launch_files([order], 60.0)
     assert isinstance(found, LaunchGraph), found
     assert {(it.package, it.executable) for it in found.nodes} == {("p", "b {'str'}"), ("q", "x")}
-    said = "a package that is not here makes the arguments of the include"
+    said = "a package that is not installed sets the arguments of an include"
     assert said in {it.message for it in found.notes if it.parameters}

@@ -67,14 +67,6 @@ def test_options_hold_for_all_topics(file: str) -> None:
     assert ("/bridge_8", SUBSCRIBES, "/back") in ends(found)
 
 
-def test_several_files_make_one_bridge_with_the_last_name(file: str, tmp_path: Path) -> None:
-    more = tmp_path / "more.yaml"
-    more.write_text("topics: {/x: {type: a/msg/B, from_domain: 2, to_domain: 9}}\n")
-    assert ("/bridge_9", PUBLISHES, "/x") in ends(bridged(file, str(more)))
-    alone = bridged(str(more))
-    assert [it.name for it in alone.nodes] == ["/domain_bridge_2", "/domain_bridge_9"]
-
-
 @pytest.mark.parametrize(
     "row",
     [
@@ -88,15 +80,3 @@ def test_what_is_not_bridged_makes_no_node(row: str, tmp_path: Path) -> None:
     path = tmp_path / "bridge.yaml"
     path.write_text(f"topics: {{/x: {row}}}\n")
     assert bridged(str(path)) == BridgedDomains((), (), ())
-
-
-def test_a_file_that_cannot_be_read_is_told(tmp_path: Path) -> None:
-    found = bridged(str(tmp_path / "nosuch.yaml"))
-    assert found.nodes == ()
-    (note,) = found.notes
-    assert "domain_bridge does not read" in note.message and "nosuch.yaml" in note.message
-    assert note.place == AT
-
-
-def test_another_program_is_none(file: str) -> None:
-    assert bridged(file, program="other/domain_bridge") == BridgedDomains((), (), ())

@@ -155,12 +155,6 @@ def test_each_query_is_the_one_of_its_role(at: int, method: str, kind: str, role
     assert queries.NODE_QUERIES[at][2](node, "a", "/") == ["a", "/"]
 
 
-def test_a_topic_of_two_nodes_has_qos_hash_and_process_of_each() -> None:
-    infos = {"publishes /t": [info("/a", 1)], "subscribes /t": [info("/r/b", 2), info("/me", 3)]}
-    found = details(GraphNode((), infos), end("/a", PUBLISHES, "/t"), end("/r/b", SUBSCRIBES, "/t"))
-    assert found == [whole("/a", PUBLISHES, "/t", 1), whole("/r/b", SUBSCRIBES, "/t", 2)]
-
-
 def test_no_time_is_given_where_there_is_no_limit() -> None:
     infos = {"publishes /t": [info("/a", 1, version=-1, deadline=1_500_000_000)]}
     (found,) = details(GraphNode((), infos), end("/a", PUBLISHES, "/t"), requested=["/t"])
@@ -193,14 +187,6 @@ def test_one_endpoint_of_each_node_is_asked_for_its_process(
     assert (seen.node, seen.role, seen.name, seen.type) == found[5:6] + found[1:4]
     assert (seen.process, seen.qos) == (process, USUAL if process else None)
     assert details(GraphNode((), infos), found, over=True) == [found]
-
-
-def test_a_node_whose_process_is_known_is_not_asked_again() -> None:
-    infos = {"publishes /t": [info("/a", 1)], "subscribes /t": [info("/b", 2)]}
-    node = GraphNode((), infos)
-    both = end("/a", PUBLISHES, "/t"), end("/b", SUBSCRIBES, "/t")
-    lone = end("/a", PUBLISHES, "/alone")
-    assert lone in details(node, *both, lone) and node.asked == ["/t"]
 
 
 def test_an_answer_is_kept_while_it_fits_the_nodes() -> None:

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
 from multibot_rewrite import InputError
@@ -13,10 +11,7 @@ from multibot_rewrite.producers.launch.failures import (
     is_certain,
     is_no_text,
     is_of_file,
-    is_unset,
     lost_file,
-    missing_module,
-    missing_package,
 )
 
 UNSET = (
@@ -56,26 +51,6 @@ def caused(error: BaseException, cause: BaseException) -> BaseException:
 )  # fmt: skip
 def test_an_error_is_one_line_with_what_to_do(error: BaseException, said: str) -> None:
     assert failure(error) == said
-
-
-@pytest.mark.parametrize(
-    ("text", "package", "module"),
-    [
-        ("\"package 'nav2-x' not found, searching: ['/opt']\"", "nav2-x", ""),
-        ("No module named 'acme'", "", "acme"), ("no such thing", "", ""),
-    ],
-)  # fmt: skip
-def test_what_is_missing_has_its_name(text: str, package: str, module: str) -> None:
-    error = RuntimeError(text)
-    assert (missing_package(error), missing_module(error)) == (package, module)
-    hint = f"package {package or module!r} is not installed here; "
-    assert failure(error).startswith(hint if package or module else "RuntimeError: ")
-
-
-def test_whether_a_value_is_not_set() -> None:
-    assert is_unset(RuntimeError("launch configuration 'a' does not exist"))
-    assert is_unset(RuntimeError('Required launch argument "a" was not provided'))
-    assert not is_unset(RuntimeError("launch argument 'a' is odd"))
 
 
 @pytest.mark.parametrize(
@@ -125,14 +100,6 @@ def raised(text: str, file: str) -> BaseException:
 )  # fmt: skip
 def test_what_fails_on_every_machine(text: str, file: str, certain: bool) -> None:
     assert is_certain(raised(text, file), "/ws/a.launch.py") is certain
-
-
-def test_a_file_beside_the_launch_file_is_missing_everywhere(tmp_path: Path) -> None:
-    launch = str(tmp_path / "a.launch.py")
-    for path, certain in (("b/c.yaml", True), ("../c.yaml", False)):
-        lost = FileNotFoundError(2, "x", str(tmp_path / path))
-        assert is_certain(lost, launch) is certain
-        assert is_certain(caused(RuntimeError("x"), lost), launch) is certain
 
 
 def test_what_is_no_text() -> None:

@@ -191,7 +191,7 @@ def test_an_include_of_the_simulator_takes_all_that_its_launch_files_declare(
     assert old in text and found_in(folder, capsys) == (0, [])
 
 
-@pytest.mark.sample(5)
+@pytest.mark.sample(12)
 @pytest.mark.parametrize("name", FAULTS)
 def test_a_planted_fault_is_found_at_its_place(
     name: str, healthy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -579,6 +579,7 @@ SEEN: dict[str, tuple[str, bool, str, tuple[str, ...]]] = {
 }
 
 
+@pytest.mark.sample(4)
 @pytest.mark.parametrize("name", SEEN)
 def test_what_public_bringups_showed(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]

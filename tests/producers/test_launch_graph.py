@@ -10,7 +10,6 @@ from __future__ import annotations
 import sys
 from contextlib import suppress
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -23,11 +22,10 @@ from waiting import wait_until
 from multibot_rewrite import InputError
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.launch import missing
-from multibot_rewrite.producers.launch import child, snapshot
+from multibot_rewrite.producers.launch import child
 from multibot_rewrite.producers.launch.child import launch_graph
 from multibot_rewrite.producers.launch.door import of_launch_ros
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchOrder
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, End, Heard
 
 
 def without() -> str:
@@ -407,22 +405,6 @@ def test_a_configuration_that_is_gone_at_an_event_is_told(tmp_path: Path) -> Non
     assert "'robot' is not set; groups and their launch configurations have ended" in note.message
 
 
-def test_what_starts_later_is_outside_the_group_that_it_stands_in(tmp_path: Path) -> None:
-    """launch leaves the scope of a group before any event (LaunchService, GroupAction)."""
-    graph = read(
-        tmp_path,
-        """\
-        GroupAction([
-            PushRosNamespace("robot1"),
-            RegisterEventHandler(OnProcessExit(on_exit=[
-                Node(package="acme", executable="e", namespace="robot1"),
-                TimerAction(period=1.0, actions=[Node(package="acme", executable="t")])])),
-            Node(package="acme", executable="n")]),""",
-    )
-    found = {it.executable: it.namespace for it in graph.nodes}
-    assert found == {"n": "/robot1", "e": "/robot1", "t": "/"}
-
-
 def test_a_node_without_its_parameter_file_is_known(tmp_path: Path) -> None:
     """launch_ros warns of the file and starts the node (``_perform_substitutions`` of Node)."""
     graph = read(tmp_path, 'Node(package="acme", executable="d", parameters=["none.yaml"]),')
@@ -511,31 +493,6 @@ def test_what_is_missing_costs_its_part(tmp_path: Path) -> None:
     assert not graph.whole and not any(it.fails for it in graph.notes)
 
 
-def test_packages_beside_the_launch_files_own_are_found(tmp_path: Path) -> None:
-    """Without a word about folders; none outside of the folder with the package is looked for."""
-    inner = HEAD + '        Node(package="acme", executable="{}"),\n    ])\n'
-    for name in ("ws/acme_bringup", "ws/deep/acme_base", "acme_far"):
-        folder = tmp_path / name
-        (folder / "launch").mkdir(parents=True)
-        package = folder.name
-        (folder / "package.xml").write_text(f"<package><name>{package}</name></package>")
-        (folder / "launch" / "a.launch.py").write_text(inner.format(package))
-    includes = "".join(
-        f'IncludeLaunchDescription([FindPackageShare("{it}"), "/launch/a.launch.py"]),'
-        for it in ("acme_bringup", "acme_base", "acme_far")
-    )
-    file = tmp_path / "ws" / "acme_bringup" / "launch" / "all.launch.py"
-    file.write_text(f"{HEAD}        {includes}\n    ])\n")
-    graph = launch_graph(LaunchOrder(str(file), trusted=True))
-    *nodes, far = graph.nodes
-    assert [it.executable for it in nodes] == ["acme_bringup", "acme_base"]
-    assert (far.package, far.executable, far.process.is_include) == (
-        *("acme_far", "launch/a.launch.py"),
-        True,
-    )
-    assert ["'acme_far' is not installed" in it.message for it in graph.notes] == [True]
-
-
 @pytest.mark.more
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
@@ -567,11 +524,6 @@ def test_a_launch_file_that_makes_no_description(made: str, said: str, tmp_path:
     assert str(caught.value) == f"{file}: the launch file cannot be read: {why}"
 
 
-def test_a_launch_without_nodes_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="starts no node"):
-        read(tmp_path, '        Node(package="a", executable="b", condition=IfCondition("0")),')
-
-
 @pytest.mark.slow
 @pytest.mark.skipif(not without(), reason="launch_ros is here")
 @pytest.mark.skipif(not without(), reason="launch is here")
@@ -595,19 +547,6 @@ def test_without_launch_a_stand_in_reads_and_says_so(
 
 def test_the_command_itself_imports_no_launch() -> None:
     assert "launch_ros" not in sys.modules or not without()
-
-
-def test_a_file_that_is_made_of_another_one_names_it(tmp_path: Path) -> None:
-    source = tmp_path / "p.yaml"
-    source.write_text("/**:\n  ros__parameters: {rate: $(var rate)}\n")
-    node = (
-        "Node(package='a', executable='b', parameters=[ParameterFile(SOURCE, allow_substs=True)])"
-    )
-    actions = f"DeclareLaunchArgument('rate', default_value='5'), {node}"
-    found = one(read(tmp_path, actions.replace("SOURCE", repr(str(source)))))
-    (given,) = found.parameters
-    assert (given.file, given.source) == ("", str(source))
-    assert "rate: 5" in given.text
 
 
 def test_the_file_of_a_rewritten_one_is_found(tmp_path: Path) -> None:
@@ -636,17 +575,6 @@ class RewrittenYaml(Substitution):
     (given,) = one(launch_graph(LaunchOrder(str(file), (), (), True))).parameters
     assert (given.file, given.source) == ("", str(source))
     assert given.text.startswith("# made\n# made\n")
-
-
-def test_the_files_of_a_spawner_are_its_parameters(tmp_path: Path) -> None:
-    source = tmp_path / "p.yaml"
-    source.write_text("a:\n  ros__parameters: {type: x/X}\n")
-    words = f"arguments=['a', '-p', {str(source)!r}]"
-    found = one(
-        read(tmp_path, f"Node(package='controller_manager', executable='spawner', {words})")
-    )
-    assert [it.source for it in found.parameters] == [str(source)]
-    assert found.arguments[0] == "a"
 
 
 def test_a_launch_file_sees_the_command_line_of_ros2_launch(tmp_path: Path) -> None:
@@ -810,22 +738,6 @@ def test_actions_for_robots_are_read_with_their_names(name: str) -> None:
     assert main(words) == 0
 
 
-def test_files_that_plugins_of_a_description_name_are_kept(tmp_path: Path) -> None:
-    """A launch makes them of others, and they are gone when it has been read."""
-    file = tmp_path / "controllers.yaml"
-    file.write_text("drive: {ros__parameters: {enable_odom_tf: false}}\n")
-    plugin = f"<plugin><parameters> {file} </parameters></plugin>"
-    value = f"ParameterValue({plugin!r}, value_type=str)"
-    found = read(
-        tmp_path,
-        f"""\
-        Node(package="robot_state_publisher", executable="robot_state_publisher",
-             parameters=[{{"robot_description": {value}}}]),""",
-    )
-    ((path, kept),) = found.files
-    assert (path, kept.text) == (str(file), file.read_text())
-
-
 # By launch jazzy, substitutions/ and utilities/type_utils.py.
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
@@ -952,20 +864,6 @@ def test_a_value_that_is_none_is_told_and_the_others_are_kept(
     assert yaml.safe_load(node.parameters[1].text) == {"/**": {"ros__parameters": {"q": "1"}}}
 
 
-def test_a_path_in_a_value_is_that_of_the_file_itself(tmp_path: Path) -> None:
-    """A folder of links to sources is gone when the launch has been read."""
-    (tmp_path / "map.yaml").write_text("image: a.pgm")
-    link = tmp_path / "link.yaml"
-    link.symlink_to("map.yaml")
-    values = f"{{'a': {str(link)!r}, 'b': ['x', {str(link)!r}], 'c': [1, 2]}}"
-    found = one(read(tmp_path, f"Node(package='a', executable='b', parameters=[{values}]),"))
-    kept = {}
-    for it in found.parameters:
-        kept |= yaml.safe_load(it.text)["/**"]["ros__parameters"] if not it.file else {}
-    path = str(tmp_path / "map.yaml")
-    assert kept == {"a": path, "b": ["x", path], "c": [1, 2]}
-
-
 @pytest.mark.parametrize(
     ("command", "package"),
     [
@@ -1061,19 +959,3 @@ def runs(process: str) -> bool:
     with suppress(OSError):
         return bool(Path("/proc", process, "cmdline").read_bytes())
     return False
-
-
-def test_what_nodes_of_plugins_measure_has_their_frame() -> None:
-    def sent(role: str, name: str, type_: str, node: str = "/lidar") -> End:
-        return End(TOPIC, role, name, type_, "", node, None, "")
-
-    ends = (
-        sent(PUBLISHES, "/scan", "sensor_msgs/msg/LaserScan"),
-        sent(PUBLISHES, "/said", "std_msgs/msg/String"),
-        sent(SUBSCRIBES, "/joints", "sensor_msgs/msg/JointState"),
-    )
-    parts: list[Any] = [
-        SimpleNamespace(name="/lidar", endpoints=ends),
-        SimpleNamespace(name="/other", endpoints=(sent(PUBLISHES, "/s", ends[0].type, "/other"),)),
-    ]
-    assert [*snapshot._measured(parts, {"/lidar": "laser"})] == [Heard("/scan", "laser")]

@@ -12,8 +12,8 @@ import pytest
 from multibot_rewrite.producers.launch import commands
 from multibot_rewrite.producers.launch.failures import failure
 from multibot_rewrite.producers.launch.includes import not_among, unread
-from multibot_rewrite.producers.launch.install_rules import link_share
 from multibot_rewrite.producers.launch.kept_paths import GONE, lasting, real_paths
+from multibot_rewrite.producers.launch.source_packages import link_share
 
 CMAKE = """\
 install(DIRECTORY config/ DESTINATION share/${PROJECT_NAME}/params)

@@ -14,12 +14,12 @@ from pathlib import Path
 import pytest
 from paths import FIXTURES
 
-from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.evidence.filling import filled
 from multibot_rewrite.producers.sources import expressions, files
 from multibot_rewrite.producers.sources.facts import NodeSource, node_of_program
+from multibot_rewrite.producers.sources.records import parameter_in
 from multibot_rewrite.spelling.of_runs import ends_of, with_names
 from multibot_rewrite.spelling.records import Given, Run
 from multibot_rewrite.system.records import NOWHERE, RUNS, End
@@ -385,6 +385,12 @@ def test_a_transform_is_sent_where_its_parameter_says_so(
     assert [it.condition for it in read("driver_node", acme).facts.sends] == [condition]
 
 
+def test_a_frame_with_a_parameter_in_it_is_not_that_parameter() -> None:
+    """``self.space + "/base_link"``: no node has a parameter of that name."""
+    texts = ("<@space>", "<@space>/base_link", "x/<@space>", "<@a><@b>")
+    assert [*map(parameter_in, texts)] == ["space", "", "", ""]
+
+
 def test_a_program_of_an_install_rule(acme: Path) -> None:
     facts = read("tool", acme).facts
     assert (facts.name, [it.name for it in facts.endpoints]) == ("tool", ["x"])
@@ -484,12 +490,6 @@ def without_reader(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(expressions, "find_spec", lambda name: None)
     expressions._tools.cache_clear()
     files._parsed.cache_clear()
-
-
-@pytest.mark.usefixtures("without_reader")
-def test_cpp_without_its_extra_says_what_to_install(acme: Path) -> None:
-    with pytest.raises(UsageError, match=r"multibot_rewrite\[sources\]"):
-        read("driver_node", acme)
 
 
 @pytest.mark.usefixtures("without_reader")

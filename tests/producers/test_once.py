@@ -91,15 +91,6 @@ def started(folder: Path, more: str = "", second: int = 1) -> list[str]:
     return sorted(f"{it.get('namespace', '')} {it['executable']}" for it in values)
 
 
-def test_a_launch_file_starts_servers_of_all_once(tmp_path: Path) -> None:
-    found = started(tmp_path)
-    assert [it for it in found if "map_server" in it] == ["/ map_server"]
-    assert [it for it in found if "rosbridge" in it] == ["/ rosbridge_websocket"]
-    assert [it for it in found if "seer" in it] == ["/robot1 seer_node", "/robot2 seer_node"]
-    # Each amcl reads the one map.
-    assert (tmp_path / "out/remappings.yaml").read_text().count("[map, /map]") == 2
-
-
 @pytest.mark.parametrize("second", [1, 2])
 def test_each_robot_may_have_its_own(tmp_path: Path, second: int) -> None:
     """The fleet file says so, or the robots have other maps."""
@@ -115,10 +106,3 @@ def test_an_unknown_name_is_refused(tmp_path: Path, capsys: pytest.CaptureFixtur
     with pytest.raises((AssertionError, InputError)):
         started(tmp_path, "own_nodes: [map_servr]")
     assert "own_nodes: no robot has a node 'map_servr'" in capsys.readouterr().err
-
-
-def test_a_component_is_in_the_container_of_its_robot() -> None:
-    more = ((), (), "/box", (), "", NOWHERE)
-    node = LaunchedNode("nav2_map_server", "map_server", "map_server", "/", *more)
-    assert once_for_all(node) == ""
-    assert once_for_all(node._replace(container=""))

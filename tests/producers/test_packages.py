@@ -18,16 +18,6 @@ def package(folder: Path, *files: str) -> Path:
     return folder
 
 
-def test_a_file_anywhere_in_a_package_below_a_root(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("AMENT_PREFIX_PATH", "")
-    acme = package(tmp_path / "src" / "acme", "launch/real/bringup.launch.py", "bringup.launch.xml")
-    found = launch_order("acme bringup.launch.py a:=1", [str(tmp_path / "src")])
-    assert found.file == str(acme / "launch/real/bringup.launch.py")
-    assert found.arguments == (("a", "1"),)
-
-
 def test_what_is_installed_is_found_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     over, under = (package(tmp_path / it / "share" / "acme", "b.launch.py") for it in "ou")
     package(tmp_path / "src" / "acme", "b.launch.py")

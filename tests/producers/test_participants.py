@@ -15,36 +15,12 @@ from typing import Any
 
 import pytest
 
-from multibot_rewrite.live.rehearsal import stage
 from multibot_rewrite.producers.ros import assemble, observe
 from multibot_rewrite.producers.ros.participants import (
     lost_here,
-    participants_at,
     participants_here,
-    sockets_in,
 )
 from multibot_rewrite.producers.ros.request import Request
-
-TABLE = """\
-   sl  local_address rem_address   st tx_queue rx_queue tr tm->when retrnsmt   uid  timeout inode
- 7225: 0100007F:1CF2 00000000:0000 07 0:0 00:0 0 0 0 274152 2 0000000000000000 0
- 9183: 00000000:1CF3 00000000:0000 07 0:0 00:0 0 0 0 274145 2 0000000000000000 0
- 9184: 00000000:1CE8 00000000:0000 07 0:0 00:0 0 0 0 274150 2 0000000000000000 12
-"""
-
-
-def test_ports_and_losses_of_a_table() -> None:
-    assert sockets_in(TABLE) == [(7410, 0), (7411, 0), (7400, 12)]
-    assert sockets_in("") == []
-
-
-def test_a_participant_has_an_even_port_behind_those_of_its_domain() -> None:
-    # Two in domain 0: 7400 is for messages to all, odd ones are for data.
-    assert participants_at([7400, 7410, 7411, 7412, 7413, 7412], 0) == 2
-    # Two of domain 1, and one of domain 2.
-    assert participants_at([7650, 7660, 7662, 7910], 1) == 2
-    assert participants_at([7660, 32769], 0) == 0
-
 
 DOMAIN = 93
 KNOWN, LONG = assemble.ALL_KNOWN_SECONDS, assemble.QUIET_SECONDS
@@ -91,18 +67,6 @@ def test_a_port_in_use_is_a_participant() -> None:
 
 
 @pytest.mark.usefixtures("port_in_use")
-def test_a_rehearsal_is_in_the_domain_of_the_environment_if_that_is_free(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setenv("ROS_DOMAIN_ID", str(DOMAIN - 1))
-    assert stage(None)["ROS_DOMAIN_ID"] == str(DOMAIN - 1)
-    assert stage(7)["ROS_DOMAIN_ID"] == "7"
-    monkeypatch.setenv("ROS_DOMAIN_ID", str(DOMAIN))
-    monkeypatch.setattr("os.getpid", lambda: 41)
-    assert stage(None)["ROS_DOMAIN_ID"] == "42"
-
-
-@pytest.mark.usefixtures("port_in_use")
 def test_what_a_full_buffer_loses_is_counted() -> None:
     assert lost_here(DOMAIN) == 0
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
@@ -137,12 +101,6 @@ def test_each_loss_since_the_look_began_is_one(monkeypatch: pytest.MonkeyPatch) 
     losses = observe._Losses(session(1, lost=5))
     told_at = [losses.last(at) for at in (0.1, 0.2, 0.3, 0.4, 0.5)]
     assert told_at == [-inf, -inf, 0.3, 0.3, 0.5]
-
-
-def test_without_dds_nothing_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
-    assert participants_here(DOMAIN) in (0, None)
-    assert observe._enough(session(), 0.0, -inf) == assemble.QUIET_SECONDS
 
 
 def session(*participants: int, lost: int = 0) -> Any:

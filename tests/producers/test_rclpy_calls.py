@@ -192,17 +192,6 @@ def test_the_class_of_a_serialized_message_is_its_support_in_c(install: Install)
 
 
 @pytest.mark.parametrize(
-    ("name", "file"),
-    [
-        ("TFMessage", "tf_message"), ("String", "string"), ("PointCloud2", "point_cloud2"),
-        ("UInt8MultiArray", "u_int8_multi_array"), ("IMUData", "imu_data"),
-    ],
-)  # fmt: skip
-def test_a_type_has_the_file_name_that_rosidl_gives_it(name: str, file: str) -> None:
-    assert ros._file_name(name) == file
-
-
-@pytest.mark.parametrize(
     ("fields", "found"),
     [
         ("'header': 'std_msgs/Header',\n 'x': 'double'", True),

@@ -16,15 +16,13 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from graph_cases import qos
 
 from multibot_rewrite.base.model import InputError, Unusable
-from multibot_rewrite.producers.ros.assemble import TF_TYPES
 from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.producers.zenoh import observe
 from multibot_rewrite.producers.zenoh.observe import Router, look, watch
 from multibot_rewrite.producers.zenoh.session import NoRouter, RouterSession, opened
-from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Caveat, End, Node, System
+from multibot_rewrite.system.records import Node, System
 
 SESSION = "aac3178e146ba6f1fc6e6a4085e77f21"
 HASH = f"RIHS01_{'0' * 64}"
@@ -103,21 +101,6 @@ def seen_of(opens: Any, *keys: str, **asked: Any) -> System:
     silent = asked.pop("silent", False)
     opens(Session(keys, silent))
     return look(Request(asked.pop("timeout", 1.0), **asked), ROUTER)
-
-
-def test_the_tokens_of_the_domain_are_nodes_and_ends(opens: Any) -> None:
-    found = seen_of(opens, DRIVER, SCAN, OTHER)
-    assert [it.name for it in found.nodes] == ["/robot1/driver"]
-    assert [(it.node, it.role, it.name) for it in found.ends] == [
-        ("/robot1/driver", "publishes", "/scan")
-    ]
-    around = found.environment
-    assert (around.domain, around.rmw, around.discovery_server) == (
-        2,
-        "rmw_zenoh_cpp",
-        "tcp/h:7447",
-    )
-    assert (around.participants, around.settled, around.caveats) == (1, "quiet", ())
 
 
 def test_a_look_ends_when_the_expected_nodes_are_there(opens: Any) -> None:
@@ -215,13 +198,6 @@ def test_a_watch_ends_with_its_time_and_takes_its_subscription_back(opens: Any) 
     assert own.declared == []
 
 
-def test_a_session_has_a_router_or_the_peer_that_was_named() -> None:
-    for routers, peers, there in ((["r"], [], True), ([], ["p"], True), ([], [], False)):
-        info = SimpleNamespace(routers_zid=lambda own=routers: own, peers_zid=lambda own=peers: own)
-        session = RouterSession(ZENOH, SimpleNamespace(info=info), deque(), [])
-        assert session.connected() is there
-
-
 def test_what_is_received_is_delivered_on_the_thread_that_asks() -> None:
     session = Session(())
     own = RouterSession(ZENOH, session, deque(), [])
@@ -235,41 +211,6 @@ def test_what_is_received_is_delivered_on_the_thread_that_asks() -> None:
     (kept,) = own.declared
     end()
     assert kept.ended and own.declared == []
-
-
-@pytest.mark.parametrize(
-    ("heard", "passed", "seconds", "waits"),
-    [
-        (True, 0.49, 9.0, True), (True, 0.5, 9.0, False), (False, 0.5, 9.0, True),
-        (False, 2.9, 9.0, True), (False, 3.0, 9.0, False), (False, 0.1, 0.1, False),
-    ],
-)  # fmt: skip
-def test_a_silent_publisher_of_tf_is_waited_for_longer(
-    heard: bool, passed: float, seconds: float, waits: bool
-) -> None:
-    session = Session(())
-    listener = observe.ZenohTf(RouterSession(ZENOH, session, deque(), []), 2)
-    ends = [End(TOPIC, PUBLISHES, "/tf", TF_TYPES[0], "", it, qos(), "") for it in ("/a", "/b")]
-    other = ends[0]._replace(name="/other", type="std_msgs/msg/String")
-    listener.update([*ends, other, ends[0]._replace(role=SUBSCRIBES, name="/read")])
-    assert list(session.subscribed) == ["2/tf/tf2_msgs::msg::dds_::TFMessage_/*"]
-    listener._spoken["/tf"].update((b"1", b"2") if heard else (b"1",))
-    assert listener._waiting(passed, seconds) is waits
-
-
-@pytest.mark.parametrize(("spoken", "deaf"), [((), True), (("/a/tf",), False)])
-def test_nobody_heard_at_all_makes_a_view_incomplete(spoken: tuple[str, ...], deaf: bool) -> None:
-    listener = observe.ZenohTf(RouterSession(ZENOH, Session(()), deque(), []), 2)
-    names = ("/b/tf", "/a/tf")
-    listener.update(End(TOPIC, PUBLISHES, it, TF_TYPES[0], "", "/n", None, "") for it in names)
-    for it in spoken:
-        listener._spoken[it].add(b"1")
-    silent = ", ".join(sorted({*names} - {*spoken}))
-    text = (
-        f"no transform was heard on {silent}: the publishers are silent, or access control keeps us"
-        " from listening"
-    )
-    assert [*listener.caveats()] == [Caveat("frames-not-heard", deaf, text)]
 
 
 class ZError(Exception):

@@ -3,63 +3,44 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import pytest
 from given_parameters import run_given
 from lxml import etree
 
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
-from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.records import (
     UNKNOWN,
-    Claim,
     Endpoint,
     FrameParameter,
     NodeFacts,
-    Param,
     SentTransform,
 )
 from multibot_rewrite.producers.addresses import held_by, of_hardware, of_parameters
 from multibot_rewrite.producers.ends import (
     bridge_ends,
-    edge,
     edges_off,
-    run_alone,
 )
-from multibot_rewrite.producers.evidence.hardware import Exported, control_system
 from multibot_rewrite.producers.launch.beside_ends import prefix_of
-from multibot_rewrite.producers.launch.known_node import guessed_name, known_node, own_name
-from multibot_rewrite.producers.launch.launched import file_of
-from multibot_rewrite.producers.launch.models import Model, Models
+from multibot_rewrite.producers.launch.known_node import known_node
 from multibot_rewrite.producers.launch.records import (
-    LaunchGraph,
     LaunchNote,
-    ParameterText,
 )
 from multibot_rewrite.producers.launch.ros_arguments import params_text, ros2_run, ros_arguments
-from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import (
-    _addresses,
     _caveats,
     _clocks,
-    _frames,
     _measured,
     _Part,
     _refused,
-    _without_own_time,
 )
 from multibot_rewrite.producers.sensor_frames import sensor_frames, sensor_on
-from multibot_rewrite.spelling.of_runs import ends_of, lookups_of
 from multibot_rewrite.spelling.records import Given, Run
 from multibot_rewrite.system.records import (
     COMPUTER,
     DEVICE,
-    NOWHERE,
     OFF,
     PUBLISHES,
-    RUNS,
     SERVES,
     SERVICE,
     SUBSCRIBES,
@@ -67,15 +48,10 @@ from multibot_rewrite.system.records import (
     UNTOLD,
     Address,
     Caveat,
-    Controller,
     End,
     Heard,
-    Interface,
-    Lookup,
     Parameter,
     Place,
-    Sure,
-    edge_of,
 )
 
 AT, THERE = Place("p.yaml", 3), Place("p.yaml", 7)
@@ -84,33 +60,6 @@ AT, THERE = Place("p.yaml", 3), Place("p.yaml", 7)
 def given(name: str, known: str = "", manager: str = "", **values: object) -> Run:
     found = {key: Given(it, THERE) for key, it in values.items()}  # type: ignore[arg-type]
     return run_given(name, known, "", found, AT, manager)
-
-
-DRIVER = NodeFacts(
-    "a/driver",
-    "acme",
-    (
-        Endpoint(TOPIC, PUBLISHES, "scan", "a/msg/Scan", parameter="topic", also=("a/msg/Old",)),
-        Endpoint(TOPIC, SUBSCRIBES, "cmd", remapped="/cmd_vel"),
-        Endpoint(TOPIC, "", "~/either"),
-        Endpoint(TOPIC, PUBLISHES, "maybe", when="x"),
-        Endpoint(TOPIC, PUBLISHES, "<id>/made"),
-    ),
-)
-
-
-def test_the_ends_of_a_node_by_the_names_of_its_code() -> None:
-    run = run_alone(DRIVER, given("a/driver", topic="/scan"))
-    assert (run.robot, run.node, run.full_name) == ("", "a/driver", "/a/driver")
-    assert [(it.role, it.name, it.sure, it.place) for it in ends_of(run)] == [
-        (PUBLISHES, "/a/scan", RUNS, THERE),
-        (SUBSCRIBES, "/cmd_vel", RUNS, AT),
-        ("", "/a/driver/either", RUNS, AT),
-        (PUBLISHES, "/a/maybe", Sure("may", "x"), AT),
-    ]
-    first = next(ends_of(run))
-    assert (first.type, first.code_name, first.also) == ("a/msg/Scan", "scan", ("a/msg/Old",))
-    assert next(ends_of(run_alone(DRIVER, None))).place == NOWHERE
 
 
 def test_the_rows_of_a_bridge_in_a_namespace() -> None:
@@ -247,31 +196,6 @@ def test_what_a_known_class_opens_is_that_of_the_vocabulary(
 
 
 @pytest.mark.parametrize(
-    ("own", "other", "there"),
-    [
-        (None, None, True), (None, True, True), (True, None, False), (True, True, False),
-        (True, False, False), (False, True, True),
-    ],
-)  # fmt: skip
-def test_a_model_in_a_simulator_has_no_devices(
-    own: bool | None, other: bool | None, there: bool
-) -> None:
-    """``own`` and ``other``: whether this description, and another one, is put into a simulator."""
-    text = HARDWARE.format("acme/Arm", '<param name="robot_ip">10.0.0.2</param>')
-    reading: Any = None
-    found = tuple(
-        Model("m", it, reading, spawned, AT)
-        for it, spawned in ((text, own), ("<robot/>", other))
-        if spawned is not None
-    )
-    values = {"robot_description": Given(text, THERE)}
-    node = Run("", "n", "/r", "n", (), values=values, program="acme/arm", place=AT)
-    known = Knowledge({}, load_known_nodes("", "jazzy"), "jazzy")
-    made = [*_addresses(node, known, Models(found, ()))]
-    assert made == [Address("device", "robot_ip", "10.0.0.2", "/r/n", AT)] * there
-
-
-@pytest.mark.parametrize(
     ("role", "type_", "node", "heard"),
     [
         (PUBLISHES, "sensor_msgs/msg/Imu", "/a", True),
@@ -313,34 +237,6 @@ def test_what_a_launch_does_not_say_is_told_once() -> None:
     assert [*_refused(["/a (x)"])] == [Caveat("rcl-refuses", True, "rcl refuses 1 node: /a (x)")]
 
 
-def test_a_clock_that_nobody_sends_is_not_waited_for_in_a_simulator() -> None:
-    reads = End(TOPIC, SUBSCRIBES, "/clock", "", "", "/n", None, "simulator")
-    apart, sends = reads._replace(process="p"), reads._replace(role=PUBLISHES)
-    other = reads._replace(name="/scan")
-    assert [*_without_own_time([reads, apart, other])] == [apart, other]
-    assert [*_without_own_time([reads, sends])] == [reads, sends]
-
-
-def test_a_transform_of_several_nodes_is_one() -> None:
-    one, other = edge_of("p", "c"), edge_of("p", "d")
-    parts = [
-        _Part("/a", (), (("/tf", one), ("/tf", one), ("/tf", other))),
-        _Part("/b", (), (("/tf", one),)),
-    ]
-    assert [*_frames(parts)] == [
-        one._replace(topic="/tf", publishers=("/a", "/b"), several=True),
-        other._replace(topic="/tf", publishers=("/a",)),
-    ]
-
-
-def test_what_a_parameter_holds_for_one_node_alone() -> None:
-    known = {"port": Param("port", "exclusive"), "frame": Param("frame", "frame")}
-    values = {"port": Given(9090, THERE), "frame": Given("x", THERE), "other": Given(1, THERE)}
-    assert [*of_parameters("/n", known, values)] == [Address("own", "port", "9090", "/n", THERE)]
-    for off in ("", False, "no", " Off "):
-        assert [*of_parameters("/n", known, {"port": Given(off, AT)})] == []
-
-
 @pytest.mark.parametrize(
     ("switch", "values", "prefix"),
     [
@@ -361,16 +257,6 @@ def test_what_a_node_puts_before_its_frames(
     assert prefix_of(node._replace(fact=UNKNOWN)) == (
         f"{values['tf_prefix']}".strip("/") + "/" if values.get("tf_prefix") else ""
     )
-
-
-def test_the_file_of_a_text_that_a_launch_read() -> None:
-    texts = [
-        ParameterText("a", "x", ""),
-        ParameterText("b", "x", "b.urdf"),
-        ParameterText("c", "y", "c"),
-    ]
-    graph = LaunchGraph(files=tuple(("p", it) for it in texts))
-    assert (file_of(graph, "x"), file_of(graph, "y"), file_of(graph, "z")) == ("b.urdf", "c", "")
 
 
 WORDS_OF_DEVICES = (
@@ -436,36 +322,6 @@ def test_which_time_a_node_runs_on(
     assert untold == [Parameter("/n", "use_sim_time", UNTOLD)]
 
 
-BASE = NodeFacts(
-    "base", "c", (), claims=(Claim("command", "<joint>/velocity"), Claim("state", "x/y"))
-)
-
-
-def test_what_hardware_exports_and_controllers_claim() -> None:
-    sections = [
-        given("ns/base", "base", "m", joint="wheel"),
-        given("idle", "base", "m", joint="arm"),
-        given("no_controller", "base", joint="leg"),
-        given("strange", "unknown", "m"),
-    ]
-    exports = [Exported("command", "wheel/velocity", AT)]
-    found = control_system(sections, {"base": BASE}, exports, ["ns/base"])
-    assert found.controllers == (
-        Controller("/m", "base", "active", ("wheel/velocity",)),
-        Controller("/m", "idle", ""),
-        Controller("/m", "strange", ""),
-    )
-    assert found.interfaces[0] == Interface(
-        "command", "wheel/velocity", "/controller_manager", "exports", AT
-    )
-    assert [(it.kind, it.name, it.node, it.role) for it in found.interfaces[1:]] == [
-        ("command", "wheel/velocity", "/ns/base", "claims"),
-        ("state", "x/y", "/ns/base", "claims"),
-        ("command", "arm/velocity", "/idle", "claims"),
-        ("state", "x/y", "/idle", "claims"),
-    ]
-
-
 EKF = NodeFacts(
     "ekf",
     "acme",
@@ -477,15 +333,6 @@ EKF = NodeFacts(
     ),
     sends=(SentTransform("odom", "base", "publish_tf and sure"),),
 )
-
-
-def test_a_transform_is_on_the_tf_of_its_robot() -> None:
-    moving, fixed = edge_of("odom", "base"), edge_of("base", "lidar", True)
-    assert edge(moving, "/n", AT).topic == "/tf"
-    assert edge(fixed, "/n", AT).topic == "/tf_static"
-    assert edge(fixed, "/n", topic="/tf/a").topic == "/tf_static/a"
-    made = edge(fixed, "/n", AT)
-    assert (made.publishers, made.place, made.sure) == (("/n",), AT, RUNS)
 
 
 @pytest.mark.parametrize(
@@ -505,15 +352,6 @@ def test_a_transform_that_one_parameter_switches_off(
     assert [it.place for it in found] == places
     assert all((it.sure, it.parent, it.child) == (OFF, "odom", "base") for it in found)
     assert [*edges_off([given("ekf", "other", **values)], {"ekf": EKF})] == []
-
-
-def test_frames_that_a_node_looks_up() -> None:
-    values = given("ekf", map="/world", base="b", odom="").values
-    assert [*lookups_of(run_alone(EKF, None)._replace(values=values))] == [
-        Lookup("/ekf", "world", place=THERE)
-    ]
-    assert [*lookups_of(run_alone(EKF, None)._replace(values={"map": Given(5, AT)}))] == []
-    assert [*lookups_of(run_alone(EKF, None)._replace(values={"map": Given("", AT)}))] == []
 
 
 def test_words_that_rcl_reads() -> None:
@@ -612,10 +450,3 @@ def test_a_node_of_a_stack_comes_first_with_the_ends_of_its_program() -> None:
     part = known_node(launched("acme", "acme::Driver", "driver"), (own,), KNOWN)
     assert part is not None
     assert [it.name for it in part.endpoints] == ["b", "c"]
-
-
-def test_the_own_name_of_a_program() -> None:
-    it = launched("acme", "acme::Driver")
-    assert guessed_name(it) == "Driver"
-    assert own_name(it, None) == ""
-    assert own_name(it, KNOWN["driver"]) == "driver"

@@ -9,11 +9,9 @@ import pytest
 from launched_nodes import AT, started
 
 from multibot_rewrite.producers.launch.models import (
-    Model,
     Models,
     Published,
     frames_of_plugins,
-    managers,
     models_of,
     sent_by_plugins,
     sent_in_simulator,
@@ -63,11 +61,6 @@ def test_a_system_sends_the_transform_of_its_odometry(
     assert sent_in_simulator(spawned(text).found) == {topic: [edge_of(parent, child)]}
     only_published = models_of((), (Published(text, "/robot_description", AT),), "jazzy")
     assert sent_in_simulator(only_published.found) == {}
-
-
-def test_a_system_without_odometry_sends_no_transform() -> None:
-    for system in ("gz-sim-imu-system", "gz-sim-joint-state-publisher-system", "acme"):
-        assert sent_in_simulator(spawned(plugin(system, OWN)).found) == {}
 
 
 @pytest.mark.parametrize(
@@ -161,19 +154,6 @@ def test_the_model_that_a_spawner_is_told(tmp_path: Path) -> None:
     assert read_as(started("acme", "create", arguments=("-string", text))) == []
 
 
-def test_a_description_that_is_published_is_spawned_from_its_topic() -> None:
-    one, other = ROBOT.format(""), ROBOT.format("<static>true</static>")
-    published = (Published(one, "/a/robot_description", AT), Published(other, "/other", AT))
-    spawner = create("-topic", "robot_description", "-name", "bot")._replace(namespace="/a")
-    assert read_as(spawner, published=published) == [
-        ("bot", one, "spawned"), ("", other, "")
-    ]  # fmt: skip
-    away = create("-topic", "/nowhere")
-    assert read_as(away, published=published) == [
-        ("lost", "c"), ("", one, ""), ("", other, "")
-    ]  # fmt: skip
-
-
 def test_classic_gives_plugins_the_namespace_of_the_spawner() -> None:
     """gazebo_ros_factory.cpp, AddNamespace: in place of their own; the text stays as it is."""
     mine = "<ros><namespace>/mine</namespace></ros>"
@@ -184,28 +164,3 @@ def test_classic_gives_plugins_the_namespace_of_the_spawner() -> None:
         assert [*sent_by_plugins([model])] == ["/bot/drive"]
         assert model.text == text
     assert spawned("<no", "-robot_namespace", "/bot").found == ()
-
-
-def test_the_manager_that_a_plugin_makes() -> None:
-    """It has the files that its description names, simulated time and the rules of the plugin."""
-    inside = (
-        "<parameters>/c.yaml</parameters><ros><namespace>/a</namespace>"
-        "<remapping>~/odom:=odom</remapping></ros>{}"
-    )
-    files = {"/c.yaml": ParameterText("/c.yaml", "x"), "/d.yaml": ParameterText("/d.yaml", "y")}
-    own = "<controller_manager_name>m</controller_manager_name>"
-    for more, name in (("", "controller_manager"), (own, "m")):
-        text = plugin("gz_ros2_control-system", inside.format(more))
-        (model,) = spawned(text).found
-        (it,) = managers(model, files)
-        assert (it.package, it.executable) == ("controller_manager", "ros2_control_node")
-        assert (it.name, it.namespace, it.place) == (name, "/a", AT)
-        assert it.remappings == (("~/odom", "odom"),)
-        assert it.parameters == (
-            files["/c.yaml"],
-            ParameterText(
-                "", "/**:\n  ros__parameters: {use_sim_time: true, robot_description: <robot/>}\n"
-            ),
-        )
-    (other,) = spawned(plugin("gz-sim-imu-system")).found
-    assert isinstance(other, Model) and [*managers(other, files)] == []

@@ -6,9 +6,6 @@ from __future__ import annotations
 import pytest
 from launched_nodes import launched, started
 
-from multibot_rewrite.producers.launch.records import LaunchNote
-from multibot_rewrite.system.records import Place
-
 MANAGER = started("controller_manager", "ros2_control_node", namespace="/robot1")
 
 
@@ -31,16 +28,3 @@ def test_a_spawner_asks_for_a_manager_that_runs(words: tuple[str, ...], asked: s
     assert said == ([text] if asked else [])
     assert {it.manager for it in found.spawned.values()} == {"/robot1/controller_manager"}
     assert {"drive", "lift"} == set(found.spawned)
-
-
-def test_nothing_is_said_where_another_manager_may_run() -> None:
-    spawner = started("controller_manager", "spawner", arguments=("drive", "-c", "/x/manager"))
-    other = started("controller_manager", "ros2_control_node", namespace="/robot1/arm")
-    unread = LaunchNote(Place("/ws/bringup.launch.py", 3), "cannot be read")
-    for found in (
-        launched(spawner),
-        launched(MANAGER, other, spawner),
-        launched(MANAGER, spawner, notes=(unread,)),
-    ):
-        assert [it for it in found.findings if it.code == "MG723"] == []
-        assert [it.manager for it in found.spawned.values()] == ["/x/manager"]

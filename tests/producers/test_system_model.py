@@ -9,8 +9,7 @@ import pytest
 
 from multibot_rewrite import InputError
 from multibot_rewrite.producers.launch.child import launch_graph
-from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder, ParameterText
-from multibot_rewrite.system.records import Place
+from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder
 
 MODEL = """\
 meta: {version: 1}
@@ -34,25 +33,6 @@ def read(folder: Path, text: str) -> LaunchGraph:
     file = folder / "system_model.yaml"
     file.write_text(text)
     return launch_graph(LaunchOrder(str(file)))
-
-
-def test_its_nodes_are_what_runs(tmp_path: Path) -> None:
-    amcl, box, driver = read(tmp_path, MODEL).nodes
-    assert amcl[:5] == (
-        "nav2_amcl",
-        "nav2_amcl::AmclNode",
-        "amcl",
-        "/robot1",
-        (("scan", "front/scan"),),
-    )
-    assert amcl.container == "/robot1/box"
-    assert amcl.place == Place(str(tmp_path / "system_model.yaml"), 5)
-    first, last = amcl.parameters
-    assert first == ParameterText("", "amcl: {ros__parameters: {a: 1}}")
-    assert last.text == "/**:\n  ros__parameters:\n    use_sim_time: true\n    a: 1\n"
-    assert (box.name, box.container) == ("box", "")
-    # The last word of its key is its executable, not its name.
-    assert (driver.name, driver.namespace, driver.arguments) == ("", "/", ("--fast",))
 
 
 def test_a_process_without_a_package_is_a_note(tmp_path: Path) -> None:

@@ -153,7 +153,7 @@ def test_what_is_said_of_the_whole_robot_is_said_once_and_other_settings_are_tol
     assert len(tree_of(data).findall("gazebo")) == 1
     static = robot(link("a") + "\n<gazebo><static>true</static></gazebo>")
     made = join([Part(robot(link("base"))), Part(static, "base", prefix="p_")])
-    assert made.notes == ("<text>:2: <static> is now said of the whole robot",)
+    assert made.notes == ("<text>:2: <static> now applies to the whole robot",)
 
 
 def test_names_of_ros2_control_meet_and_take_the_prefix() -> None:
@@ -288,6 +288,11 @@ def test_what_a_robot_has_once_two_parts_may_not_both_have(case: str) -> None:
     assert b'name="b_x"' in join([Part(first, name="a"), Part(other, "base", prefix="b_")]).data
 
 
+_TURNS = '<joint name="j{0}" type="{0}"><parent link="base"/><child link="{1}"/></joint>'
+WHEELED = (
+    '<robot name="w"><link name="base"/><link name="wheel"/><link name="mast"/>'
+    f"{_TURNS.format('continuous', 'wheel')}{_TURNS.format('fixed', 'mast')}</robot>"
+)
 WRONG = {
     "one part": ([Part(ARM)], "one description alone"),
     "no link named": (
@@ -296,7 +301,11 @@ WRONG = {
     ),
     "a link like none": (
         [Part(ARM), Part(HAND, "xyz", prefix="h_")],
-        "no part before it has a link 'xyz'; it ends in tool",
+        "no part before it has a link 'xyz'; name another one, as tool",
+    ),
+    "a root and what turns": (
+        [Part(WHEELED), Part(HAND, prefix="h_")],
+        "name the link that it is fixed to with --at, as mast, base",
     ),
     "a link that is not there": (
         [Part(ARM), Part(HAND, "tol", prefix="h_")],

@@ -104,7 +104,7 @@ def test_the_proof_sees_a_joint_that_is_lost(monkeypatch: pytest.MonkeyPatch) ->
     wrong = {**vars(blocks), "driven": one_lost}
     faulty = FunctionType(blocks.one_system.__code__, wrong)
     monkeypatch.setattr("multibot_rewrite.description.joining.join.one_system", faulty)
-    with pytest.raises(ProofError, match="<ros2_control> 'r_driver' is not what it was"):
+    with pytest.raises(ProofError, match="<ros2_control> 'r_driver' is changed"):
         two()
 
 

@@ -231,7 +231,7 @@ MISSING = {
     "twist_mux {use_stamped: true, topics.a: {topic: cmd, timeout: 0.5, priority: 9}}": "",
     "twist_mux {topics.a: {topic: cmd, timeout: 0.5, priority: 9}}": "",
     "ekf_filter_node {frequency: 30.0}": (
-        "warning ekf_filter_node: there is none of odom0, pose0, twist0, imu0"
+        "warning ekf_filter_node: none of these is set: odom0, pose0, twist0, imu0"
     ),
     "ekf_filter_node {twist0: twist}": "",
     "controller_server {controller_plugins: [Follow]}": (

@@ -128,7 +128,7 @@ def test_a_fault_has_its_code_and_cause_in_every_source(name: str, source: str) 
     assert {*seen.codes} <= {fault.code, *fault.also}
 
 
-@pytest.mark.sample(1)
+@pytest.mark.sample(4)
 @pytest.mark.parametrize(
     "fault", [it for it in FAULTS if it.system in PLANS], ids=lambda it: it.name
 )
@@ -139,7 +139,7 @@ def test_with_its_plan_it_is_the_same_or_what_the_plan_has_and_is_not_there(faul
     assert fault.code in found.codes or lost, found
 
 
-@pytest.mark.sample(8)
+@pytest.mark.sample(16)
 @pytest.mark.slow
 @pytest.mark.parametrize("name", BUILT)
 def test_a_build_reads_it_back(name: str) -> None:

@@ -100,6 +100,107 @@ def test_a_relay_to_another_robot_is_why_it_has_two_senders() -> None:
     assert codes(told) == ["MG314"]
 
 
+FIX, POSE = "sensor_msgs/msg/NavSatFix", "geometry_msgs/msg/PoseWithCovarianceStamped"
+JOINTS, GOAL = "sensor_msgs/msg/JointState", "moveit_msgs/action/MoveGroup"
+READS_FIX = [f"/robot{it}/navsat subscribes /robot{it}/fix {FIX}" for it in "12"]
+LOCALIZERS = [
+    line
+    for it in ("amcl", "slam")
+    for line in (f"{it} publishes /robot1/tf {TF}", f"{it} subscribes /robot1/scan {SCAN}")
+]
+# The first finding, what it names, and what comes of it.
+CAUSES = {
+    "a receiver sends on another robot's topic": (
+        [*READS_FIX, *(f"/robot{it}/gps publishes /robot1/fix {FIX}" for it in "12"),
+         "frame_id robot2/gps on /robot1/fix",
+         *(f"transform robot{it}/base_link -> robot{it}/gps on /tf_static" for it in "12")],
+        "MG311", "/robot1/fix:=fix to /robot2/gps", "MG320",
+    ),
+    "two robots take start poses from one topic": (
+        [*(f"/robot{it}/amcl subscribes /initialpose {POSE}" for it in "12"),
+         *(f"/robot{it}/pilot publishes /robot{it}/initialpose {POSE}" for it in "12")],
+        "MG310", "/initialpose", "(MG303)",
+    ),
+    "SLAM beside a map server and amcl": (
+        [f"/robot1/map_server publishes /robot1/map {MAP}", f"/robot1/slam publishes /robot1/map {MAP}",
+         *(f"/robot1/{it}" for it in LOCALIZERS), f"/robot1/lidar publishes /robot1/scan {SCAN}",
+         "transform map -> odom on /robot1/tf by /robot1/amcl, /robot1/slam twice",
+         "transform odom -> base_link on /robot1/tf by /robot1/driver"],
+        "MG323", "/robot1/slam", "(MG408)",
+    ),
+    "a manager waits for the map server that a robot lacks": (
+        [*(f"/robot{it}/amcl subscribes /robot{it}/map {MAP}" for it in "12"),
+         *(f"/robot{it}/lifecycle_manager calls /robot{it}/map_server/change_state {STATE}"
+           for it in "12"),
+         f"/robot1/map_server publishes /robot1/map {MAP}",
+         f"/robot1/map_server serves /robot1/map_server/change_state {STATE}"],
+        "MG322", "robot2 has no map_server", "(MG304)",
+    ),
+    "a localizer runs without its namespace": (
+        [f"/amcl subscribes /scan {SCAN}", f"/amcl serves /amcl/change_state {STATE}",
+         f"/robot1/lidar publishes /robot1/scan {SCAN}",
+         f"/robot1/lifecycle_manager calls /robot1/amcl/change_state {STATE}"],
+        "MG304", "__ns:=/robot1", "(MG303)",
+    ),
+    "the same twice": (
+        ["/move_group", "/move_group", f"/move_group subscribes /joint_states {CLOUD}",
+         *(f"/robot{it}/jsb publishes /robot{it}/joint_states {CLOUD}" for it in "12")],
+        "MG301", "/move_group", "",
+    ),
+    "a frame is its own parent": (
+        [f"/stp publishes /tf_static {TF}", "transform map -> map on /tf_static by /stp"],
+        "MG416", "its own parent", "(MG403)",
+    ),
+    "nothing of a robot's controllers runs": (
+        [*(f"/robot2/{it} publishes /robot2/{it}/joint_states {JOINTS}" for it in "abc"),
+         *(f"/robot{at}/{it} subscribes /robot{at}/{part}/joint_states {JOINTS}"
+           for at in "12" for it, part in zip(("rsp", "pilot", "eyes"), "abc", strict=True))],
+        "MG322", "robot1 has no a", "",
+    ),
+    "one filter sends on a topic of its robot, all others on /tf": (
+        [*(f"/robot{at}/{it} publishes {topic} {TF}" for at, it, topic in (
+            (1, "rsp", "/tf"), (1, "amcl", "/tf"), (1, "ekf", "/robot1/tf"),
+            (2, "rsp", "/tf"), (2, "amcl", "/tf"), (2, "ekf", "/tf"))),
+         *(f"transform {parent} -> robot{at}/{child} on /tf by /robot{at}/rsp, /robot{at}/amcl"
+           for at in "12" for parent, child in (("map", "odom"), (f"robot{at}/base_link", "laser"))),
+         "transform robot1/odom -> robot1/base_link on /robot1/tf by /robot1/ekf",
+         "transform robot2/odom -> robot2/base_link on /tf by /robot2/ekf"],
+        "MG405", "/robot1/ekf sends tf on /robot1/tf, but the tf of robot1 is on /tf", "",
+    ),
+    "a root hangs on nothing": (
+        [*(f"/robot{at}/{it}" for at in "12" for it in ("rsp", "pilot", "eyes")),
+         *(f"/robot{at}/rsp publishes /tf_static {TF}" for at in "12"),
+         "transform world -> robot1/base_link on /tf_static by /robot1/rsp",
+         *(f"transform robot{at}/base_link -> robot{at}/arm on /tf_static by /robot{at}/rsp"
+           for at in "12")],
+        "MG328", "robot2 has no transform of base_link", "",
+    ),
+    "a planner outside calls below the server's node": (
+        [f"/robot1/move_group serves /robot1/move_action {GOAL}", "/robot2/move_group",
+         f"/robot2/move_group serves /robot2/move_action {GOAL}",
+         f"/planner calls /robot1/move_group/move_action {GOAL}",
+         f"/planner calls /robot2/move_action {GOAL}",
+         *(f"/robot{at}/base subscribes /robot{at}/cmd_vel {TWIST}" for at in "12"),
+         *(f"/robot{at}/pilot publishes /robot{at}/cmd_vel {TWIST}" for at in "12")],
+        "MG304", "/robot1/move_group/move_action:=/robot1/move_action", "",
+    ),
+    "a localizer moves another frame than the base": (
+        [f"/robot1/amcl subscribes /robot1/initialpose {POSE}",
+         f"/robot1/amcl publishes /robot1/tf {TF}", "/robot2/amcl",
+         "transform map -> robot1/odom on /robot1/tf by /robot1/amcl",
+         "transform odom -> base_link on /robot1/tf by /robot1/driver"],
+        "MG415", "odom_frame_id: odom of /robot1/amcl", "",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CAUSES)
+def test_one_cause_is_one_finding(name: str) -> None:
+    lines, code, words, below = CAUSES[name]
+    (it,) = found(*lines)
+    assert it.code == code and words in str(it) and below in it.hint
+
+
 def test_another_robots_description_explains_its_frames() -> None:
     rsp = [f"/robot{it}/rsp publishes /tf_static {TF}" for it in "12"]
     both = "by /robot1/rsp, /robot2/rsp twice"
@@ -138,6 +239,19 @@ def test_a_missing_node_explains_the_tree_that_it_joins() -> None:
         "running: transform wheel -> base_link on /robot1/tf by /robot1/amcl"
     )
     assert codes(check(plan, graph))[0] == "MG101"
+
+
+def test_several_nodes_that_do_not_run_are_one_line() -> None:
+    nodes = ("controller_manager", "joint_state_broadcaster", "gripper_controller")
+    lines = [f"planned: /robot1/{it}" for it in nodes] + [
+        "as planned: /robot1/rsp",
+        "planned: /robot2/x",
+    ]
+    plan, graph = read_example("\n".join([*lines, "running: /robot2/x"]))
+    (it,) = check(plan, graph)
+    assert it.code == "MG101" and all(f"/robot1/{one}" in it.message for one in nodes)
+    plan, graph = read_example("\n".join([*lines[1:], "running: /robot2/x"]))
+    assert codes(check(plan, graph)) == ["MG101", "MG101"]
 
 
 def test_tf_that_a_node_lacks_explains_the_frames_that_are_missed() -> None:

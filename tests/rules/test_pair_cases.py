@@ -461,7 +461,7 @@ def test_the_only_name_of_its_type_is_the_one_in_its_place() -> None:
         for it in check(*read_example(f"{lines}running: /robot1/a publishes /y/other {TEXT}"))
         if it.node == "/robot1/a"
     )
-    assert (found.code, found.names) == ("MG102", ("/robot1/x",))
+    assert (found.code, found.names) == ("MG102", ("/robot1/x", "/y/other"))
     assert "it publishes /y/other of that type" in found.hint
 
 

@@ -98,9 +98,8 @@ BRIDGE = f"/ros_gz_bridge publishes /clock {CLOCK}"
         (
             PAIR,
             [
-                f"MG501 error /{it}/amcl: on simulated time (use_sim_time), but no node publishes"
-                f" /clock: /{it}/amcl"
-                for it in ("robot1", "robot2")
+                "MG501 error /robot1/amcl: on simulated time (use_sim_time), but no node publishes"
+                " /clock: /robot1/amcl; the same for /robot2/amcl"
             ],
         ),
         (
@@ -282,9 +281,9 @@ DOOR = "acme_msgs/srv/Door"
 MANAGER = f"/robot1/lifecycle_manager calls /robot1/amcl/change_state {CHANGE}"
 LISTED = (
     "MG304 calls /robot1/amcl/change_state, which no node serves: /robot1/amcl is in its list, and"
-    " does not run{}; it waits for /robot1/amcl and activates nothing after it:"
-    " start it, or leave /robot1/amcl out of node_names of /robot1/lifecycle_manager"
+    " does not run{}; it waits for /robot1/amcl and activates nothing after it: start it{}"
 )
+LEFT_OUT = ", or leave /robot1/amcl out of node_names of /robot1/lifecycle_manager"
 LOCALIZES = (("initialpose", "geometry_msgs/msg/PoseWithCovarianceStamped"), ("tf", TF))
 SENDS = {it: f"{it} publishes /tf {TF}" for it in ("/robot1/a", "/robot1/b", "/robot2/b")}
 TWICE = (
@@ -370,9 +369,12 @@ ELSEWHERE = (
             ["MG316 no node sends /robot1/scan, and one sends /robot2/scan; start what sends it for"
              " the other robot"],
         ),
-        ((MANAGER,), [LISTED.format("")]),
-        ((MANAGER, "/robot1/amlc"), [LISTED.format("; /robot1/amlc runs")]),
-        ((MANAGER, "/amcl"), [LISTED.format("; /amcl runs")]),
+        ((MANAGER,), [LISTED.format("", LEFT_OUT)]),
+        ((MANAGER, "/robot1/amlc"), [LISTED.format("; /robot1/amlc runs", LEFT_OUT)]),
+        (
+            (MANAGER, "/amcl"),
+            [LISTED.format("; /amcl runs", " in the namespace, with -r __ns:=/robot1")],
+        ),
         (
             (f"/own calls /door {DOOR}", "/x"),
             ["MG304 calls /door, which no node serves; start the node that serves it, or leave out"
@@ -952,6 +954,12 @@ def has_no(robot: int, node: str) -> list[str]:
             (*made_of(1), *made_of(2, "lidar"), f"/robot2/lidar publishes /robot2/x {TEXT}"),
             [LACKS_SCAN],
         ),
+        # What sends the fixed frames, however few nodes; not of a robot made for other things.
+        (
+            ("/robot1/driver", "/robot1/robot_state_publisher", "/robot2/driver"),
+            has_no(2, "robot_state_publisher"),
+        ),
+        (("/robot1/robot_state_publisher", "/robot1/driver", "/robot1/arm", "/robot2/driver"), []),
         # A tool, and what is called after its process.
         ((*made_of(1), "/robot1/rviz2", *made_of(2)), []),
         ((*made_of(1), "/robot1/x_12345", *made_of(2), *made_of(3)), []),

@@ -3,8 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import pytest
 from told_faults import by_check, by_doctor, faults, tells
+
+from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.base.findings.selection import grouped as by_robots
 
 NAMED = {it.name: it for it in faults()}
 
@@ -22,6 +27,14 @@ def test_the_twin_is_healthy_and_the_fault_is_told(name: str) -> None:
         if tells(fault, found)
     }
     assert told == {"doctor", "check"} - {*fault.unknown}
+    without, planned = grouped(by_doctor(bad)), grouped(by_check(twin, bad))
+    # One cause is one line, also with a plan.
+    assert len(planned) <= max(1, len(without)), [str(it) for it in planned]
+    assert bool(planned) >= bool(without)
+
+
+def grouped(found: Iterable[Finding]) -> list[Finding]:
+    return by_robots(found, {f"robot{it}": f"robot{it}" for it in range(1, 4)})
 
 
 def test_of_a_hundred_nearly_all_can_be_told() -> None:

@@ -9,19 +9,15 @@ in getChildNodeOptions), and rcl takes a node's own arguments before those of it
 from __future__ import annotations
 
 import pytest
-from named_ends import named_ends
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.base.rosnames import bind, parse_remap, resolve_bound
-from multibot_rewrite.fleet.checks.meeting import robots_meet
-from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import load_stack
 from multibot_rewrite.live.rehearsal import stub_nodes
 from multibot_rewrite.spelling.records import Run, Table
 from multibot_rewrite.spelling.table import build_table
 from multibot_rewrite.spelling.way_checks import running_nodes
-from multibot_rewrite.spelling.ways import arguments, started
 
 ROBOTS = ("robot1", "robot2")
 
@@ -80,36 +76,6 @@ def test_the_lifecycle_manager_finds_a_server_in_its_namespace(release: str) -> 
     rules = dict(found(made(release), "lifecycle_manager_navigation").rules)
     assert rules["controller_server/change_state"] == "/robot1/controller_server/change_state"
     assert rules["smoother_server/change_state"] == "smoother_server_robot1/change_state"
-
-
-def test_the_command_puts_the_server_into_the_namespace() -> None:
-    it = next(it for it in started(made("lyrical")) if it.node.node == "controller_server")
-    words = arguments(it)
-    assert words[:3] == ["--ros-args", "-r", "__ns:=/robot1"]
-    assert not any("__node" in word for word in words)
-    assert any(word.startswith("local_costmap:costmap:=") for word in words)
-
-
-def test_a_shared_name_stays_the_same_from_a_namespace() -> None:
-    node = NodeFacts("driver", "acme", load_stack("amcl", "jazzy")[0].endpoints, apart=True)
-    naming = make_naming("L4", shared_topics=["map"])
-    table = build_table(ROBOTS, [node], naming, release="jazzy")
-    heard = {it.name for it in named_ends(table) if it.endpoint.name == "map"}
-    assert heard == {"/map"}
-
-
-def test_nodes_of_two_robots_with_one_name_are_reported() -> None:
-    nodes = [NodeFacts("driver_left", "acme", ()), NodeFacts("driver", "acme", ())]
-    naming = make_naming("L4")
-    table = build_table(("robot1", "left_robot1"), nodes, naming, release="jazzy")
-    (met,) = (*table.problems, *robots_meet(table, (), naming))
-    assert met.code == "MG301"
-    assert "/driver_left_robot1" in met.message
-
-
-def test_nodes_of_one_robot_alone_share_nothing() -> None:
-    nodes = [NodeFacts("driver_left", "acme", ()), NodeFacts("driver", "acme", ())]
-    assert not build_table(("robot1",), nodes, make_naming("L4"), release="jazzy").problems
 
 
 def test_a_rehearsal_places_a_costmap_as_its_code_does() -> None:

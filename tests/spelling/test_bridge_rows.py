@@ -180,12 +180,6 @@ def rows(text: str) -> list[dict[str, Any]]:
     return loaded
 
 
-def ros_names(made: Path) -> dict[str, str]:
-    """gz name -> ROS name of a robot's bridge."""
-    own = rows((made / "bridge.yaml").read_text())
-    return {it["gz_topic_name"]: it["ros_topic_name"] for it in own}
-
-
 def made_of(plugin: ET.Element, topics: Topics, release: str) -> set[tuple[str, ...]]:
     words = {it.tag: (it.text or "").strip() for it in plugin} | {"model": "hull1"}
     return {
@@ -195,6 +189,7 @@ def made_of(plugin: ET.Element, topics: Topics, release: str) -> set[tuple[str, 
     }
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize("release", RELEASES)
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_rows_are_the_topics_that_the_systems_make(
@@ -254,22 +249,6 @@ def test_a_default_topic_is_the_robots_own_in_ros(
     assert named | expected == named
 
 
-def test_systems_that_words_tell_apart_have_names_of_their_own_in_ros(tmp_path: Path) -> None:
-    link = "<link_name>fin_link</link_name>"
-    engines: list[tuple[str, str, str, Topics]] = [
-        ("buoyancy-engine", "BuoyancyEngine", f"<namespace>{it}</namespace>{link}", [])
-        for it in ("bow", "stern")
-    ]
-    made = build(tmp_path, description(engines), "tf-per-robot", "jazzy")
-    named = {
-        it["gz_topic_name"]: it["ros_topic_name"] for it in rows((made / "bridge.yaml").read_text())
-    }
-    words = [it.text for it in ET.parse(made / "thing.urdf").iter("namespace")]
-    assert [named[f"/model/{it}/buoyancy_engine"] for it in words] == [
-        f"/robot1/{it}/buoyancy_engine" for it in words
-    ]
-
-
 def test_what_is_not_bridged_is_said_with_the_reason(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -327,6 +306,7 @@ def fleets() -> list[tuple[str, str]]:
     ]
 
 
+@pytest.mark.sample(5)
 @pytest.mark.parametrize(("file", "layout"), [*fleets(), ("", "both"), ("", "postfix")])
 @pytest.mark.parametrize("model", ["", ", model: hull"])
 def test_plan_and_build_have_the_same_rows(
@@ -357,6 +337,7 @@ def test_plan_and_build_have_the_same_rows(
 EXAMPLES = sorted((FIXTURES.parent / "examples").rglob("fleet*.yaml"))
 
 
+@pytest.mark.sample(3)
 @pytest.mark.parametrize("fleet", EXAMPLES, ids=lambda it: f"{it.parent.name}-{it.stem}")
 def test_plan_and_build_of_an_example_have_the_same_topics(
     fleet: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]

@@ -11,7 +11,6 @@ from multibot_rewrite.spelling.domain_bridge import (
     beyond,
     bridge_files,
     crossings,
-    services_apart,
     with_bridges,
 )
 from multibot_rewrite.system.records import (
@@ -72,38 +71,6 @@ def test_what_is_read_in_a_domain_and_not_sent_there_crosses(
 
 
 @pytest.mark.parametrize(
-    ("topic", "robots"),
-    [
-        (Topic("/clock", bridge=(PUBLISHES,)), ["a/b", "c"]),
-        (Topic("/clock", bridge=(SUBSCRIBES,)), []), (Topic("/x", bridge=(PUBLISHES,)), []),
-    ],
-)  # fmt: skip
-def test_the_time_of_the_simulator_goes_to_each_other_domain(
-    topic: Topic, robots: list[str]
-) -> None:
-    type_ = "rosgraph_msgs/msg/Clock"
-    found = crossings(plan(topics=(topic,)), ())
-    assert found == [Crossing(it, "/clock", type_, False) for it in robots]
-
-
-@pytest.mark.parametrize(
-    ("role", "name", "code_name", "word", "out"),
-    [
-        (PUBLISHES, "/a/n/cmd_vel", "~/cmd_vel", "cmd_vel", True),
-        (SUBSCRIBES, "/a/scan", "scan", "/scan/", True),
-        (SUBSCRIBES, "/a/twist/cmd_vel", "/twist/cmd_vel", "twist/cmd_vel", False),
-    ],
-)
-def test_what_is_asked_for_goes_to_who_sends_it_or_out(
-    role: str, name: str, code_name: str, word: str, out: bool
-) -> None:
-    """A command comes from outside; a sensor's driver need not be in the plan."""
-    asked = end("/a/n", role, name)._replace(code_name=code_name)
-    found = crossings(plan(asked, end("/d/n", role, "/d/odom")), [word])
-    assert found == [Crossing("a/b", name, STRING, out)]
-
-
-@pytest.mark.parametrize(
     ("word", "told"), [("odon", "did you mean 'odom'?"), ("zzz", "add the node that has it")]
 )
 def test_what_is_asked_for_and_no_robot_has_is_refused(word: str, told: str) -> None:
@@ -139,17 +106,3 @@ def test_a_bridge_has_a_node_in_each_domain_and_a_file() -> None:
         "  /map:", f"    type: {MAP}", "    from_domain: 4", "    to_domain: 5", kept, "",
     ]  # fmt: skip
     assert [*bridge_files(made)] == [("domain_bridge/a_b_bridge.yaml", "\n".join(text).encode())]
-
-
-def test_services_do_not_cross() -> None:
-    """One that is served in the domain of who calls it is not told, nor one that nobody serves."""
-    apart, near = end("/all", CALLS, "/x", kind=SERVICE), end("/all", CALLS, "/y", kind=SERVICE)
-    lost = end("/all", CALLS, "/z", kind=SERVICE)
-    served = (
-        end("/a/n", SERVES, "/x", kind=SERVICE), end("/c/n", SERVES, "/x", kind=SERVICE),
-        end("/a/n", SERVES, "/y", kind=SERVICE), end("/d/n", SERVES, "/y", kind=SERVICE),
-        end("/a/n", SERVES, "/z"),
-    )  # fmt: skip
-    found = plan(apart, near, lost, *served)
-    assert [*services_apart(found)] == [(apart, 4, 5)]
-    assert [*services_apart(found._replace(domains=()))] == []

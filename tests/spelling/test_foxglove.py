@@ -80,12 +80,6 @@ def test_links_without_a_prefix_get_that_of_the_robot(tmp_path: Path) -> None:
     assert [it["framePrefix"] for it in layers.values()] == ["robot1/", "robot2/"]
 
 
-def test_frames_of_one_name_give_no_layout() -> None:
-    robots = tuple(Robot(it, ("odom", "base_link"), f"/{it}/tf") for it in ("robot1", "robot2"))
-    assert not to_layout(System(layout="tf-per-robot", robots=robots))
-    assert to_layout(System(layout="tf-per-robot", robots=robots[:1]))
-
-
 def sends(node: str, name: str, type_: str, role: str = PUBLISHES) -> End:
     return End(TOPIC, role, name, type_, "", node, None, "")
 
@@ -182,20 +176,6 @@ def test_the_whole_layout_of_a_small_plan() -> None:
 
 
 @pytest.mark.parametrize(
-    "type_",
-    [
-        "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2", "nav_msgs/msg/OccupancyGrid",
-        "nav_msgs/msg/Path", "geometry_msgs/msg/PolygonStamped", "geometry_msgs/msg/PoseArray",
-        "visualization_msgs/msg/Marker", "visualization_msgs/msg/MarkerArray",
-    ],
-)  # fmt: skip
-def test_what_a_3d_panel_draws(type_: str) -> None:
-    """packages/suite-base/src/panels/ThreeDeeRender/renderables of lichtblick."""
-    made = json.loads(to_layout(PLAN._replace(ends=(sends("/a/driver", "/a/x", type_),))))
-    assert "/a/x" in made["configById"]["3D!a"]["topics"]
-
-
-@pytest.mark.parametrize(
     ("edges", "shared", "frame"),
     [
         ((edge_of("map", "odom"), edge_of("site", "map")), ("map", "site"), "map"),
@@ -209,7 +189,3 @@ def test_robots_stand_in_what_they_share(
     edges: tuple[Edge, ...], shared: tuple[str, ...], frame: str
 ) -> None:
     assert world_of_plan(PLAN._replace(edges=edges, shared_frames=shared)) == frame
-
-
-def test_nothing_stands_nowhere() -> None:
-    assert world_of_plan(System()) == ""

@@ -7,7 +7,6 @@ The schema that editors read marks what the reader refuses.
 from __future__ import annotations
 
 import json
-import re
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -22,7 +21,7 @@ from multibot_rewrite.base import editors
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.spelling.plan import HEAD, is_fleet, read_plan, robot_words, to_yaml, vacuous
+from multibot_rewrite.spelling.plan import HEAD, read_plan, to_yaml
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import (
@@ -189,20 +188,6 @@ def test_any_text_comes_back(name: str, word: str, type_: str, value: object) ->
         assert read_plan(data, "plan") == plan
 
 
-def test_what_is_as_usual_is_not_written() -> None:
-    bare = System(nodes=(Node("/a/x", robot="a"),), robots=(Robot("a"),), layout="both")
-    made = to_yaml(bare).removeprefix(HEAD)
-    assert made == "schema: 3\nlayout: both\nrobots:\n- name: a\n  nodes:\n  - {name: /a/x}\n"
-    odd = System(nodes=(Node("/no", robot="no"),), robots=(Robot("no"), Robot("a: b")), layout="x")
-    assert '- name: "no"\n' in to_yaml(odd) and '- {name: "a: b"}\n' in to_yaml(odd)
-
-
-def test_json_has_a_robot_a_line() -> None:
-    lines = to_json(PLAN).decode().splitlines()
-    assert [lines[at + 1].startswith('  {"name": "r1", "frames": [') for at, it in enumerate(lines)
-            if it == ' "robots": ['] == [True]  # fmt: skip
-
-
 DRIVES, R1 = "robots[0].nodes[0]", "robots[0]"
 
 
@@ -281,56 +266,6 @@ def test_a_plan_without_a_layout_is_none() -> None:
         read_plan(TEXT.replace("layout: tf-per-robot\n", "").encode(), "p")
 
 
-def test_what_is_below_something_is_its() -> None:
-    """Also in JSON, where such objects are read by a shorter way; what says more has it."""
-    nodes = '{"name": "/x"}, {"name": "/r1/y", "robot": "r1"}'
-    ends = '{"kind": "topic", "role": "publishes", "name": "/t", "type": "T", "node": "/far"}'
-    below = (
-        f'{{"name": "r1", "nodes": [{{"name": "/r1/z", "ends": [{ends}]}}, {{"name": "/r1/w"}}]}}'
-    )
-    text = f'{{"schema": 3, "layout": "both", "robots": [{below}], "nodes": [{nodes}]}}'
-    plan = read_plan(text.encode(), "p")
-    assert [(it.name, it.robot) for it in plan.nodes] == [
-        ("/r1/z", "r1"), ("/r1/w", "r1"), ("/x", ""), ("/r1/y", "r1"),
-    ]  # fmt: skip
-    assert [it.node for it in plan.ends] == ["/far"]
-    said = TEXT.replace("name: /r1/y, ", "name: /r1/y, node: /r1/arm, ")
-    assert read_plan(said.encode(), "p").ends[1].node == "/r1/arm"
-
-
-def test_what_is_below_something_may_be_taken_out() -> None:
-    text = re.sub("{use_sim_time.*}", "", TEXT)
-    rows = [
-        it for it in text.splitlines() if not it.startswith(("    - [", "    - {kind", "  - [s"))
-    ]
-    left = "\n".join(rows)
-    plan = read_plan(left.encode(), "p")
-    assert ([it.name for it in plan.ends], len(plan.parameters)) == (["/z"], 1)
-    assert marked(left) == []
-
-
-@pytest.mark.parametrize("value", ["2024-01-01", "{2024-01-01: 1}", "!!binary aGk=", "!!set {a}"])
-def test_what_only_yaml_has_is_refused_in_one_line(value: str) -> None:
-    for key in ("layout: tf-per-robot", "release: jazzy", "host: pc", "place: ../a.yaml:3"):
-        assert key in TEXT
-        text = TEXT.replace(key, f"{key.partition(':')[0]}: {value}")
-        with pytest.raises(InputError, match=r"\Ap: [^\n]*(?:expected|unknown key)[^\n]*\Z"):
-            read_plan(text.encode(), "p")
-
-
-@pytest.mark.parametrize("state", ["unconfigured", "inactive", "active", "finalized"])
-def test_a_state_of_a_life_cycle_is_a_primary_one(state: str) -> None:
-    """lifecycle_msgs/msg/State."""
-    text = TEXT.replace("lifecycle: active", f"lifecycle: {state}")
-    assert read_plan(text.encode(), "p").nodes[0].lifecycle == state
-
-
-@pytest.mark.parametrize("policy", ["history", "reliability", "durability", "liveliness"])
-def test_a_policy_may_be_written_in_small_letters(policy: str) -> None:
-    text = TEXT.replace("durability: VOLATILE", f"{policy}: volatile")
-    assert read_plan(text.encode(), "p").topics[0].qos == ((policy, "VOLATILE"),)
-
-
 OLD = """\
 distro: jazzy
 layout: both
@@ -373,64 +308,3 @@ def test_a_plan_in_json_is_no_graph(tmp_path: Path, capsys: pytest.CaptureFixtur
     plan.write_bytes(to_json(PLAN))
     assert main(["check", str(plan), "--from", str(plan)]) == 2
     assert "plan.json: a plan; use multibot check" in capsys.readouterr().err
-
-
-def test_a_fleet_file_is_told_from_a_plan() -> None:
-    for fleet in (
-        b"robots:\n- name: a",
-        b"robots: [a]",
-        b"robots: # x\n\n# y\n  - a",
-        b"include: a",
-    ):
-        assert is_fleet(fleet)
-    for other in (b"robots:\n  a: {}", b"x: [a]", b"  include: a", TEXT.encode()):
-        assert not is_fleet(other)
-
-
-def test_a_plan_that_tests_nothing_says_so() -> None:
-    def idle(*nodes: Node) -> str:
-        return vacuous(System(nodes=nodes, robots=(Robot("a"), Robot("b"))))
-
-    assert vacuous(System()) == "no robot is planned"
-    assert idle() == "a, b have no node that must run"
-    assert idle(Node("/a/x", robot="a"), Node("/b/x", robot="b", sure=MAY)) == (
-        "b has no node that must run"
-    )
-    either = MAY._replace(instead=("/b/x", "/b/y"))
-    assert idle(Node("/a/x", robot="a"), Node("/b/x", robot="b", sure=either)) == ""
-
-
-def test_words_that_stand_for_a_robot() -> None:
-    assert robot_words(PLAN) == {"r1": "r1", "b1": "r1"}
-    assert robot_words(System(robots=(Robot("a"),))) == {"a": "a"}
-
-
-def test_the_example_of_the_page_is_a_plan() -> None:
-    page = (ROOT / "docs" / "plan.md").read_text()
-    example = page.partition("```yaml\n")[2].partition("```")[0]
-    assert marked(example) == []
-    plan = read_plan(example.encode(), "plan.md")
-    assert to_yaml(plan).removeprefix(HEAD) == example
-
-
-def test_a_plan_in_a_file_names_its_schema(tmp_path: Path) -> None:
-    words = ["plan", str(FIXTURES / "robots" / "rover.urdf"), "robot1", "robot2"]
-    plan = tmp_path / "plan.yaml"
-    assert main([*words, "-o", str(plan)]) == 0
-    first, text = plan.read_text().split("\n", 1)
-    named = first.removeprefix("# yaml-language-server: $schema=")
-    assert json.loads((tmp_path / named).read_text()) == SCHEMA
-    assert marked(text) == []
-    assert main([*words, "-o", str(tmp_path / "plan.json")]) == 0
-    assert yaml.safe_load(text) == json.loads((tmp_path / "plan.json").read_bytes())
-
-
-def test_a_built_plan_names_the_schema_beside_it(tmp_path: Path) -> None:
-    """A relative path: a build is the same on every machine."""
-    out = tmp_path / "out"
-    fleet = ROOT / "examples" / "launch_tutorial" / "fleet.yaml"
-    assert main(["build", str(fleet), "-o", str(out)]) == 0
-    first = (out / "plan.yaml").read_text().partition("\n")[0]
-    named = out / first.removeprefix("# yaml-language-server: $schema=")
-    assert named.parent == out and json.loads(named.read_text()) == SCHEMA
-    assert marked((out / "plan.yaml").read_text()) == []

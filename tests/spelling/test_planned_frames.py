@@ -40,8 +40,3 @@ def test_a_default_frame_of_a_node_may_come(default: str, planned: bool) -> None
     assert others("postfix", default) - others("postfix") == (
         {"laser/robot1"} if planned else set()
     )
-
-
-def test_what_all_share_and_what_is_declared_is_no_further_frame() -> None:
-    assert others("postfix", "map") == others("postfix")
-    assert others("tf-per-robot", "base_link") == others("tf-per-robot")

@@ -14,11 +14,7 @@ from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.records import Run, Table
 from multibot_rewrite.spelling.table import build_table
 from multibot_rewrite.system.records import (
-    ACTION,
-    CALLS,
     PUBLISHES,
-    SERVES,
-    SERVICE,
     SUBSCRIBES,
     TOPIC,
 )
@@ -77,13 +73,6 @@ def test_who_asks_for_one_image_transport_by_name_meets_the_camera(transport: st
         assert [*other] == [(asked, targets[asked])]
 
 
-def test_what_is_no_image_transport_is_a_name_of_its_own() -> None:
-    camera = node("camera", Endpoint(TOPIC, PUBLISHES, "image_raw", transport=True))
-    assert len(rules(table("postfix", camera))) == 1 + len(TRANSPORTS)
-    viewer = node("viewer", Endpoint(TOPIC, SUBSCRIBES, "image_raw/rectified"))
-    assert rules(table("postfix", viewer)) == {"image_raw/rectified": "image_raw/rectified/robot1"}
-
-
 # Names that are made at run time.
 
 
@@ -106,11 +95,6 @@ def test_a_name_made_at_run_time_gets_no_postfix(name: str) -> None:
     assert problems(made) == [("MR101", "driver")]
 
 
-def test_a_name_made_at_run_time_under_a_condition_is_not_told() -> None:
-    endpoint = Endpoint(TOPIC, PUBLISHES, "<sensor>/image", when="debug")
-    assert problems(table("postfix", node("driver", endpoint))) == []
-
-
 # Names of two robots that are alike.
 
 
@@ -126,32 +110,3 @@ def alike(*pairs: tuple[str, Sequence[Endpoint]]) -> Table:
 
 def both(first: Endpoint, second: Endpoint) -> list[tuple[str, str]]:
     return problems(alike(("robot1", [first]), ("robot2", [second])))
-
-
-DATA, SERVERS = [("MG320", "/robot1_plugin")], [("MG305", "/robot1_plugin")]
-
-
-@pytest.mark.parametrize("name", ["/reset", "reset"])
-def test_a_topic_and_a_service_of_one_name_do_not_meet(name: str) -> None:
-    topic, service = Endpoint(TOPIC, PUBLISHES, name), Endpoint(SERVICE, SERVES, name)
-    assert both(topic, service) == []
-    assert both(service, topic) == []
-
-
-@pytest.mark.parametrize(
-    ("first", "second", "found"),
-    [
-        (Endpoint(TOPIC, PUBLISHES, "/reset"), Endpoint(TOPIC, SUBSCRIBES, "/reset"), DATA),
-        (Endpoint(SERVICE, SERVES, "/reset"), Endpoint(SERVICE, CALLS, "/reset"), SERVERS),
-        (Endpoint(ACTION, SERVES, "/reset"), Endpoint(ACTION, CALLS, "/reset"), SERVERS),
-    ],
-)
-def test_names_of_one_kind_meet(
-    first: Endpoint, second: Endpoint, found: list[tuple[str, str]]
-) -> None:
-    assert both(first, second) == found
-
-
-def test_a_topic_and_a_service_that_each_meet_are_two_problems() -> None:
-    ends = [Endpoint(TOPIC, PUBLISHES, "/reset"), Endpoint(SERVICE, SERVES, "/reset")]
-    assert problems(alike(("robot1", ends), ("robot2", ends))) == DATA + SERVERS

@@ -67,10 +67,6 @@ def test_the_arguments_of_what_is_started() -> None:
     )
 
 
-def test_a_table_without_nodes_has_no_lines() -> None:
-    assert FORMS["ros-args"](TABLE._replace(runs=())) == ""
-
-
 def test_the_data_of_a_table() -> None:
     data = json.loads(FORMS["json"](TABLE))
     assert list(data) == ["layout", "distro", "robots", "names", "problems"]

@@ -3,12 +3,10 @@
 
 from __future__ import annotations
 
-import re
-
 import pytest
 
 from multibot_rewrite.base.naming import Policy
-from multibot_rewrite.fleet.fleet import make_fleet, merge
+from multibot_rewrite.fleet.fleet import make_fleet
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.records import Run, Table
 from multibot_rewrite.spelling.way_checks import not_taken
@@ -33,29 +31,6 @@ def codes(
     stacks = [stack] if stack else []
     made = make_fleet(description(*rules), ["robot1", "robot2"], stacks, policy, release=release)
     return [(it.code, it.robot) for it in made.table.problems if it.code.startswith("MR1")]
-
-
-@pytest.mark.parametrize(
-    ("release", "found"),
-    [("humble", []), ("jazzy", []), ("kilted", []), ("lyrical", ["MR105"]), ("rolling", ["MR105"])],
-)
-def test_the_tag_alone_is_not_enough_since_lyrical(release: str, found: list[str]) -> None:
-    # The rewrite puts /tf:=tf into the tag.
-    made = make_fleet(description(), ["robot1", "robot2"], [], LAYOUT, release=release)
-    about_tf = [it.code for it in made.table.problems if re.search(r"/tf\b", it.message)]
-    assert about_tf == found
-
-
-@pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
-def test_with_the_controllers_stack_a_spawner_has_the_rule(release: str) -> None:
-    assert codes(release, stack="gz_ros2_control") == []
-
-
-def test_on_humble_the_second_robot_has_the_rules_of_the_first() -> None:
-    wanted = [("MR105", "robot2")]
-    found = codes("humble", stack="gz_ros2_control", policy=NEITHER)
-    assert found and set(found) <= {("MR105", "robot1"), *wanted}
-    assert wanted[0] in found
 
 
 @pytest.mark.sample(1)
@@ -85,16 +60,6 @@ def test_a_rule_for_a_controller(release: str, rule: str, stack: str, found: lis
     assert sorted({code for code, _ in codes(release, rule, stack=stack)}) == found
 
 
-def test_robots_of_different_stacks_are_looked_at_together() -> None:
-    alone = [
-        make_fleet(description(), [robot], [stack], NEITHER, release="humble")
-        for robot, stack in (("robot1", "gz_ros2_control"), ("robot2", "ros2_control"))
-    ]
-    assert not [it for made in alone for it in made.table.problems if it.robot == "robot2"]
-    found = merge(alone).table.problems
-    assert {it.robot for it in found if it.code == "MR105"} == {"robot2"}
-
-
 def test_each_robot_of_a_description_is_looked_at() -> None:
     robots = [f"robot{at}" for at in range(1, 6)]
     stacks = ["gz_ros2_control"]
@@ -122,17 +87,6 @@ def hosted(robot: str, *names: Name, **home: str) -> Table:
 def named(name: str, meant: str, **more: str) -> Name:
     end = {"kind": TOPIC, "role": PUBLISHES, "name": name, **more}
     return Endpoint(**end), meant
-
-
-def test_of_nodes_that_all_robots_have_two_tell_enough() -> None:
-    alone = [hosted(it, named("/x", f"/{it}/x")) for it in ("a", "b", "c", "d")]
-    runs = tuple(it for table in alone for it in table.runs)
-    found = list(not_taken(alone[0]._replace(runs=runs)))
-    assert [(it.robot, it.node, it.names) for it in found] == [
-        ("a", "map", ("/x",)), ("b", "map", ("/x",)),
-    ]  # fmt: skip
-    assert found[0].message == "on jazzy no rule reaches it for /x, though one is written"
-    assert found[0].hint == "give its rules to the process of server"
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@ from multibot_rewrite.knowledge.controller_ways import CONTROLLER_WAYS
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.spelling.records import Run, Table
 from multibot_rewrite.spelling.table import build_table
-from multibot_rewrite.spelling.way_checks import is_stand_in, running_nodes
+from multibot_rewrite.spelling.way_checks import running_nodes
 from multibot_rewrite.spelling.ways import deliveries, rules_by_taker
 from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SUBSCRIBES, TOPIC
 
@@ -93,60 +93,11 @@ def test_the_rules_of_a_plugin_reach_its_controllers_or_not(
     assert running(made, "base_controller", "spawner").rules == rules
 
 
-@pytest.mark.parametrize(
-    ("role", "theirs"), [(PUBLISHES, True), ("", True), (SUBSCRIBES, False), (CALLS, False)]
-)
-def test_what_a_plugin_publishes_is_of_its_controllers(role: str, theirs: bool) -> None:
-    end = Endpoint(TOPIC, role, "odom")
-    assert is_stand_in(tag("robot1"), end) is theirs
-    assert not is_stand_in(Run("robot1", "n", "/robot1", "n", ()), end)
-
-
-def test_what_is_forwarded_comes_before_the_spawners_rules() -> None:
-    made = table("jazzy", MANAGER, BASE, tags=("/tf:=ROBOT",))
-    assert running(made, "base_controller").rules == (("/tf", "robot2"), ("/tf", "tf"))
-
-
-@pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
-def test_a_plugin_and_the_stack_are_one_node_in_the_plugin(release: str) -> None:
-    made = table(release, MANAGER, BASE, tags=("a:=b",))
-    assert stands(made, "controller_manager") == [("plugin", "controller_manager", (("a", "b"),))]
-    assert running(made, "controller_manager").rules == (("a", "b"),)
-
-
 def test_a_tag_has_what_is_written_there_and_not_what_a_controller_wants() -> None:
     made = table("humble", MANAGER, BASE, tags=("a:=b",))
     assert stands(made, "base_controller")[0][:2] == ("plugin", "controller_manager")
     standing = rules_by_taker(deliveries(made))
     assert standing["robot2", "controller_manager"] == (("a", "b"),)
-
-
-def test_a_plugins_node_has_its_own_rules_before_those_of_the_process() -> None:
-    made = table("jazzy", MANAGER, tags=("/x:=ROBOT",))
-    assert running(made, "controller_manager").rules == (("/x", "robot2"), ("/x", "robot1"))
-    made = table("humble", MANAGER, tags=("/x:=ROBOT",))
-    assert running(made, "controller_manager").rules == (("/x", "robot1"),)
-
-
-def test_a_hosted_node_has_the_rules_of_its_hosts_process_which_name_it() -> None:
-    made = table("jazzy", SERVER, COSTMAP)
-    own = ("map:/tf", "/robot2/tf")
-    helpers = ("/tf", "/robot2/tf")
-    at = ("host", "controller_server")
-    assert stands(made, "map/map") == [(*at, (own,)), (*at, (helpers,))]
-    rules = (own, helpers, ("/cmd", "cmd"))
-    assert running(made, "map/map").rules == rules
-    assert running(made, "controller_server").rules == rules
-    # A helper node in it has no namespace but the process's.
-    assert running(made, "map/map").process_namespace == "/robot2"
-    assert helpers in running(made, "map/map").process_rules
-
-
-def test_a_helper_needs_no_rule_that_its_process_has() -> None:
-    server = SERVER._replace(endpoints=(TF,))
-    made = table("jazzy", server, COSTMAP)
-    assert stands(made, "map/map") == [("host", "controller_server", (("map:/tf", "/robot2/tf"),))]
-    assert ("/tf", "tf") in running(made, "map/map").process_rules
 
 
 def composed(release: str) -> Table:
@@ -174,33 +125,3 @@ def test_a_container_has_all_rules_of_an_action_that_a_helper_calls() -> None:
     names = ["spin", *(f"spin/_action/{it}" for it in parts)]
     rules = dict(running(table("jazzy", BOX, navigator), "box").process_rules)
     assert rules == {f"/{it}": it for it in names}
-
-
-@pytest.mark.parametrize(
-    ("release", "taker"), [("kilted", "box"), ("lyrical", "controller_server")]
-)
-def test_a_costmap_of_a_component(release: str, taker: str) -> None:
-    made = composed(release)
-    own = ("map:/tf", "/robot2/tf")
-    assert stands(made, "map/map")[0] == ("host", taker, (own,))
-    assert stands(made, "map/map")[1] == ("host", "box", (("/tf", "/robot2/tf"),))
-    assert own in running(made, "map/map").rules
-
-
-def test_a_host_that_does_not_run_takes_nothing() -> None:
-    assert stands(table("jazzy", COSTMAP), "map/map")[0][:2] == ("process", "map/map")
-    alone = table("humble", BASE)
-    assert running(alone, "base_controller").rules == (("base_controller:/tf", "tf"),)
-
-
-@pytest.mark.parametrize("left", ["process", "host", "component", "spawner", "plugin"])
-def test_the_rules_of_a_way_can_be_left_out(left: str) -> None:
-    made = table("lyrical", MANAGER, BASE, SERVER, COSTMAP, tags=("a:=b",))
-    there = {
-        "process": ("/cmd", "cmd") in running(made, "controller_server", left).rules,
-        "host": ("map:/tf", "/robot2/tf") in running(made, "map/map", left).rules,
-        "component": ("/tf", "tf") in running(composed("lyrical"), "amcl", left).rules,
-        "spawner": ("/tf", "tf") in running(made, "base_controller", left).rules,
-        "plugin": ("a", "b") in running(made, "controller_manager", left).rules,
-    }
-    assert {way for way, found in there.items() if not found} == {left}

@@ -284,7 +284,7 @@ def place_rows() -> tuple[Fault, ...]:
         ),
         Fault(
             "amcl has no scan", nav, both(scan, without_edge("odom", "/robot1/tf")),
-            "MG415", ("/robot1/amcl", "waits for /robot1/scan"), ERROR, ("MG303",),
+            "MG303", ("/robot1/amcl", "subscribes to /robot1/scan"), ERROR, ("MG415",),
         ),
         Fault(
             "amcl's odom_frame_id is misspelled", single,

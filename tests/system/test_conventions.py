@@ -14,14 +14,10 @@ from multibot_rewrite.base.conventions import (
     FRAMES,
     TOOLS,
     TOPICS,
-    chooses,
-    is_from_outside,
     is_tool_word,
     only_looks,
-    team,
     tool_patterns,
 )
-from multibot_rewrite.base.naming import affix, make_naming
 
 FRAME_WORDS = {it.name for it in FRAMES}
 
@@ -46,21 +42,6 @@ def test_every_row_has_its_source() -> None:
     assert all(it.source for rows in (TOPICS, FRAMES, TOOLS) for it in rows)
 
 
-@pytest.mark.parametrize("frame", ["map", "world", "earth", "/earth", "utm"])
-def test_a_frame_of_the_world_is_no_robots(frame: str) -> None:
-    assert affix(make_naming("frames-per-robot"), "frame", frame) is None
-
-
-@pytest.mark.parametrize("frame", ["odom", "odom_combined", "base_link", "local_enu"])
-def test_a_frame_of_a_robot_gets_its_name(frame: str) -> None:
-    assert affix(make_naming("frames-per-robot"), "frame", frame) is not None
-
-
-def test_one_who_looks_is_a_tool() -> None:
-    looking = [it.pattern.replace("*", "x") for it in TOOLS if it.looks]
-    assert [it for it in looking if not (is_tool_word(it) and only_looks(it))] == []
-
-
 @pytest.mark.parametrize(
     ("node", "tool", "looks"),
     [
@@ -83,16 +64,3 @@ def test_a_pattern_inside_another_is_not_said_twice() -> None:
     assert "rosbag2_*" in tool_patterns()
     assert "rosbag2_recorder*" not in tool_patterns()
     assert "_ros2cli_*" not in tool_patterns()
-
-
-def test_who_takes_turns_is_one_sender() -> None:
-    assert team("/robot1/behavior_server") == team("/velocity_smoother_robot1")
-    assert team("/robot1/move_group") != team("/robot1/behavior_server")
-    assert team("/robot1/driver") == "/robot1/driver"
-    assert chooses("/robot1/twist_mux")
-    assert not chooses("/mux/driver")
-
-
-@pytest.mark.parametrize(("name", "outside"), [("/robot1/cmd_vel", True), ("/joy/scan", False)])
-def test_what_a_person_sends(name: str, outside: bool) -> None:
-    assert is_from_outside(name) is outside

@@ -8,9 +8,6 @@ import pytest
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.system.environment import (
     DiscoverySettings,
-    machine,
-    participants,
-    setting_caveats,
     settings,
     unfinished,
     view_caveats,
@@ -61,14 +58,6 @@ def test_a_domain_is_read_as_strtoul_does(text: str, domain: int) -> None:
     assert settings({"ROS_DOMAIN_ID": text}).domain == domain
 
 
-@pytest.mark.parametrize(
-    "text", ["a", "7a", "-1", "1.5", "08", "0x", "233", "0xFF", "7 ", "9" * 11]
-)
-def test_a_domain_at_which_rcl_exits_is_refused(text: str) -> None:
-    with pytest.raises(UsageError, match=r"ROS_DOMAIN_ID.*give 0 to 232"):
-        settings({"ROS_DOMAIN_ID": text})
-
-
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("variables", "asked"),
@@ -107,17 +96,6 @@ def test_peers_that_are_no_hosts_are_refused(peers: str) -> None:
         settings({"ROS_STATIC_PEERS": peers})
 
 
-@pytest.mark.parametrize(
-    "rmw",
-    [
-        *("rmw_fastrtps_cpp", "rmw_fastrtps_dynamic_cpp", "rmw_cyclonedds_cpp", "rmw_connextdds"),
-        *("rmw_zenoh_cpp", "rmw_gurumdds_cpp"),
-    ],
-)
-def test_the_middlewares_of_ros_2_are_known(rmw: str) -> None:
-    assert list(setting_caveats({"RMW_IMPLEMENTATION": rmw})) == []
-
-
 def codes(
     count: int = 1,
     seen: tuple[End, ...] = (),
@@ -129,10 +107,6 @@ def codes(
     seen = seen or (end("") if count else end("", ""),)
     found = view_caveats(nodes, seen, USUAL._replace(**asked), settled, expected)
     return [(it.code, it.incomplete) for it in found]
-
-
-def test_a_view_that_is_whole_has_no_caveat() -> None:
-    assert codes() == codes(expected=("/driver",)) == []
 
 
 def test_a_caveat_names_what_came_or_went_last_and_what_did_not_come() -> None:
@@ -206,12 +180,6 @@ def test_an_empty_view_says_where_it_looked_and_what_to_try(
     (found,) = view_caveats([], [], USUAL._replace(**asked), "quiet")
     assert where in found.message
     assert remedy in found.message
-
-
-def test_a_fast_dds_participant_shows_its_machine() -> None:
-    assert machine("010f1234abcd") == "010f1234"
-    assert machine("01101234abcd") == ""
-    assert participants([end("a"), end("a"), end("b"), end("")]) == 2
 
 
 def test_discovery_is_not_finished_while_a_node_or_its_ends_are_missing() -> None:

@@ -30,15 +30,6 @@ def by_tags(*robots: str, last: bool = False, words: tuple[str, ...] = ()) -> Na
     return NameOwnership({}, {}, {it: it for it in robots}, frozenset(words), last, levels=levels)
 
 
-def test_a_name_below_a_node_is_of_the_robot_of_the_node() -> None:
-    """However deep, and though no robot's name is in it."""
-    owner = NameOwnership({}, {"/gripper": "left"}, {}, frozenset(), False)
-    assert owner.robot("/gripper/state") == "left"
-    assert owner.robot("/gripper/jaw/state") == "left"
-    assert owner.robot("/grip/state") == ""
-    assert owner._replace(exact={"/gripper/state": ""}).robot("/gripper/state") == ""
-
-
 @pytest.mark.parametrize(
     ("owner", "name", "robot"),
     [
@@ -92,12 +83,6 @@ def test_a_tag_in_a_name_shows_the_robot(owner: NameOwnership, name: str, robot:
 )
 def test_a_name_without_its_robot(owner: NameOwnership, name: str, tag: str, plain: str) -> None:
     assert owner.without_robot(name, tag) == plain
-
-
-def test_the_name_of_a_robot_in_frames_may_be_another() -> None:
-    frames = by_tags("r1")._replace(tags={"robot1": "r1"})
-    assert (frames.tag("robot1"), frames.tag("robot2")) == ("r1", "robot2")
-    assert frames.without_robot("r1/base_link", "robot1") == "base_link"
 
 
 def node(name: str, robot: str = "") -> Node:
@@ -186,50 +171,6 @@ def test_a_part_of_a_word_is_a_robot_if_the_rest_is_a_frame(frame: str, robot: s
     assert whose_by_plan(BARE).frame_robot(frame) == robot
 
 
-def test_where_a_plan_glues_names_to_frames_any_rest_will_do() -> None:
-    robots = (Robot("a", ("a_base_link", "a_odom")), Robot("b", ("b_base_link", "b_odom")))
-    whose = whose_by_plan(System(robots=robots))
-    assert whose.frame_robot("b_gripper") == "b"
-    assert whose.plain_frame("b_gripper") == "gripper"
-
-
-def test_robots_that_are_called_as_topics_of_others_are() -> None:
-    """The topics that a bridge brings, and what is below them; a domain_bridge is of all robots and
-    names a robot's topic."""
-    robots = (Robot("scan", tf_topic="/tf/scan"), Robot("a", tf_topic="/tf/a"))
-    rsp = tuple(node(f"/rsp_{it.name}", it.name) for it in robots)
-    rows = tuple(
-        Topic(f"/scan/{it.name}{end}", bridge=(PUBLISHES,))
-        for it in robots
-        for end in ("", "/points")
-    )
-    whose = whose_by_plan(System(nodes=rsp, robots=robots, topics=rows))
-    assert [*map(whose.robot, ("/scan/a", "/scan/a/points"))] == ["a", "a"]
-    assert [*map(whose.robot, ("/scan/scan", "/scan/scan/points"))] == ["scan", "scan"]
-    assert whose.robot("/scan/a/other") == "a"
-    crossing = (
-        End(TOPIC, PUBLISHES, "/odom/a", "", "", "/rsp_a", None, "", "odom"),
-        End(TOPIC, PUBLISHES, "/odom/a", "", "", "/a_bridge_0", None, "", "/odom/a"),
-    )
-    plan = System(nodes=(*rsp, node("/a_bridge_0")), ends=crossing, robots=robots)
-    assert whose_by_plan(plan).robot("/ros_gz_bridge_a") == "a"
-
-
-def test_the_robots_of_a_plan_are_in_order() -> None:
-    assert whose_by_plan(PLAN).robots == ("a", "scan")
-
-
-def test_a_plan_with_robots_at_the_end_of_names() -> None:
-    nodes = (node("/driver/a", "a"), node("/driver/b", "b"))
-    robots = (Robot("a", ("base_link/a",), "/tf/a"), Robot("b", ("base_link/b",), "/tf/b"))
-    whose = whose_by_plan(System(nodes=nodes, robots=robots))
-    assert whose.of_names.robot_is_last
-    assert whose.of_frames.robot_is_last
-    assert whose.robot("/a/b") == "b"
-    assert not whose_by_plan(PLAN).of_names.robot_is_last
-    assert whose_by_plan(System(robots=(Robot("f/g/a"),))).robot("/f/g/a/scan") == "f/g/a"
-
-
 @pytest.mark.parametrize(
     ("names", "last"),
     [
@@ -270,13 +211,3 @@ def test_a_plan_of_one_robot_without_its_namespace() -> None:
         parameters=(Parameter("/lidar", "a", "1"),),
         topics=(Topic("/scan", ("/lidar",)),),
     )  # fmt: skip
-
-
-def test_the_name_of_a_robot_in_a_link_of_a_topic_is_no_word() -> None:
-    """A topic below a link has the robot's name behind the link and at its end."""
-    robots = tuple(Robot(it, (f"base/{it}",), f"/tf/{it}") for it in ("r1", "r2"))
-    names = (f"/link/base/{it.name}/cmd_vel/{it.name}" for it in robots)
-    nodes = tuple(Node(f"/state_{it.name}", robot=it.name) for it in robots)
-    found = name_ownership(System(nodes, robots=robots, topics=tuple(map(Topic, names))))
-    assert not found.ambiguous_words
-    assert (found.robot("/r1/state"), found.robot("/link/base/r2/cmd_vel/r2")) == ("r1", "r2")

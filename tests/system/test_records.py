@@ -13,23 +13,17 @@ from multibot_rewrite.system.merging import Look, merged
 from multibot_rewrite.system.parameters import (
     Answer,
     Question,
-    parameter_text,
-    parameter_value,
     questions,
     with_answers,
 )
 from multibot_rewrite.system.record_values import FARTHEST, WrongValue, read_transform, shown
 from multibot_rewrite.system.records import (
-    MAY,
     NOWHERE,
-    OFF,
     PUBLISHES,
-    RUNS,
     SERVES,
     SERVICE,
     SUBSCRIBES,
     TOPIC,
-    UNKNOWN,
     Caveat,
     Controller,
     Edge,
@@ -40,16 +34,10 @@ from multibot_rewrite.system.records import (
     Place,
     Robot,
     System,
-    alternatives,
-    answering,
-    clocks,
     doubts,
-    incomplete,
-    may_miss,
-    nodes_by_robot,
     place_of,
 )
-from multibot_rewrite.system.tf_copies import tree_topic, without_bridged
+from multibot_rewrite.system.tf_copies import without_bridged
 
 
 @pytest.mark.parametrize(
@@ -72,35 +60,6 @@ def test_a_place_is_read_as_it_is_written(text: str, place: Place) -> None:
     assert str(place) == text
 
 
-def test_a_column_without_a_line_is_not_written() -> None:
-    assert str(Place("a", 0, 7)) == "a"
-
-
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [(True, "true"), (1, "1"), (1.0, "1.0"), ("ö", '"ö"'), ([1], "[1]"), (None, "null")],
-)
-def test_a_value_of_a_parameter_is_a_text_of_json(value: object, text: str) -> None:
-    assert parameter_text(value) == text
-    assert parameter_value(text) == value
-
-
-@pytest.mark.parametrize("text", ["no json", "", "[" * 100_000])
-def test_a_text_that_is_no_json_is_itself(text: str) -> None:
-    assert parameter_value(text) == text
-
-
-def test_answers_are_added_to_what_is_known() -> None:
-    rate, speed = Parameter("/x", "rate", "1"), Parameter("/a", "speed", "2")
-    arm, leg = Controller("/x", "arm", "active"), Controller("/a", "leg", "inactive")
-    system = System(nodes=(Node("/a"), Node("/b")), parameters=(rate,), controllers=(arm,))
-    said = with_answers(system, [Answer("/a", "active", (speed,), (leg,)), Answer("/b")])
-    assert said.nodes == (Node("/a", lifecycle="active"), Node("/b"))
-    assert (said.parameters, said.controllers) == ((rate, speed), (arm, leg))
-    assert answering(said) == {"/a", "/x"}
-    assert with_answers(system, [Answer("/b")]) == system
-
-
 def test_who_was_asked_and_did_not_answer_is_named() -> None:
     """That of a node of which the life cycle alone was asked may not be installed here."""
     system = System(nodes=tuple(map(Node, ("/a", "/b", "/c"))))
@@ -109,29 +68,6 @@ def test_who_was_asked_and_did_not_answer_is_named() -> None:
     (silent,) = doubts(with_answers(system, [Answer("/b")], asked))
     assert silent.message.startswith("/a did not answer --state within 5 s")
     assert not doubts(with_answers(system, [Answer("/a"), Answer("/b")], asked))
-
-
-def test_which_clock_a_node_goes_by() -> None:
-    told = [("/a", "use_sim_time", "true"), ("/b", "use_sim_time", "false"), ("/c", "rate", "true")]
-    assert clocks(System(parameters=tuple(Parameter(*it) for it in told))) == {
-        "/a": True,
-        "/b": False,
-    }
-
-
-def test_nodes_by_robot_and_in_the_place_of_another() -> None:
-    either = RUNS._replace(instead=("/a/x", "/a/y"))
-    nodes = (Node("/a/x", robot="a", sure=either), Node("/a/y", robot="a", sure=either), Node("/z"))
-    system = System(nodes=(*nodes, Node("/z")), robots=(Robot("a"), Robot("b")))
-    assert nodes_by_robot(system) == {"": ["/z"], "a": ["/a/x", "/a/y"], "b": []}
-    assert alternatives(system) == (("/a/x", "/a/y"),)
-    assert [may_miss(it) for it in nodes] == [True, True, False]
-    assert all(may_miss(Node("/x", sure=it)) for it in (MAY, OFF, UNKNOWN))
-
-
-def test_which_caveats_make_a_view_incomplete() -> None:
-    missing, told = Caveat("x", True, "missing"), Caveat("y", False, "told")
-    assert incomplete(System(environment=Environment(caveats=(told, missing)))) == (missing,)
 
 
 GET_STATE, GET_PARAMETERS = "lifecycle_msgs/srv/GetState", "rcl_interfaces/srv/GetParameters"
@@ -172,11 +108,6 @@ ONE, TWO = "010f1111aaaaaaaa", "010f2222bbbbbbbb"
 def seen(*processes: str, **around: Any) -> System:
     nodes = (Node(f"/n{at}", it) for at, it in enumerate(processes))
     return System(nodes=tuple(nodes), environment=Environment(**{"range": "SUBNET", **around}))
-
-
-def test_machines_are_what_fast_dds_calls_them() -> None:
-    assert machines(seen(ONE, TWO, ONE, "")) == {"010f1111": ["/n0", "/n2"], "010f2222": ["/n1"]}
-    assert machines(seen(ONE, rmw="rmw_zenoh_cpp")) == {}
 
 
 @pytest.mark.parametrize(
@@ -224,19 +155,6 @@ STARTED = "is the robot started, and with this ROS_DOMAIN_ID?"
 )
 def test_why_a_robot_is_not_seen(graph: System, said: str) -> None:
     assert why_not_seen(graph, "robot1", machines(graph)) == said
-
-
-def test_why_a_robot_on_another_machine_is_not_seen() -> None:
-    said = why_not_seen(seen(ONE), "robot1", machines(seen(ONE)))
-    assert said.startswith("all that is seen runs on one machine (/n0). If robot1 is on another,")
-
-
-@pytest.mark.parametrize(
-    ("topic", "tree"),
-    [("/a/tf_static", "/a/tf"), ("/tf_static/a", "/tf/a"), ("/a/tf", "/a/tf"), ("/x", "/x")],
-)
-def test_a_tree_is_called_after_its_tf(topic: str, tree: str) -> None:
-    assert tree_topic(topic) == tree
 
 
 def test_what_a_bridge_copies_to_tf_is_left_out() -> None:

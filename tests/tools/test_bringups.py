@@ -15,7 +15,7 @@ from paths import fixture_text
 from waiting import wait_until
 
 from tools.bringups import running
-from tools.bringups.__main__ import Made, Verdict, details, installed, table
+from tools.bringups.__main__ import Made, Verdict, details, installed, is_named, table
 from tools.bringups.choose import Choice, chosen, launch_files
 from tools.bringups.compare import Comparison, compare
 from tools.bringups.install import install
@@ -66,6 +66,10 @@ def test_a_simulator_is_there_by_its_launch_file() -> None:
     classic = [Process("gazebo_ros", "launch/gazebo.launch.py", kind="include")]
     server = Process("gazebo_ros", "launch/gzserver.launch.py", kind="include")
     assert where(compare([server, program], classic, ROBOTS)) == ["once", "missing"]
+    assert where(compare([Process("", "gazebo", words=("-r",))], classic, ROBOTS)) == ["once"]
+    assert is_named(classic[0], "left: gazebo_ros gzserver (sim.launch.py:30)")
+    script, moved = (Process("", "python3", words=(f"/{it}/show.py",)) for it in ("a", "b/c"))
+    assert where(compare([script], [moved], ROBOTS)) == ["once"]
     old, new = Process("ros_ign_gazebo", "create"), Process("ros_gz_sim", "create")
     assert where(compare([old], of_each(new), ROBOTS)) == ["each"]
 

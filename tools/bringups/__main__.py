@@ -27,7 +27,7 @@ from typing import NamedTuple
 import yaml
 
 from tools.bringups.choose import Choice, chosen, launch_files
-from tools.bringups.compare import SHARED, Comparison, Match, compare
+from tools.bringups.compare import SHARED, SIMULATORS, Comparison, Match, compare
 from tools.bringups.install import copied, install, merge, packages
 from tools.bringups.reading import read
 from tools.bringups.running import Process, Ran, start
@@ -70,6 +70,8 @@ class Verdict(NamedTuple):
 def is_named(process: Process, text: str) -> bool:
     """Return whether a text names the program of a process, or its node."""
     words = {process.program, Path(process.program).name, process.name}
+    if Path(process.program).name in SIMULATORS:
+        words.add("gzserver")  # as multibot calls what starts one
     if process.program == "spawner" and process.words:
         words = {process.words[0]}
     return any(re.search(rf"(?<!\w){re.escape(it)}(?!\w)", text) for it in words if it)

@@ -53,7 +53,7 @@ OWN: dict[str, dict[str, str]] = {
 # What starts one simulator: the program, or the launch file that starts it with the same options.
 SIMULATORS = {
     **dict.fromkeys(("gz", "ign", "gz_sim.launch.py", "ign_gazebo.launch.py"), "gz_sim"),
-    **dict.fromkeys(("gazebo.launch.py", "gzserver.launch.py"), "classic"),
+    **dict.fromkeys(("gazebo.launch.py", "gzserver.launch.py", "gazebo", "gzserver"), "classic"),
 }
 # One package under two names, of which Humble has both.
 RENAMED = {"ros_ign_gazebo": "ros_gz_sim", "ros_ign_bridge": "ros_gz_bridge"}
@@ -189,7 +189,7 @@ def _key(process: Process, robot: str) -> tuple[str, ...]:
     if process.program in STATIC:
         return ("static", *(bare(it, robot) for it in frames(process)))
     if not process.package:
-        return (process.program, *(bare(it, robot) for it in process.words[:1]))
+        return (process.program, *(str(value(it, robot)) for it in process.words[:1]))
     package = RENAMED.get(process.package, process.package)
     return (package, os.path.basename(process.program))
 

@@ -82,7 +82,7 @@ def check_node_name(name: str) -> NameFault | None:
 
 
 def _braces_and_letters(name: str) -> NameFault | None:
-    """Braces are neither nested nor left open, and hold one token; ``~`` only leads."""
+    """Check that braces are closed and not nested, and hold one token; ``~`` only leads."""
     opened = -1
     for at, letter in enumerate(name):
         if opened >= 0:

@@ -184,7 +184,7 @@ def resolve_bound(name: str, kind: str, bound: BoundNode) -> str:
     _demand(f"{kind} name", name, check_topic_name(name))
     full = expand(name, bound.namespace, bound.node)
     if "{" in full:
-        unknown = full[full.index("{") : full.index("}") + 1]
+        unknown = "{" + full.partition("{")[2].partition("}")[0] + "}"
         raise UsageError(
             f"{kind} name {name!r}: {unknown} is not known, use {{node}}, {{ns}} or {{namespace}}"
         )

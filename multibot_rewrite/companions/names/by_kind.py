@@ -218,5 +218,5 @@ def is_shared_frame(context: Context, value: str) -> bool:
 
 
 def frames_differ(context: Context) -> bool:
-    """Do the robots have different frame names?"""
+    """Return whether the robots have different frame names."""
     return not FRAME_KINDS.isdisjoint(context.names.naming.separators)

@@ -240,8 +240,8 @@ def is_for(section: str, full: str) -> bool:
 def meant_for(
     sections: Sequence[RawSection], reader: str, nodes: Collection[str]
 ) -> RawSection | None:
-    """Return the section that has the name of a ``reader`` (a full name) and another namespace, so that
-    the reader gets nothing of it; None where one of its name is for it, or for another of the nodes."""
+    """Return the section with a ``reader``'s name in another namespace, which the reader does not
+    get; None if one of that name is for it, or for another node."""
     own = [it for it in sections if it.path.rpartition("/")[2] == reader.rpartition("/")[2]]
     if any(is_for(it.path, reader) for it in own):
         return None

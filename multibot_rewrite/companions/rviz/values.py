@@ -49,7 +49,7 @@ class RvizRobot(NamedTuple):
 
     @property
     def has_process(self) -> bool:
-        """Does what works for one process alone find this robot in an rviz2 of its own?"""
+        """Return whether a tool for one robot finds this one from an rviz2 of its own."""
         return self.names.naming.layout.namespaced or bool(self.rules)
 
 
@@ -59,7 +59,7 @@ def is_name(site: Site) -> bool:
 
 
 def robot_value(site: Site, robot: RvizRobot) -> str:
-    """Return the value of a place for the robot."""
+    """Return the value of a site of an RViz config for the robot."""
     if site.kind == TF_PREFIX:
         # Where frames have no prefix, one that stands for the robot is none.
         own = robot.names.naming.layout.frames or is_robot(site.slot.value)

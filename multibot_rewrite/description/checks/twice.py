@@ -64,11 +64,22 @@ def already_rewritten(
 
 
 def rewritten_before(inventory: Inventory) -> Iterator[Problem]:
-    """Yield the robots for which an earlier rewrite inserted something into the text."""
-    for robot in dict.fromkeys(it.robot for it in markers(inventory.document)):
+    """Yield the robots for which an earlier rewrite inserted something, or that every name tells of."""
+    marked = dict.fromkeys(it.robot for it in markers(inventory.document))
+    for robot in marked or _in_every_name(inventory):
         message = f"it was rewritten for {robot}, and its names stay in it"
         hint = "rewrite the source file, or undo that with --undo"
         yield Problem(inventory.document.root, message, None, hint, (), "MB106")
+
+
+def _in_every_name(inventory: Inventory) -> Iterator[str]:
+    """Yield what every link has behind a slash, or in front of one, and the model beside a ``_``."""
+    model = next((it.text for it in _names(inventory, ("model",))), "")
+    links = [it.text for it in _names(inventory, ("link",))]
+    for at, beside in ((-1, model.endswith), (0, model.startswith)):
+        words = {it.split("/")[at] if "/" in it else "" for it in links}
+        if len(words) == 1 and beside(("_" + min(words), min(words) + "_")[at + 1]):
+            yield from filter(None, words)
 
 
 def _names(inventory: Inventory, kinds: Collection[str]) -> list[UsedName]:

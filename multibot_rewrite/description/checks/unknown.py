@@ -31,8 +31,8 @@ CODES = {PLUGIN: "MB902", HARDWARE: "MB903", INCLUDE: "MB906"}
 
 
 def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
-    """Yield plugins, hardware classes, sensor types and included models of which it is unknown what
-    they open, and those of a Gazebo that the release has not, each at its element."""
+    """Yield plugins, hardware classes, sensor types and included models that may open something
+    unknown, and those of a Gazebo that the release lacks, each at its element."""
     guesses, release, root = Guesses(), tree.vocabulary.release, inventory.document.root
     # An SRDF starts nothing.
     parts = [] if inventory.format == SRDF else [*active_parts(root, tree.vocabulary)]

@@ -66,7 +66,7 @@ def said_once(joined: Inventory, part: Inventory) -> Once:
             more += _more_files(before, first, plugin, spans)
             notes += _other_settings(first, plugin, part)
         notes += (
-            f"{file}:{it.sourceline}: <{it.tag}> is now said of the whole robot"
+            f"{file}:{it.sourceline}: <{it.tag}> now applies to the whole robot"
             for it in _inside(block)
             if it.tag not in _THINGS and it not in doubles
         )

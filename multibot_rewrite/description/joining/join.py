@@ -133,7 +133,7 @@ def _origin(pose: Pose, given: Sequence[float] = ()) -> str:
 
 
 JOINED = "the joined description"
-# So many ends of a robot are offered where none is named.
+# So many links of a robot are offered where none is named.
 _ENDS = 5
 
 
@@ -229,11 +229,13 @@ def _edited(text: bytes, edits: Iterable[Edit]) -> bytes:
 def _check_link(at: str, part: ReadPart, robot: Robot) -> None:
     if at in robot.link:
         return
-    ends = [it for it in robot.link if it not in robot.below]
+    turning = {it.child for it in robot.joints if it.type == "continuous"}
+    roots = [it for it in robot.link if it not in robot.above and it != WORLD]
+    ends = (it for it in robot.link if it not in robot.below and it not in turning)
+    some = ", ".join([*dict.fromkeys((*ends, *roots))][:_ENDS])
     if not at:
-        some = ", ".join(ends[:_ENDS])
         raise UsageError(f"{part.file}: name the link that it is fixed to with --at, as {some}")
-    near = did_you_mean_one_of(at, robot.link) or f"it ends in {', '.join(ends[:_ENDS])}"
+    near = did_you_mean_one_of(at, robot.link) or f"name another one, as {some}"
     raise UsageError(f"{part.file}: no part before it has a link {at!r}; {near}")
 
 

@@ -60,7 +60,7 @@ def check_read(root: _Element, parts: Sequence[Mounted]) -> None:
             if left[key]:
                 left[key] -= 1
             elif not _stands_for_it(it, mounted, root):
-                raise ProofError(f"{file}: <{it.tag}> {it.get('name', '')!r} is not what it was")
+                raise ProofError(f"{file}: <{it.tag}> {it.get('name', '')!r} is changed")
         wanted.update(_names(own))
         wanted -= Counter([("link", WORLD)] if mounted.is_without_world else [])
         if mounted.joint:

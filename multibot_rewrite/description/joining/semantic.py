@@ -170,4 +170,4 @@ def _sampled(pairs: Sequence[tuple[str, str]], found: Touching, samples: int) ->
             what = f"{one!r} and {other!r} touch in every pose, and are not checked"
             yield f"SRDF: {what}; see whether the part is where it should be"
     for link, why in found.unknown.items():
-        yield f"SRDF: nothing is said of {link!r}: {why}"
+        yield f"SRDF: the collisions of {link!r} were not checked: {why}"

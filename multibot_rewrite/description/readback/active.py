@@ -128,7 +128,7 @@ class ActivePart(NamedTuple):
 
     @property
     def is_known(self) -> bool:
-        """Is it known what it opens?"""
+        """Return whether it is known what it opens."""
         return self.section is not None and says_what_it_opens(self.section)
 
     @property
@@ -139,7 +139,7 @@ class ActivePart(NamedTuple):
 
     @property
     def is_apart(self) -> bool:
-        """Does a namespace keep apart what it opens, values aside?"""
+        """Return whether a namespace keeps apart what it opens, apart from values."""
         words = self.section.opens if self.section else ()
         return {NAMESPACE} == {it for it in words if not split_opens(it).path}
 

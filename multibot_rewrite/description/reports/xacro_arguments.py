@@ -90,18 +90,18 @@ class Argument(NamedTuple):
 
     @property
     def is_empty(self) -> bool:
-        """Does it name nobody by default? Raises nothing."""
+        """Return whether it names no robot by default. Raises nothing."""
         return self.default.strip(_SEPARATORS) in _NOTHING
 
     @property
     def is_everywhere(self) -> bool:
-        """Is it in every link and joint? Raises nothing."""
+        """Return whether it is in every link and joint. Raises nothing."""
         parts = [use for use in self.uses if use.kind in PARTS]
         return bool(parts) and all(use.names == use.total for use in parts)
 
     @property
     def is_space(self) -> bool:
-        """Is it the namespace of every plugin, and in no other name? Raises nothing."""
+        """Return whether it is the namespace of every plugin, and in no other name. Raises nothing."""
         called = bool(self.uses) and _SPACE.fullmatch(self.name) is not None
         return called and all(
             (use.kind, use.how, use.names) == ("namespace", WHOLE, use.total) for use in self.uses

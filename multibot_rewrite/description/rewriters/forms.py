@@ -211,7 +211,7 @@ def transport(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, .
 
 
 def remap(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
-    """``[node:]from:=to``: ``to`` is the name in the graph; ``remap_rules`` has what ``from`` is."""
+    """Return the parts of ``[node:]from:=to``: ``to`` is in the graph; ``remap_rules`` has ``from``."""
     lead = len(value) - len(value.lstrip())
     rule = split_remap(value.strip())
     if rule is None:
@@ -223,7 +223,7 @@ def remap(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
 
 
 def below(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
-    """``/robot/description``: what an absolute name is below; a relative one is below its reader's."""
+    """Return the namespace of an absolute name, ``/robot/description``; nothing for a relative one."""
     name = value.strip()
     above = name.rpartition("/")[0] if name[:1] == "/" else ""
     return (NamePart(value.index(name), above, kinds),) if above else ()

@@ -123,7 +123,7 @@ def is_reached(claim: Claim, naming: Naming) -> bool:
 
 
 def takes_empty(site: SiteRow) -> bool:
-    """Return whether an empty text is a value too: the prefix of names that have none yet."""
+    """Return whether an empty text is a value too, as for a prefix that is not yet set."""
     is_one = site.form == "prefix" and site.role == "uses" and site.empty == "itself"
     return is_one and "@" not in site.path.rpartition("]")[2]
 

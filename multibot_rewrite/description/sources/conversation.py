@@ -89,7 +89,7 @@ class Sources:
 def converse(
     arguments: Mapping[str, str], sources: Sources, traced: bool, in_pieces: bool = False
 ) -> Result:
-    """Let a child expand the file of ``sources.access``; raises InputError where it cannot tell."""
+    """Let a child expand the file of ``sources.access``; raises InputError if it fails."""
     access = sources.access
     reach = access.reach
     if reach.trust:

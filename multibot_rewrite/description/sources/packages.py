@@ -153,7 +153,7 @@ def entries(folder: str) -> frozenset[str]:
 
 
 def _start_of(path: str, most: int) -> bytes:
-    """Return the start of a file; empty where it cannot be read, or is a pipe, which nobody named."""
+    """Return the start of a file; empty if it cannot be read, or is a pipe."""
     try:
         with open(path if os.path.isfile(path) else os.devnull, "rb") as file:
             return file.read(most)

@@ -60,8 +60,8 @@ def _may_load(tag: bytes, tree: Tree) -> bool:
 
 
 def left_to_world(document: Document, left: Systems) -> Iterator[Finding]:
-    """Yield a note of the systems that the world has to load. Raises InputError for a source with such
-    a comment: a strip would take it for its own."""
+    """Yield a note of the systems that the world has to load. Raises InputError if the source has
+    such a comment already: undoing the rewrite would remove it."""
     if len(_ASIDE.findall(document.source)) != len(left):
         what = "a comment 'left to the world' is that of an earlier rewrite"
         raise InputError(f"{document.file}: {what}: take that back by --undo")

@@ -314,11 +314,9 @@ def _strips(it: Evidence, own: frozenset[strip.Place]) -> bool:
 
 
 def _adds_affixes(it: Evidence) -> bool:
-    """Do affixes in values and inserted elements make up all that a text has more than its source?
-
-    Where a plan only adds, that is the same as to strip the text: nothing of the source is gone, and
-    a byte added elsewhere would be one too many.
-    """
+    """Return whether affixes in values and inserted elements are all that a text has more than its
+    source. If a plan only adds, that equals undoing it: nothing of the source is gone, and a byte
+    added elsewhere would be one too many."""
     more = len(it.result.document.source) - len(it.inventory.document.source)
     more -= sum(edit.end - edit.start for edit in it.inserted)
     known: dict[tuple[int, bool], str] = {}

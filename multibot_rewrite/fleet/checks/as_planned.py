@@ -94,9 +94,8 @@ def _key(by_plan: Index, it: Finding) -> tuple[str, ...]:
 
 
 def open_names(by_plan: Index, told: Iterable[Finding]) -> frozenset[tuple[str, str]]:
-    """Return the codes and names of what is open already: what has no sender or server by the plan, or
-    by what was told, is no fault of the folder, nor is a client that has no server; of two that miss
-    each other both are there."""
+    """Return the codes and names of what is open already: what has no sender or server by the plan
+    or the reports is no fault of the folder, nor is a client without a server."""
     lacking = [it for it in (*told, *absences(by_plan)) if it.code in ABSENCE]
     alone = (it for it in lacking if it.code not in _MISSED or len(it.names) == 1)
     found = {(it.code, name) for it in alone for name in it.names}

@@ -347,7 +347,7 @@ def _commands(text: str) -> Iterator[Start]:
 
 
 def _differences(planned: list[Action], printed: Iterable[Action]) -> Iterator[Difference]:
-    """Yield the first difference of each action, or the actions that are there too often or not."""
+    """Yield the first difference of each action, or actions that are missing or too many."""
     found = list(printed)
     if len(planned) != len(found):
         wanted, given = (Counter(map(_who, it)) for it in (planned, found))

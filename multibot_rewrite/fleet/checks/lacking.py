@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, declare
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, declare
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.readback.active import active_parts
 from multibot_rewrite.fleet.file.robot_spec import REAL
@@ -31,7 +31,8 @@ from multibot_rewrite.rules.system.instead import is_needed
 from multibot_rewrite.system.records import PUBLISHES, RUNS, SUBSCRIBES, End, System
 from multibot_rewrite.system.words import moves
 
-CARTOGRAPHER = "cartographer_node"
+CARTOGRAPHER, MAP_SERVER, MAP = "cartographer_node", "map_server", "yaml_filename"
+_MAP = f"write its {MAP} into a parameter file (companions: {{params: FILE}}), or use nav2_slam"
 LACKING = declare("MF857", "node-without-its-file", ERROR, formats=("fleet",))
 NO_CAMERA = declare("MF861", "node-without-its-camera", WARNING, formats=("fleet",))
 
@@ -67,7 +68,12 @@ def lacking(plan: FleetPlan) -> Iterator[Finding]:
     """Find the nodes that a node set starts and that end at once. A node that a file of the robot
     names may get what it reads elsewhere: from the robot's driver, or from another launch file."""
     for robot in (it for it in plan.robots if not it.spec.launch):
-        for node in plan.evidence_of(robot).nodes:
+        evidence = plan.evidence_of(robot)
+        maps = {it.node for it in evidence.given if MAP in it.values and it.values[MAP].value}
+        for node in evidence.nodes:
+            if node.kind == MAP_SERVER and node.name not in maps and not node.when:
+                message = f"robot {robot.spec.name!r} runs {node.name} without a map"
+                yield at_robot(LACKING, robot, message, _MAP, NOTE)
             need = NEEDS.get(node.kind)
             is_named = not node.origin.stack
             if need is None or is_named or node.when or node.shared or need.is_there(robot):
@@ -77,8 +83,8 @@ def lacking(plan: FleetPlan) -> Iterator[Finding]:
 
 
 def without_camera(plan: FleetPlan) -> Iterator[Finding]:
-    """Find the nodes of a node set that hear a camera which a simulated robot has not, or of which
-    it has several: nothing says which one is meant."""
+    """Yield nodes of a node set that read a camera which a simulated robot lacks, or of which it
+    has several: it is unknown which one they need."""
     for robot in (it for it in plan.robots if it.spec.simulator != REAL and not it.spec.launch):
         nodes = plan.evidence_of(robot).nodes
         waiting = [it for it in nodes if it.origin.stack and not (it.when or it.shared)]
@@ -113,8 +119,8 @@ _HINT = "start what does in its launch file, or write which name is meant as a r
 
 
 def unmoved(robot: RewrittenRobot, facts: Sequence[NodeFacts], system: System) -> Iterator[Finding]:
-    """Yield what is open in a robot of which all is known, by its own ``system``. Of another robot a
-    driver may be missing that nobody has named."""
+    """Yield what is open in a robot that is completely known, by its own ``system``. Another robot
+    may have a driver that no file names."""
     # Is all known that it runs, some of it by its source?
     known = all(it.is_known and not it.untold for it in facts)
     by_source = any(" " in it.kind for it in facts)

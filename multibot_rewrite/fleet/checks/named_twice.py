@@ -26,7 +26,7 @@ def declared_twice(
     robots: Iterable[RewrittenRobot], naming: Naming, told: Iterable[Finding]
 ) -> Iterator[Finding]:
     """Yield what two robots declare though it is not shared, each in its description, except frames
-    that are ``told`` to collide."""
+    that are reported (``told``) to collide."""
     met = {name for it in told if it.code == FRAMES for name in it.names}
     first: dict[tuple[str, str], RewrittenRobot] = {}
     kinds = [it for it in _DECLARED if it in naming.separators]

@@ -149,7 +149,8 @@ def _robots(it: Finding, seen: Index) -> set[str]:
 
 
 def _error(it: Finding, fleet: Index) -> _Error:
-    names = it.names or ((it.node,) if it.node else ())
+    # What is said of words begins with their node.
+    names = it.names or (it.node or it.message,)
     plain = (fleet.plain(it) if it.startswith("/") else fleet.plain_frame(it) for it in names)
     return _Error(it.code, {*plain})
 

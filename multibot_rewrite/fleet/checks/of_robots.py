@@ -20,14 +20,14 @@ from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.fleet.checks.lacking import lacking, without_camera
 from multibot_rewrite.fleet.checks.named_twice import named_twice
 from multibot_rewrite.fleet.file.robot_spec import Pose, RobotSpec, Sources
+from multibot_rewrite.fleet.fleet import FRAME_PREFIX
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.fleet.launch.launched_prefix import launched_prefixes
 from multibot_rewrite.fleet.outputs.moveit_parameters import moveit_frames
 from multibot_rewrite.fleet.robots.node_names import names_of
 from multibot_rewrite.fleet.robots.own_values import own_value, sources_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleet.robots.robot_groups import group_robots
-from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence
+from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence, node_sources
 from multibot_rewrite.fleet.robots.simulators import is_simulated, other_hardware
 from multibot_rewrite.knowledge.parameters import KnownNodes, load_known_nodes
 from multibot_rewrite.knowledge.records import MANAGER
@@ -45,6 +45,7 @@ from multibot_rewrite.system.index import index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import DEVICE, SERVES, Address, Place, Robot, System
 
+OTHER_PREFIX = declare("MF841", "launch-file-adds-prefix", WARNING, formats=("fleet",))
 # Robots of which each pair is looked at; of more the nearest neighbours in a list are.
 MOST = 400
 
@@ -59,7 +60,7 @@ def of_robots(plan: FleetPlan) -> Iterator[Finding]:
     yield from lacking(plan)
     yield from without_camera(plan)
     yield from _too_near(plan)
-    yield from launched_prefixes(plan)
+    yield from _launched_prefixes(plan)
     yield from moveit_frames(plan)
     yield from differences(plan)
     yield from of_sdf_alone(plan)
@@ -100,7 +101,7 @@ def _on_another_time(plan: FleetPlan) -> Iterator[Finding]:
         bridged = is_simulated(robot) and is_bridged(robot.member.inventory)
         if timed and bridged:
             who = f"robot {robot.spec.name!r} is in a simulator and on the time of the machine"
-            message = f"{who}; what it senses has that of the simulator: {shorten(timed)}"
+            message = f"{who}; its sensors have that of the simulator: {shorten(timed)}"
             hint = "leave use_sim_time: false out, or write simulator: none for a real robot"
             yield at_robot(clocks_mixed, robot, message, hint, level=WARNING)
 
@@ -292,3 +293,31 @@ def _of_frames(robot: RewrittenRobot) -> Iterator[Finding]:
         message = f"{model} names frames that its description has not: {shorten(unknown)}"
         hint = "name links of the description, or send a transform to them"
         yield at_robot(DIFFERENT, robot, message, hint)
+
+
+def _launched_prefixes(plan: FleetPlan) -> Iterator[Finding]:
+    """Yield wrong prefixes of frames that a launch file gives the robot_state_publisher, of the first
+    robot of each kind (robot_state_publisher src/robot_state_publisher.cpp: it is put before each
+    frame; tf2 takes a leading slash away)."""
+    for key, found in plan.evidence.items():
+        robot = next(it for it in plan.robots if node_sources(it.spec) == key)
+        # What its own robot_state_publisher gets; there may be another one, as of a dock.
+        every = [it for it in found.given if it.fact.known == STATE_PUBLISHER]
+        own = next((it for it in every if it.node == STATE_PUBLISHER), None)
+        publisher = own or (every[0] if len(every) == 1 else None)
+        given = publisher.values.get(FRAME_PREFIX) if publisher else None
+        # What is in a parameter file is rewritten there.
+        if given and given.place.file in robot.spec.companions.get("params", ()):
+            continue
+        prefix = str(given.value).strip("/") if given else ""
+        if not given or prefix == robot.frame_prefix.strip("/"):
+            continue
+        layout = robot.names.naming.layout.name
+        starts = f"{STATE_PUBLISHER} of {robot.spec.name} is started with"
+        message = f"{starts} frame_prefix {prefix!r}, which layout {layout} has not"
+        hint = "leave it out of the launch file, or use layout frame-prefix"
+        if not prefix:
+            message = f"{starts} no frame_prefix, and layout {layout} needs {robot.frame_prefix!r}"
+            hint = f"give it frame_prefix: {robot.frame_prefix}"
+        file, line, _ = given.place
+        yield OTHER_PREFIX.finding(message, hint, file=file, line=line)

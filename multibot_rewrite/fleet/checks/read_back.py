@@ -40,7 +40,7 @@ from multibot_rewrite.producers.launch.read import UnreadableError, read_own
 from multibot_rewrite.producers.launch.records import LaunchGraph
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import NO_TREE, REFUSED, launched
-from multibot_rewrite.producers.launch.spawner_managers import NO_MANAGER
+from multibot_rewrite.producers.launch.spawners import NO_MANAGER
 from multibot_rewrite.rules.check import inconclusive_where_in_doubt, judge
 from multibot_rewrite.rules.launch.judge import as_sure, judge_launch, placed
 from multibot_rewrite.rules.system.unsent import nothing_known_sends
@@ -61,7 +61,7 @@ def read_back(plan: FleetPlan, made: Outputs, folder: str) -> list[Finding]:
 
     Raises MultibotError where no temporary file can be written.
     """
-    if any(it.code == LACKING.code for it in made.findings):
+    if any((it.code, it.level) == (LACKING.code, ERROR) for it in made.findings):
         return []
     with _temporary_folder() as home, gc_paused():
         launch = next(it.data for it in made.files if it.path == LAUNCH)

@@ -11,8 +11,7 @@ import yaml
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.file_kinds import FLEET, refuse_others
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.base.nearest import did_you_mean_one_of
-from multibot_rewrite.base.other_words import other_words
+from multibot_rewrite.base.nearest import did_you_mean_one_of, other_words
 from multibot_rewrite.companions.yaml_text import line_of, pairs, read_yaml, refuse_anchors
 
 Path = tuple[Any, ...]

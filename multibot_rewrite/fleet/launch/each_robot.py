@@ -135,7 +135,7 @@ class _Merging(NamedTuple):
         )
 
     def one(self, values: Sequence[Any], label: str) -> Any:
-        """Return one value for those of all robots, which have the same shape."""
+        """Return one expression for the values of all robots, which have the same shape."""
         first = values[0]
         if isinstance(first, str):
             return self.text(values, label)

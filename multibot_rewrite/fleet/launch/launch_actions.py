@@ -181,6 +181,8 @@ def _left(given: _Given) -> Iterator[tuple[str, str]]:
             yield name, f"nothing in the fleet file starts it: {said(it.when)}; {_NAME}"
         elif given.plan.file.params_style == BRINGUP and name != STATE:
             yield name, "parameter files are in the form of nav2_bringup, which starts it"
+        elif it.kind == LIFECYCLE_MANAGER and not any(_managed(given, name)):
+            yield name, "what it manages runs once for all robots, with a manager of its own"
         elif not given.names.is_controller(name) and _program(given, name) is None:
             is_component = given.names.started[name].way == COMPONENT
             what, key = ("class", "component") if is_component else ("program", "programs")
@@ -415,8 +417,8 @@ def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
         own = {key: it for key, it in (values or {}).items() if not key.startswith(_NAMED)}
         found += [own] if own and made.path in given.files else []
     if known == LIFECYCLE_MANAGER:
-        managed = (_called(given, it) for it in given.names.managed.get(name, ()))
-        found.append({"autostart": True, "node_names": list(filter(None, managed))})
+        managed = [*filter(None, _managed(given, name))]
+        found.append({"autostart": True, "node_names": managed})
     return tuple(found)
 
 
@@ -464,6 +466,11 @@ def _types(given: _Given, manager: str) -> Iterator[tuple[str, str]]:
         mine = it.way == SPAWNER and it.manager == given.names.name(manager)
         if mine and not {name} & {*given.left, *declared} and given.facts[name].kind in types:
             yield f"{it.node.name}.type", types[given.facts[name].kind]
+
+
+def _managed(given: _Given, manager: str) -> Iterator[str]:
+    """Yield what a lifecycle manager's nodes are called; empty for one that the robot has not."""
+    return (_called(given, it) for it in given.names.managed.get(manager, ()))
 
 
 def _called(given: _Given, node: str) -> str:

@@ -105,7 +105,7 @@ def _environment(
 
 
 def _is_simulated(plan: FleetPlan) -> bool:
-    """Do launch files say that nodes use the time of a simulator, of which nothing else is known?"""
+    """Return whether launch files give nodes the time of an otherwise unknown simulator."""
     robots = (it for it in plan.robots if it.spec.simulator != REAL)
     handed = (it for robot in robots for it in plan.evidence_of(robot).handed_on.values())
     return {it.clock for it in handed if it.clock is not None} == {True}

@@ -21,7 +21,6 @@ from multibot_rewrite.producers.launch.known_node import with_sources
 from multibot_rewrite.producers.launch.of_robot import Launched, as_launched, with_launched
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder, joined
 from multibot_rewrite.producers.launch.several_robots import of_first_robot, with_extras
-from multibot_rewrite.producers.launch.source_packages import ROOTS
 from multibot_rewrite.spelling.records import Run
 
 NOT_SPAWNED = "no spawner of the launch files loads it"
@@ -69,12 +68,10 @@ def _with_off(graph: LaunchGraph, given: Collection[str]) -> LaunchGraph:
     fixed = {name for it in graph.nodes for name, _ in it.process.switches}
     fixed |= {name for it in graph.idle if not it.is_off for name, _ in it.asked}
     fixed.update(OWN_ARGUMENTS, given, (it.process.off for it in graph.off if graph.robots))
-    off = [it for it in graph.off if it.process.off not in fixed]
-    values = {name: value for it in off for name, value in it.process.switches}
-    switched = (it._replace(later=f"with {it.process.off}:={values[it.process.off]}") for it in off)
+    off = tuple(it for it in graph.off if it.process.off not in fixed)
     names = {it.process.off for it in off}
     idle = tuple(it for it in graph.idle if not it.is_off or it.asked[0][0] not in names)
-    return graph._replace(nodes=(*graph.nodes, *switched), idle=idle)
+    return graph._replace(nodes=(*graph.nodes, *off), idle=idle)
 
 
 def _read(order: LaunchOrder) -> LaunchGraph:
@@ -92,14 +89,13 @@ def _read(order: LaunchOrder) -> LaunchGraph:
 
 def why_not(graph: LaunchGraph) -> str:
     """Return why a fleet is not made of a launch file that was read; empty if it is."""
-    first = graph.imports[:1]
-    return (
-        f"it imports the Python package {first[0]!r}, which is not here; {ROOTS}" if first else ""
-    )
+    hint = "source its workspace, or put its sources into this src/ (or below launch_roots:)"
+    found = (f"it imports the Python package {it!r}, which is not here" for it in graph.imports)
+    return next((f"{it}; {hint}" for it in found), "")
 
 
 def keep(order: LaunchOrder, graph: LaunchGraph) -> None:
-    """Take a launch file as read, where what is expanded is kept: nobody changes it meanwhile."""
+    """Keep the graph of a launch file, which is not read again in ``kept_expansions``."""
     once_kept(_whole(order), lambda: graph)
 
 
@@ -109,12 +105,12 @@ def _whole(order: LaunchOrder) -> LaunchOrder:
 
 @lru_cache
 def _graph(order: LaunchOrder, times: tuple[int, ...]) -> LaunchGraph:
-    """Robots without a word of their own ask for the same launch file; ``times`` tell its changes."""
+    """Return the graph of a launch file, kept for robots that start the same and have its ``times``."""
     return launch_graph(order)
 
 
 def times_of(file: str) -> tuple[int, ...]:
-    """Return what differs once a file has changed, and each time for one that is not there."""
+    """Return a value that differs once a file has changed, and each time for a missing file."""
     try:
         found = os.stat(file)
     except OSError:  # it is told by who reads it

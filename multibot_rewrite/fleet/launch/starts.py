@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.base.grouping import lists_by_key
-from multibot_rewrite.spelling.start import NOTHING, File, Start, Text
+from multibot_rewrite.spelling.start import NOTHING, File, Process, Start, Text
 
 # The simulators that it can start.
 CLASSIC, GZ = "classic", "gz"
@@ -99,21 +99,20 @@ def with_switches(it: FleetStarts, others: Collection[str]) -> FleetStarts:
     """Return the fleet with launch arguments that turn off, or on, what launch files start with them:
     those of one value, by which these start nothing else as they do by ``others``. What waits for
     something that has a condition of ours has no further one."""
-    rows = ((one.process.off, pair) for one in it.every for pair in one.process.switches)
-    values = lists_by_key(
-        dict.fromkeys((name, (off == name, value)) for off, (name, value) in rows)
-    )
-    taken = {*OWN_ARGUMENTS, *others}
+    values = lists_by_key(dict.fromkeys(pair for one in it.every for pair in _usual(one.process)))
+    inside = (part.process.switches for one in it.every for part in one.components)
+    taken = {*OWN_ARGUMENTS, *others, *(name for pairs in inside for name, _ in pairs)}
     own = {name: its[0] for name, its in values.items() if len(its) == 1 and name not in taken}
     robots = [one._replace(starts=_switched(one.starts, own)) for one in it.robots]
     made = it._replace(shared=_switched(it.shared, own), robots=robots)
     used = {word.lstrip("!") for one in made.every for word in one.condition.split()}
-    usual = {
-        name: str(text.lower() != "true").lower() if off else text
-        for name, (off, text) in own.items()
-        if name in used
-    }
-    return made._replace(switches=usual)
+    return made._replace(switches={name: text for name, text in own.items() if name in used})
+
+
+def _usual(it: Process) -> Iterator[tuple[str, str]]:
+    """Yield the arguments that turn a process off or on, each with the value that it has."""
+    for name, text in it.switches:
+        yield name, str(text.lower() != "true").lower() if name == it.off else text
 
 
 def _switched(starts: Sequence[Start], own: Collection[str]) -> tuple[Start, ...]:

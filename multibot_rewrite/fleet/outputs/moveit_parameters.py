@@ -49,7 +49,7 @@ _OMPL = "ompl"
 
 
 def has_moveit(robot: RewrittenRobot) -> bool:
-    """Return whether the robot has what the file is made of."""
+    """Return whether the robot has an SRDF and files of MoveIt."""
     return bool(robot.srdf and robot.spec.companions.get("moveit"))
 
 

@@ -95,7 +95,7 @@ def rights(plan: System, domain: int) -> list[Rights]:
 def _with_bridge(
     given: Rights, plan: System, numbers: Mapping[str, int], beyond_: Mapping[str, str]
 ) -> Rights:
-    """With what its domain_bridge says and hears: one process with a node in each of two domains."""
+    """Return the rights with those of the robot's domain_bridge: one process, nodes in two domains."""
     at = {
         it.name: numbers["" if it.name in beyond_ else given.robot]
         for it in plan.nodes
@@ -123,7 +123,7 @@ def _rights(
     shared: Iterable[str],
     domain: int,
 ) -> Rights:
-    """Every node may listen to tf and to what all robots share, whether or not the plan says so."""
+    """Return the rights of nodes. Each may listen to tf and to what all robots share."""
     # Without a namespace at least the parameter and lifecycle services of its nodes are its own.
     own = [f"{domain}{space}**"] if space else [f"{domain}{it}/*/*/*" for it in nodes]
     sends: set[str] = set()

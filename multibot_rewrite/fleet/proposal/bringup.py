@@ -55,7 +55,7 @@ class Robot(NamedTuple):
 
     @property
     def is_simulated(self) -> bool:
-        """Is it wanted in a simulator?"""
+        """Return whether it is wanted in a simulator."""
         return self.simulator != REAL if self.simulator else self.has_simulator
 
 
@@ -233,5 +233,5 @@ def _tries(it: Reading, simulated: bool) -> bool:
 
 
 def _rank(it: Reading) -> tuple[object, ...]:
-    """Most processes of a robot first, then the one that can be read whole, then a short path."""
+    """Return a sort key: most processes of a robot first, then read completely, then a short path."""
     return -len(set(_own(it.graph))), not it.graph.whole, len(it.file), it.file

@@ -16,6 +16,7 @@ from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.proposal.choosing import is_srdf_launched, loaded
+from multibot_rewrite.fleet.proposal.launches import Bringup
 from multibot_rewrite.fleet.proposal.looking import CLASSIC, GZ, NO_SIMULATOR, Looked
 from multibot_rewrite.fleet.proposal.owners import (
     LEAST,
@@ -29,8 +30,9 @@ from multibot_rewrite.fleet.proposal.owners import (
     not_started,
     of_others,
 )
-from multibot_rewrite.fleet.proposal.searching import Found, known_names, without
+from multibot_rewrite.fleet.proposal.searching import Found, known_names, text_of, without
 from multibot_rewrite.knowledge.parameters import load_known_nodes
+from multibot_rewrite.knowledge.stacks import load_stack
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 
 # Of these kinds a robot has one file, of the others any number.
@@ -39,6 +41,11 @@ KINDS = ("params", "rviz", "bridge", "moveit", "behavior_trees")
 _MANAGER = "controller_manager"
 _CONTROL = {NO_SIMULATOR: "ros2_control", GZ: "gz_ros2_control", CLASSIC: "gazebo_ros2_control"}
 _WORD = re.compile(r"[a-z0-9]+")
+_MOVEIT, _UTILITIES = "move_group", "moveit_configs_utils"
+# What of these makes a move_group.
+_MAKE_MOVEIT = ("generate_demo_launch", "generate_move_group_launch")
+# Kinds of which a node names the file that it reads.
+_NAMED = ("rviz", "bridge", "behavior_trees")
 
 
 class Companions(NamedTuple):
@@ -248,3 +255,45 @@ def _stacks(robot: Looked, nodes: Mapping[str, str], srdf: str) -> Iterator[tupl
         yield "robot_state", "joint_state_publisher sends the joints until a driver does"
     if srdf:
         yield "moveit", f"there is {os.path.basename(srdf)}"
+
+
+def companions_launched(
+    robot: Looked, bringup: Bringup, found: Found, release: str, asked: Mapping[str, str]
+) -> Companions:
+    """Return what the launch file of a robot gives its nodes, but for the parameter files that a build
+    finds there itself, and what goes with the stacks that were ``asked`` for."""
+    graph = bringup.graph
+    # The words and texts that nodes get, in which the files that they read are named.
+    words = "\n".join((*(word for it in graph.nodes for word in it.arguments), *graph.texts))
+
+    def is_read(path: str) -> bool:
+        return path in found.meant or os.path.realpath(path) in words
+
+    files = {kind: [*filter(is_read, getattr(found, kind))] for kind in _NAMED}
+    files["rviz"] = files["rviz"][:1]
+    lost = [it for it in graph.includes if not os.path.isabs(it.file)]
+    handed = "\n".join(value for it in lost for _, value in it.arguments)
+    params = [it for it in found.params if it in found.meant or os.path.realpath(it) in handed]
+    params += _of_stacks(companions_of(robot, found, release), asked, release) if asked else []
+    starts = any(it.executable == _MOVEIT for it in graph.nodes)
+    # A launch file may start a move_group by a package that is not here.
+    texts = (text_of(it) for it in (bringup.order.file, *(one.file for one in graph.includes)))
+    makes = any(word in text for text in texts for word in _MAKE_MOVEIT)
+    srdf = ""
+    if starts or makes:
+        read = {it.file for it in graph.read}
+        own = tuple(it for it in found.srdf if os.path.realpath(it) in read) or found.srdf
+        srdf = srdf_of(robot, found._replace(srdf=own))
+        files["moveit"] = [*moveit_beside(robot, srdf, found, {})]
+    why = f"{bringup.name} starts it by {_UTILITIES}, which is not installed here"
+    stacks = {"moveit": why} if srdf and not starts else {}
+    files["params"] = [*dict.fromkeys(params)]
+    kept = {kind: tuple(its) for kind, its in files.items() if its}
+    return Companions(kept, srdf, {**stacks, **asked}, {})
+
+
+def _of_stacks(guessed: Companions, stacks: Mapping[str, str], release: str) -> list[str]:
+    """Return the parameter files that have a node of the stacks."""
+    nodes = {os.path.basename(it.name) for one in stacks for it in load_stack(one, release)}
+    every = guessed.files.get("params", ())
+    return [it for it in every if any(f"{name}:" in text_of(it) for name in nodes)]

@@ -115,8 +115,8 @@ def order_text(it: LaunchOrder, folder: str) -> str:
 
 
 def not_read(read: Iterable[Reading]) -> Iterator[Row]:
-    """Yield what of each launch file could not be read: the first of it. What is not known of one node
-    is told by the build, not what a launch file asks of the machine or of a program."""
+    """Yield the first thing in each launch file that could not be read. The build reports what is
+    unknown of one node, not what a launch file asks of the machine or of a program."""
     for it in read:
         notes = [one for one in it.graph.notes if not one.missing]
         notes = [one for one in notes if not one.parameters or one.place.line == 1]
@@ -128,8 +128,8 @@ def not_read(read: Iterable[Reading]) -> Iterator[Row]:
 
 
 def started(nodes: Iterable[LaunchedNode]) -> Iterator[Row]:
-    """Yield what is started of robots, each once at its first place: no simulator, and no program that
-    ends or only looks."""
+    """Yield what is started for robots, each once at its first place: no simulator, and no program
+    that ends or only looks."""
     known = set()
     for it in (one for one in nodes if one.executable and is_of_robot(one)):
         text = said_of(it)

@@ -93,7 +93,7 @@ def _nearer_to_others(robot: str, found: Found) -> Iterator[tuple[str, str]]:
 
 
 def _naming_others(robot: Looked, found: Found, files: Iterable[str]) -> Iterator[tuple[str, str]]:
-    """Files that are not nearer to the robot, and name links and joints of another description."""
+    """Yield files that are not nearer to the robot and name parts of another description."""
     own = frozenset(_expanded(robot)) | _names_in(robot.path)
     names = {it: _names_in(it) for it in found.every[:MOST] if it != robot.path}
     others = {path: its for path, its in names.items() if not its <= own}

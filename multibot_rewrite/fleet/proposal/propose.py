@@ -24,8 +24,11 @@ from multibot_rewrite.description.sources.own_names import ROBOT
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.sources.release_said import SaidRelease, release_said
 from multibot_rewrite.fleet.file.robot_spec import REAL
-from multibot_rewrite.fleet.proposal.companions import Companions, companions_of
-from multibot_rewrite.fleet.proposal.launched import companions_launched
+from multibot_rewrite.fleet.proposal.companions import (
+    Companions,
+    companions_launched,
+    companions_of,
+)
 from multibot_rewrite.fleet.proposal.launches import (
     Bringup,
     Reading,

@@ -211,7 +211,7 @@ def _can_be_named(path: str) -> bool:
 
 
 def _sorted(paths: Iterable[str], named: Sequence[Reading]) -> Iterator[tuple[str, str]]:
-    """Each path with its kind; those that others include, and no launch file loads, are none."""
+    """Yield each path with its kind; files that are only included have none."""
     kinds: dict[str, str] = {}
 
     def texts() -> Iterator[tuple[str, bytes]]:

@@ -41,6 +41,8 @@ from multibot_rewrite.fleet.proposal.looking import (
 )
 from multibot_rewrite.fleet.proposal.searching import Found, Undecided, search
 from multibot_rewrite.producers.launch.records import LaunchOrder
+from multibot_rewrite.producers.launch.source_packages import ROOTS
+from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 
 # Descriptions of a folder that are looked at.
 MOST = 60
@@ -99,12 +101,12 @@ def see(wanted: Wanted) -> Seen:
             raise
         # Nothing of the launch file is dropped in silence.
         graphs = [it.graph for it in found.read]
-        rows = [(said_of(it), it.place) for graph in graphs for it in graph.nodes]
+        rows = [(said_of(it).partition(": ")[0], it.place) for one in graphs for it in one.nodes]
         unread = (it for graph in graphs for it in graph.notes if not it.parameters)
-        rows += [(it.message, it.place) for it in unread]
+        rows += [(it.message.replace(f"; {ROOTS}", ""), it.place) for it in unread]
         texts = (f"{text} ({os.path.basename(at.file)}:{at.line})" for text, at in rows)
         listed = "; ".join(dict.fromkeys(texts))
-        file = os.path.relpath(found.named[0].file)
+        file = os.path.basename(found.named[0].file)
         raise UsageError(f"{error}; so nothing of {file} is in a fleet: {listed}") from None
 
 
@@ -129,11 +131,25 @@ def _seen(wanted: Wanted, found: Found) -> Seen:
         beside = [look_at(it) for it in _partners(named[0], found)]
         return Seen(found, [_with_partner(named[0], beside, wanted)], True, (), named)
     launched = look_at_all(launched_descriptions(found))
+    if found.named and not launched:
+        _refuse_to_guess(found)
     if not any(it.fault or _is_robot(it) for it in launched):
         return _likeliest(wanted, found, look_at_all(found.descriptions))
     # Those that no launch file loads are not looked at then.
     known = {it.path for it in launched}
     return _likeliest(wanted, found, launched, [it for it in found.every if it not in known])
+
+
+def _refuse_to_guess(found: Found) -> None:
+    """Raise UsageError where the part of a launch file is not known that publishes a description of
+    several."""
+    several, graphs = len(found.descriptions), [it.graph for it in found.read]
+    unread = [it for graph in graphs for it in graph.notes if not it.parameters and it.missing]
+    if several > 1 and unread and not any(STATE_PUBLISHER in it.packages for it in graphs):
+        where = f"{unread[0].place.file}:{unread[0].place.line}"
+        what = f"which of {several} descriptions it loads is not known: {unread[0].message}"
+        other = f"or name it: multibot init DESCRIPTION {shlex.join(found.words)}"
+        raise UsageError(f"{where}: {what}; {other}")
 
 
 def _is_robot(it: Looked) -> bool:
@@ -188,8 +204,8 @@ def _with_partner(it: Looked, others: Sequence[Looked], wanted: Wanted) -> Looke
 
 
 def _rather(likeliest: Candidate, looked: Sequence[Looked], found: Found) -> list[Looked]:
-    """Return the descriptions that cannot be read, and are as likely to be the robot: their launch file
-    starts as much; all where the likeliest cannot move."""
+    """Return the unreadable descriptions that are as likely to be the robot: their launch file
+    starts as much. All of them if the likeliest one cannot move."""
     broken = _by_launches([it for it in looked if it.fault], found)
     if not likeliest.moving:
         return broken

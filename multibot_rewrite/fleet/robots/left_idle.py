@@ -39,7 +39,7 @@ def left_idle(
 
 
 def _unlisted(nodes: Sequence[NodeFacts], own: Mapping[str, Run]) -> Iterator[Finding]:
-    """Where a file has the list; a manager of the node set alone lists what the node set starts."""
+    """Report managed nodes that no lifecycle manager lists, if a file has the list."""
     managers = [it for it in nodes if it.kind == LIFECYCLE_MANAGER]
     place = next((own[it.name].place for it in managers if it.name in own), None)
     listed = _listed(managers)

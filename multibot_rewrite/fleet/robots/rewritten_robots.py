@@ -113,7 +113,7 @@ class RewrittenRobot(NamedTuple):
 
     @property
     def needs_prefix(self) -> bool:
-        """Has its description names that a plugin puts a prefix before, and the layout a postfix?"""
+        """Return whether a plugin puts a prefix before names, and the layout has a postfix."""
         return any(it.code == PREFIX_ONLY for it in self.findings)
 
 

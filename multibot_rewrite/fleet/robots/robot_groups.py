@@ -50,7 +50,7 @@ def _key(spec: RobotSpec) -> object:
 
 
 def split_per_robot(plan: FleetPlan) -> Iterator[FleetPlan]:
-    """Each robot as a fleet of its own, so that steps about one robot need not search all others."""
+    """Yield each robot as a fleet of its own, so that steps about one need not search all others."""
     fleet = plan.fleet
     tables = fleet.table.by_robot(it.spec.namespace for it in plan.robots)
     edges = dicts_by_key((key[0], key, sent) for key, sent in fleet.edges.items())

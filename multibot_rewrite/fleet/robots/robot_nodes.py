@@ -31,6 +31,7 @@ from multibot_rewrite.fleet.robots.fitting.transforms import (
     brings_transforms,
     changed_frames,
     fitting_frames,
+    have_two_parents,
     is_led_elsewhere,
     sends_too,
     sent_by_controllers,
@@ -159,7 +160,9 @@ def robot_nodes(
     written = _as_written(nodes, own, parameters, file.distro)
     named = _made_by_arguments(written, given, topics) if topics else written
     marked, shared = apart(tuple(named), file)
-    placing = not brings_transforms(spec) and sends_too(nodes, free, has.sent)
+    # A vendor who bridges none of two that place the robot has a node that does.
+    sends = sends_too(nodes, free, has.sent) or (bool(launched) and have_two_parents(has.sent))
+    placing = not brings_transforms(spec) and sends
     evidence = RobotEvidence(
         given,
         known,

@@ -123,7 +123,7 @@ def note(robot: RewrittenRobot) -> Finding:
 
 
 def without_mass(robot: RewrittenRobot) -> Iterator[Finding]:
-    """Yield a finding for a robot that no simulator can run and of which the file does not tell."""
+    """Yield a finding for a robot without mass, if the file does not say that it is real."""
     root: etree._Element = robot.member.inventory.document.root
     if robot.spec.simulator or is_simulated(robot) or weighs(read_robot(root)):
         return
@@ -136,8 +136,8 @@ UNREAD_DRIVE = declare("MF844", "drive-of-unknown-code", NOTE, formats=("fleet",
 
 
 def unread_drives(robot: RewrittenRobot, hardware: bool) -> Iterator[Finding]:
-    """Each plugin that may move the robot and that nobody has read, and each such class where a node
-    loads its ``hardware``."""
+    """Yield each plugin that may move the robot and that is unknown, and each such class where a
+    node loads its ``hardware``."""
     root: etree._Element = robot.member.source.root
     simulated = robot.spec.simulator != REAL
     asked = {HARDWARE: hardware or (simulated and loads_hardware(root)), PLUGIN: simulated}

@@ -114,7 +114,7 @@ def _selected(found: Iterable[Finding], code: str, settings: Settings) -> Iterat
 
 
 def _is_whole(comment: Comment, settings: Settings) -> bool:
-    """Do all expansions of its file have what the comment is about, and is the file expanded?"""
+    """Return whether its file was expanded, and each expansion has what the comment is about."""
     if comment.file in settings.included:
         return False
     if not comment.file.endswith(".xacro"):
@@ -144,7 +144,7 @@ def _is_asked(code: str, file: str, settings: Settings) -> bool:
 
 
 def _removals(comment: Comment, idle: Sequence[CodeName]) -> Iterator[tuple[Edit, ...]]:
-    """For each of the codes the edit that removes it; all can be applied together."""
+    """Yield for each of the codes the edit that removes it; all can be applied together."""
     codes = comment.it.codes
     if comment.it.faults or len(idle) == len(codes):
         yield from [() if comment.it.faults else _removal(comment)] * len(idle)

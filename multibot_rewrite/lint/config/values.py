@@ -216,6 +216,6 @@ def _check_pattern(pattern: str, where: str) -> None:
 
 
 def _patterns(pattern: str, given: KeyValue) -> Iterator[str]:
-    """Those of whole paths for a pattern; one that matches a folder is for everything in it."""
+    """Yield patterns of whole paths for a pattern; one that matches a folder is for all in it."""
     for it in anchored(pattern, given.folder, given.where):
         yield from (it, f"{it}/*") if not it.endswith("/") else (f"{it}*",)

@@ -25,8 +25,8 @@ _LITERAL = lazy_compile(r"^[^*.]{4}.*\*|\*[^*.]{4}|^[^*]*$")
 
 
 def included(paths: Sequence[str]) -> frozenset[str]:
-    """Those of the files that a xacro file among them, or in their packages, includes, by the known end
-    of its path."""
+    """Return the files that a xacro file among them, or in their packages, includes, by the known
+    end of its path."""
     files = {real_path(path): path for path in paths}
     read = filter(_is_read, dict.fromkeys((*files.values(), *_beside(paths))))
     ends = sets_by_key((os.path.basename(it), it) for path in read for it in _asked_for(path))

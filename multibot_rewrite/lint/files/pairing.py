@@ -81,8 +81,8 @@ def find_pair(path: str, srdf: Inventory, settings: Settings) -> Pair:
 
 
 def _candidates(path: str, name: str, settings: Settings) -> list[str]:
-    """Files with that robot's name, the nearest first; else of what is near on disk those with the
-    robot's name, else those with the file name of the SRDF."""
+    """Return files with that robot's name, the nearest first; without any those near it on disk
+    with the robot's name, then those with the file name of the SRDF."""
     folder = os.path.dirname(os.path.abspath(path))
     named = [urdf for robot, urdf in settings.urdfs if robot == name]
     if named:
@@ -116,7 +116,7 @@ def _read(path: str, srdf: Inventory, settings: Settings) -> Pair:
 
 
 def described(path: str, settings: Settings) -> tuple[bytes, str]:
-    """With the default arguments, else with the first that the settings have for the file."""
+    """Return the URDF with its default arguments, or the first that the settings have for the file."""
     if not is_xacro(path):
         return read_file(path), path
     from multibot_rewrite.description.sources.expand import expand
@@ -138,7 +138,7 @@ def described(path: str, settings: Settings) -> tuple[bytes, str]:
 
 
 def reach_of(settings: Settings) -> Reach:
-    """How far the xacro files of a lint may reach: no longer than it looks at a file."""
+    """Return the limits for the xacro files of a lint, with the time limit of a file."""
     from multibot_rewrite.description.sources.access import Reach
 
     return Reach(settings.readable, settings.trust, settings.seconds)

@@ -40,11 +40,9 @@ class Failed(NamedTuple):
 
 
 def read_subjects(path: str, data: bytes, settings: Settings) -> Iterator[Subject | Failed]:
-    """Every subject of a file; raises InputError where it cannot be read.
-
-    What others include is linted where it is used. Such a xacro file, or one that only defines what
-    others use, is not expanded alone, and may have any root element.
-    """
+    """Yield every subject of a file; raises InputError if it cannot be read. What others include is
+    linted where it is used. Such a xacro file, or one that only defines what others use, is not
+    expanded alone, and may have any root element."""
     if path.endswith(JOIN):
         from multibot_rewrite.description.joining.from_file import read_joined  # few are joined
 

@@ -31,11 +31,9 @@ class Helpers(NamedTuple):
 
 
 def choose_nodes(graph: System, names: Sequence[str], namespace: str) -> tuple[str, ...]:
-    """Full names of the nodes to learn, sorted: ``names``, or all below ``namespace`` but tools.
-
-    Raises UsageError for a node that is not in the graph, not below the namespace, or in the graph
-    twice, and if there is no node at all.
-    """
+    """Return the full names of the nodes to learn, sorted: ``names``, or all below ``namespace``
+    but tools. Raises UsageError for a node that is not in the graph, not below the namespace, or in
+    the graph twice, and if there is no node at all."""
     base = namespace_prefix(namespace)
     times = Counter(node.name for node in graph.nodes)
     for name in names:
@@ -57,7 +55,7 @@ def choose_nodes(graph: System, names: Sequence[str], namespace: str) -> tuple[s
 
 
 def left_out(graph: System, chosen: Iterable[str], namespace: str) -> tuple[str, ...]:
-    """Tools below ``namespace`` that are not learned although somebody may want to learn them."""
+    """Return tools below ``namespace`` that are not learned and that a user may miss."""
     base = namespace_prefix(namespace)
     below = {node.name for node in graph.nodes if node.name.startswith(f"{base}/")}
     tools = (name for name in below.difference(chosen) if is_tool(name))
@@ -106,7 +104,7 @@ def helpers_without_owner(graph: System, names: Sequence[str]) -> tuple[str, ...
 def _nodes_by_process(
     graph: System, names: Sequence[str]
 ) -> tuple[Mapping[str, list[str]], Counter[str]]:
-    """By process: its helper nodes, and how many others it has."""
+    """Return by process its helper nodes, and how many others it has."""
     inside: dict[str, list[str]] = defaultdict(list)
     mains: Counter[str] = Counter()
     for node in graph.nodes:
@@ -135,10 +133,8 @@ Seen = Mapping[EndpointId, tuple[str, ...]]
 
 
 def fold_actions(seen: Seen) -> dict[EndpointId, tuple[str, ...]]:
-    """``seen`` with an action in place of the services and topics it is made of.
-
-    A node with only the topics of an action is not its client: those topics stay.
-    """
+    """Return ``seen`` with an action in place of the services and topics it is made of. A node with
+    only the topics of an action is not its client: those topics stay."""
     kinds = defaultdict(set)
     found = {}
     for key, types in seen.items():
@@ -161,13 +157,13 @@ def fold_actions(seen: Seen) -> dict[EndpointId, tuple[str, ...]]:
 
 
 def _action_of(key: EndpointId) -> tuple[str, str]:
-    """Role and name of the action that a hidden endpoint belongs to."""
+    """Return role and name of the action that a hidden endpoint belongs to."""
     role = SERVES if key.role in (SERVES, PUBLISHES) else CALLS
     return role, key.name.partition(_HIDDEN)[0]
 
 
 def fold_images(seen: Seen) -> tuple[dict[EndpointId, tuple[str, ...]], frozenset[EndpointId]]:
-    """``seen`` without the topics of image_transport, and the images that had such topics."""
+    """Return ``seen`` without image_transport's topics, and the images that had them."""
     images: dict[EndpointId, set[EndpointId]] = {}
     for key, types in seen.items():
         siblings = {key._replace(name=f"{key.name}/{transport}") for transport in TRANSPORTS}
@@ -181,10 +177,8 @@ def fold_images(seen: Seen) -> tuple[dict[EndpointId, tuple[str, ...]], frozense
 def fold_parts(
     endpoints: Iterable[Endpoint], parts: Mapping[str, tuple[Endpoint, ...]], in_root: bool
 ) -> tuple[list[Endpoint], tuple[str, ...]]:
-    """``endpoints`` without those of complete parts, and the names of these parts.
-
-    With ``in_root`` the graph name ``/x`` may be ``x`` in the code.
-    """
+    """Return ``endpoints`` without those of complete parts, and the names of these parts. With
+    ``in_root`` the graph name ``/x`` may be ``x`` in the code."""
     left = {_signature(end, end.name): end for end in endpoints}
     complete = []
     for name, part in parts.items():
@@ -201,7 +195,7 @@ _Signature = tuple[str, str, str, str, tuple[str, ...], bool]
 
 
 def _signatures(end: Endpoint, in_root: bool) -> list[_Signature]:
-    """How an endpoint of a part may appear in the graph."""
+    """Return how an endpoint of a part may appear in the graph."""
     relative = end.name[0] not in "/~"
     names = [end.name, f"/{end.name}"] if in_root and relative else [end.name]
     return [_signature(end, name) for name in names]

@@ -86,11 +86,9 @@ class _SeenPlace(NamedTuple):
 def learn(
     graph: System, names: Sequence[str], namespace: str, library: NodeLibrary
 ) -> tuple[LearnedNode, ...]:
-    """Facts of the nodes ``names`` below ``namespace``, the robot's namespace.
-
-    ``library`` has the known parts, and the names in the code of known nodes. Raises UsageError
-    for an endpoint that no node can have.
-    """
+    """Return facts of the nodes ``names`` below ``namespace``, the robot's namespace. ``library``
+    has the known parts, and the names in the code of known nodes. Raises UsageError for an endpoint
+    that no node can have."""
     base = namespace_prefix(namespace)
     ends = lists_by_key((end.node, end) for end in graph.ends)
     helpers = helpers_of(graph, names)
@@ -134,7 +132,7 @@ def _full_name(name: str, node: str) -> str:
 
 
 def _literal_names(known: NodeFacts) -> Iterator[str]:
-    """Full names that the code writes with a slash, or below the node's name without a ``~``."""
+    """Return full names that the code has with a slash, or below the node's name without a ``~``."""
     for end in known.endpoints:
         full = _full_name(end.name, known.name)
         if end.name.startswith("/") or (end.name[0] != "~" and full.startswith(f"/{known.name}/")):
@@ -194,10 +192,8 @@ def _name_in_code(name: str, types: Sequence[str], place: _SeenPlace) -> str:
 
 
 def _merge(first: Endpoint, second: Endpoint, key: EndpointId) -> Endpoint:
-    """One endpoint for two with the same name in the code.
-
-    For an action and a service it is the action, whose rules are right for both.
-    """
+    """Return one endpoint for two with the same name in the code. For an action and a service it is
+    the action, whose rules are right for both."""
     if first.kind != second.kind:
         return first._replace(note=f"there is a {key.kind} with this name too")
     types = sorted({*filter(None, (first.type, *first.also, second.type, *second.also))})

@@ -144,7 +144,7 @@ class _Seen(NamedTuple):
         return found
 
     def qos(self, end: Endpoint) -> Qos | None:
-        """Its QoS, where the graph shows it."""
+        """Return its QoS, if the graph shows it."""
         return next((it.qos for it in self.ends(end) if it.qos), None)
 
     def transports(self, end: Endpoint) -> Iterator[Endpoint]:

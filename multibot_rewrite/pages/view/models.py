@@ -154,10 +154,8 @@ def matrix_of(pose: Pose) -> Matrix:
 
 
 def three() -> str:
-    """three.js with its trackball controls, as trimesh brings them; raises Unusable.
-
-    Source: trimesh resources/templates/viewer.zip (three.js, MIT).
-    """
+    """Return three.js with its trackball controls, from trimesh; raises Unusable. Source: trimesh
+    resources/templates/viewer.zip (three.js, MIT)."""
     import zipfile
 
     prepare_meshes()

@@ -195,7 +195,7 @@ def heard_trees(
 
 
 def placed(edge: Edge) -> tuple[float, ...]:
-    """Its transform, if all of it is numbers."""
+    """Return its transform, if all of it is numbers."""
     return edge.transform if all(map(isfinite, edge.transform)) else ()
 
 
@@ -210,7 +210,7 @@ def _below(root: str, above: Mapping[str, Edge]) -> Iterator[HeardFrame]:
 
 
 def moved(joints: Iterable[Joint], heard: Mapping[str, tuple[float, ...]]) -> Iterator[str]:
-    """Links on fixed joints that were heard at another place, and how far off; ``heard`` is by link."""
+    """Yield links on fixed joints that were heard elsewhere, and how far off; ``heard`` is by link."""
     for it in joints:
         if it.type == "fixed" and heard.get(it.child):
             metres, angle = apart(it, heard[it.child])
@@ -219,7 +219,7 @@ def moved(joints: Iterable[Joint], heard: Mapping[str, tuple[float, ...]]) -> It
 
 
 def apart(joint: Joint, heard: tuple[float, ...]) -> tuple[float, float]:
-    """Metres and degrees between a joint's origin and a transform."""
+    """Return metres and degrees between a joint's origin and a transform."""
     (a, b, c, x), (d, e, f, y), (g, h, i, z) = (tuple(row) for row in joint.pose[:3])
     turn = product(
         inverse(((a, b, c), (d, e, f), (g, h, i))),

@@ -70,7 +70,7 @@ def declared(root: _Element) -> dict[str, int]:
 
 
 def line_of(element: _Element) -> int:
-    """Where an element begins."""
+    """Return the line where an element begins."""
     return cast("int", element.sourceline)
 
 
@@ -88,7 +88,7 @@ def _joint(frames: Frames, ends: JointEnds, at: dict[str, Pose]) -> Joint:
 
 
 def _limits(it: Named, kind: str) -> tuple[float, float]:
-    """Metres or radians, from one end to the other."""
+    """Return the limits in metres or radians, lower and upper."""
     if kind not in (*_TURNING, "prismatic"):
         return 0.0, 0.0
     most = pi if kind in _TURNING else _LONGEST

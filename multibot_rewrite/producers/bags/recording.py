@@ -55,7 +55,7 @@ class Recording(NamedTuple):
 
 
 def is_recorded(graph: System) -> bool:
-    """Whether a snapshot is of a recording."""
+    """Return whether a snapshot is of a recording."""
     return graph.environment.rmw == ROSBAG
 
 
@@ -87,5 +87,5 @@ def _heard(it: RecordedTopic) -> Iterable[Heard]:
 
 
 def counted(found: Recording) -> dict[str, int]:
-    """How many messages were recorded of each topic."""
+    """Return how many messages were recorded of each topic."""
     return {it.name: it.messages for it in found.topics}

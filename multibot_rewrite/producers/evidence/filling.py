@@ -29,11 +29,9 @@ Ids = Mapping[str, str]
 
 
 def filled(node: NodeFacts, given: Run, known: NodeFacts | None = None) -> NodeFacts:
-    """``node`` with the names that its parameters set, under the name that it has there.
-
-    ``known`` is the node without what a node set makes of it: where the parameters do not say more,
-    what the node set says stays. Raises InputError for a word of a list that makes no valid name.
-    """
+    """Return ``node`` with the names that its parameters set, under the name that it has there.
+    ``known`` is the node without what a node set changes: names of the node set remain unless
+    parameters say more. Raises InputError for a word of a list that makes no valid name."""
     values, value_of = given.values, lookup(node, given.values)
     whole = known or node
     of_stack: dict[tuple[str, str], list[Endpoint]]
@@ -146,7 +144,7 @@ def _typed(endpoint: Endpoint, value_of: Values) -> Endpoint:
 def _is_decided(
     raw: Endpoint, lists: Iterable[str], values: Mapping[str, Given], of_stack: Iterable[Endpoint]
 ) -> bool:
-    """Do the parameters say whether it exists, or how it is called?"""
+    """Return whether the parameters decide if it exists, or its name."""
     needed = list(lists)
     if needed:
         return _are_listed(needed, values)
@@ -171,7 +169,7 @@ def _are_listed(lists: Iterable[str], values: Mapping[str, Given]) -> bool:
 def _bindings(
     ids: Mapping[str, str], wanted: Iterable[str], values: Mapping[str, Given]
 ) -> Iterator[Ids]:
-    """Every choice of the wanted ids; a list may depend on another id (``<layer>.sources``)."""
+    """Yield every choice of the wanted ids; a list may depend on another id (``<layer>.sources``)."""
     found: list[dict[str, str]] = [{}]
     for name in _in_order(ids, wanted):
         found = [
@@ -241,8 +239,8 @@ def _named(endpoint: Endpoint, values: Mapping[str, Given], ending: str) -> Iter
 
 
 def _set_names(parameter: str, values: Mapping[str, Given]) -> Iterator[tuple[str, str]]:
-    """Parameters and the topics in them: of all that match a pattern, of a list each; of several
-    parameters the first that has one. An empty text is one, too: it stands for no topic."""
+    """Yield parameters and the topics in them: all that match a pattern, each item of a list; of
+    several parameters the first that has one. An empty text counts: it means no topic."""
     found: list[tuple[str, str]] = []
     for one in parameter.split(ALSO):
         found = []

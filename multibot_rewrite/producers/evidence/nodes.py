@@ -170,7 +170,7 @@ def _added(given: Run, known: Mapping[str, NodeFacts], either: str) -> NodeFacts
 
 
 def _nobody(given: Iterable[Run]) -> Iterator[Finding]:
-    """Sections of nodes that nobody knows and nobody starts, once for each file."""
+    """Report sections of nodes that are unknown and not started, once for each file."""
     for file, nodes in groupby(given, lambda it: it.place.file):
         first, *rest = nodes
         own = shorten([it.node for it in (first, *rest)])

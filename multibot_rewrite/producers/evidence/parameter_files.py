@@ -91,11 +91,8 @@ def _check_name(name: str, place: Place) -> None:
 def named_values(
     document: YamlText, nodes: Iterable[str]
 ) -> Iterator[tuple[str, dict[str, Given]]]:
-    """Of the nodes (full names) that a file has a section of their name for, with all values that each
-    gets from the file.
-
-    Raises InputError for a file that is not a parameter file.
-    """
+    """Yield those of the nodes (full names) that a file has a section for by name, with all values
+    that each gets from the file. Raises InputError for a file that is not a parameter file."""
     sections = _sections(document)
     for node in nodes:
         own = [it for it in sections if is_for(it.raw.path, node)]
@@ -104,7 +101,7 @@ def named_values(
 
 
 def values_for(node: str, documents: Iterable[YamlText]) -> dict[str, Given]:
-    """All values that a node (full name) gets from these files; raises as ``named_values``."""
+    """Return all values that a node (full name) gets from these files; raises as ``named_values``."""
     sections = [it for document in documents for it in _sections(document)]
     return _values(_own(sections, node.strip("/")))
 

@@ -86,7 +86,7 @@ _DESCRIPTION = "robot_description"
 def interfaces_of(
     nodes: Iterable[Run], published: Mapping[str, str], graph: LaunchGraph
 ) -> Iterator[Interface]:
-    """Of controllers whose manager has a known description; ``published`` is what each topic has."""
+    """Yield interfaces of controllers whose manager's description is in ``published``, by topic."""
     nodes = [*nodes]
     texts = {it.full_name: _description(it, published) for it in nodes if it.fact.known == MANAGER}
     for manager, text in texts.items():

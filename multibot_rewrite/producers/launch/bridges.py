@@ -87,8 +87,9 @@ def is_bridge(it: Run) -> bool:
 
 
 def bridged_by(it: Run) -> Iterator[Row]:
-    """All that a bridge passes on; nothing for another node. The names in the simulator may be below
-    its namespace (ros_gz humble ros_gz_bridge/src/ros_gz_bridge.cpp, expand_gz_topic_names)."""
+    """Return all that a bridge passes on; nothing for another node. Names in the simulator may be
+    below its namespace (ros_gz humble ros_gz_bridge/src/ros_gz_bridge.cpp,
+    expand_gz_topic_names)."""
     if not is_bridge(it):
         return
     below = it.namespace if expands(it) else "/"

@@ -47,8 +47,8 @@ class Output(NamedTuple):
 
 
 def read_commands() -> list[str]:
-    """From now on ``Command`` gives what is known of its output, and no program has to be there; the
-    lines of programs are in the list."""
+    """Let ``Command`` return what is known of its output from now on, without running programs;
+    their command lines are added to the returned list."""
     lines: list[str] = []
     known = of_launch("substitutions")
     known.Command.perform = lambda self, context: _performed(self, context, lines)
@@ -57,8 +57,8 @@ def read_commands() -> list[str]:
 
 
 def start_nothing(lines: list[str]) -> list[str]:
-    """From now on a launch file starts no program itself, either, and waits for none; the ``lines`` of
-    those that it would start are kept; what is not known of the output of one is in the list."""
+    """Let a launch file start no program itself and wait for none from now on; ``lines`` gets the
+    command lines of programs, the returned list what is unknown of their output."""
     lost: list[str] = []
     started: Any = type("Popen", (_Program,), {"lost": lost, "lines": lines})
     vars(subprocess)["Popen"] = started
@@ -93,7 +93,7 @@ class _Program:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """There is nothing to wait for."""
+        """Do nothing: there is nothing to wait for."""
 
     def communicate(self, *_: object, **__: object) -> tuple[Any, Any]:
         """Return what it printed, and no error."""
@@ -114,8 +114,8 @@ _NETWORK = frozenset(("socket.__new__", "socket.getaddrinfo", "socket.gethostbyn
 
 
 def see_no_machine(lost: list[str]) -> None:
-    """From now on folders of devices are empty, and nothing is there of what one machine alone has;
-    what a launch file asks for is in the list."""
+    """Hide from now on folders of devices, and everything that only one machine has; ``lost`` gets
+    what a launch file asks for."""
 
     def tell(what: str) -> None:
         said = f"it looks at {what} of the machine, and sees nothing of it here; --trust shows it"

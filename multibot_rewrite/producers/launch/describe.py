@@ -212,7 +212,7 @@ def changed_environment(here: Visit) -> dict[str, str]:
 
 
 def _there(found: Mapping[str, str]) -> dict[str, str]:
-    """Variables without those of which all parts are gone when the launch is over."""
+    """Return variables without those of which all parts are gone after the launch."""
     return {name: value for name, value in found.items() if value.strip(":") or not value}
 
 
@@ -235,7 +235,7 @@ def _folders(text_: str) -> str:
 
 
 def how_it_runs(action: Any, here: Visit) -> Process:
-    """How the process of an action runs. What only a run tells is as usual."""
+    """Return how the process of an action runs. What only a run shows is assumed as usual."""
     told = getattr(action, "process_description", None) or action
 
     def own(name: str) -> Any:
@@ -294,6 +294,7 @@ def component(it: Any, container: str, here: Visit) -> LaunchedNode:
         (),
         here.later,
         place_of(it, here.place.file, (package, plugin)),
+        process=Process(switches=here.switches),
     )
 
 
@@ -423,8 +424,8 @@ def _evaluated(given: Any, here: Visit) -> Iterator[ParameterText]:
 
 
 def _of_values(found: dict[str, Any], here: Visit) -> Iterator[ParameterText]:
-    """Values as a parameter file has them, and the texts of files that the launch makes and names in
-    one, such as that of a bridge."""
+    """Yield values as a parameter file has them, and the texts of files that the launch makes and
+    names in a value, such as that of a bridge."""
     made = [path for path in found.values() if isinstance(path, str) and is_made(path)]
     for path in filter(os.path.isfile, made):
         yield from _file(path, here)
@@ -484,7 +485,7 @@ def _file(path: str, here: Visit) -> Iterator[ParameterText]:
     with open(path, encoding="utf-8", errors="replace") as file:
         text_ = file.read()
     if STOOD_FOR in text_:
-        here.note("a parameter file is made of a package that is not here", parameters=True)
+        here.note("a parameter file comes from a package that is not installed", parameters=True)
         return
     # A file that the launch makes is gone when this is read.
     yield ParameterText("" if is_made(path) else os.path.realpath(path), text_, kept_file(source))

@@ -8,7 +8,7 @@ from typing import Any
 
 
 def of_launch(module: str = "") -> Any:
-    """launch, or a module of it; raises ImportError."""
+    """Return launch, or a module of it; raises ImportError."""
     import launch
 
     return import_module(f"{launch.__name__}.{module}") if module else launch
@@ -42,7 +42,7 @@ def is_there() -> bool:
 
 
 def missing() -> str:
-    """Why launch cannot be imported; empty if it can."""
+    """Return why launch cannot be imported; empty if it can."""
     try:
         _ = of_launch("frontend").expose_action
     except (ImportError, AttributeError) as error:

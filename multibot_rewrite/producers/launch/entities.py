@@ -47,7 +47,7 @@ class Entity:
         return found
 
     def check(self) -> None:
-        """Raise ValueError for what nobody took."""
+        """Raise ValueError for attributes that nothing has read."""
         if self.below:
             tags = {it.tag for it in self.below}
             raise ValueError(f"Unexpected nested tag(s) found in `{self.tag}`: {tags}")

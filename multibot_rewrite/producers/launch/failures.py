@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED, ROOTS
 from multibot_rewrite.producers.launch.unknown_modules import is_unknown
 
@@ -37,6 +38,7 @@ _MODULE = "launch_file"
 _MAKES = "generate_launch_description"
 _ASKED = lazy_compile(r"(?:getenv|environ\.get)\(\s*[\"'](\w+)[\"']\s*\)")
 _STARTED = lazy_compile(r"""\bexecutable\s*=\s*["']([\w./-]+)["']""")
+_SHOWN = 8
 _NEXT_TRIED = lazy_compile(r" - \w+Error: ")
 _OF_ROS_1 = re.compile(
     r"Unknown substitution: (?:arg|find|optenv)\b"
@@ -47,8 +49,8 @@ _ROS_1 = "it is a launch file of ROS 1; in ROS 2 it is $(find-pkg-share NAME), $
 
 def started_by(text: str) -> str:
     """Return, for people, the programs that the text of a launch file names; empty for none."""
-    programs = dict.fromkeys(_STARTED.findall(text))
-    return f"; by its text it starts {', '.join(programs)}" if programs else ""
+    programs = shorten(_STARTED.findall(text), _SHOWN)
+    return f"; by its text it starts {programs}" if programs else ""
 
 
 def failure(error: BaseException) -> str:
@@ -75,7 +77,7 @@ def failure(error: BaseException) -> str:
 
 
 def _known(error: BaseException) -> str:
-    """Return what is known to be wrong and what to do; empty if only Python's words tell."""
+    """Return a known cause and what to do; empty if there are only Python's words."""
     if variable := _variable(error):
         return f"the environment variable {variable} is not set here; set it as for ros2 launch"
     if name := _no_value(error):
@@ -105,7 +107,7 @@ def _lacking(error: BaseException) -> str:
     if isinstance(error, AttributeError) and error.name == _MAKES:
         return f"it has no function {_MAKES}(): write one that returns a LaunchDescription"
     if is_no_condition(error):
-        return "what is given as its condition is none; write IfCondition(...)"
+        return "its condition is not a Condition; write IfCondition(...)"
     return ""
 
 
@@ -144,7 +146,7 @@ def _variable(error: BaseException) -> str:
 
 
 def _is_of_thread(error: BaseException) -> bool:
-    """Did Python's own module refuse to start a thread?"""
+    """Return whether Python's own module refused to start a thread."""
     frame = _frame(error)
     of_module = frame is not None and frame.f_globals.get("__name__") == "threading"
     return of_module and isinstance(error, RuntimeError)
@@ -232,7 +234,7 @@ def is_certain(error: BaseException, launch_file: str) -> bool:
 
 
 def _frame(error: BaseException) -> FrameType | None:
-    """Where it was raised."""
+    """Return the frame where it was raised."""
     last = error.__traceback__
     while last is not None and last.tb_next is not None:
         last = last.tb_next

@@ -32,10 +32,10 @@ _OTHER = {"true": "false", "false": "true", "True": "False", "False": "True"}
 def turned_on_by(action: Any, seen: Visit) -> tuple[str, str]:
     """Return the launch argument that is on or off and whose other value alone starts an action that
     does not start, with that value; empty for another condition."""
+    watched = _Watched(seen.context)
+    known = watched.launch_configurations
     with suppress(Exception):
-        watched = _Watched(seen.context)
-        known = watched.launch_configurations
-        if getattr(action, "condition", None) is not None and not is_wanted(action, watched):
+        if not is_wanted(action, watched):
             ((name, value),) = known.asked.items()
             known[name] = _OTHER[value]
             if is_wanted(action, watched):
@@ -46,12 +46,10 @@ def turned_on_by(action: Any, seen: Visit) -> tuple[str, str]:
 def switches_of(action: Any, seen: Visit) -> tuple[tuple[str, str], ...]:
     """Return the launch arguments of a condition that holds, each with its value, if every one is on or
     off and turns it off with the other value; else none."""
+    watched = _Watched(seen.context)
+    known = watched.launch_configurations
     with suppress(Exception):
-        watched = _Watched(seen.context)
-        if getattr(action, "condition", None) is None or not is_wanted(action, watched):
-            return ()
-        known = watched.launch_configurations
-        asked = tuple(known.asked.items())
+        asked = tuple(known.asked.items()) if is_wanted(action, watched) else ()
         for name, value in asked:
             known[name] = _OTHER[value]
             if is_wanted(action, watched):
@@ -74,7 +72,7 @@ class _Asked(dict[str, Any]):
         return value
 
     def get(self, name: str, default: Any = None) -> Any:
-        """Return the value of one, or what is taken for it."""
+        """Return the value of a variable, or its default."""
         with suppress(KeyError):
             return self[name]
         return default

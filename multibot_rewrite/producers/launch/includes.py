@@ -40,7 +40,7 @@ _ANY = re.compile(
 
 
 def unread(file: str, given: Collection[str]) -> Iterator[tuple[str, str]]:
-    """Each argument that the file does not read, with what it declares that is called nearly so."""
+    """Yield each argument that the file does not read, with a declared one of a similar name."""
     if not os.path.isfile(file):
         return
     text = read_text(file)

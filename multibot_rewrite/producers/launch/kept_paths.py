@@ -23,7 +23,7 @@ LIMIT = 1 << 24
 FOLDER = "multibot_launch_"
 # The folder of what is gone when the launch is over.
 GONE = "/made_by_the_launch"
-NOT_KNOWN = "is made of a package that is not here, or by the launch itself; it is left out"
+NOT_KNOWN = "comes from a package that is not installed, or from the launch itself; it is left out"
 _REST = r"[^\s'\"<>:;,|)]*"
 
 
@@ -41,7 +41,7 @@ def _top() -> str:
 
 
 def lasting(words: Iterable[str]) -> list[str]:
-    """Words of a program; of a file that the launch makes the text is kept (``-string``)."""
+    """Return words of a program; a file that the launch makes becomes its text (``-string``)."""
     kept: list[str] = []
     for word in words:
         flag, _, path = word.partition("=") if word.startswith("-") else ("", "", word)
@@ -127,7 +127,7 @@ _MADE_OF = "multibot_made_of"
 
 
 def keep_sources() -> None:
-    """From now on it is known of what file a substitution or a parameter file makes another one."""
+    """Note from now on from which file a substitution or a parameter file makes another one."""
     substitution = of_launch("substitution").Substitution
     substitution.__init__ = _wrapping(substitution.__init__)
     files = of_launch_ros("parameter_descriptions").ParameterFile

@@ -200,7 +200,7 @@ def with_frames(words: Sequence[str], frames: Mapping[str, str]) -> tuple[str, .
 
 
 def _framed(frame: FrameParameter, named: Mapping[str, str]) -> FrameParameter:
-    """tf2 leaves out a slash in front of a frame (buffer_core.cpp, stripSlash)."""
+    """Return a frame parameter without a leading slash, as tf2 (buffer_core.cpp, stripSlash)."""
     name = named.get(frame.parameter) or frame.default
     given = frame.given or bool(named.get(frame.parameter))
     return frame._replace(default=name.lstrip("/") if given else name, given=given)

@@ -75,7 +75,7 @@ class Launched(NamedTuple):
 
     @property
     def whole(self) -> bool:
-        """Is every node known, with all that it does?"""
+        """Return whether every node is known, with all that it does."""
         return not any(it.incomplete for it in self.system.environment.caveats)
 
     @property
@@ -167,7 +167,7 @@ def of_simulator(graph: LaunchGraph, models: Models) -> Iterator[Caveat]:
 
 def _unknown_in(file: str, alone: bool) -> str:
     if not os.path.isfile(file):
-        return "is not here, so what its models send is not known" if os.path.isabs(file) else ""
+        return "was not found, so it is unknown what its models send" if os.path.isabs(file) else ""
     with suppress(InputError):
         root = read_xml(read_file(file), file)
         moved = any(True for model in root.iter("model") for _ in model.iter("plugin"))

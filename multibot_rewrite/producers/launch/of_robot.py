@@ -52,8 +52,13 @@ from multibot_rewrite.producers.launch.records import (
     LaunchNote,
     ParameterText,
 )
-from multibot_rewrite.producers.launch.spawner_managers import under_managers
-from multibot_rewrite.producers.launch.spawners import Spawned, is_spawner, spawned_in, texts_of
+from multibot_rewrite.producers.launch.spawners import (
+    Spawned,
+    is_spawner,
+    spawned_in,
+    texts_of,
+    under_managers,
+)
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, state_publisher_of
 from multibot_rewrite.system.records import NO_ORIGIN, TOPIC, Origin, Place
@@ -113,6 +118,8 @@ def with_launched(
     notes = (*graph.notes, *notes, *unread_worlds(graph.nodes))
     graph = _lasting(graph._replace(notes=notes))
     each = [(number, it) for number, it in enumerate(graph.nodes) if not passes(it)]
+    # The robot's own state publisher is the first one.
+    each.sort(key=lambda row: _publishes_another(row[1]))
     pairs, twice = _each_once(_pair(number, it, stack, known, words) for number, it in each)
     managers = unique(_full_name(it.node, it.facts) for it in pairs if it.facts.known == MANAGER)
     under, lost = under_managers(spawned, managers if graph.whole else ())
@@ -157,6 +164,13 @@ def with_launched(
         or next((numbered[it.number] for it in pairs if _may_spawn(it, handed, release)), None),
         graph.idle,
     )
+
+
+def _publishes_another(it: LaunchedNode) -> bool:
+    """Return whether it publishes the description of something beside the robot, by a rule for its
+    topic."""
+    old = (old.lstrip("/") for old, _ in it.remappings)
+    return it.package == STATE_PUBLISHER and _DESCRIPTION in old
 
 
 def _may_spawn(it: _Pair, handed: Mapping[str, HandedOn], release: str) -> bool:
@@ -430,7 +444,7 @@ def _given(
 
 
 def _of_any_robot(given: Run, namespace: str, words: Collection[str]) -> Run:
-    """Parameters that a launch file filled for a robot, without it: ``/scan`` of ``/robot1/scan``."""
+    """Return parameters of a robot's launch without the robot: ``/scan`` for ``/robot1/scan``."""
     own = [f"/{it}/" for it in words if f"{namespace}/".startswith(f"/{it}/")]
     if not own:
         return given

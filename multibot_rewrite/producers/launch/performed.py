@@ -231,8 +231,8 @@ class _Seen(NamedTuple):
         return self.of_action(it)
 
     def of_action(self, it: Any) -> Any:
-        """Return what is no plain value: a node with a life cycle is its number, what asks for such
-        nodes the numbers of those that it matches."""
+        """Return a value that is not plain: for a node with a life cycle its number, for what
+        matches such nodes their numbers."""
         if isinstance(it, LifecycleNode):
             return self.managed.index(it)
         if isinstance(it, ComposableNode):

@@ -24,7 +24,7 @@ _MAKERS = ("launch", "launch_ros", "launch_xml", "launch_yaml", "multibot_rewrit
 
 
 def keep_places() -> None:
-    """From now on every action and component knows the line of the launch file that made it."""
+    """Note from now on for every action and component the line of the launch file that made it."""
     for kind in (of_launch().Action, of_launch_ros("descriptions").ComposableNode):
         if not hasattr(kind.__init__, "__wrapped__"):
             kind.__init__ = _keeping(kind.__init__)

@@ -30,7 +30,7 @@ class Programs(NamedTuple):
 
 @cache
 def programs() -> Programs:
-    """Those of ``programs.yaml``."""
+    """Return the programs of ``programs.yaml``."""
     data = load_own_yaml(__file__, "programs.yaml")
     sets = {it: frozenset(data[it]) for it in ("passing", "spawners", "simulators")}
     return Programs(**{**data, **sets})
@@ -73,5 +73,5 @@ def may_be_off(it: LaunchedNode) -> bool:
 
 
 def program_of(it: LaunchedNode) -> str:
-    """Its package and executable, as the tables have them."""
+    """Return its package and executable, as the tables have them."""
     return f"{it.package}/{it.executable}"

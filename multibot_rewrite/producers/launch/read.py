@@ -106,7 +106,7 @@ def _tried(order: LaunchOrder, folder: str, missing: list[str]) -> LaunchGraph |
         raise
     except (Exception, SystemExit) as error:
         if missing and is_without(error):
-            said = f"the package {missing[-1]!r} makes what it starts, and is not read here"
+            said = f"the package {missing[-1]!r} computes what it starts, and is not read here"
             return LaunchGraph(notes=(LaunchNote(Place(os.path.abspath(order.file), 1), said),))
         _stand_in_for(error, folder, missing)
         return None
@@ -120,7 +120,7 @@ def _tried(order: LaunchOrder, folder: str, missing: list[str]) -> LaunchGraph |
 
 
 def _stand_in_for(error: BaseException, folder: str, missing: list[str]) -> None:
-    """Make the package or file known that was not found; raises UnreadableError for another fault."""
+    """Add a stand-in for the missing package or file; raises UnreadableError for other errors."""
     package, module = missing_package(error), missing_module(error)
     name = package or module
     if name in missing and add_file(error, folder):

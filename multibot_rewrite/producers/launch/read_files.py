@@ -33,7 +33,7 @@ class Reads(NamedTuple):
 
 
 def keep_reads() -> Reads:
-    """From now on all that is read in this process is kept."""
+    """Keep from now on all that is read in this process."""
     found = Reads([], [])
 
     def opened(event: str, words: tuple[Any, ...]) -> None:

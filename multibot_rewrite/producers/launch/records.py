@@ -174,7 +174,7 @@ class LaunchGraph(NamedTuple):
 
     @property
     def whole(self) -> bool:
-        """Are these all nodes?"""
+        """Return whether these are all nodes."""
         return all(it.parameters for it in self.notes)
 
     @property

@@ -48,7 +48,7 @@ def ros_arguments(words: Sequence[str]) -> RosArguments:
 
 
 def ros2_run(words: Sequence[str]) -> tuple[str, str, tuple[str, ...]] | None:
-    """Package, executable and further words of a ``ros2 run`` line; None for another line."""
+    """Return package, executable and further words of a ``ros2 run`` line; None for another line."""
     if [it.rpartition("/")[2] for it in words[:2]] != ["ros2", "run"]:
         return None
     after = list(words[2:])

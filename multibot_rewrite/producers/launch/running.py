@@ -91,7 +91,7 @@ class Running(NamedTuple):
 
 
 def running_nodes(graph: LaunchGraph, known: Knowledge) -> Running:
-    """All that a launch starts."""
+    """Return all that a launch starts."""
     spawned, notes = spawned_in(graph.nodes)
     started = [it for it in graph.nodes if not passes(it)]
     containers = {full_name(it, None): it for it in started}
@@ -126,8 +126,8 @@ def running_nodes(graph: LaunchGraph, known: Knowledge) -> Running:
 
 
 def _apart(found: Sequence[Run], unsure: Collection[str]) -> Iterator[Run]:
-    """Two unknown programs whose name only their code has, or of which one starts when something has
-    ended: that they share it is not known."""
+    """Yield the nodes; two unknown programs get other names if their shared name is a guess,
+    because only their code has it or one starts after something has ended."""
     times = Counter(it.full_name for it in found)
     for it in found:
         guessed = not it.has_fact and it.full_name in unsure and times[it.full_name] > 1
@@ -209,8 +209,8 @@ def _described(manager: Run, published: Mapping[str, str]) -> str:
 
 
 def _clock(graph: LaunchGraph) -> Iterator[Run]:
-    """Gazebo Classic is a node that has the clock (gazebo_ros src/gazebo_ros_init.cpp); of gz a bridge
-    passes it on."""
+    """Yield Gazebo Classic as a node that has the clock (gazebo_ros src/gazebo_ros_init.cpp); with
+    gz a bridge passes it on."""
     classic = [it for it in graph.nodes if it.package == CLASSIC]
     # Who spawns has the simulator running, if in another launch file.
     started = [it for it in classic if it.executable == SIMULATOR]
@@ -325,7 +325,7 @@ def _given_to(controller: Spawned, given: Sequence[Run]) -> Run:
 
 
 def _without_manager(lost: Sequence[Spawned]) -> Iterator[LaunchNote]:
-    """No description that the launch publishes has a plugin that makes the manager either."""
+    """Note managers that no published description starts with a plugin either."""
     for manager in dict.fromkeys(it.manager for it in lost):
         mine = [it for it in lost if it.manager == manager]
         names = ", ".join(dict.fromkeys(it.name for it in mine))

@@ -92,7 +92,7 @@ class _Part(NamedTuple):
 
 
 def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
-    """All that the launch starts, and the system that this makes; what is not known makes its view
+    """Return all that the launch starts, and the resulting system; what is unknown makes its view
     incomplete."""
     nodes, notes, models, published, spawned = running_nodes(graph, known)
     inside = sent_in_simulator(models.found)
@@ -231,7 +231,7 @@ def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[Run]) -> Iterator[Cave
 
 
 def _of_bridges(nodes: Sequence[Run], inside: Sent) -> Iterator[Caveat]:
-    """Of bridges that pass on topics of the simulator as transforms."""
+    """Yield a limitation for bridges that pass on topics of the simulator as transforms."""
     bridges = []
     for it in nodes:
         ends = (own for end, own in bridged_by(it) if (end.role, end.type) == (PUBLISHES, TF_TYPE))
@@ -258,14 +258,14 @@ def _part(it: Run, inside: Sent) -> _Part:
 
 
 def _without_own_time(ends: Sequence[End]) -> Iterator[End]:
-    """Without those who wait for a time that nobody sends, and have it of the simulator around them
+    """Yield the ends without clocks that nobody sends: a simulator around their nodes has the time
     (gz_ros2_control jazzy gz_ros2_control_plugin.cpp, PostUpdate)."""
     sent = any(it.role == PUBLISHES and it.name == CLOCK for it in ends if it.sure == RUNS)
     yield from (it for it in ends if sent or it.name != CLOCK or it.process != SIMULATED)
 
 
 def _frames(parts: Sequence[_Part]) -> Iterator[Edge]:
-    """Each transform once, with all who send it."""
+    """Yield each transform once, with all who send it."""
     senders = lists_by_key((it, part.name) for part in parts for it in dict.fromkeys(part.edges))
     for (topic, edge), who in senders.items():
         yield edge._replace(topic=topic, publishers=unique(who), several=len(who) > 1)

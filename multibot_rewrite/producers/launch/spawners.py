@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The arguments of ``controller_manager spawner`` -> the controllers that it loads.
+"""The arguments of ``controller_manager spawner`` -> the controllers that it loads, and their managers.
 
 Source: ros2_control jazzy and humble, controller_manager/spawner.py (``--controller NAME ...`` has
-options of its own; the name of a manager is relative to the spawner's namespace).
+options of its own; the name of a manager is relative to the spawner's namespace, which it gets by
+``--namespace`` or as a node).
 """
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple, NoReturn
 
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, declare
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchNote, ParameterText
@@ -18,6 +20,7 @@ from multibot_rewrite.producers.launch.ros_arguments import ros_arguments
 from multibot_rewrite.spelling.start import AS_USUAL, Process
 from multibot_rewrite.system.records import Place
 
+NO_MANAGER = declare("MG723", "no-controller-manager", ERROR, formats=("fleet",))
 SPAWNER = "controller_manager/spawner"
 _ONE = "--controller"
 _TIMES = ("--controller-manager-timeout", "--switch-timeout", "--service-call-timeout")
@@ -97,8 +100,9 @@ def controller_files(program: str, words: Sequence[str]) -> tuple[str, ...]:
 def texts_of(
     spawned: Iterable[Spawned], given: Mapping[str, Sequence[ParameterText]]
 ) -> Iterator[tuple[str, list[ParameterText]]]:
-    """Each manager by its full name, and all parameters that decide its controllers: what it gets
-    itself (``given``, by its name), what the spawners name, and the types that they say."""
+    """Yield each manager by its full name, with all parameters that decide its controllers: what it
+    gets itself (``given``, by its name), the files of the spawners, and the types that they
+    give."""
     by_manager = lists_by_key((it.manager, it) for it in spawned)
     for manager, controllers in by_manager.items():
         named = (text for it in controllers for text in it.parameters)
@@ -162,3 +166,24 @@ def _parser(names: str) -> _Parser:
     for value in _TIMES:
         parser.add_argument(value)
     return parser
+
+
+def under_managers(
+    spawned: Iterable[Spawned], started: Collection[str]
+) -> tuple[list[Spawned], list[Finding]]:
+    """Return the controllers, those of a manager that is not among the ``started`` ones under the one
+    that is meant; as they are where there is none, or more than one. With them findings of spawners
+    that ask for another manager than the one that runs."""
+    meant = next(iter(started)) if len(started) == 1 else ""
+    every = tuple(spawned)
+    lost = [it for it in every if meant and it.manager not in started]
+    found = [it._replace(manager=meant) if it in lost else it for it in every]
+    # One finding a spawner.
+    spawners = lists_by_key(((it.place.file, it.place.line, it.manager), it.name) for it in lost)
+    findings = []
+    for (file, line, manager), names in spawners.items():
+        message = f"the spawner of {', '.join(names)} asks for {manager}, which nothing starts"
+        hint = f"{meant} is started; give the namespace once; the plan has them there"
+        where = {"file": file, "line": line, "column": 1}
+        findings.append(NO_MANAGER.finding(message, hint, level=WARNING, **where))
+    return found, findings

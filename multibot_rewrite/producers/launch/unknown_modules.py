@@ -75,7 +75,7 @@ class Unknown:
         return Unknown(self._multibot_module)
 
     def __setitem__(self, _: object, __: object) -> None:
-        """Nothing is kept."""
+        """Do nothing: no value is kept."""
 
     def __iter__(self) -> Iterator[Any]:
         return iter(())
@@ -84,7 +84,7 @@ class Unknown:
         return 0
 
     def keys(self) -> tuple[str, ...]:
-        """Where it is taken for a dictionary: names that nobody knows."""
+        """Return names that nobody knows, for use as a dictionary."""
         return (ANY_NAME,)
 
     def __fspath__(self) -> str:
@@ -96,7 +96,7 @@ class Unknown:
     __radd__ = __truediv__ = __or__ = __ror__ = __add__
 
     def perform(self, _: object) -> str:
-        """As the text of something: raises UnknownError."""
+        """Raise UnknownError: there is no text."""
         raise UnknownError(self._multibot_module)
 
 
@@ -121,9 +121,9 @@ class _Finder:
         return ModuleSpec(fullname, cast(Any, self), is_package=True) if mine else None
 
     def create_module(self, spec: ModuleSpec) -> ModuleType:
-        """One that has everything."""
+        """Return a module that has every name."""
         self.asked = self._name
         return _Module(spec.name)
 
     def exec_module(self, module: ModuleType) -> None:
-        """Nothing is in it."""
+        """Do nothing: the module has no code."""

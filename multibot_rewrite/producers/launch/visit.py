@@ -12,7 +12,7 @@ from contextlib import suppress
 from functools import cache
 from inspect import getsource
 from linecache import getline
-from types import FunctionType, MethodType
+from types import FunctionType, MethodType, SimpleNamespace
 from typing import Any
 
 from multibot_rewrite.producers.launch.describe import (
@@ -107,14 +107,13 @@ def visit(entity: Any, seen: Visit) -> None:
 def _is_kept_off(entity: Any, here: Visit, on: tuple[str, str]) -> bool:
     """Keep what an action would start with the value of an argument that turns it ``on``, if that is
     known whole, and is nothing that a fleet starts by itself."""
-    name, value = on
     apart = here._replace(nodes=[], notes=[], waiting=[], unread=[], includes=[], idle=[])
-    apart = apart._replace(numbers={**here.numbers}, switches=(*here.switches, on), off_by=name)
-    context, before = here.context, here.context.launch_configurations[name]
+    apart = apart._replace(numbers={**here.numbers}, off_by=on[0], later=f"with {':='.join(on)}")
+    context, before = here.context, here.context.launch_configurations[on[0]]
     context._push_launch_configurations()
     context._push_environment()
     try:
-        context.launch_configurations[name] = value
+        context.launch_configurations.update([on])
         visit(entity, apart)
     except RecursionError:
         return False
@@ -128,13 +127,13 @@ def _is_kept_off(entity: Any, here: Visit, on: tuple[str, str]) -> bool:
         here.notes.extend(it._replace(parameters=True) for it in apart.notes if it.missing)
         return False
     here.off.extend(apart.nodes)
-    what = called(entity, context)
-    here.idle.append(IdleAction(here.place, what, ((name, before),), is_off=True))
+    asked = ((on[0], before),)
+    here.idle.append(IdleAction(here.place, called(entity, context), asked, is_off=True))
     return True
 
 
 def _failed(entity: Any, error: BaseException, here: Visit) -> None:
-    """Keep why an entity cannot be visited, or what it starts, where that is known all the same."""
+    """Note why an entity cannot be visited; keep what it starts, if that is known all the same."""
     if _is(entity, _INCLUDE):
         try:
             known = simulator(error, entity, here)
@@ -182,7 +181,9 @@ def _include(entity: Any, seen: Visit) -> Iterable[Any] | None:
         own = "launch_arguments" in vars(entity)
         name = "launch_arguments" if own else "_IncludeLaunchDescription__launch_arguments"
         setattr(entity, name, tuple({**needed, **seen.context.launch_configurations}.items()))
-        seen.note("a package that is not here makes the arguments of the include", parameters=True)
+        seen.note(
+            "a package that is not installed sets the arguments of an include", parameters=True
+        )
     found = _execute(entity, seen)
     unread_of(path_of(entity, seen.context), dict(include.arguments), seen)
     return found
@@ -229,8 +230,11 @@ def _loaded(entity: Any, seen: Visit) -> Iterable[Any] | None:
 def _components(descriptions: Iterable[Any] | None, container: str, seen: Visit) -> None:
     for it in descriptions or ():
         condition = it.condition() if callable(getattr(it, "condition", None)) else None
-        if condition is None or seen.every or condition.evaluate(seen.context):
-            seen.nodes.append(component(it, container, seen))
+        names = {"node_package": it.package, "node_executable": it.node_plugin}
+        action = SimpleNamespace(condition=condition, **names)
+        if wants(action, seen):
+            here = seen._replace(switches=(*seen.switches, *switches_of(action, seen)))
+            seen.nodes.append(component(it, container, here))
 
 
 def _process(entity: Any, seen: Visit) -> Iterable[Any] | None:

@@ -103,7 +103,7 @@ def listed(asked: Question, answer: Any) -> list[Question]:
 
 
 def halves(asked: Question, answer: Any) -> list[Question]:
-    """Return what is asked again: with one parameter that it lacks, a node of rclcpp gives none."""
+    """Return smaller requests: if one parameter is missing, a node of rclcpp returns none."""
     names = asked.parameters
     if len(names) < 2 or len(answer.values) == len(names):
         return []

@@ -115,7 +115,7 @@ def so_far(names: Sequence[str]) -> str:
 
 
 def cut_short(names: Sequence[str], endpoints: Iterable[End]) -> Iterator[Caveat]:
-    """Where the time was over in the midst of the slow queries: what was not asked."""
+    """Yield what was not queried when the time was over during the slow queries."""
     known = {it.name for it in endpoints if it.qos is not None}
     topics = {it.name: [it.name] for it in endpoints if it.kind == TOPIC}
     left = [it for it in topics_to_query(names, endpoints, topics, ()) if it not in known]
@@ -152,7 +152,7 @@ def seen_by_one(nodes: Sequence[str]) -> Iterator[Caveat]:
 
 
 def not_heard(silent: Sequence[str]) -> Iterator[Caveat]:
-    """Where the time was over before messages could come."""
+    """Yield the silent topics if the time was over before messages could come."""
     which = f" on {shorten(silent, SEVERAL)}" if silent else ""
     text = f"the timeout was over before messages could come{which}; give a longer --timeout"
     yield Caveat("cut-short", True, text)
@@ -167,11 +167,10 @@ def why_settled(
     *,
     unsure: bool = False,
 ) -> str:
-    """Why the observation can end, or an empty string; times are seconds since its start.
-
-    ``complete``: all that is expected is there; ``quiet``: so long without a change suffices, unless
-    the look is ``unsure``: it waited for a processor meanwhile, or two participants see different ends.
-    """
+    """Return why the observation can end, or an empty string; times are seconds since its start.
+    ``complete``: all that is expected is there; ``quiet``: so long without a change suffices,
+    unless the result is ``unsure``: it waited for a processor meanwhile, or two participants see
+    different ends."""
     if complete and now - changed.expected >= BURST_SECONDS:
         return EXPECTED
     if now - changed.all >= quiet and not unsure:
@@ -217,7 +216,7 @@ def nodes_with_process(
     processes: Mapping[str, Sequence[str]],
     enclaves: Mapping[str, str] = NO_ENCLAVES,
 ) -> list[Node]:
-    """One record for each node; nodes with one name are spread over its processes."""
+    """Return one record for each node; nodes with one name are spread over its processes."""
     result = []
     for name, times in sorted(Counter(names).items()):
         own = processes.get(name) or [""]
@@ -229,7 +228,7 @@ def nodes_with_process(
 def endpoints_with_process(
     endpoints: Iterable[End], processes: Mapping[str, Sequence[str]]
 ) -> list[End]:
-    """Sorted, each with the process of its node where the node has only one."""
+    """Return endpoints sorted, each with the process of its node where the node has only one."""
     only = {node: own[0] for node, own in processes.items() if len(own) == 1}
     placed = (it._replace(process=it.process or only.get(it.node, "")) for it in endpoints)
     return sorted(
@@ -246,7 +245,7 @@ def numbers_of(transform: Any) -> tuple[float, ...]:
 
 
 def age_of(stamp: float | None) -> float:
-    """How old a message is by this machine's clock; what is less than a second is the network's."""
+    """Return a message's age by this machine's clock; less than a second is due to the network."""
     if stamp is None:
         return 0.0
     age = round(time.time() - stamp, 1)

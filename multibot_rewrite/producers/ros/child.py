@@ -109,11 +109,9 @@ def _observe_once(
 def watch(
     request: Request, environs: Mapping[int, Mapping[str, str]]
 ) -> Generator[tuple[int, System], None, None]:
-    """Snapshots of the graph in each of these environments for ``request.timeout`` seconds, one after
-    each change, with the number of its environment.
-
-    Raises Unusable. No process is left running once the iterator is closed.
-    """
+    """Yield snapshots of the graph in each of these environments for ``request.timeout`` seconds,
+    one after each change, with the number of its environment. Raises Unusable. No process is left
+    running once the iterator is closed."""
     order = to_text(request._replace(watch=True))
     came: SimpleQueue[tuple[int, bytes | Unusable | None]] = SimpleQueue()
     with ExitStack() as stack:
@@ -141,7 +139,7 @@ def watch(
 def _pass_on(
     child: RosProcess, at: int, put: Callable[[tuple[int, bytes | Unusable | None]], None]
 ) -> None:
-    """Pass on what a process sends, with its number; None at its end."""
+    """Hand on what a process sends, with its number; None at its end."""
     try:
         while (data := child.next_message()) is not None:
             put((at, data))
@@ -204,7 +202,7 @@ def _stop(process: subprocess.Popen[bytes]) -> None:
 
 
 def _explain(code: int, output: str, environ: Mapping[str, str]) -> str:
-    """Why the child ended with ``code``, and what to do, in one line."""
+    """Return why the child ended with ``code``, and what to do, in one line."""
     lines = [line.strip() for line in output.splitlines() if line.strip()]
     # rclpy puts lines with source locations after its reason.
     last = next((line for line in reversed(lines) if not line.startswith(",")), "no output")

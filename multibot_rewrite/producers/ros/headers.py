@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A few messages a sensor topic, for the frame that their header names and for their rate; the function
-that subscribes is passed in.
+"""A few messages a sensor topic, for the frame that their header names and for their rate, and the
+latched descriptions; the function that subscribes is passed in.
 
 Images are large: of a message only the frame is kept, and their topic is left at once.
 """
@@ -24,9 +24,10 @@ from multibot_rewrite.producers.zenoh.cdr import (
     read_joint_names,
     read_pose,
     read_stamp,
+    read_text,
 )
-from multibot_rewrite.system.records import PUBLISHES, TOPIC, Caveat, End, Heard
-from multibot_rewrite.system.words import is_of_a_body
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, Caveat, Description, End, Heard
+from multibot_rewrite.system.words import is_description, is_of_a_body
 
 # Their headers name frames of tf; where there are too many topics the first ones matter most.
 PACKAGES = (
@@ -101,7 +102,7 @@ class _Span(NamedTuple):
     messages: int
 
     def rate(self) -> float:
-        """Messages a second by their numbers, so that one that was missed counts; 0 if not known."""
+        """Return messages a second by their numbers, so that a missed one counts; 0 if unknown."""
         seconds = self.ended - self.began
         known = seconds >= RATE_SECONDS and self.last > self.first
         return round((self.last - self.first) / seconds, 1) if known else 0.0
@@ -197,8 +198,8 @@ class HeaderSamples:
         return not span.rate() and span.messages < MOST_MESSAGES
 
     def keep_waiting(self, seconds: float) -> bool:
-        """Whether to wait for silent topics, until ``seconds`` after the last subscription, or for a
-        second message."""
+        """Return whether to wait for silent topics, until ``seconds`` after the last subscription,
+        or for a second message."""
         now, silent = time.monotonic(), self.silent()
         longer = seconds * (BODY_FACTOR if silent & self._bodies else 1)
         if silent and now - self._began < longer:
@@ -224,13 +225,59 @@ class HeaderSamples:
         return tuple(sorted(told))
 
     def _at_most(self, topic: str, now: float) -> float:
-        """How often messages come at most, of which one came in some seconds; 0 if not known."""
+        """Return the highest possible rate after one message in some seconds; 0 if unknown."""
         waited = now - self._since.get(topic, now)
         once = self._spans[topic].messages == 1
         return round(1 / waited, 1) if once and waited >= ONE_SECONDS else 0.0
 
     def caveats(self) -> Iterator[Caveat]:
-        """Where there were more topics than are listened to."""
+        """Yield a limitation if there were more topics than are listened to."""
         if self._left_out:
             text = f"frame_id was read of {MOST_TOPICS} topics, and not of {self._left_out} more"
             yield Caveat("headers-not-read", False, text)
+
+
+class DescriptionSamples:
+    """Subscriptions to the topics of descriptions, each until one has come."""
+
+    def __init__(self, subscribe: Subscribe) -> None:
+        self._subscribe = subscribe
+        self._open: dict[str, Callable[[], None]] = {}
+        self._asked: set[str] = set()
+        self._found: dict[str, Description] = {}
+
+    def update(self, endpoints: Iterable[End]) -> None:
+        """Subscribe to every such topic that was not there before, as its publisher offers it."""
+        for it in endpoints:
+            sent = (it.kind, it.role) == (TOPIC, PUBLISHES) and is_description(it.name, it.type)
+            if sent and it.name not in self._asked and len(self._asked) < MOST_TOPICS:
+                self._asked.add(it.name)
+                # What nobody reads was not asked for its QoS: nearly all are latched.
+                latched = not (it.qos and it.qos.durability == "VOLATILE")
+                end = self._subscribe(it.name, it.type, latched, partial(self._receive, it.name))
+                if end:
+                    self._open[it.name] = end
+
+    def _receive(self, topic: str, data: bytes, _: Mark = None) -> None:
+        text = read_text(data)
+        if text is not None:
+            self._found[topic] = described(topic, text)
+            self._open.pop(topic)()
+
+    def found(self) -> tuple[Description, ...]:
+        """Return what has come, by topic."""
+        return tuple(self._found[it] for it in sorted(self._found))
+
+
+def described(topic: str, text: str) -> Description:
+    """Return what a URDF names; an empty description for no URDF."""
+    from lxml import etree  # takes longer than the rest of a look's start
+
+    parser = etree.XMLParser(resolve_entities=False, no_network=True)
+    try:
+        root = etree.fromstring(text.encode(), parser)
+    except (etree.XMLSyntaxError, ValueError):
+        return Description(topic)
+    links = tuple(it.get("name", "") for it in root.iterfind("link"))
+    moving = (it for it in root.iterfind("joint") if it.get("type") != "fixed")
+    return Description(topic, links, tuple(it.get("name", "") for it in moving))

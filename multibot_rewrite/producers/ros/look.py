@@ -12,8 +12,12 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from multibot_rewrite.producers.ros import assemble, queries, ros
-from multibot_rewrite.producers.ros.described import DescriptionSamples
-from multibot_rewrite.producers.ros.headers import CLOCK_TYPE, HeaderSamples, Receive
+from multibot_rewrite.producers.ros.headers import (
+    CLOCK_TYPE,
+    DescriptionSamples,
+    HeaderSamples,
+    Receive,
+)
 from multibot_rewrite.producers.ros.participants import make_room
 from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.producers.ros.tf_subscriptions import Callback, Mark, TfSubscriptions
@@ -42,7 +46,7 @@ class GraphSession(NamedTuple):
     lost: int
 
     def now(self) -> float:
-        """Seconds since the observation began."""
+        """Return seconds since the observation began."""
         return time.monotonic() - self.started
 
     def domain(self) -> int:
@@ -50,7 +54,7 @@ class GraphSession(NamedTuple):
         return int(self.ros.context.get_domain_id())
 
     def over(self) -> bool:
-        """Whether it has to end, also in the midst of queries."""
+        """Return whether it has to end, also in the midst of queries."""
         return self.stop.is_set() or self.now() >= self.request.timeout + GRACE_SECONDS
 
 
@@ -113,7 +117,7 @@ def overview(session: GraphSession) -> tuple[list[str], list[End]]:
 
 
 def complete_view(session: GraphSession, cache: queries.TopicCache) -> tuple[list[str], list[End]]:
-    """Names and endpoints; repeated for a while if nodes have no endpoints or no name yet."""
+    """Return names and endpoints; repeated for a while if nodes lack endpoints or a name."""
     limit = min(session.request.timeout, session.now() + assemble.QUIET_SECONDS)
     while True:
         names, endpoints = view(session, cache)
@@ -124,7 +128,7 @@ def complete_view(session: GraphSession, cache: queries.TopicCache) -> tuple[lis
 
 
 def own_ends(session: ros.Session) -> list[tuple[str, str, str]]:
-    """Node, role and name of each end that the nodes of this process have, as a snapshot has them."""
+    """Return node, role and name of each end of this process's nodes, as a snapshot has them."""
     nodes = list(session.executor.get_nodes())
     names = [it.get_fully_qualified_name() for it in nodes]
     found = [
@@ -136,7 +140,7 @@ def own_ends(session: ros.Session) -> list[tuple[str, str, str]]:
 
 
 def view(session: GraphSession, cache: queries.TopicCache) -> tuple[list[str], list[End]]:
-    """Names and endpoints, with QoS and process for the topics that are worth a query."""
+    """Return names and endpoints, with QoS and process for the topics that are worth a query."""
     node = session.node
     names = queries.node_names(node)
     found = list(queries.endpoints_by_node(node, names, _ALL_QUERIES, ros.node_gone_error()))
@@ -178,7 +182,7 @@ class Ears:
         return sorted({*self.tf.silent(), *self.headers.silent()})
 
     def keep_waiting(self) -> bool:
-        """Whether something may still come."""
+        """Return whether something may still come."""
         return self.tf.keep_waiting(*TF_SECONDS) or self.headers.keep_waiting(HEADER_SECONDS)
 
 

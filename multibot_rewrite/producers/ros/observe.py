@@ -238,9 +238,9 @@ class _Losses:
 
 
 def _enough(session: GraphSession, changed: float, lost: float) -> float:
-    """How many seconds without a change after ``changed`` are enough: fewer where every participant of
-    this machine has announced itself, the range allows no other machine, and what was ``lost`` has been
-    sent again, as Fast DDS does after its heartbeat of 3 s."""
+    """Return how many seconds without a change after ``changed`` are enough: fewer where every
+    participant of this machine has announced itself, the range allows no other machine, and what
+    was ``lost`` has been sent again, as Fast DDS does after its heartbeat of 3 s."""
     asked = environment.settings(os.environ)
     if asked.range != LOCALHOST or asked.static_peers or asked.discovery_server:
         return assemble.QUIET_SECONDS
@@ -280,7 +280,7 @@ class _ChangeTimes:
 
 
 def _pause_after(took: float, factor: int) -> float:
-    """How long to wait after a poll that took so many seconds."""
+    """Return how long to wait after a poll that took so many seconds."""
     return min(max(POLL_SECONDS, factor * took), LONGEST_PAUSE_SECONDS)
 
 
@@ -344,7 +344,7 @@ class Answers:
         self.asked: tuple[Question, ...] = ()
 
     def old(self, now: float) -> bool:
-        """Whether it is time to ask again."""
+        """Return whether it is time to ask again."""
         return self._parameters is not None and now - self._asked >= AGAIN_SECONDS
 
     def update(self, seen: System, quiet: bool, now: float) -> bool:

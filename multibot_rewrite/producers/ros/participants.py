@@ -28,13 +28,13 @@ class Socket(NamedTuple):
 
 
 def participants_at(ports: Iterable[int], domain: int) -> int:
-    """Those of a domain that have some of these ports."""
+    """Return how many participants of a domain have some of these ports."""
     inner = {port - _FIRST - _A_DOMAIN * domain for port in ports}
     return len({it for it in inner if _UNICAST <= it < _A_DOMAIN and it % 2 == 0})
 
 
 def sockets_in(table: str) -> list[Socket]:
-    """Those in a table of Linux, as ``/proc/net/udp`` has them: the last column are the drops."""
+    """Return the sockets of a table such as ``/proc/net/udp``: the last column counts drops."""
     rows = (line.split() for line in table.splitlines()[1:])
     return [
         Socket(int(row[1].rpartition(":")[2], 16), int(row[-1])) for row in rows if len(row) > 1
@@ -42,13 +42,13 @@ def sockets_in(table: str) -> list[Socket]:
 
 
 def participants_here(domain: int) -> int | None:
-    """Those of a domain that run on this machine; None where nobody can tell: no Linux."""
+    """Return how many participants of a domain run on this machine; None if unknown: no Linux."""
     found = _sockets_here()
     return None if found is None else participants_at((it.port for it in found), domain)
 
 
 def lost_here(domain: int) -> int:
-    """How many datagrams for a domain this machine has lost; 0 where nobody can tell."""
+    """Return how many datagrams for a domain this machine has lost; 0 if unknown."""
     first = _FIRST + _A_DOMAIN * domain
     return sum(it.lost for it in _sockets_here() or () if first <= it.port < first + _A_DOMAIN)
 

@@ -38,7 +38,7 @@ PARAMETER_EVENTS = "/parameter_events"
 
 
 def node_names(node: Any) -> list[str]:
-    """Full names of all nodes but ``node`` itself; two nodes with one name are there twice."""
+    """Return full names of all nodes but ``node``; two nodes with one name are there twice."""
     found = (_full_name(name, space) for name, space in node.get_node_names_and_namespaces())
     return sorted(name for name in found if name != node.get_fully_qualified_name())
 

@@ -51,11 +51,11 @@ class Request(NamedTuple):
     shows: bool = False
 
     def expects(self, end: End) -> bool:
-        """Whether an end is of what is waited for."""
+        """Return whether an end is one that is waited for."""
         return not {end.node, end.name}.isdisjoint(self.expected)
 
     def is_met(self, ends: Collection[End]) -> bool:
-        """Whether something is expected, and all of it has ends."""
+        """Return whether something is expected, and all of it has ends."""
         there = {name for it in ends for name in (it.node, it.name)}
         return bool(self.expected) and there.issuperset(self.expected)
 

@@ -39,7 +39,7 @@ class Session(NamedTuple):
 
 
 def missing() -> str:
-    """Why rclpy cannot be imported, or an empty string."""
+    """Return why rclpy cannot be imported, or an empty string."""
     # Every message type imports this package. Its generator needs lark and does without it.
     sys.modules.setdefault("rosidl_generator_py.generate_py_impl", cast(ModuleType, None))
     try:
@@ -108,12 +108,12 @@ def node_gone_error() -> type[Exception]:
 
 
 def action_servers(node: Node, name: str, namespace: str) -> Any:
-    """Names and types of the actions that a node serves."""
+    """Return names and types of the actions that a node serves."""
     return _actions(node, node.handle.get_action_server_names_and_types_by_node, name, namespace)
 
 
 def action_clients(node: Node, name: str, namespace: str) -> Any:
-    """Names and types of the actions that a node calls."""
+    """Return names and types of the actions that a node calls."""
     return _actions(node, node.handle.get_action_client_names_and_types_by_node, name, namespace)
 
 
@@ -168,14 +168,14 @@ def raw_message_class(type_: str) -> tuple[Any, str]:
 
 
 def _file_name(name: str) -> str:
-    """Source: convert_camel_case_to_lower_case_underscore of rosidl_pycommon."""
+    """Return a type's file name, as rosidl_pycommon (convert_camel_case_to_lower_case_underscore)."""
     parted = re.sub("(.)([A-Z][a-z]+)", r"\1_\2", name)
     return re.sub("([a-z0-9])([A-Z])", r"\1_\2", parted).lower()
 
 
 def begins_with_header(type_: str) -> bool:
-    """Whether the first field of an installed message type is a header: read in its source, without
-    importing anything else."""
+    """Return whether the first field of an installed message type is a header: read in its source,
+    without importing anything else."""
     package, kind, name = type_.split("/")
     spec = find_spec(package)
     folders = (spec and spec.submodule_search_locations) or ()
@@ -230,7 +230,7 @@ def receive(node: Node) -> None:
 
 
 def _taken(subscription: Any) -> Iterator[tuple[bytes, Any]]:
-    """Its messages, until there is none, or a callback has ended it."""
+    """Yield its messages, until there is none, or a callback has ended it."""
     from rclpy.impl.implementation_singleton import rclpy_implementation
 
     with suppress(rclpy_implementation.InvalidHandle):

@@ -25,7 +25,7 @@ class Pace(NamedTuple):
     back: float = 0.0
 
     def after(self, stamp: float) -> Pace:
-        """With one message more."""
+        """Return the pace with one message more."""
         if self.last < 0 or stamp == self.last:
             return self._replace(last=stamp)
         if stamp < self.last:
@@ -34,7 +34,7 @@ class Pace(NamedTuple):
         return self._replace(last=stamp, between=between)
 
     def rate(self) -> float:
-        """Messages a second; 0 if not known."""
+        """Return messages a second; 0 if unknown."""
         from statistics import median  # slow to import, and few messages are counted
 
         return round(1 / median(self.between), 1) if len(self.between) >= ENOUGH else 0.0
@@ -53,13 +53,13 @@ class Voices(NamedTuple):
     back: int = 0
 
     def after(self, mark: Mark) -> Voices:
-        """With one message more."""
+        """Return the senders' order with one message more."""
         if mark is None:
             return self
         return Voices(mark, self.back + _goes_back(self.last, mark))
 
     def several(self, latched: bool) -> bool:
-        """Whether several publishers send it."""
+        """Return whether several publishers send it."""
         return self.back >= (BACK_LATCHED if latched else BACK_MOVING)
 
 
@@ -141,7 +141,7 @@ class TfSubscriptions:
         return tuple(sorted(it for it, at in self._received.items() if it.latched or at >= limit))
 
     def rates(self) -> dict[ReceivedTransform, float]:
-        """How often each came that one publisher sends, where that is known."""
+        """Return how often each transform came that one publisher sends, if known."""
         several = self.of_several()
         found = {it: pace.rate() for it, pace in self._paces.items() if it not in several}
         return {it: rate for it, rate in found.items() if rate}
@@ -151,7 +151,7 @@ class TfSubscriptions:
         return frozenset(it for it, heard in self._voices.items() if heard.several(it.latched))
 
     def keep_waiting(self, first: float, last: float) -> bool:
-        """Whether to wait longer: ``first`` seconds always, ``last`` while a topic is silent."""
+        """Return whether to wait longer: ``first`` seconds always, ``last`` while a topic is silent."""
         passed = time.monotonic() - self._began
         return bool(self._open) and passed < (last if self.silent() else first)
 

@@ -118,7 +118,7 @@ def _condition(node: Node) -> str:
 
 
 def _asked(node: Node) -> str:
-    """All conditions before it in its function: what is around it, and what may end the function."""
+    """Return all conditions before it in its function: around it, and where the function may end."""
     found, above = [], node
     while above.parent is not None and above.parent.type != "function_definition":
         below, above = above, above.parent
@@ -158,7 +158,7 @@ def _test(node: Node | None) -> str:
 
 @lru_cache(maxsize=256)
 def _left_at(block: Node) -> float:
-    """Where the first statement of a block begins in which the function may end."""
+    """Return where the first statement of a block begins in which the function may end."""
     left = ("if_statement", "preproc_ifdef")
     found = (it.start_byte for it in block.named_children if it.type in left and _may_leave(it))
     return next(found, math.inf)
@@ -227,7 +227,7 @@ def _made(node: Node, type_: str, given: tuple[str, ...], place: Place) -> Call:
 
 
 def _parameter(call: Call) -> Iterator[Value]:
-    """``get_parameter("p", variable)``, ``declare_parameter(node, "p", default)``."""
+    """Yield values of ``get_parameter("p", variable)``, ``declare_parameter(node, "p", default)``."""
     texts = [it for it in call.given if not is_node(it)]
     parameter = braced(texts[0]) if texts else ""
     at = (call.owner, call.function)
@@ -246,7 +246,7 @@ def _made_new(node: Node, place: Place) -> Iterator[Call]:
 
 
 def _initialised(node: Node, place: Place) -> Iterator[Call | Value]:
-    """``: member_(value)`` or ``: Base<T>(value)`` of a constructor."""
+    """Yield values and calls of a constructor's ``: member_(value)`` or ``: Base<T>(value)``."""
     name = text_of(node.named_children[0]) if node.named_children else ""
     given = arguments_of(node.named_children[-1])
     owner, inside = _around(node)
@@ -256,7 +256,7 @@ def _initialised(node: Node, place: Place) -> Iterator[Call | Value]:
 
 
 def _declared(node: Node, place: Place) -> Iterator[Call | Value]:
-    """``Type name = value;`` or ``Type name(value);``."""
+    """Yield the value or call of ``Type name = value;`` or ``Type name(value);``."""
     declarator, value = (node.child_by_field_name(it) for it in ("declarator", "value"))
     if value is None or declarator is None or node.parent is None:
         return
@@ -304,7 +304,7 @@ def _alias(node: Node, place: Place) -> Iterator[Alias]:
 
 
 def _macro(node: Node, place: Place) -> Iterator[Value]:
-    """``#define TOPIC "scan"``."""
+    """Yield the value of ``#define TOPIC "scan"``."""
     name, text = (text_of(node.child_by_field_name(it)) for it in ("name", "value"))
     if text[:1] == text[-1:] == '"' and text.count('"') == 2:
         yield Value("", "", name, text[1:-1], place)

@@ -45,12 +45,12 @@ def text_of(node: Node | None) -> str:
 
 
 def last(name: str) -> str:
-    """``a::B<c::D>`` -> ``B``."""
+    """Return the last name without template arguments: ``a::B<c::D>`` -> ``B``."""
     return name.partition("<")[0].rpartition("::")[2].strip(" &*")
 
 
 def template_arguments(type_: str) -> tuple[str, ...]:
-    """``a::B<c::D, E<F, G>>`` -> ``c::D``, ``E<F, G>``."""
+    """Return the arguments of a template: ``a::B<c::D, E<F, G>>`` -> ``c::D``, ``E<F, G>``."""
     inside = type_.partition("<")[2].rpartition(">")[0]
     found, depth, start = [], 0, 0
     for at, sign in enumerate(inside):
@@ -84,7 +84,7 @@ def arguments_of(node: Node | None) -> tuple[str, ...]:
 
 
 def dotted(node: Node | None) -> list[str]:
-    """``t.header.frame_id`` -> its words; none for what is no chain of them."""
+    """Return the words of ``t.header.frame_id``; none for another expression."""
     if node is None or node.type not in ("field_expression", "identifier", "pointer_expression"):
         return []
     if node.type == "identifier":
@@ -96,7 +96,7 @@ def dotted(node: Node | None) -> list[str]:
 
 
 def callee(function: Node) -> tuple[str, tuple[str, ...], str]:
-    """Its last name, its template arguments, and the object that is asked."""
+    """Return its last name, its template arguments, and the object whose method it is."""
     full, on = text_of(function), ""
     if function.type == "field_expression":
         on = evaluated(function.child_by_field_name("argument"))

@@ -271,7 +271,7 @@ def _condition(names: Names, spot: Spot, asked: str) -> str:
 
 
 def _flag(names: Names, spot: Spot, text: str) -> str:
-    """``<@debug>`` or ``!<@debug>`` as a condition."""
+    """Return ``<@debug>`` or ``!<@debug>`` as a condition."""
     wrong, bare = text[:1] == "!", text.lstrip("!")
     if bare == OTHERWISE or not bare.startswith("<@"):
         return PERHAPS
@@ -307,7 +307,7 @@ def _params(names: Names, events: Sequence[Event], values: Iterable[Value]) -> I
 
 
 def _frames(names: Names, events: Iterable[Event]) -> Iterator[FrameParameter]:
-    """Parameters that hold frames."""
+    """Yield parameters that hold frames."""
     for it in events:
         parameter = parameter_in(it.text) if isinstance(it, Looked) else ""
         if isinstance(it, Looked) and parameter and "{" not in parameter:

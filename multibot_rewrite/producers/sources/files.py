@@ -59,7 +59,7 @@ def _read(path: str) -> Source:
 
 @lru_cache(maxsize=512)
 def _parsed(path: str, data: bytes, changed: int) -> Source:
-    """Each file once, however many programs have it."""
+    """Return a file's source, parsed once, however many programs have it."""
     place = Place("", "", path)
     text = data.decode("utf-8", "replace")
     reader = READERS.get(os.path.splitext(path)[1], read_python)

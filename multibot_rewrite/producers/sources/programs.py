@@ -140,7 +140,7 @@ def _of_python(folder: str, program: str) -> Start | None:
 
 @lru_cache(maxsize=64)
 def _entries(folder: str) -> tuple[tuple[str, str, str], ...]:
-    """Name, module and function of each entry point."""
+    """Return name, module and function of each entry point."""
     lines = start_of_file(folder, "setup.cfg").splitlines()
     words = [*_strings(start_of_file(folder, "setup.py")), *lines]
     found = (_ENTRY.fullmatch(it) for it in words)

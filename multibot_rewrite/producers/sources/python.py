@@ -82,7 +82,7 @@ def read_python(text: str, place: Place) -> Source:
 
 
 def _imported(tree: ast.AST) -> Iterator[tuple[str, str]]:
-    """Names of ROS types: ``from nav_msgs.msg import Odometry``."""
+    """Yield names of ROS types: ``from nav_msgs.msg import Odometry``."""
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom):
             for alias in node.names:
@@ -144,7 +144,7 @@ def _taker(node: Any, owner: str, function: str, place: Place) -> Constructor:
 
 
 def _bound(node: ast.AST) -> Iterator[tuple[str, str]]:
-    """Names that a piece of code gives a value, and the value."""
+    """Yield names that a piece of code gives a value, and the value."""
     if isinstance(node, ast.Assign):
         for it in node.targets:
             yield from _pairs(it, node.value)
@@ -174,7 +174,7 @@ def _of_loop(node: ast.For | ast.comprehension) -> Iterator[tuple[str, str]]:
 
 
 def _over(node: ast.expr) -> str:
-    """``<each list:a|b>``, or ``<each SIDES>``, of what a loop is over."""
+    """Return ``<each list:a|b>``, or ``<each SIDES>``, for what a loop iterates over."""
     if _text(node) == ENUMERATED and isinstance(node, ast.Call) and node.args:
         return _over(node.args[0])
     text = _text(node)
@@ -289,7 +289,7 @@ def _call(node: ast.Call, owner: str, part: _Part, types: dict[str, str], place:
 
 
 def _parameters(node: ast.Call, owner: str, function: str, place: Place) -> Iterator[Value]:
-    """``declare_parameter('p', default)``, and those of a list of ``declare_parameters``."""
+    """Yield values of ``declare_parameter('p', default)`` and of lists in ``declare_parameters``."""
     name, at = _called_name(node), place._replace(line=node.lineno)
     named = {it.arg: it.value for it in node.keywords}
     if name == "declare_parameter":

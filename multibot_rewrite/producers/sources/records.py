@@ -29,7 +29,8 @@ def negated(condition: str) -> str:
 
 def parameter_in(text: str) -> str:
     """Return the parameter of which a text is the value alone; empty for another text."""
-    return text[2:-1] if text.startswith("<@") and text.count("<") == 1 else ""
+    is_one = text.startswith("<@") and text.endswith(">") and text.count("<") == 1
+    return text[2:-1] if is_one else ""
 
 
 class Place(NamedTuple):
@@ -123,6 +124,6 @@ class Source(NamedTuple):
 
 
 def joined(sources: list[Source]) -> Source:
-    """All of them as one."""
+    """Return several sources as one."""
     columns = zip(*sources, strict=True)
     return Source(*(tuple(item for part in column for item in part) for column in columns))

@@ -129,7 +129,7 @@ class _Walk(NamedTuple):
 
 
 def events_of(names: Names, starts: Sequence[Spot | Class]) -> Iterator[Event]:
-    """All that a program does that starts in functions, or by making objects of classes."""
+    """Yield all that a program does that starts in functions, or by making objects of classes."""
     walk = _Walk(names, set(), {}, [MOST_STEPS])
     for it in starts:
         if isinstance(it, Class):
@@ -185,7 +185,7 @@ def _function(walk: _Walk, spot: Spot) -> Iterator[Event]:
 
 
 def _asked(names: Names, spot: Spot, call: Call) -> str:
-    """All conditions of a call, with what their names stand for."""
+    """Return all conditions of a call, with the values of their names."""
     own = []
     for it in filter(None, call.asked.split("&")):
         text = text_in(names, spot, it)

@@ -152,7 +152,7 @@ class _Reader:
             raise IndexError
 
     def doubles(self, many: int) -> tuple[float, ...]:
-        """So many doubles; raises struct.error behind the end."""
+        """Return so many doubles; raises struct.error behind the end."""
         values = struct.unpack_from(f"{self._mark}{many}d", self._data, self._at)
         self._at += 8 * many
         return values

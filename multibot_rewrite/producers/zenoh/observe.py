@@ -66,8 +66,8 @@ def look(request: Request, router: Router) -> System:
 def watch(
     request: Request, routers: Mapping[int, Router]
 ) -> Generator[tuple[int, System], None, None]:
-    """Snapshots of each for ``request.timeout`` seconds, one after each change, with its number; raises
-    as ``look``."""
+    """Yield snapshots of each for ``request.timeout`` seconds, one after each change, with its
+    number; raises as ``look``."""
     with ExitStack() as stack:
         views = [stack.enter_context(closing(_views(request, it))) for it in routers.values()]
         for seen in zip_longest(*views):
@@ -76,7 +76,7 @@ def watch(
 
 
 def _views(request: Request, router: Router) -> Generator[System | None, None, None]:
-    """At each poll a snapshot, or None where there is nothing new."""
+    """Yield at each poll a snapshot, or None if there is nothing new."""
     started = time.monotonic()
     try:
         with opened(router.address, request.timeout) as session:
@@ -130,7 +130,7 @@ def _all_there(keys: Iterable[str], expected: Iterable[str]) -> bool:
 
 
 def _strays(session: RouterSession, found: Iterable[Token], router: Router) -> Iterator[Caveat]:
-    """Where nothing is seen: which domains the router has nodes of."""
+    """Report, if nothing is seen, which domains the router has nodes of."""
     if any(found):
         return
     keys, _ = session.tokens(f"{SPACE}/**")

@@ -43,7 +43,7 @@ class RouterSession(NamedTuple):
             call(*values)
 
     def connected(self) -> bool:
-        """Whether the router, or the peer that was named, is still there."""
+        """Return whether the router, or the peer that was named, is still connected."""
         info = self.session.info
         return bool([*info.routers_zid(), *info.peers_zid()])
 
@@ -69,10 +69,8 @@ class RouterSession(NamedTuple):
     def subscribe(
         self, key: str, latched: bool, received: Callable[[bytes, bytes], None]
     ) -> Callable[[], None]:
-        """``received`` gets payload and attachment; with ``latched`` also what was sent before.
-
-        rmw_zenoh keeps latched samples in the cache of an advanced publisher.
-        """
+        """Subscribe to a key: ``received`` gets payload and attachment; with ``latched`` also
+        earlier messages. rmw_zenoh keeps latched samples in the cache of an advanced publisher."""
         from zenoh import ext
 
         def arrived(sample: Any) -> None:

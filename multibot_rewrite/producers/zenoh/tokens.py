@@ -100,10 +100,8 @@ def _plain(part: str) -> str:
 
 
 def ros_type(name: str) -> str:
-    """``std_msgs::msg::dds_::String_`` as ``std_msgs/msg/String``; any other name as it is.
-
-    Source: rmw_zenoh ``graph_cache.cpp``, ``_demangle_if_ros_type``.
-    """
+    """Return ``std_msgs::msg::dds_::String_`` as ``std_msgs/msg/String``; any other name unchanged.
+    Source: rmw_zenoh ``graph_cache.cpp``, ``_demangle_if_ros_type``."""
     package, found, own = name.partition("dds_::")
     if not found or not own.endswith("_"):
         return name
@@ -157,10 +155,8 @@ def _seconds(whole: str, rest: str) -> float:
 
 
 def nodes(tokens: Iterable[Token]) -> list[Node]:
-    """One record a node, by name; its process is its session.
-
-    A node is there once one of its endpoints is: rmw_zenoh ``graph_cache.cpp``, ``parse_put``.
-    """
+    """Return one record a node, by name; its process is its session. A node exists once one of its
+    endpoints does: rmw_zenoh ``graph_cache.cpp``, ``parse_put``."""
     found = {(it.node, it.session, it.node_id, it.enclave.rstrip("/")) for it in tokens}
     return [Node(name, session, enclave) for name, session, _, enclave in sorted(found)]
 

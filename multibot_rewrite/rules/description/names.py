@@ -26,7 +26,7 @@ WORLD = "world"
 
 @rule("MB302", "empty-name", ERROR)
 def empty_name(subject: Subject) -> Iterator[Problem]:
-    """Names that are empty or white space."""
+    """Report names that are empty or white space."""
     for kind, name, element in named(subject):
         if not name.strip():
             yield Problem(element, f"a {kind} has an empty name", "name")
@@ -34,7 +34,7 @@ def empty_name(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB303", "space-in-name", WARNING)
 def space_in_name(subject: Subject) -> Iterator[Problem]:
-    """White space in a name or around it."""
+    """Report white space in a name or around it."""
     for kind, name, element in named(subject):
         if name.strip() and BLANK.search(name):
             where = "" if name == name.strip() else " around it"
@@ -45,7 +45,7 @@ def space_in_name(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB305", "double-colon", ERROR)
 def double_colon(subject: Subject) -> Iterator[Problem]:
-    """Names that become names in SDF."""
+    """Report names that become names in SDF."""
     for kind, name, element in named(subject):
         if "::" in name:
             hint = f"use {name.replace('::', '_')!r}"
@@ -58,7 +58,7 @@ def double_colon(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB306", "reserved-name", ERROR)
 def reserved_name(subject: Subject) -> Iterator[Problem]:
-    """Links, joints and the robot; a link called world is MB307."""
+    """Report links, joints and the robot; a link called world is MB307."""
     for kind, name, element in named(subject):
         if is_keyword(name) or (kind == "joint" and name == WORLD):
             yield Problem(element, f"SDF reserves the name {name!r}: no {kind} may have it", "name")
@@ -70,7 +70,7 @@ def reserved_name(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB307", "world-link", WARNING)
 def world_link(subject: Subject) -> Iterator[Problem]:
-    """One finding, for its worst fault."""
+    """Report the worst fault of a link called world."""
     link = subject.robot.link.get(WORLD)
     if link is None:
         return
@@ -88,7 +88,7 @@ def world_link(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB308", "link-and-joint-alike", WARNING)
 def link_and_joint_alike(subject: Subject) -> Iterator[Problem]:
-    """Only where both stay: Gazebo merges the links of a fixed joint, and its name is gone."""
+    """Report it only if both remain: Gazebo merges the links of a fixed joint into one."""
     robot = subject.robot
     for joint in robot.joints:
         if joint.name not in robot.link or joint.type == "fixed" or not joint.name.strip():
@@ -131,7 +131,7 @@ BLANK = lazy_compile(r"\s")
 
 @memoized
 def named(subject: Subject) -> list[tuple[str, str, _Element]]:
-    """(kind, name, element) of the links and joints that have a name attribute."""
+    """Return (kind, name, element) of the links and joints that have a name attribute."""
     links, joints = subject.robot.links, subject.robot.joints
     every = [
         *[("link", it.name, it.element) for it in links],
@@ -158,7 +158,7 @@ _ALLOWED_EVERYWHERE = lazy_compile(r"[\w/~]*", re.ASCII)
 
 @rule("MB301", "leading-slash", WARNING, formats=(URDF, SRDF, *EVERY))
 def leading_slash(subject: Subject) -> Iterator[Problem]:
-    """With a fix where the frame without the slash is a link. Plugins know /world."""
+    """Report a leading slash, with a fix if the rest is a link. Plugins know /world."""
     shared = subject.settings.naming.shared_frames
     for claim in subject.inventory.claims:
         if claim.value[:1] != "/" or claim.site.form != "whole":
@@ -176,7 +176,7 @@ def leading_slash(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB304", "slash-in-joint", NOTE)
 def slash_in_joint(subject: Subject) -> Iterator[Problem]:
-    """Every component that has interfaces."""
+    """Report slashes in every component that has interfaces."""
     for system in subject.elements.every("ros2_control"):
         for part in system.iterchildren("joint", "sensor", "gpio"):
             name = part.get("name", "")
@@ -189,7 +189,7 @@ def slash_in_joint(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB311", "robot-name", NOTE)
 def robot_name(subject: Subject) -> Iterator[Problem]:
-    """Names with '::' are MB305."""
+    """Report a robot's name that ROS refuses; names with '::' are MB305."""
     name = name_of_robot(subject)
     if name is None or "::" in name or _TOKEN.fullmatch(name):
         return
@@ -200,7 +200,7 @@ def robot_name(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB312", "invalid-ros-name", WARNING, formats=(URDF, *EVERY))
 def invalid_ros_name(subject: Subject) -> Iterator[Problem]:
-    """Values that are relative to a ROS namespace; those with a substitution are skipped."""
+    """Report values relative to a ROS namespace; those with a substitution are skipped."""
     for claim in subject.inventory.claims:
         site = claim.site
         if not site.namespaced or site.kinds[0] not in ROS_KINDS:
@@ -221,7 +221,7 @@ def _ros_names(claim: Claim) -> list[str]:
 
 
 def _name_fault(name: str, section: str) -> str:
-    """Why rcl rejects a name; in a plugin that may be for ROS 1 or Gazebo, why all of them do."""
+    """Return why rcl rejects a name; in a plugin that may be for ROS 1 or Gazebo, why all do."""
     if _ALLOWED_EVERYWHERE.fullmatch(name) and not section.startswith("block ros"):
         return ""
     fault = check_topic_name(name.rstrip("/"))
@@ -230,7 +230,7 @@ def _name_fault(name: str, section: str) -> str:
 
 @rule("MB313", "odd-interface-name", WARNING)
 def odd_interface(subject: Subject) -> Iterator[Problem]:
-    """Components and their interfaces; the name of a joint is reported at its declaration."""
+    """Report components and their interfaces; a joint's name is reported at its declaration."""
     for system in subject.elements.every("ros2_control"):
         for it in system.iter(
             "ros2_control", "sensor", "gpio", "command_interface", "state_interface"

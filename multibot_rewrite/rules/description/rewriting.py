@@ -26,7 +26,7 @@ from multibot_rewrite.rules.subject import Subject
 
 @rule("MB901", "name-of-unknown-use", WARNING, formats=(URDF, SRDF, *EVERY))
 def unclaimed_mention(subject: Subject) -> Iterator[Problem]:
-    """Values that no site claims and that hold a declared name."""
+    """Report values that no site claims and that hold a declared name."""
     inventory = subject.inventory
     names = {name for kind in MENTIONED for name in inventory.declared[kind]}
     values, usual = slot_values(subject.document.root), usual_names(subject.settings.naming)

@@ -119,7 +119,7 @@ def drives(subject: Subject) -> list[Drive]:
 
 
 def wheel_joints(subject: Subject) -> Iterator[tuple[_Element, Joint]]:
-    """Each joint that a drive names as a wheel's, and the element that names it."""
+    """Yield each joint that a drive names as a wheel's, and the element that names it."""
     for plugin, section in subject.inventory.served:
         kinds = next((TAGS[it] for it in section.names if it in TAGS), ())
         names = {tag for it in kinds for tag in (*it.left, *it.right)}
@@ -190,10 +190,8 @@ class Measured(NamedTuple):
 
 
 def separation(robot: Robot, left: Wheel, right: Wheel, several: bool) -> Measured | None:
-    """How far two wheels are apart, by their joints or shapes; None where their axes are not parallel.
-
-    ``several`` wheels of a side skid in a turn.
-    """
+    """Return how far two wheels are apart, by their joints or shapes; None if their axes are not
+    parallel. ``several`` wheels of a side skid in a turn."""
     if abs(dot(left.axis, right.axis)) < ALONG:
         return None
     slack = TOLERANCE if radii(robot, left) else UNSEEN
@@ -217,11 +215,9 @@ def radius(robot: Robot, wheels: Iterable[Wheel]) -> Measured | None:
 
 
 def are_swapped(left: Wheel, right: Wheel) -> float:
-    """How far the left wheel is on the right, seen in the direction in which a positive speed
-    turns them; 0 where it is on the left, or that is not known.
-
-    A wheel that turns about an axis to the left rolls forward.
-    """
+    """Return how far the left wheel is on the right, seen in the direction in which a positive
+    speed turns them; 0 if it is on the left, or unknown. A wheel that turns about an axis to the
+    left rolls forward."""
     if dot(left.axis, right.axis) < ALONG or abs(left.axis[2]) > 1 - ALONG:
         return 0.0
     across = apart(left.pose.at, right.pose.at, left.axis)
@@ -229,13 +225,13 @@ def are_swapped(left: Wheel, right: Wheel) -> float:
 
 
 def are_opposite(left: Wheel, right: Wheel) -> bool:
-    """Do the axes of two wheels point in opposite directions?"""
+    """Return whether the axes of two wheels point in opposite directions."""
     return dot(left.axis, right.axis) < -ALONG
 
 
 def rolling_faults(robot: Robot, left: Wheel, right: Wheel) -> Iterator[str]:
-    """Why two wheels of one axle would not roll: an upright axis, one along the robot's length, a
-    cylinder that turns about its side, wheels at two heights."""
+    """Yield why two wheels of one axle would not roll: an upright axis, one along the robot's
+    length, a cylinder that turns about its side, wheels at two heights."""
     for wheel in (left, right):
         name = wheel.joint.name
         if abs(wheel.axis[2]) > _UPRIGHT:
@@ -309,5 +305,5 @@ def middles(robot: Robot, wheel: Wheel) -> list[Vector]:
 
 
 def apart(one: Vector, other: Vector, axis: Vector) -> float:
-    """How far two points are from each other along an axis; signed."""
+    """Return how far two points are from each other along an axis; signed."""
     return dot(minus(one, other), axis)

@@ -42,8 +42,8 @@ def memoized(make: Callable[[Subject], _Made]) -> Callable[[Subject], _Made]:
 
 @memoized
 def link_poses(subject: Subject) -> Mapping[str, Pose]:
-    """Each link's pose in the root of its tree; those below an origin that is no number are left
-    out."""
+    """Return each link's pose in the root of its tree; those below an origin that is no number are
+    left out."""
     return poses.link_poses(subject.robot)
 
 
@@ -66,7 +66,7 @@ class LinkPart(NamedTuple):
 
 @memoized
 def parts(subject: Subject) -> list[LinkPart]:
-    """All visuals of links in document order, then all collisions."""
+    """Return all visuals of links in document order, then all collisions."""
     geometries = subject.elements.first("geometry")
     found = []
     for element in subject.elements.every("visual", "collision"):
@@ -88,8 +88,8 @@ def _first(geometry: _Element) -> _Element | None:
 
 @memoized
 def level_of_absence(subject: Subject) -> str:
-    """How bad it is that a description lacks something: a xacro file may be a part of a robot, or have
-    it behind a condition. What is a part for certain has links that all hang on others."""
+    """Return the level if a description lacks something: a xacro file may be a part of a robot, or
+    have it behind a condition. What is surely a part has only links with a parent."""
     robot = subject.robot
     is_part = robot.links and not roots(robot) and any(it not in robot.link for it in robot.below)
     levels = (WARNING, NOTE) if subject.origins else (ERROR, WARNING)

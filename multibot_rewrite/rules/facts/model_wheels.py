@@ -28,7 +28,7 @@ class ModelWheels(NamedTuple):
 
 
 def model_wheels(model: _Element) -> ModelWheels | None:
-    """None where the poses of a model are in a circle."""
+    """Return a model's wheels; None if its poses are defined in a circle."""
     frames = Frames({it.name: it for it in named_in(model, "")}, "")
     root = etree.Element("robot")
     wheels = {}

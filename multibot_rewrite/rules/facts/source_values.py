@@ -34,7 +34,7 @@ def claim_is_fixed(subject: Subject, claim: Claim) -> bool:
 
 
 def starts_of(subject: Subject, elements: Collection[_Element]) -> Mapping[_Element, int]:
-    """Where the tags of some elements start."""
+    """Return where the tags of some elements start."""
     wanted = set(elements)
     every = zip(subject.document.elements, subject.document.starts, strict=True)
     return {element: start for element, start in every if element in wanted} if wanted else {}

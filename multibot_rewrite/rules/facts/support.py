@@ -33,7 +33,7 @@ def ground_of(subject: Subject) -> float | None:
 
 
 def contacts(subject: Subject) -> list[Point] | None:
-    """Where simple shapes touch the ground; None if a collision has another shape, or is unknown."""
+    """Return where simple shapes touch the ground; None if a collision is unknown or not simple."""
     ground, poses = ground_of(subject), link_poses(subject)
     if ground is None:
         return None
@@ -84,7 +84,7 @@ def _chain(points: Sequence[Point]) -> list[Point]:
 
 
 def side(start: Point, end: Point, point: Point) -> float:
-    """Above 0 where a point is left of the way from ``start`` to ``end``."""
+    """Return a number above 0 if a point is left of the line from ``start`` to ``end``."""
     return (end[0] - start[0]) * (point[1] - start[1]) - (end[1] - start[1]) * (point[0] - start[0])
 
 

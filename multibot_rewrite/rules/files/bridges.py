@@ -38,8 +38,8 @@ _BOTH_WAYS, _IN = DIRECTIONS[:2]
 
 @rule("MB855", "bridge-row", WARNING, formats=(BRIDGE,))
 def bridge_row(file: NamedFile) -> Iterator[Finding]:
-    """Each fault of each row, and a row that is no item of a list (bridge_config.cpp: 'top level must
-    be a YAML sequence')."""
+    """Report each fault of each row, and a row that is no item of a list (bridge_config.cpp: 'top
+    level must be a YAML sequence')."""
     root = file.document.root if file.document else None
     if isinstance(root, yaml.MappingNode):
         hint = "write '- ' before it"
@@ -54,7 +54,7 @@ def _rows(file: NamedFile) -> list[yaml.Node]:
 
 @rule("MB858", "bridge-key", WARNING, formats=(BRIDGE,))
 def bridge_key(file: NamedFile) -> Iterator[Finding]:
-    """Each key of each row."""
+    """Report unknown keys of each row."""
     for row in map(row_of, _rows(file)):
         for name, (key, _) in row.items():
             if name not in KEYS:
@@ -64,7 +64,7 @@ def bridge_key(file: NamedFile) -> Iterator[Finding]:
 
 @rule("MB874", "bridge-types-not-converted", WARNING, formats=(BRIDGE,))
 def not_converted(file: NamedFile) -> Iterator[Finding]:
-    """Rows whose types do not belong together."""
+    """Report rows whose types do not belong together."""
     known: Mapping[str, list[str]] = bridge_data()["pairs"]
     for node in _rows(file):
         ros, gz = (text_in(row_of(node), key) for key in TYPES)
@@ -87,7 +87,7 @@ def not_converted(file: NamedFile) -> Iterator[Finding]:
 
 @robots_rule("MB889", "bridge-of-second-model", WARNING, BRIDGE)
 def second_model(file: NamedFile) -> Iterator[Finding]:
-    """Each other model than the first, at its first entry."""
+    """Report each other model than the first, at its first entry."""
     first: dict[str, yaml.Node] = {}
     for node, name in models(file.document) if file.document else ():
         first.setdefault(name, node)
@@ -100,7 +100,7 @@ def second_model(file: NamedFile) -> Iterator[Finding]:
 
 @robots_rule("MB890", "bridge-not-per-robot", WARNING, BRIDGE)
 def shared_service(file: NamedFile) -> Iterator[Finding]:
-    """Services that are not those of the world."""
+    """Report services that are not those of the world."""
     for node in _rows(file):
         service = text_in(row_of(node), SERVICE)
         if service and not service.strip("/").startswith("world/") and not any(faults(node)):
@@ -130,9 +130,8 @@ class GzTopic(NamedTuple):
 
 @rule("MB879", "bridge-row-without-gz-topic", WARNING, formats=(BRIDGE,), options={"build": True})
 def no_gz_topic(file: NamedFile) -> Iterator[Finding]:
-    """Rows for a gz topic of the description with another type or direction, and rows that read one
-    which is not there, although another one of their type is: what sends topics of other types is not
-    known."""
+    """Report rows for a gz topic of the description with another type or direction, and rows that
+    read a missing one although another of their type exists: senders of other types are unknown."""
     known: GzTopics | None = file.memo.get(GzTopics)
     for row in map(row_of, _rows(file) if known else ()):
         _, node = row.get(GZ) or row.get(BOTH) or (None, None)

@@ -100,7 +100,7 @@ def _lacks(node: yaml.Node, name: str, hint: str) -> Iterator[Finding]:
 
 @rule("MB878", "section-of-no-controller", WARNING, formats=(PARAMS,))
 def section_of_no_controller(file: NamedFile) -> Iterator[Finding]:
-    """Nothing is said where no parameter file of the robot declares a controller."""
+    """Report sections without a controller, if a parameter file of the robot declares any."""
     given, known = beside(file)
     declared = {it.node: it for it in given if it.host_name}
     bare = [name for name, it in declared.items() if not it.values]

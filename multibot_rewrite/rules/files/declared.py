@@ -38,7 +38,7 @@ _WORDS = {bool: "bool", int: "int", float: "double", str: "string"}
 
 
 def unknown_parameters(file: NamedFile) -> Iterator[Finding]:
-    """Parameters that no release of their node declares, with a name nearly that of one."""
+    """Report parameters that no release of their node declares, with a name nearly that of one."""
     for section in sections(file):
         # What is asked for by whatever name there is counts for none.
         unknown = [
@@ -58,7 +58,7 @@ def unknown_parameters(file: NamedFile) -> Iterator[Finding]:
 def _meant_by(
     section: Section, given: Iterable[Setting], release: str
 ) -> Iterator[tuple[Setting, str]]:
-    """Each parameter that its node is not known to have, and the one that is probably meant."""
+    """Yield each parameter that its node is not known to have, and the one probably meant."""
     unknown = [
         it for it in given if not _is_known(section, it) and PARAMETERS not in it.name.split(".")
     ]
@@ -85,7 +85,7 @@ def _meant_by(
 
 
 def _renamed(name: str) -> str:
-    """Today's name of a parameter that has another one elsewhere; empty for none."""
+    """Return today's name of a parameter that has another one elsewhere; empty for none."""
     *above, last = name.split(".")
     return ".".join((*above, RENAMED[last])) if last in RENAMED else ""
 
@@ -124,7 +124,7 @@ def _cut(name: str, known: Iterable[str]) -> str:
 
 
 def wrong_types(file: NamedFile) -> Iterator[Finding]:
-    """Values of another type than the one that all declarations of a parameter have. It is an error
+    """Report values of another type than that of all declarations of a parameter. It is an error
     where no release takes the value."""
     for section in sections(file):
         for it, known in section.known:
@@ -166,7 +166,7 @@ def _wrong_type(it: Setting, known: Sequence[Declared]) -> str:
 
 
 def not_read(file: NamedFile) -> Iterator[Finding]:
-    """Parameters of a node whose package declares all of its own, and not these."""
+    """Report parameters of a node whose package declares all of its own, and not these."""
     for section in sections(file):
         facts = [fact for fact in section.facts if fact.how != DEMANDED]
         # All that a package declares: in a file, or in code that puts together no name.
@@ -181,7 +181,7 @@ def not_read(file: NamedFile) -> Iterator[Finding]:
 
 
 def in_the_manager(file: NamedFile) -> Iterator[Finding]:
-    """Parameters of a controller in the section of its manager, which reads their class."""
+    """Report parameters of a controller in the section of its manager, which reads their class."""
     known = file.known
     if known is None:
         return
@@ -199,7 +199,7 @@ def in_the_manager(file: NamedFile) -> Iterator[Finding]:
 
 
 def below_unknown_names(file: NamedFile) -> Iterator[Finding]:
-    """Parameters below a name that the list which has those names lacks: ``constraints.JOINT``."""
+    """Report parameters below a name that its list lacks: ``constraints.JOINT``."""
     for section in sections(file):
         for it, known in section.known:
             for fact in known if len(known) == 1 and known[0].how == YAML else ():
@@ -220,7 +220,7 @@ def _for_unknown(
 
 
 def of_other_releases(file: NamedFile) -> Iterator[Finding]:
-    """Parameters that the node declares in other releases only."""
+    """Report parameters that the node declares in other releases only."""
     release = file.context.distro
     for section in sections(file):
         for it, known in section.known:
@@ -233,7 +233,7 @@ def of_other_releases(file: NamedFile) -> Iterator[Finding]:
 
 
 def out_of_bounds(file: NamedFile) -> Iterator[Finding]:
-    """Values that a check of generate_parameter_library, or of the node's code, rejects."""
+    """Report values that generate_parameter_library, or the node's code, rejects."""
     for section in sections(file):
         for it, facts in _declared(section, file.context.distro):
             alone = sum(fact.how != DEMANDED for fact in facts) == 1
@@ -252,7 +252,7 @@ def _is_filled_in(value: Value | None) -> bool:
 
 
 def _declared(section: Section, release: str) -> Iterator[tuple[Setting, list[Declared]]]:
-    """Each parameter with its declarations in a release: those of its name, else those of a pattern."""
+    """Yield each parameter with its declarations in a release: by name, without any by pattern."""
     for it, known in section.known:
         found = [fact for fact in of_release(known, release) if fact.how != READ]
         exact = [fact for fact in found if fact.path == it.name]

@@ -54,7 +54,7 @@ def demands(file: NamedFile, *checks: str) -> Iterator[Demand]:
 
 
 def above_others(file: NamedFile) -> Iterator[Finding]:
-    """Values above another parameter that is the upper end of the same range."""
+    """Report values above another parameter that is the upper end of the same range."""
     for it in demands(file, "at_most", "not_above"):
         value, other = it.given.value, value_of(it.section, it.words[0])
         # A negative one stands for no limit, or for that of the sensor.
@@ -77,7 +77,7 @@ def value_of(section: Section, name: str) -> Value | None:
 
 @rule("MB894", "parameters-contradict", WARNING, formats=(PARAMS, MOVEIT))
 def contradictions(file: NamedFile) -> Iterator[Finding]:
-    """Every demand of one parameter on another that is no order."""
+    """Report every condition between two parameters that is no order."""
     for it in demands(file, *_PAIRS):
         if said := _PAIRS[it.check](it):
             message = f"{it.section.title}: {it.given.name} {said}"
@@ -206,7 +206,7 @@ def _period(it: Demand) -> str:
 
 
 def _once(it: Demand) -> str:
-    """Told at the later one."""
+    """Return the message, once, at the later one."""
     kind, _, rest = (it.section.at + it.given.name).partition(".")
     for name, other in it.section.whole.items():
         if name == f"{kind}.{rest}":

@@ -30,7 +30,7 @@ from multibot_rewrite.rules.system import clocks
 def _of_files(
     asked: Rule, *finders: Callable[[NamedFile], Iterator[Finding]], **changed: Any
 ) -> Rule:
-    """Return a rule of descriptions as one of files: it finds what any of the finders does."""
+    """Return a rule of files that a rule of descriptions stands for: any of the finders reports it."""
 
     def found(file: NamedFile) -> Iterator[Finding]:
         for find in finders:

@@ -67,8 +67,8 @@ def limits_beyond_the_joint(file: NamedFile) -> Iterator[Finding]:
 
 
 def _of_none(file: NamedFile, section: Section, subjects: Sequence[Subject]) -> Iterator[Finding]:
-    """Joints that the only robot of a package has not, nor the SRDF of the file's folder, which is for
-    that robot."""
+    """Report joints that the only robot of a package lacks, as does the SRDF of the file's folder,
+    which is for that robot."""
     srdfs = _srdfs(file.file)
     names = {_ROBOT.search(data) for data in srdfs}
     robots = {subject.document.root.get("name", "").encode() for subject in subjects}
@@ -103,7 +103,7 @@ def _beyond(joint: Joint, what: str, value: object) -> float | None:
 
 @rule("MB899", "group-not-in-srdf", WARNING, formats=(MOVEIT, PARAMS))
 def groups_not_in_srdf(file: NamedFile) -> Iterator[Finding]:
-    """Nothing where an SRDF makes names of its groups when it is expanded."""
+    """Report groups that the SRDF lacks, unless it makes names of its groups when it is expanded."""
     sites = [it for it in file.names if it.kind == "group" and it.is_sure]
     # A build that has the SRDF knows its groups, and says it as of any name.
     told = file.is_certain and bool(file.declared.get("group"))
@@ -141,7 +141,7 @@ def _srdfs(file: str) -> list[bytes]:
     options={"build": True, "groups": "rename"},
 )
 def groups_without_srdf(file: NamedFile) -> Iterator[Finding]:
-    """Each group, at its first place."""
+    """Report each group, at its first place."""
     names = file.context.names
     asked = "group" in names.naming.separators and not names.declared.get("group")
     groups = {it.text: it for it in reversed(file.names) if it.kind == "group"}
@@ -158,7 +158,7 @@ def groups_without_srdf(file: NamedFile) -> Iterator[Finding]:
     options={"build": True, "layout": "postfix"},
 )
 def one_controller_manager(file: NamedFile) -> Iterator[Finding]:
-    """Places that select a controller manager which no robot has."""
+    """Report places that select a controller manager which no robot has."""
     if file.document is None or file.context.names.naming.topics == NAMESPACE:
         return
     key = asks_below_root(file.document)

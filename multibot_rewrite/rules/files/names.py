@@ -53,13 +53,13 @@ WORLD = "world"
 
 @rule("MB853", "undeclared-frame-in-file", WARNING, formats=EVERY)
 def undeclared_frame(file: NamedFile) -> Iterator[Finding]:
-    """Frames and links."""
+    """Report frames and links."""
     return _undeclared(file, _FRAMES)
 
 
 @rule("MB854", "undeclared-joint-in-file", NOTE, formats=EVERY)
 def undeclared_joint(file: NamedFile) -> Iterator[Finding]:
-    """Joints, sensors and groups."""
+    """Report joints, sensors and groups."""
     return _undeclared(file, _PARTS)
 
 
@@ -132,7 +132,7 @@ def _missing(file: NamedFile, site: Site) -> str:
 
 @rule("MB875", "file-of-another-robot", ERROR, formats=(MOVEIT,), options={"build": True})
 def of_another_robot(file: NamedFile) -> Iterator[Finding]:
-    """One remark for all names, at the first."""
+    """Report one finding for all names, at the first."""
     missing, count, first = _foreign(file)
     if missing and first:
         few = ", ".join(text for _, text in missing[:2])
@@ -156,7 +156,7 @@ def _foreign(file: NamedFile) -> tuple[list[tuple[str, str]], int, Site | None]:
 
 
 def unknown_uses(file: NamedFile) -> Iterator[Finding]:
-    """Texts of unknown use that are names, and in files of plugins those that hold one."""
+    """Report texts of unknown use that are names, and in files of plugins those that hold one."""
     yield from _guessed(file)
     if not file.others:
         return
@@ -173,7 +173,7 @@ def unknown_uses(file: NamedFile) -> Iterator[Finding]:
 
 @of_robots
 def _guessed(file: NamedFile) -> Iterator[Finding]:
-    """Parameters of a node that is not known, taken for names by their own: one remark a section."""
+    """Report, once a section, parameters of an unknown node, taken for names by their own."""
     for section, names in (it for it in file.pages if is_guessed(it[0])):
         # Names of the graph, and others where the guess changes the value.
         taken = [
@@ -227,7 +227,7 @@ def _mention(file: NamedFile, site: Site, known: Mapping[str, str], renamed: fro
 
 
 def _begins_all(file: NamedFile, text: str) -> bool:
-    """Do most links begin so? Code that puts it before names makes other ones than the description."""
+    """Return whether most links begin so. Code that adds it makes other names than the description."""
     links = [it for it in file.declared.get("link", ()) if it != WORLD]
     starts = tuple(f"{text.rstrip('_/')}{it}" for it in "_/")
     begun = [it for it in links if text and it.startswith(starts)]
@@ -264,7 +264,7 @@ def _is_interface(file: NamedFile, value: str) -> bool:
 
 @robots_rule("MB887", "included-file", WARNING, LUA, TREE)
 def included_file(file: NamedFile) -> Iterator[Finding]:
-    """Each file that is included."""
+    """Report each file that is included."""
     key = "behavior_trees" if file.kind == TREE else "lua"
     for site in file.included:
         message = f"the included file {site.text!r} is not rewritten with this one"
@@ -273,7 +273,7 @@ def included_file(file: NamedFile) -> Iterator[Finding]:
 
 @robots_rule("MB888", "lua-frame-not-plain", WARNING, LUA)
 def computed_frame(file: NamedFile) -> Iterator[Finding]:
-    """Each such frame, where robots have frames of their own."""
+    """Report each such frame, if robots have frames of their own."""
     for site in file.computed if frames_differ(file.context) else ():
         message = f"{site.key} is not a plain string, so it stays unchanged"
         yield remark(site, message, "each robot needs its own frame here; write the name in quotes")

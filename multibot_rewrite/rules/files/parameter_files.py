@@ -85,7 +85,7 @@ def _parameters(owner: str, node: yaml.Node, path: tuple[str, ...]) -> Iterator[
 
 
 def _bounds(validation: object) -> str:
-    """``gt_eq(0.0) size_lt([5])``: each check with its arguments."""
+    """Return ``gt_eq(0.0) size_lt([5])``: each check with its arguments."""
     if not isinstance(validation, dict):
         return ""
     words = (f"{str(name).removesuffix('<>')}({text_of(it)})" for name, it in validation.items())
@@ -134,8 +134,8 @@ def facts_of_node(
 
 @outside
 def nodl_parameters(package: str, node: str) -> tuple[tuple[str, str], ...]:
-    """Names and types of the parameters in the installed NoDL document of a node; none without one, or
-    where it cannot be read, which ``multibot plan`` tells."""
+    """Return names and types of the parameters in the installed NoDL document of a node; none
+    without one, or if it cannot be read, which ``multibot plan`` reports."""
     try:
         installed = find_interfaces(())
         file = file_of(installed, Identity(package, node))
@@ -166,7 +166,7 @@ def _in_sources(package: str, file: str, roots: tuple[str, ...]) -> tuple[Declar
 
 
 def of_release(facts: Sequence[Declared], release: str) -> list[Declared]:
-    """Those that the release has."""
+    """Return those that the release has."""
     return [it for it in facts if has_release(it.releases, release)]
 
 

@@ -48,7 +48,7 @@ _CRITIC_SCOPES = {
 
 
 def unknown_classes(file: NamedFile) -> Iterator[Finding]:
-    """Classes that no package of the release registers, in parameters and kinematics of MoveIt."""
+    """Report classes that no package of the release registers, in parameters and kinematics."""
     release = file.context.distro
     known = file.known.nodes.values() if file.known else ()
     told = {type_ for node in known for type_ in node.deprecated_types}  # MB869
@@ -146,8 +146,9 @@ def _near(name: str, there: Sequence[str]) -> str:
 
 
 def _critics(it: Demand) -> Iterator[Finding]:
-    """Critics are classes of a scope: DWB adds the word Critic, and may look in others.
-    Another package may register more of them in that scope (pluginlib looks a name up in all)."""
+    """Report critics, which are classes of a scope: DWB adds the word Critic, and may look in
+    others. Another package may register more of them in that scope (pluginlib looks a name up in
+    all)."""
     base = it.words[0]
     scope, known = _CRITIC_SCOPES[base], plugin_bases()[base].classes
     names = {name.rpartition("::")[2]: name for name in known}
@@ -166,8 +167,8 @@ def _critics(it: Demand) -> Iterator[Finding]:
 
 
 def without_plugin(file: NamedFile) -> Iterator[Finding]:
-    """Words of a list of plugins without NAME.plugin, sources without parameters, controllers without
-    a type."""
+    """Report words of a list of plugins without NAME.plugin, sources without parameters,
+    controllers without a type."""
     for it in demands(file, "classes", "blocks"):
         ids, words, whole = it.words[1:], words_of(it.given), it.section.whole
         blocks = it.check == "blocks"
@@ -219,7 +220,7 @@ def _without_type(file: NamedFile) -> Iterator[Finding]:
 
 
 def renamed_nodes(file: NamedFile) -> Iterator[Finding]:
-    """Sections of nodes that have another name since a release before Humble."""
+    """Report sections of nodes that have another name since a release before Humble."""
     now = plugin_bases()[NODE].older
     for name, section in older_nodes(file):
         message = f"no supported release has a node {name}: it is called {now[name]}"
@@ -227,7 +228,7 @@ def renamed_nodes(file: NamedFile) -> Iterator[Finding]:
 
 
 def older_nodes(file: NamedFile) -> Iterator[tuple[str, ParamSection]]:
-    """Sections of nodes that only releases before Humble call so, with the name."""
+    """Yield sections, with their names, of nodes that only releases before Humble call so."""
     for section, _ in file.pages:
         name = section.path.rpartition("/")[2]
         if name in plugin_bases()[NODE].older:
@@ -253,7 +254,7 @@ def missing_parameters(file: NamedFile) -> Iterator[Finding]:
                     it in section.whole or is_set_beside(file, section.title, it) for it in names
                 )
                 if section.given and not any(there):
-                    message = f"{section.title}: there is none of {', '.join(names)}"
+                    message = f"{section.title}: none of these is set: {', '.join(names)}"
                     hint = f"add one; see {fact.source}"
                     yield remark_at(section.given[0].key, message, hint, WARNING)
     for it in demands(file, "needs"):
@@ -276,8 +277,8 @@ def _required(file: NamedFile, section: Section, fact: Declared, words: str) -> 
 
 
 def _blocks(section: Section, path: str) -> Iterator[tuple[str, yaml.ScalarNode]]:
-    """Each block of a file that a path is in, with a key; of a path of the node itself one without a
-    name."""
+    """Yield each block of a file that a path is in, with a key; for a path of the node itself one
+    without a name."""
     above = path.rpartition(".")[0]
     if "<" not in path:
         if section.given:

@@ -67,7 +67,7 @@ def rejected_values(file: NamedFile) -> Iterator[Finding]:
 
 
 def outside_of_marks(file: NamedFile) -> Iterator[Finding]:
-    """Values that are below no ``ros__parameters``: the first one of each top key."""
+    """Report values that are below no ``ros__parameters``: the first one of each top key."""
     for key, below in pairs(file.document.root if file.document else None):
         value = None if file.kind != PARAMS else next(_outside(key, below), None)
         if value:
@@ -101,7 +101,7 @@ def _is_read(node: yaml.Node) -> bool:
 
 
 def misspelt_marks(file: NamedFile) -> Iterator[Finding]:
-    """Keys that are nearly ``ros__parameters``: what is below is part of a name, and no parameter."""
+    """Report keys that are nearly ``ros__parameters``: no node reads what is below them."""
     root = file.document.root if file.document else None
     for key in _keys(root, _DEEP):
         if key.value != PARAMETERS and _is_nearly_mark(key):
@@ -127,7 +127,7 @@ def _keys(node: yaml.Node | None, deep: int) -> Iterator[yaml.ScalarNode]:
 
 
 def mixed_clocks(file: NamedFile) -> Iterator[Finding]:
-    """Nodes of one file of which some are on simulated time and some say that they are not."""
+    """Report nodes of one file of which some are on simulated time and some say they are not."""
     found: list[tuple[str, yaml.Node, bool]] = []
     for section, _ in file.pages:
         # Not for those of no one node, and for helper nodes of old releases.
@@ -152,7 +152,7 @@ def mixed_clocks(file: NamedFile) -> Iterator[Finding]:
 
 @rule("MB859", "repeated-key", WARNING, formats=(PARAMS, MOVEIT))
 def repeated_key(file: NamedFile) -> Iterator[Finding]:
-    """Every key that is there before in the same map."""
+    """Report every key that occurs before in the same map."""
     for site in file.twice:
         message = f"{site.text!r} is set twice; the later value counts"
         yield remark(site, message, "remove one of them")
@@ -160,7 +160,7 @@ def repeated_key(file: NamedFile) -> Iterator[Finding]:
 
 @rule("MB866", "repeated-section", WARNING, formats=(PARAMS,))
 def repeated_section(file: NamedFile) -> Iterator[Finding]:
-    """Every section of a node but its first."""
+    """Report every section of a node but its first."""
     first: dict[str, ParamSection] = {}
     for section, _ in file.pages:
         earlier = first.setdefault(section.path, section)
@@ -190,7 +190,7 @@ def overridden(file: NamedFile) -> Iterator[Finding]:
 
 @rule("MB868", "parameter-without-value", WARNING, formats=(PARAMS,))
 def no_value(file: NamedFile) -> Iterator[Finding]:
-    """Keys of parameters without a value."""
+    """Report keys of parameters without a value."""
     for _, names in file.pages:
         for key in names.empty:
             message = f"{key.value!r} has no value"
@@ -202,7 +202,7 @@ _DIGITS = str.maketrans("", "", "0123456789")
 
 @rule("MB877", "listed-name-without-parameters", WARNING, formats=(PARAMS,))
 def listed_without_parameters(file: NamedFile) -> Iterator[Finding]:
-    """Each list of each node."""
+    """Report each list of each node."""
     for node in given_in(file):
         # Below each parameter the names with parameters of their own, each at its first place.
         bodies: dict[str, dict[str, Place]] = {}

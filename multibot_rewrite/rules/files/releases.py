@@ -25,7 +25,7 @@ _IN_JOINT_STATES = frozenset(("position", "velocity", "effort"))
 
 @rule("MB869", "deprecated-in-release", NOTE, formats=(PARAMS,), options={"distro": "lyrical"})
 def deprecated(file: NamedFile) -> Iterator[Finding]:
-    """Parameters of known nodes, and types of controllers."""
+    """Report parameters of known nodes, and types of controllers."""
     release, nodes = file.context.distro, file.known.nodes.values() if file.known else ()
     types = {name: it for node in nodes for name, it in node.deprecated_types.items()}
     for section, _ in file.pages:
@@ -50,7 +50,7 @@ def deprecated(file: NamedFile) -> Iterator[Finding]:
     "MB871", "interfaces-not-published", WARNING, formats=(PARAMS,), options={"distro": "lyrical"}
 )
 def not_sent(file: NamedFile) -> Iterator[Finding]:
-    """Interfaces of joint_state_broadcaster that no topic holds."""
+    """Report interfaces of joint_state_broadcaster that no topic holds."""
     if not has_release("lyrical+", file.context.distro):
         return
     nodes = ((section.node, section.body) for section, _ in file.pages)
@@ -70,7 +70,7 @@ def not_sent(file: NamedFile) -> Iterator[Finding]:
     "MB870", "parameter-of-another-release", NOTE, formats=(PARAMS,), options={"distro": "lyrical"}
 )
 def of_another_release(file: NamedFile) -> Iterator[Finding]:
-    """Nodes and parameters that only other releases have."""
+    """Report nodes and parameters that only other releases have."""
     yield from elsewhere(file)
 
 
@@ -93,7 +93,7 @@ def elsewhere(file: NamedFile) -> Iterator[Finding]:
 
 
 def _source(places: Sequence[str]) -> str:
-    """Where it can be read, as the end of a hint."""
+    """Return where it can be read, as the end of a hint."""
     return f"; source: {places[0]}" if places else ""
 
 

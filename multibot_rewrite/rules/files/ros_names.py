@@ -33,7 +33,7 @@ _FIXED = "<Fixed Frame>"
 
 
 def invalid_names(file: NamedFile) -> Iterator[Finding]:
-    """Names in the graph, and those of sections."""
+    """Report names in the graph, and those of sections."""
     for site in file.names:
         fault = _section_fault(site) if site.kind == SECTION else ""
         if site.kind in GRAPH and site.text and is_filled(site.text):
@@ -59,7 +59,7 @@ def _section_fault(site: Site) -> str:
 
 @rule("MB876", "name-in-text-block", WARNING, formats=(PARAMS, MOVEIT))
 def text_block(file: NamedFile) -> Iterator[Finding]:
-    """Each name in a block."""
+    """Report each name in a block of text."""
     for site in file.names:
         if site.slot.is_block and site.kind in (*GRAPH, *SPELLERS):
             name = site.text.strip()
@@ -92,7 +92,7 @@ def unfilled(file: NamedFile) -> Iterator[Finding]:
 
 
 def slashes(file: NamedFile) -> Iterator[Finding]:
-    """Values that are known to be frames."""
+    """Report values with a slash that are known to be frames."""
     for site in _frames(file):
         if site.text.startswith("/") and is_plain(site.text) and not _is_spaced(site.text):
             name, level = f"frame {site.text!r}", NOTE if site.bare else ""
@@ -104,7 +104,7 @@ def slashes(file: NamedFile) -> Iterator[Finding]:
 
 @rule("MB865", "frame-with-white-space", WARNING, formats=EVERY)
 def frame_with_white_space(file: NamedFile) -> Iterator[Finding]:
-    """Values that are known to be frames."""
+    """Report values with white space that are known to be frames."""
     for site in _frames(file):
         if _is_spaced(site.text) and is_filled(site.text):
             message = (
@@ -159,7 +159,7 @@ def in_description(
 
 
 def declared_names(declared: Mapping[str, Collection[str]]) -> frozenset[str]:
-    """Every name that a description declares, and the frames of nearly every robot."""
+    """Return every name that a description declares, and the frames of nearly every robot."""
     return frozenset((*USUAL_FRAMES, *(it for names in declared.values() for it in names)))
 
 
@@ -205,7 +205,7 @@ def _at_an_end(token: str, words: Iterable[str]) -> str:
 
 def _tells(word: str, name: str) -> bool:
     """Return whether a robot's name as a segment of a name means the robot. One that also names a
-    part does if it is there twice: camera/image is a topic of every camera."""
+    part does if it occurs twice: camera/image is a topic of every camera."""
     return word not in PARTS or f"/{word}/{word}/" in f"/{name.strip('/')}/"
 
 
@@ -229,6 +229,6 @@ def _without(name: str, word: str) -> Iterator[str]:
 
 
 def of_one_robot(name: str, robot: str) -> tuple[str, str]:
-    """Message and hint; raises nothing."""
+    """Return message and hint; raises nothing."""
     message = f"{name} includes the robot name {robot}, so the file is for that robot only"
     return message, "remove the robot name from every name; the build adds it for each robot"

@@ -14,7 +14,7 @@ from multibot_rewrite.rules.declaration import remark_at, robots_rule
 
 @rule("MB872", "rviz-ros1-property", WARNING, formats=(RVIZ,))
 def ros1_property(file: NamedFile) -> Iterator[Finding]:
-    """Each such property of each display."""
+    """Report each such property of each display."""
     for one in file.shown:
         for key, _ in pairs(one.node):
             if key.value in rviz_data()["legacy"]:
@@ -39,7 +39,7 @@ def volatile_description(file: NamedFile) -> Iterator[Finding]:
 
 @robots_rule("MB891", "rviz-unknown-display", WARNING, RVIZ)
 def unknown_display(file: NamedFile) -> Iterator[Finding]:
-    """Each such display."""
+    """Report each such display."""
     for one in file.shown:
         if not one.known:
             message = f"display class {one.cls!r} is not known; only its Topic is renamed"

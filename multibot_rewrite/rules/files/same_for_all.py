@@ -32,7 +32,7 @@ _OWN_VALUE = "set it for each robot, in a parameter file that is loaded after th
 
 @of_robots
 def _exclusive(file: NamedFile) -> Iterator[Finding]:
-    """Each parameter that is set and that only one node can have so, in a file for several robots."""
+    """Report each parameter that only one node can have so, in a file for several robots."""
     if file.is_for_one:
         return
     # Of a fleet each robot gets a number of its own.
@@ -59,7 +59,7 @@ def _same(key: str, text: str) -> str:
 
 @robots_rule("MB881", "value-not-renamed", WARNING, PARAMS, RVIZ)
 def not_renamed(file: NamedFile) -> Iterator[Finding]:
-    """Patterns and expressions of nodes; values of displays."""
+    """Report patterns and expressions of nodes; values of displays."""
     for site in file.names if file.kind == PARAMS else ():
         sure = site.kind == "pattern"
         sure = sure or (site.kind == "text" and _mentions(file.context, site.text))
@@ -79,7 +79,7 @@ def _mentions(context: Context, value: str) -> bool:
 
 
 def _why_not(context: Context, one: RvizItem, place: Site) -> tuple[str, str] | None:
-    """Why a value of a display stays unchanged, and what to do; None for a value that may."""
+    """Return why a value of a display stays unchanged, and what to do; None for one that may."""
     naming = context.names.naming
     if place.kind == "regex" and naming.layout.frames:
         return "is a pattern for frames and stays unchanged", "make it match the robots' frames"
@@ -95,7 +95,7 @@ def _why_not(context: Context, one: RvizItem, place: Site) -> tuple[str, str] | 
 
 @robots_rule("MB882", "robot-twice-in-value", ERROR, PARAMS, RVIZ)
 def robot_twice(file: NamedFile) -> Iterator[Finding]:
-    """Prefixes that a node or a display puts before frames."""
+    """Report prefixes that a node or a display puts before frames."""
     layout = file.context.names.naming.layout
     certain = frames_differ(file.context)
     for site in file.names if not layout.at_run_time else ():
@@ -118,7 +118,7 @@ def prefix_twice(key: str, value: str) -> str:
 
 @of_robots
 def prefix_only(file: NamedFile) -> Iterator[Finding]:
-    """Prefixes that cannot hold the robot's name at the end, set or left to their default."""
+    """Report prefixes that cannot hold the robot's name at the end, set or left to their default."""
     found: list[tuple[str, Finding]] = []
     for site in file.names if file.kind in (PARAMS, MOVEIT) else ():
         if not expressible(file.context, site.kind):
@@ -191,7 +191,7 @@ def section_of_one_robot(file: NamedFile) -> Iterator[Finding]:
     options={"build": True, "stack": "own", "nodes": "nodes.yaml"},
 )
 def shared_section(file: NamedFile) -> Iterator[Finding]:
-    """Each node that serves all robots, at its first section."""
+    """Report each node that serves all robots, at its first section."""
     shared = (it for it, _ in reversed(file.pages) if it.shared and file.is_certain)
     first = {it.path: it for it in shared}
     for path, section in first.items():
@@ -207,7 +207,7 @@ def shared_section(file: NamedFile) -> Iterator[Finding]:
     options={"robots": TWO, "distro": "jazzy"},
 )
 def source_without_topic(file: NamedFile) -> Iterator[Finding]:
-    """Observation sources of a costmap layer without a topic: their id is the topic."""
+    """Report observation sources of a costmap layer without a topic: their id is the topic."""
     pages = (it for it, _ in file.pages if not it.shared and _resolves_below(it, file.context))
     for section in pages:
         names = dict(flattened(section.body))

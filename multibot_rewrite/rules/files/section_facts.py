@@ -44,7 +44,7 @@ class Beside(NamedTuple):
 
 
 def beside(file: NamedFile) -> Beside:
-    """Of the robot that a file is for; of a file alone, by the parameter files in its folder."""
+    """Return the robot's parameter files; for a file alone, those in its folder."""
     if Beside not in file.memo:
         release = file.context.distro
         file.memo[Beside] = Beside(_given_by(file, _in_folder(file)), load_nodes(release))
@@ -83,7 +83,7 @@ def shown(place: Place) -> str:
 
 
 def _given_by(file: NamedFile, documents: Iterable[YamlText]) -> tuple[Run, ...]:
-    """Nothing where a file cannot be read: that is told where it is linted itself."""
+    """Return the nodes; none if a file cannot be read, which is reported when it is linted itself."""
     try:
         return tuple(given_nodes(documents, built_in_nodes(file.context.distro)))
     except InputError:
@@ -209,7 +209,7 @@ def filled(text: str, path: str, name: str) -> tuple[str, ...]:
 
 
 def _matching(wild: Sequence[tuple[str, Declared]], name: str) -> Iterator[Declared]:
-    """Those that have the name, each with the last word of its path."""
+    """Return those that have the name, each with the last word of its path."""
     last = name.rpartition(".")[2]
     return (it for end, it in wild if (end == last or "<" in end) and it.has_name(name))
 

@@ -39,7 +39,7 @@ _Values = Mapping[str, Setting]
 
 @rule("MB897", "joystick-command", ERROR, formats=(PARAMS,))
 def broken_commands(file: NamedFile) -> Iterator[Finding]:
-    """Of each command, at its first parameter."""
+    """Report each command, at its first parameter."""
     for section in sections(file):
         if section.node is None or section.node.name != "joy_teleop":
             continue
@@ -92,7 +92,7 @@ def _of_topic(values: _Values, kind: str) -> Iterator[tuple[str, str]]:
             yield words, "add scale and offset of the axis"
         known = _FIELDS.get(kind, ())
         if known and field.strip("-").partition("-")[0] not in known:
-            yield f"sets {field} of a {kind}, which has {' and '.join(known)}", "see the message"
+            yield f"sets {field} of a {kind}, which has {' and '.join(known)}", "use one of these"
 
 
 def _text(values: _Values, name: str) -> str:
@@ -106,7 +106,7 @@ _Filters = Mapping[str, Mapping[str, Setting]]
 
 @rule("MB896", "filter-chain", WARNING, formats=(PARAMS,))
 def broken_chains(file: NamedFile) -> Iterator[Finding]:
-    """Of every chain of a node of laser_filters."""
+    """Report every chain of a node of laser_filters."""
     own = (it for it in sections(file) if it.node and it.node.package == "laser_filters")
     for section, filters in ((it, chain) for it in own for chain in _chains(it).values()):
         last = next(at for at in range(1, len(filters) + 2) if str(at) not in filters) - 1

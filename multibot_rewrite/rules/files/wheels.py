@@ -145,7 +145,7 @@ class Size(NamedTuple):
 
 @rule("MB895", "costmap-robot-size", WARNING, formats=(PARAMS,))
 def robot_size(file: NamedFile) -> Iterator[Finding]:
-    """Each costmap of a file."""
+    """Report each costmap of a file."""
     for section in sections(file):
         if section.node is not None and section.node.package == "nav2_costmap_2d":
             yield from _of_costmap(file, section)
@@ -189,7 +189,7 @@ def _by_footprint(section: Section) -> Size | None:
 
 
 def _inscribed_radius(points: Sequence[tuple[float, float]]) -> float:
-    """From the origin to the nearest edge, as calculateMinAndMaxDistances has it."""
+    """Return the distance of the nearest edge from the origin, as calculateMinAndMaxDistances."""
     edges = zip(points, [*points[1:], points[0]], strict=True)
     return min(_to_edge(one, other) for one, other in edges)
 

@@ -41,7 +41,7 @@ _NEAR = 0.01
 
 @launch_rule("MG701", "model-name-twice")
 def name_twice(launched: Launched) -> Iterator[Finding]:
-    """Where nothing renames the second one."""
+    """Report models of one name, if nothing renames the second one."""
     first: dict[str, InSimulator] = {}
     for it in launched.simulated:
         other = first.setdefault(it.name, it)
@@ -53,7 +53,7 @@ def name_twice(launched: Launched) -> Iterator[Finding]:
 
 @launch_rule("MG702", "robots-in-each-other")
 def in_each_other(launched: Launched) -> Iterator[Finding]:
-    """Of descriptions in URDF: a model in SDF may have a pose of its own."""
+    """Report descriptions in URDF: a model in SDF may have a pose of its own."""
     models = [it for it in launched.simulated if it.root.tag == "robot"]
     placed = [(it, place, filled_by(it.root)) for it in models for place in _place_of(it)]
     level = ERROR if any(any(place) for _, place, _ in placed) else WARNING
@@ -66,14 +66,14 @@ def in_each_other(launched: Launched) -> Iterator[Finding]:
 
 
 def _place_of(it: InSimulator) -> Iterator[tuple[float, ...]]:
-    """Where a model is spawned; nothing for what is no number."""
+    """Yield where a model is spawned; nothing for what is no number."""
     with suppress(ValueError):
         yield tuple(float(it.words.get(key, 0)) for key in _POSE)
 
 
 @launch_rule("MG703", "gz-topic-of-two-models")
 def shared_topic(launched: Launched) -> Iterator[Finding]:
-    """Once for two models; transforms of all robots may have one topic."""
+    """Report once for two models; transforms of all robots may have one topic."""
     models = launched.simulated
     having: dict[str, list[int]] = defaultdict(list)
     shared: dict[tuple[int, int], list[str]] = defaultdict(list)
@@ -102,7 +102,7 @@ def not_bridged(launched: Launched) -> Iterator[Finding]:
 
 @launch_rule("MG707", "data-not-bridged")
 def not_brought(launched: Launched) -> Iterator[Finding]:
-    """By the topics without the names of the models: those of two descriptions mean other things."""
+    """Report gz topics without their models' names: those of two descriptions differ in meaning."""
     for it, gz in _lacking(launched, inwards=False):
         message = f"{it.name} sends gz topic {gz}, and no bridge brings it to ROS"
         hint = "add a row to ROS for it, as another model has one"
@@ -173,7 +173,7 @@ def _rows(launched: Launched) -> Iterator[_Row]:
 
 @launch_rule("MG705", "bridge-to-another-robot")
 def to_another_robot(launched: Launched) -> Iterator[Finding]:
-    """By the names of the models, where they are in the names of their topics."""
+    """Report it by the names of the models, if their topics contain them."""
     models = launched.simulated
     called = {it.name: {it.name, *it.words.get("-topic", "").split("/")} - {""} for it in models}
     sent = {(f"/{one.gz.lstrip('/')}", it.name) for it in models for one in it.topics}

@@ -27,7 +27,7 @@ from multibot_rewrite.knowledge.controller_ways import names_its_process
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, NAV2
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.producers.evidence.hardware import COMMAND, claims_of
-from multibot_rewrite.producers.launch import spawner_managers
+from multibot_rewrite.producers.launch import spawners
 from multibot_rewrite.producers.launch.bridges import refused_rows
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.programs import programs
@@ -56,7 +56,7 @@ def fails(launched: Launched) -> Iterator[Finding]:
 
 @launch_rule("MG722", "controller-spawned-twice")
 def spawned_twice(launched: Launched) -> Iterator[Finding]:
-    """At the last of them."""
+    """Report the last of them."""
     spawned = launched.spawned
     for (name, manager), count in Counter((it.name, it.manager) for it in spawned).items():
         if count > 1:
@@ -87,7 +87,7 @@ def _no_manager(launched: Launched) -> Iterator[Finding]:
             yield at(no_manager, mine[0].place, message, hint, level=INCONCLUSIVE)
 
 
-no_manager = spawner_managers.NO_MANAGER._replace(
+no_manager = spawners.NO_MANAGER._replace(
     check=_no_manager, formats=(LAUNCH,), examples="MG723-launch"
 )
 
@@ -135,14 +135,14 @@ def no_description(launched: Launched) -> Iterator[Finding]:
         if topic.endswith("robot_description") and topic not in sent:
             who = node.full_name
             message = f"{who} waits for a description on {topic}, where nothing sends one"
-            other = "start a robot_state_publisher there: no parameter tells it"
+            other = "start a robot_state_publisher there; no parameter changes the topic"
             hint = other if sent else _ELSEWHERE
             yield at(no_description, node.place, message, hint, names=(topic,), **level)
 
 
 @launch_rule("MG728", "controller-without-type")
 def no_type(launched: Launched) -> Iterator[Finding]:
-    """Where all parameter files are known; the file of a manager in a plugin is not read here."""
+    """Report it if all parameter files are known; a plugin's manager reads its file elsewhere."""
     if any(it.parameters for it in launched.graph.notes):
         return
     own = (it for it in launched.nodes if it.process != SIMULATED)
@@ -157,7 +157,7 @@ def no_type(launched: Launched) -> Iterator[Finding]:
 
 @launch_rule("MG725", "controller-without-joints")
 def no_joints(launched: Launched) -> Iterator[Finding]:
-    """Where all parameter files are known, and what it claims follows from its parameters alone."""
+    """Report it if all parameter files are known, and parameters alone decide what it claims."""
     if any(it.parameters for it in launched.graph.notes):
         return
     spawned = {(it.full_name, it.place) for it in launched.spawned}
@@ -180,7 +180,7 @@ def moves_nothing(facts: NodeFacts, given: Run) -> bool:
 
 @launch_rule("MG726", "not-activated")
 def not_listed(launched: Launched) -> Iterator[Finding]:
-    """By full names: a manager is for the nodes of its namespace."""
+    """Report it by full names: a manager is for the nodes of its namespace."""
     managers = [it for it in launched.nodes if _is(it, LIFECYCLE_MANAGER)]
     listed = {name: it for it in managers for name in _listed(it)}
     known = all(isinstance(it.value("node_names"), list) for it in managers)
@@ -237,7 +237,7 @@ def _listed(it: Run) -> Iterator[str]:
 
 @launch_rule("MG727", "manager-waits", level=WARNING)
 def waits(launched: Launched) -> Iterator[Finding]:
-    """Its default is false."""
+    """Report managers without autostart, which is false by default."""
     for it in launched.nodes:
         given = it.values.get("autostart")
         if _is(it, LIFECYCLE_MANAGER) and (given is None or given.value is False):
@@ -256,7 +256,7 @@ def read_by_joints(launched: Launched) -> Iterator[tuple[Run, str]]:
 
 @launch_rule("MG716", "joints-of-itself", level=WARNING)
 def of_itself(launched: Launched) -> Iterator[Finding]:
-    """Where all nodes are known."""
+    """Report nodes that read their own topic, if all nodes are known."""
     sent = (it for it in launched.system.ends if it.role == PUBLISHES)
     senders = sets_by_key((it.name, it.node) for it in sent)
     for node, topic in read_by_joints(launched) if launched.whole else ():
@@ -268,7 +268,7 @@ def of_itself(launched: Launched) -> Iterator[Finding]:
 
 @launch_rule("MG729", "program-ends-at-once")
 def ends(launched: Launched) -> Iterator[Finding]:
-    """Where all that a node gets is known."""
+    """Report nodes that end at once, if all that a node gets is known."""
     unsure = {(it.place.file, it.place.line) for it in launched.graph.notes}
     for it in launched.graph.nodes:
         fault = check_node_name(it.name) if it.name else None

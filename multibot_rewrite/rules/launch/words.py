@@ -53,7 +53,7 @@ _TURN = 2 * pi
 
 @launch_rule("MG711", "static-transform-implausible")
 def implausible(launched: Launched) -> Iterator[Finding]:
-    """Each fault of each publisher."""
+    """Report each fault of each publisher."""
     for it in launched.nodes:
         if it.fact.known != STATIC:
             continue
@@ -88,8 +88,8 @@ def _faults(it: Run) -> Iterator[tuple[str, str]]:
 
 
 def _matches_nothing(launched: Launched) -> Iterator[Finding]:
-    """Only for a name that is mistyped: the code of a node may have more than is known. A rule does no
-    harm whose name, or what it makes of it, a parameter of the node has already."""
+    """Report rules only for a mistyped name: the code of a node may have more than is known. A rule
+    is harmless if a parameter of the node already has its name or target."""
     for it in launched.nodes:
         above = f"{it.full_name.rpartition('/')[0]}/"
         known = it.fact.endpoints
@@ -110,7 +110,7 @@ matches_nothing = RULE_WITHOUT_NAME._replace(
 
 @launch_rule("MG713", "file-not-there")  # fmt: skip
 def not_there(launched: Launched) -> Iterator[Finding]:
-    """Parameter files, files that a parameter names, those after ``-file`` and ``-d``, worlds."""
+    """Report missing parameter files, files of parameters, those after ``-file`` and ``-d``, worlds."""
     told: set[tuple[str, int, str]] = set()
     for note in launched.graph.notes:
         if note.parameters and note.file and _is_ours(note.file):
@@ -136,7 +136,7 @@ def not_there(launched: Launched) -> Iterator[Finding]:
 
 
 def _of_no_node(launched: Launched) -> Iterator[Finding]:
-    """By the nodes that run. What a launch makes of a file is no file of the user."""
+    """Report sections of no running node. A file that a launch makes is not a user's file."""
     every = {it.full_name for it in launched.nodes} | {it.name for it in launched.system.nodes}
     nodes = lists_by_key((last_word(it), it) for it in every)
     started = lists_by_key(((it.place, it.program), it.full_name) for it in launched.nodes)
@@ -180,8 +180,8 @@ _LEFT = lazy_compile(rf"<[A-Za-z_]\w*>|\$\({IN_SUBSTITUTION}\)|\$\{{\w+\}}")
 
 
 def _placeholders(launched: Launched) -> Iterator[Finding]:
-    """Those in parameter files as nodes get them, and in the words that start them; what has blanks
-    besides is a text. The share folder of a package that is not here is asked for as it starts."""
+    """Report placeholders in parameter files as nodes get them, and in the words that start them;
+    one with blanks is a text. The share folder of a missing package is looked up at the start."""
     given: list[tuple[Place, str]] = []
     files: dict[tuple[str, str], Place] = {}
     for it in launched.graph.nodes:
@@ -213,7 +213,7 @@ placeholder_left = reading.leftover._replace(
 
 @launch_rule("MG715", "include-argument-not-read")
 def argument_not_read(launched: Launched) -> Iterator[Finding]:
-    """By what the other file has as a text."""
+    """Report arguments that the other file does not contain in its text."""
     for place, file, name, near in launched.graph.unread:
         hint = f"did you mean {near}?" if near else "leave it out, or write one that it declares"
         level = ERROR if near else WARNING
@@ -234,7 +234,7 @@ def _is_ours(path: str) -> bool:
 
 @launch_rule("MG714", "program-misspelt")
 def misspelt(launched: Launched) -> Iterator[Finding]:
-    """By what is known of a package's programs."""
+    """Report programs that a known package does not have."""
     known: dict[str, set[str]] = defaultdict(set)
     for node in built_in(launched.release).nodes.values():
         for path in node.programs or (node.kind,):

@@ -53,7 +53,7 @@ _AXIS_FREE = ("fixed", "floating")
 
 
 def read_faults(document: Document) -> tuple[Problem, ...]:
-    """Every fault of a URDF; what is not a ``<robot>`` has none."""
+    """Return every fault of a URDF; what is not a ``<robot>`` has none."""
     root = document.root
     if root.tag != ROBOT:
         return ()
@@ -76,7 +76,7 @@ def _sorted_children(
     parents: Iterable[etree._Element],
     below: dict[str, list[etree._Element]],
 ) -> Iterator[Problem]:
-    """Sorts the children of elements into their sections; yields what is wrong with the children."""
+    """Sort the children of elements into their sections; yield what is wrong with the children."""
     families: dict[tuple[str, ...], list[list[etree._Element]]] = defaultdict(list)
     for parent in parents if name in known.parents else filter(len, parents):
         family = [parent, *parent]
@@ -114,7 +114,7 @@ def _to_check(
 def _with_odd_values(
     alike: Sequence[etree._Element], typed: Iterable[tuple[int, Kind]]
 ) -> Iterable[etree._Element]:
-    """Elements of the same attributes, checked by columns: most values come again and again."""
+    """Return elements of the same attributes with odd values, checked by columns: most recur."""
     columns = list(zip(*[it.values() for it in alike], strict=True))
     found: dict[etree._Element, None] = {}
     for at, kind in typed:
@@ -126,7 +126,7 @@ def _with_odd_values(
 
 
 def _attributes(element: etree._Element, section: UrdfPart, version: Version) -> Iterator[Problem]:
-    """All faults of an element's attributes."""
+    """Yield all faults of an element's attributes."""
     keys = [str(key) for key in element.attrib]
     yield from _unknown_attributes(element, section, keys)
     for key in keys:
@@ -145,7 +145,7 @@ def _attributes(element: etree._Element, section: UrdfPart, version: Version) ->
 def _unknown_attributes(
     element: etree._Element, section: UrdfPart, keys: Sequence[str]
 ) -> Iterator[Problem]:
-    """Attributes that are missing, and those that no parser knows."""
+    """Yield attributes that are missing, and those that no parser knows."""
     known = section.attributes
     there = frozenset(keys)
     free = [it for it in known if it not in there]
@@ -171,7 +171,7 @@ def _unknown_attributes(
 
 
 def _children(element: etree._Element, section: UrdfPart, schema: Schema) -> Iterator[Problem]:
-    """Children that are missing, repeated, or that no parser knows, or not yet."""
+    """Yield children that are missing, repeated, or that no parser knows, or not yet."""
     known = section.children
     tags = [child.tag for child in element.iterchildren("*")]
     count = Counter(tags)
@@ -280,7 +280,7 @@ def _is_unread(element: etree._Element) -> bool:
 
 
 def _stray_texts(root: etree._Element, known: Schema) -> Iterator[Problem]:
-    """Text where no parser expects any, mostly a stray ``>``."""
+    """Yield text where no parser expects any, mostly a stray ``>``."""
     tops = _found(_TOPS, root)
     inside = ([top] if top.tag == ROBOT else _found(_TEXTS, top) for top in tops)
     for element in chain.from_iterable(inside):
@@ -299,7 +299,7 @@ def _found(path: etree.XPath, element: etree._Element) -> list[etree._Element]:
 
 
 def _broken_numbers(document: Document, known: Schema) -> Iterator[Problem]:
-    """Line breaks and tabs after a number: white space for XML, but not for urdfdom."""
+    """Yield line breaks and tabs after a number: white space for XML, but not for urdfdom."""
     source, elements, starts = document.source, document.elements, document.starts
     seen: set[int] = set()
     patterns = [pattern for blank, pattern in _BROKEN.items() if blank in source]

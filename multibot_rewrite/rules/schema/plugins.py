@@ -160,8 +160,8 @@ def _of_another(name: str, section: Values, vocabulary: Vocabulary) -> str:
 def _counterparts(
     library: str, of_ros_1: bool, vocabulary: Vocabulary
 ) -> tuple[tuple[str, bool], ...]:
-    """Those of the same name or subject: in the other ROS, in Gazebo for one of Classic, and the
-    reverse."""
+    """Return those of the same name or subject: in the other ROS, in Gazebo for one of Classic, and
+    the reverse."""
     own = _topic_of_library(library)
     of_gz = library.startswith(GZ)
     start = GAZEBO_ROS if of_gz else GZ

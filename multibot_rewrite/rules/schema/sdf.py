@@ -55,7 +55,7 @@ def version_of_release(release: str) -> Version:
 
 
 def block_faults(blocks: Sequence[_Element], robot: Robot, release: str) -> tuple[Problem, ...]:
-    """Every fault in these ``<gazebo>`` elements."""
+    """Return every fault in these ``<gazebo>`` elements."""
     version, taken = version_of_release(release), described("urdf")
     assert taken
     found = tuple(it for block in blocks for it in _block(block, robot, version, taken))
@@ -63,7 +63,7 @@ def block_faults(blocks: Sequence[_Element], robot: Robot, release: str) -> tupl
 
 
 def model_faults(root: _Element, release: str) -> tuple[Problem, ...]:
-    """Every fault in the models and worlds of an ``<sdf>``."""
+    """Return every fault in the models and worlds of an ``<sdf>``."""
     version = version_of_release(release)
     tops = root.iterchildren("model", "world")
     found = tuple(it for top in tops for it in _element(top, str(top.tag), version))
@@ -71,7 +71,7 @@ def model_faults(root: _Element, release: str) -> tuple[Problem, ...]:
 
 
 def _by_reader(found: tuple[Problem, ...], root: _Element, release: str) -> tuple[Problem, ...]:
-    """libsdformat 9 has no ranges (a friction of -1 is endless), and reads what it can of a vector."""
+    """Return faults at the reader's level: libsdformat 9 has no ranges, and reads part of a vector."""
     if not any(it.code in _MILD for it in found) or not versions.may_be_classics(root, release):
         return found
     return tuple(it._replace(level=_MILD.get(it.code, it.level)) for it in found)
@@ -120,7 +120,7 @@ def _belongs(tag: str) -> tuple[str, ...]:
 def _child(
     child: _Element, home: str, known: SdfPart, version: Version, also: Mapping[str, object]
 ) -> Iterator[Problem]:
-    """One child of an element whose section is ``known``; ``also`` are further tags it may have."""
+    """Yield faults of a child of an element with section ``known``; ``also`` are further tags."""
     tag = str(child.tag)
     rows = known.rows.get(tag)
     if rows is None:
@@ -140,7 +140,7 @@ def _child(
 
 
 def _element(element: _Element, section: str, version: Version) -> Iterator[Problem]:
-    """Attributes and children of an element that has a section."""
+    """Yield faults in attributes and children of an element that has a section."""
     known = described(section)
     if known is None:
         return
@@ -195,7 +195,7 @@ def _value(
 
 
 def _where(element: _Element, at: str, text: str) -> str:
-    """How a message names a value."""
+    """Return how a message names a value."""
     return f"{_named(element, at)} {shortened(text)!r}"
 
 

@@ -62,7 +62,7 @@ def _number(text: str, *, whole: bool = False) -> Misread | None:
 
 
 def _is_too_large(digits: str, whole: bool) -> bool:
-    """Do stod, stoi and stoul throw out_of_range? For whole numbers it is only asked roughly."""
+    """Return whether stod, stoi or stoul throw out_of_range; for whole numbers roughly."""
     if "x" in digits.lower() or not digits[-1].isdigit():
         return False
     return len(digits) > _DIGITS if whole else isinf(float(digits))

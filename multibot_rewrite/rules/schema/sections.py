@@ -170,7 +170,7 @@ def section_of(element: etree._Element, known: Schema) -> UrdfPart | None:
 def typed_attributes(
     version: Version, name: str, keys: tuple[str, ...]
 ) -> tuple[tuple[int, Kind], ...] | None:
-    """Which attributes have a type, and what they hold; None where one of them is a fault itself."""
+    """Return which attributes have a type, and what they hold; None if one is a fault itself."""
     section = schema(version).sections[name]
     known = section.attributes
     if any(f"@{key}" in section.later for key in keys):
@@ -265,7 +265,7 @@ def shortened(text: str) -> str:
 
 
 def wrong_numbers(value: str, kind: str) -> tuple[str, str, str]:
-    """(fault, what is wrong, hint) of a value that should be numbers; empty where fine."""
+    """Return (fault, what is wrong, hint) of a value that should be numbers; empty if fine."""
     words = value.split()
     odd = next((word for word in words if not _NUMBER.fullmatch(word)), None)
     if not words:

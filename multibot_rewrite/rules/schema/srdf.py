@@ -30,7 +30,7 @@ _PROPERTIES = ("angular_distance_weight", "motion_model", "min_translational_dis
 
 
 def srdf_faults(root: _Element, robot: Robot | None) -> Iterator[Problem]:
-    """Every fault of an SRDF; ``robot`` is that of its URDF, if it was found."""
+    """Yield every fault of an SRDF; ``robot`` is that of its URDF, if it was found."""
     yield from _misspelt(root, _TOP, ("name", "version"))
     pinocchios = is_pinocchios(root)
     for it, path in _elements(root):
@@ -71,7 +71,7 @@ def _elements(root: _Element) -> Iterator[tuple[_Element, str]]:
 def _misspelt(
     parent: _Element, children: tuple[str, ...], attributes: tuple[str, ...]
 ) -> Iterator[Problem]:
-    """Elements and attributes almost like a known one; all others belong to other tools."""
+    """Yield elements and attributes almost like a known one; all others belong to other tools."""
     for it in parent.iterchildren("*"):
         tag = str(it.tag)
         if tag not in children and (near := nearest(tag, children)):

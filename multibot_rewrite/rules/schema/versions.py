@@ -90,7 +90,7 @@ class Reader(NamedTuple):
 
 @lru_cache
 def readers() -> tuple[Reader, ...]:
-    """All rows of the table."""
+    """Return all rows of the table."""
     lines = table_text("readers.schema").splitlines()
     rows = [line.split() for line in lines if line and not line.startswith("#")]
     return tuple(Reader(*row) for row in rows)

@@ -104,7 +104,7 @@ def use_absolute(name: str) -> str:
 
 
 def why_not_remapped(plan: Index, planned: End) -> Cause:
-    """Why a name is still the one in the code, although a rule should remap it."""
+    """Return why a name is still the one in the code, although a rule should remap it."""
     rule = remap_rule(planned)
     plugin, place = plugin_of(plan, planned.node)
     if plugin:
@@ -118,7 +118,7 @@ def why_not_remapped(plan: Index, planned: End) -> Cause:
 
 
 def how_to_remap(plan: Index, planned: End) -> str:
-    """How to pass the rule to a node of the node set; empty for a plugin's node, which has a file."""
+    """Return how to pass the rule to a node of the node set; empty for a plugin, which has a file."""
     rule = remap_rule(planned)
     if not rule or plugin_of(plan, planned.node)[1]:
         return ""
@@ -147,7 +147,7 @@ def how_to_pass(plan: Index, node: str, rule: str, what: str = "") -> str:
 
 
 def _way(plan: Index, node: str) -> tuple[str, str]:
-    """How a planned node gets its rules, and which one takes them for it."""
+    """Return how a planned node gets its rules, and which one takes them for it."""
     planned = plan.node.get(node)
     return (planned.way, planned.taker) if planned else ("", "")
 
@@ -163,7 +163,7 @@ def _as_written(way: str, rule: str) -> str:
 
 
 def why_other_name(plan: Index, node: str, match: str) -> Cause:
-    """Why a planned node runs under another name, which is ``match``."""
+    """Return why a planned node runs under another name, which is ``match``."""
     robot = plan.robot_of[node]
     plugin, place = plugin_of(plan, node)
     plain = plan.of_names.without_robot(node, robot)
@@ -252,5 +252,5 @@ def _is_slip(one: str, other: str) -> bool:
 
 @lru_cache(maxsize=4096)
 def _letters(name: str) -> str:
-    """Its letters, digits and slashes, in lower case."""
+    """Return its letters, digits and slashes, in lower case."""
     return "".join(it for it in name.lower() if it.isalnum() or it == "/")

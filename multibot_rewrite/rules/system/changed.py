@@ -11,14 +11,14 @@ from typing import NamedTuple
 from multibot_rewrite.base.conventions import OF_EVERY_NODE
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
-from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.base.wording import only, shorten
 from multibot_rewrite.rules.declaration import planned_rule
 from multibot_rewrite.rules.system.causes import DOES
 from multibot_rewrite.rules.system.matching import qos_words
 from multibot_rewrite.rules.system.planned_nodes import missing_node, missing_robot, unplanned_node
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Index, at_work
-from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, TOPIC, Edge, End, System
+from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, Edge, End, System
 
 # In metres and parts of a quaternion.
 _SAME = 1e-3
@@ -40,7 +40,7 @@ class _Change(NamedTuple):
 
 @planned_rule("MG130", "changed-since", WARNING, absence=True)
 def changed_since(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Each by itself: what another finding is about is left to that one (``untold``)."""
+    """Report each change; what another finding is about is left to that one (``untold``)."""
     before = seen.known.before
     for it in _changes(before, seen) if before else ():
         robot = seen.robot(it.node) or next(filter(None, map(seen.robot, it.names)), "")
@@ -63,8 +63,6 @@ def untold(found: Iterable[Finding]) -> list[Finding]:
         it._replace(level=ERROR) if it.level == WARNING and errors & {*it.names} else it
         for it in every
     ]
-    led = {it.node for it in every if it.code == changed_since.code and it.level == ERROR}
-    every = [it for it in every if it.code != unplanned_node.code or it.node not in led]
     others = [it for it in every if it.code != changed_since.code]
     names = {name for it in others for name in it.names}
     came = (missing_node.code, unplanned_node.code)
@@ -86,8 +84,8 @@ def _changes(before: System, seen: Index) -> Iterator[_Change]:
             if (was := _said(old[key])) != (now := _said(end)) and not seen.is_tool(end.node):
                 what = f"{DOES[end.role]} {end.name} as {now}, and did as {was}"
                 yield _Change(end.node, what, (end.name,))
-        elif obeyed := _is_obeyed(seen, end):
-            what = f"{DOES[end.role]} {end.name}, and did not; {obeyed} obeys it"
+        elif heeded := _heeded(seen, end):
+            what = f"{DOES[end.role]} {end.name}, and did not; {heeded}"
             yield _Change(end.node, what, (end.name,), ERROR)
         elif end.node in nodes and not seen.is_tool(end.node):
             yield _Change(end.node, f"{DOES[end.role]} {end.name}, and did not", (end.name,))
@@ -116,35 +114,53 @@ def _said(end: End) -> str:
     return " ".join((end.type, *qos_words(end)))
 
 
-def _is_obeyed(seen: Index, end: End) -> str:
-    """Who does what a new sender orders, tools as well; empty for nobody."""
-    ends, others = seen.ends_at(end.kind, end.name), list[End]()
-    if end.kind == TOPIC and end.role == PUBLISHES and end.name in seen.orders:
-        others = at_work(ends.subscribers)
-    elif end.kind == ACTION and end.role == CALLS and not seen.is_tool(end.node):
-        others = [*ends.servers]
-    return next((it.node for it in others if it.node != end.node), "")
+def _heeded(seen: Index, end: End) -> str:
+    """Return who does what a new sender orders, or takes its data for those of another one, tools as
+    well; empty for nobody."""
+    ends = seen.ends_at(end.kind, end.name)
+    readers, others = (
+        [it.node for it in at_work(own) if it.node != end.node]
+        for own in ((*ends.subscribers, *ends.servers), ends.publishers)
+    )
+    if end.role not in (PUBLISHES, CALLS) or not readers:
+        return ""
+    if end.kind == ACTION or end.name in seen.orders:
+        return f"{readers[0]} obeys it"
+    twice = others and words.kind_of_data(end.name, end.type)
+    return f"{readers[0]} reads it, and {others[0]} sends it as well" if twice else ""
+
+
+def _sender(seen: Index, edge: Edge) -> str:
+    """Return the node of the robot of a transform among those that send on its topic, or the only one;
+    else an empty string."""
+    robot = seen.frame_robot(edge.child) or seen.robot(edge.topic)
+    own = [it for it in edge.publishers if seen.robot(it) == robot]
+    return only(own) or only(edge.publishers)
 
 
 def _transforms(before: System, seen: Index) -> Iterator[_Change]:
-    """Where tf was read both times. What a node that is gone sent is gone with it."""
+    """Yield changed transforms, if tf was read both times; not those of a node that is gone."""
     old, new = _edges(before.edges), _edges(seen.system.edges)
     if not (old and new):
         return
     above = {(child, topic): parent for parent, child, topic in new}
+    gone: dict[tuple[str, str, str], list[_Place]] = defaultdict(list)
     for place, edge in old.items():
         parent, child, topic = place
-        sent = f"the transform {parent} -> {child} on {topic}"
-        senders = [it for it in edge.publishers if it in seen.nodes]
-        names = (child, topic) if (child, topic) in above else (child, parent, topic)
-        if place not in new and (senders or not edge.publishers):
-            other = above.get((child, topic))
-            what = f"{sent} is gone" + (f": {child} is below {other}" if other else "")
-            yield _Change(
-                next(iter(senders), ""), what, names[:1], ERROR if edge.static else WARNING
-            )
+        if place not in new and {*edge.publishers} <= {*seen.nodes}:
+            level = ERROR if edge.static else WARNING
+            gone[_sender(seen, edge), topic, level].append(place)
         elif place in new and _is_moved(edge, new[place]):
+            sent = f"the transform {parent} -> {child} on {topic}"
             yield _Change("", f"{sent} is elsewhere than it was", (child,))
+    for (node, topic, level), places in gone.items():
+        pairs = shorten([f"{parent} -> {child}" for parent, child, _ in places])
+        moved = [f"{it[1]} is below {above[it[1:]]}" for it in places if it[1:] in above]
+        what = f"the transform {pairs} on {topic} is gone"
+        if len(places) > 1:
+            what = f"the transforms {pairs} on {topic} are gone"
+        what += f": {shorten(moved)}" if moved else ""
+        yield _Change(node, what, tuple(child for _, child, _ in places), level)
     known = {(child, topic) for _, child, topic in old}
     fresh = (it for it in new if it not in old and it[1:] not in known)
     for topic, places in lists_by_key((it[2], it) for it in fresh).items():
@@ -172,18 +188,20 @@ def _is_moved(old: Edge, new: Edge) -> bool:
 
 
 def _frames(before: System, seen: Index) -> Iterator[_Change]:
-    """Yield changes of the frames in messages, for topics with messages both times."""
-    old, new = (
-        sets_by_key(
-            (it.topic, " -> ".join(filter(None, (it.frame, it.child))) or shorten(it.joints))
-            for it in system.heard
-        )
-        for system in (before, seen.system)
-    )
-    for topic, frames in new.items():
-        if topic in old and frames != old[topic]:
-            was, now = (shorten(sorted(it)) or "nothing" for it in (old[topic], frames))
+    """Yield changes of what messages name, for topics with messages both times."""
+    old, new = (sets_by_key(_named(it)) for it in (before, seen.system))
+    for topic, names in new.items():
+        if topic in old and names != old[topic]:
+            both = (old[topic] - names, names - old[topic])
+            was, now = (shorten(sorted(it)) or "nothing else" for it in both)
             yield _Change("", f"messages on {topic} are of {now}, and were of {was}", (topic,))
+
+
+def _named(system: System) -> Iterator[tuple[str, str]]:
+    """Yield the topics with the frames and joints that their messages name, and descriptions."""
+    for it in system.heard:
+        yield it.topic, " -> ".join(filter(None, (it.frame, it.child))) or shorten(it.joints)
+    yield from ((it.topic, name) for it in system.descriptions for name in (*it.links, *it.joints))
 
 
 def _parameters(before: System, seen: Index) -> Iterator[_Change]:

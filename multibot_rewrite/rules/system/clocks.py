@@ -77,7 +77,7 @@ def _on_simulated_time(seen: Index) -> dict[str, list[str]]:
 
 @system_rule("MG502", "two-clocks", ERROR)
 def two_clocks(seen: Index) -> Iterator[Finding]:
-    """Two nodes of one name count as well: a bridge that was started for each robot."""
+    """Report it also for two nodes of one name: a bridge that was started for each robot."""
     nodes = _clocks(seen)
     times = {node: _times(seen, node) for node in nodes}
     if sum(max(1, count) for count in times.values()) > 1:
@@ -94,7 +94,7 @@ def two_clocks(seen: Index) -> Iterator[Finding]:
 
 
 def _times(seen: Index, node: str) -> int:
-    """How many nodes of a name publish the clock; all of them where their processes are not known."""
+    """Return how many nodes of a name publish the clock; all of them if their processes are unknown."""
     processes = _processes(seen)[node]
     if "" in processes or len(processes) < seen.nodes.get(node, 0):
         return seen.nodes.get(node, 0)
@@ -110,7 +110,7 @@ def _processes(seen: Index) -> Mapping[str, Set[str]]:
 
 @system_rule("MG504", "clock-stands-or-goes-back", ERROR, absence=True)
 def clock_stands_or_goes_back(seen: Index) -> Iterator[Finding]:
-    """As it was heard; of two clocks that is another finding."""
+    """Report a clock as it was heard; two clocks are another finding."""
     clocks, nodes = _clocks(seen), [it for own in _on_simulated_time(seen).values() for it in own]
     for it in (one for one in seen.system.heard if one.topic == CLOCK and len(clocks) == 1):
         about = {"node": clocks[0], "names": (CLOCK,)}
@@ -125,7 +125,7 @@ def clock_stands_or_goes_back(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG503", "clocks-mixed", ERROR, absence=True)
 def clocks_mixed(seen: Index) -> Iterator[Finding]:
-    """Also a robot that is not on simulated time as the others are."""
+    """Report also a robot that is not on simulated time as the others are."""
     return mixed_clocks(seen)
 
 
@@ -161,13 +161,13 @@ def mixed_clocks(seen: Index) -> Iterator[Finding]:
 
 
 def planned_clocks(seen: Index) -> dict[str, str]:
-    """By node: the clock that the plan has for it, as the value of its parameter."""
+    """Return by node the clock that the plan has for it, as the value of its parameter."""
     planned = seen.expected.system.parameters if seen.expected else ()
     return {it.node: it.value for it in planned if it.name == SIM_TIME}
 
 
 def _not_as_planned(seen: Index) -> Iterator[Finding]:
-    """One finding for the nodes of a robot that differ alike, by what they subscribe to."""
+    """Report, once for alike nodes of a robot, clocks other than planned, by their subscriptions."""
     timed = nodes_of(seen.ends_at(TOPIC, CLOCK).subscribers)
     told = {it.node for it in seen.system.parameters if it.name == SIM_TIME}
     here = [(it, wanted) for it, wanted in planned_clocks(seen).items() if it in seen.nodes]
@@ -202,7 +202,7 @@ _MEASURED = ("sensor_msgs/", "nav_msgs/msg/Odometry")
 
 @system_rule("MG417", "stamp-of-another-time", ERROR)
 def stamp_of_another_time(seen: Index) -> Iterator[Finding]:
-    """All topics of a sender that are wrong in one way are one; what a bag plays is of then."""
+    """Report all topics of a sender that are wrong in one way as one; a bag's data are of then."""
     clock = CLOCK in seen.published
     found: dict[tuple[tuple[str, ...], str], list[str]] = defaultdict(list)
     for topic, _, age, *_ in seen.system.heard:
@@ -221,8 +221,8 @@ def stamp_of_another_time(seen: Index) -> Iterator[Finding]:
 
 
 def _old_transforms(seen: Index, clock: bool) -> Iterator[Finding]:
-    """Localizers stamp theirs some time ahead (amcl transform_tolerance). Of the nodes that publish on
-    a tf topic nothing says which sent a transform: those of its robot may have."""
+    """Report old transforms. Localizers stamp theirs some time ahead (amcl transform_tolerance).
+    Nothing shows which of the nodes on a tf topic sent a transform: those of its robot may have."""
     found: dict[tuple[str, str], list[Edge]] = defaultdict(list)
     for tree in seen.trees:
         for it in tree.edges:

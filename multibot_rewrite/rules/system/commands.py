@@ -43,7 +43,7 @@ _OFFERED = ("goal_pose", "initialpose", "clicked_point")
 
 @system_rule("MG310", "command-for-several-robots", ERROR, drawn="leak", meant=(SUBSCRIBES,))
 def command_for_several_robots(seen: Index) -> Iterator[Finding]:
-    """Whether or not anybody sends at the moment."""
+    """Report it whether or not anybody sends at the moment."""
     orders = seen.orders
     for (kind, name), ends in seen.by_name.items():
         joystick = ends.type == words.JOYSTICK
@@ -71,8 +71,9 @@ def command_for_several_robots(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG308", "command-without-reader", ERROR, absence=True, drawn="leak")
 def command_to_nobody(seen: Index) -> Iterator[Finding]:
-    """Where the other name has no sender, its reader is the finding, but for the drive past a
-    twist_mux: what it chooses is meant for the drive. What RViz offers is a note."""
+    """Report commands without a reader. If the other name has no sender, its reader is reported,
+    except for the drive past a twist_mux, which chooses for the drive. What RViz offers is a
+    note."""
     obeyed, plainly = defaultdict(list), defaultdict(list)
     unread: dict[str, Ends] = {}
     for name, it in seen.orders.items():
@@ -102,8 +103,8 @@ def command_to_nobody(seen: Index) -> Iterator[Finding]:
 
 
 def _of_whom(seen: Index, ends: Ends, names: Sequence[str]) -> Sequence[str]:
-    """Return the obeyed names of robots that a sender may mean, of those that are called as its own;
-    where it is of one robot, that of this robot alone."""
+    """Return the obeyed names of robots that a sender may mean, of those with the sender's topic as
+    their own; if it is of one robot, that robot's alone."""
     mine = only(robots_of(seen, nodes_of(ends.publishers)))
     if not mine:
         return names
@@ -150,7 +151,7 @@ def _of_a_mux(seen: Index, ends: Ends) -> str:
 
 @once
 def _moving(seen: Index) -> tuple[set[str], set[str], Mapping[str, Sequence[Ends]]]:
-    """Who sends velocities, and so is no drive; who reads them, too; the velocities of each robot."""
+    """Return who sends velocities, and so is no drive; who also reads them; each robot's velocities."""
     moving = [it for it in seen.orders.values() if words.moves(seen.plain(it.name), it.type)]
     senders = {it.node for ends in moving for it in ends.publishers}
     asked = (it for it in moving if it.publishers or not is_from_outside(it.name))
@@ -168,7 +169,7 @@ def _goals(seen: Index) -> Mapping[tuple[str, str], Sequence[str]]:
 
 
 def _kinds(ends: Ends) -> set[str]:
-    """Its types; stamped or not is a switch of the sender."""
+    """Return its types; stamped or not is a switch of the sender."""
     return {it.removesuffix(STAMPED) for it in ends.type.split(" | ")}
 
 
@@ -224,7 +225,7 @@ def _sends_already(seen: Index, name: str) -> str:
     "MG311", "command-from-another-robot", ERROR, drawn="cross-talk", meant=(PUBLISHES, CALLS)
 )
 def command_from_another_robot(seen: Index) -> Iterator[Finding]:
-    """Tools as well: a joystick of one robot is not for another."""
+    """Report also tools: a joystick of one robot is not for another."""
     for (kind, name), ends in seen.by_name.items():
         owner = seen.robot(name)
         crossing = _of_others(seen, owner, (*ends.publishers, *ends.clients)) if owner else ()

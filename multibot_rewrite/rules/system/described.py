@@ -19,7 +19,7 @@ _TWO = 2
 
 @system_rule("MG420", "description-does-not-fit", ERROR, absence=True)
 def description_does_not_fit(seen: Index) -> Iterator[Finding]:
-    """One finding for a description: the first that is wrong with it."""
+    """Report the first fault of a description."""
     for it in seen.system.descriptions:
         _, senders = sent_on(seen, it.topic)
         robot = seen.robot(it.topic) or only(robots_of(seen, senders))
@@ -51,7 +51,7 @@ def _wrong(seen: Index, it: Description, robot: str) -> tuple[str, str] | None:
 
 
 def _other_frames(seen: Index, it: Description, robot: str) -> tuple[str, str] | None:
-    """Frames may have a prefix besides (frame_prefix of robot_state_publisher)."""
+    """Return a fault if no link is a sent frame, with or without a prefix (frame_prefix)."""
     trees = [one for one in trees_of(seen, robot) if one.edges]
     frames = {one for tree in trees for one in frames_in(tree.edges)}
     own = sorted(one for one in frames if seen.frame_robot(one) in ("", robot))

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
@@ -49,7 +49,7 @@ _Values = Mapping[tuple[str, ...], Mapping[str, _Told]]
 
 @system_rule("MG328", "differs-from-its-likes", WARNING)
 def differs_from_its_likes(seen: Index) -> Iterator[Finding]:
-    """All of a node, and all transforms of a robot, are one finding."""
+    """Report what one robot has otherwise than those built alike, once a node; so its transforms."""
     for likes in alike(nodes_of_each(seen)):
         for values in (_parameters(seen), _types(seen), _qualities(seen)):
             yield from _told(_odd(values, likes), len(likes) == _TWO)
@@ -79,7 +79,7 @@ def unexplained(found: Sequence[Finding]) -> list[Finding]:
 
 
 def _odd(values: _Values, likes: Sequence[str]) -> Iterator[tuple[str, _Told, _Told]]:
-    """Robot, its value and that of the others: what one has otherwise than all."""
+    """Yield robot, its value and that of the others, where one differs from all the others."""
     for own in values.values():
         there = {it: own[it] for it in likes if it in own}
         counts = Counter(it.plain for it in there.values())
@@ -92,7 +92,7 @@ def _odd(values: _Values, likes: Sequence[str]) -> Iterator[tuple[str, _Told, _T
 
 
 def _told(odd: Iterator[tuple[str, _Told, _Told]], of_two: bool) -> Iterator[Finding]:
-    """Of two robots it is about both: either may be the one that is wrong."""
+    """Report differences; of two robots for both: either may be the one that is wrong."""
     by_node: dict[tuple[str, str, str], list[tuple[_Told, _Told]]] = defaultdict(list)
     for robot, own, other in odd:
         by_node[robot, own.node, other.node].append((own, other))
@@ -121,7 +121,7 @@ def _parameters(seen: Index) -> _Values:
 
 @once
 def _types(seen: Index) -> _Values:
-    """Of a topic that all its nodes have with one type: where they differ that is the finding."""
+    """Return types of topics whose nodes agree on one; otherwise that is another finding."""
     found: dict[tuple[str, ...], dict[str, _Told]] = defaultdict(dict)
     for it in seen.topics:
         robot = seen.robot(it.name) if it.type else ""
@@ -133,7 +133,7 @@ def _types(seen: Index) -> _Values:
 
 @once
 def _qualities(seen: Index) -> _Values:
-    """Not of Zenoh, which connects any two."""
+    """Return QoS settings; none with Zenoh, which connects any two."""
     found: dict[tuple[str, ...], dict[str, _Told]] = defaultdict(dict)
     told = seen.system.environment.rmw != ZENOH and any(it.qos for it in seen.system.ends)
     for robot, made in made_of(seen).items() if told else ():
@@ -156,7 +156,7 @@ def _edges_of(seen: Index) -> Iterator[tuple[str, Edge]]:
 
 @once
 def _parts(seen: Index) -> _Values:
-    """Parents and places of parts."""
+    """Return parents and places of parts."""
     found: dict[tuple[str, ...], dict[str, _Told]] = defaultdict(dict)
     for robot, it in _edges_of(seen):
         child, parent = seen.plain_frame(it.child), seen.plain_frame(it.parent)
@@ -184,17 +184,18 @@ def _moved_parts(seen: Index, odd: Iterator[tuple[str, _Told, _Told]]) -> Iterat
 
 
 def _lost_parts(seen: Index, likes: Sequence[str]) -> Iterator[Finding]:
-    """Of a robot that sends some: where it sends none, its robot_state_publisher is the finding."""
+    """Report lost parts of a robot that sends some; with none its robot_state_publisher is reported."""
     by_robot = _frames(seen)
     frames = {robot: by_robot[robot] for robot in likes if robot in by_robot}
     counts = Counter(it for own in frames.values() for it in own)
     for robot in likes if len(frames) == len(likes) else ():
         lost = sorted(it for it, number in counts.items() if number == len(likes) - 1)
         lost = [it for it in lost if it not in frames[robot]]
-        # Under other names all are lost, which is another finding.
-        few = len(lost) < len(frames[robot])
-        # Of two robots one may have a part more.
-        if lost and few and len(likes) > _TWO:
+        # Under other names all are lost, which is another finding; of two robots one may have a part
+        # more. What is there is to hang on the same frame.
+        if len(likes) == _TWO or len(lost) >= len(frames[robot]):
+            lost = [it for it in lost if (robot, it) in _parents(seen)]
+        if lost:
             like = next(it for it in likes if it != robot)
             yield differs_from_its_likes.finding(
                 f"{robot} has no transform of {shorten(lost, SEVERAL)}, as {like} has",
@@ -204,8 +205,15 @@ def _lost_parts(seen: Index, likes: Sequence[str]) -> Iterator[Finding]:
 
 
 @once
+def _parents(seen: Index) -> Set[tuple[str, str]]:
+    """Return the frames that have something below them, by robot and without its name."""
+    every = ((it.parent, it.topic) for tree in seen.trees for it in tree.edges)
+    return {(seen.frame_robot(it) or seen.robot(on), seen.plain_frame(it)) for it, on in every}
+
+
+@once
 def _frames(seen: Index) -> Mapping[str, Mapping[str, str]]:
-    """By robot: its frames by their names without its own."""
+    """Return by robot its frames by their names without the robot's."""
     return dicts_by_key(
         (robot, seen.plain_frame(it.child), it.child) for robot, it in _edges_of(seen)
     )

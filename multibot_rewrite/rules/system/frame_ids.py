@@ -41,10 +41,12 @@ class _Message(NamedTuple):
 
 @system_rule("MG411", "frame-id-of-another-robot", ERROR)
 def frame_id_of_another_robot(seen: Index) -> Iterator[Finding]:
-    """By the names of frames: robots with a tf topic each may have the same ones."""
+    """Report it by the names of frames: robots with a tf topic each may have the same ones."""
     frames = _by_topic(seen)
     for (frame, robot, senders), messages in _by_sender(seen).items():
-        if _is_of_another(seen, frame, robot, messages):
+        # A sender of the frame's robot has the wrong topic, not the wrong frame.
+        whose = {*map(seen.robot, senders)}
+        if _is_of_another(seen, frame, robot, messages) and seen.frame_robot(frame) not in whose:
             topics = [it.topic for it in messages if it.type.startswith(_MEASURED)]
             owner = seen.frame_robot(frame)
             message = f"{messages[0].field} of {shorten(topics)} is {frame}, a frame of {owner}"
@@ -70,7 +72,7 @@ def _is_of_another(seen: Index, frame: str, robot: str, messages: Sequence[_Mess
 
 @system_rule("MG412", "frame-id-unknown", ERROR, absence=True)
 def frame_id_unknown(seen: Index) -> Iterator[Finding]:
-    """Where no transform was received at all nothing is known; others say that."""
+    """Report unknown frames, if any transform was received; other rules report that none was."""
     frames = _by_topic(seen)
     yield from _nameless(seen)
     yield from _with_slash(seen)
@@ -107,7 +109,7 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG419", "joints-of-another-robot", ERROR)
 def joints_of_another_robot(seen: Index) -> Iterator[Finding]:
-    """By the robots' names in those of joints; what is of all robots may have those of any."""
+    """Report it by robots' names in those of joints; a topic for all robots may have any."""
     whose = cache(partial(_robot_of_joint, seen))
     for it in (one for one in seen.system.heard if one.joints):
         _, senders = sent_on(seen, it.topic)
@@ -161,7 +163,6 @@ def _topics_of_frames(seen: Index) -> Mapping[str, Sequence[str]]:
 
 
 @once
-@once
 def _senders_of(seen: Index) -> Mapping[str, str]:
     """Return the node that sends a frame, of the first tree in which only one does."""
     edges = [it for tree in seen.trees for it in tree.edges if len(it.publishers) == 1]
@@ -194,8 +195,8 @@ def _nameless(seen: Index) -> Iterator[Finding]:
 
 
 def _with_slash(seen: Index) -> Iterator[Finding]:
-    """tf2 takes the slash of a transform away, and refuses to look up a frame with one (buffer_core.cpp
-    validateFrameId). One finding a sender."""
+    """Report, once a sender, frames with a slash: tf2 takes it off in a transform, and refuses to
+    look up a frame with one (buffer_core.cpp validateFrameId)."""
     found: dict[tuple[str, ...], dict[str, list[str]]] = defaultdict(lambda: defaultdict(list))
     for it in seen.system.heard:
         type_, senders = sent_on(seen, it.topic)
@@ -217,12 +218,12 @@ def _with_slash(seen: Index) -> Iterator[Finding]:
 
 
 def _is_read(seen: Index, topic: str) -> bool:
-    """Do nodes read it that do more than look?"""
+    """Return whether nodes read it that do more than look."""
     return bool(at_work(seen.ends_at(TOPIC, topic).subscribers))
 
 
 def _sent_there(seen: Index, frame: str, robot: str, elsewhere: Sequence[str]) -> str:
-    """Which node of another robot sends it, and what this robot has of that kind; else where it is."""
+    """Return which node of another robot sends it, and which one this robot has, or the other place."""
     there = _senders_of(seen).get(frame, "")
     if there and robot and seen.robot(there):
         mine = _nodes_by_robot(seen).get((robot, seen.plain(there)), "")
@@ -241,8 +242,8 @@ def _of_its_kind(messages: Sequence[_Message], own: Sequence[str]) -> list[str]:
 
 
 def _by_sender(seen: Index) -> dict[tuple[str, str, tuple[str, ...]], list[_Message]]:
-    """Frame, robot and senders -> the messages of nodes other than viewers; a camera has several
-    topics, and one fault. tf2 takes a frame with a slash in front as one without."""
+    """Return frame, robot and senders -> the messages of nodes other than viewers; a camera has
+    several topics, and one fault. tf2 ignores a slash in front of a frame."""
     found: dict[tuple[str, str, tuple[str, ...]], list[_Message]] = defaultdict(list)
     for it in seen.system.heard:
         type_, senders = sent_on(seen, it.topic)

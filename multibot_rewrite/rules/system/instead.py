@@ -80,8 +80,8 @@ def _orphan(seen: Index, end: End) -> Ends | None:
 
 
 def _waits_itself(seen: Index, ends: Ends, end: End) -> bool:
-    """Return whether it is made from what is missing, as slam_toolbox shows the scan that it reads,
-    or by way of others of its type, as an image is rectified from one that is debayered."""
+    """Return whether it is made from the missing topic, as slam_toolbox republishes the scan that
+    it reads, or from others of its type, as an image is rectified from a debayered one."""
     readers = _readers(seen)(end.name, end.type)
     return bool(ends.publishers) and readers.issuperset(it.node for it in ends.publishers)
 
@@ -111,7 +111,7 @@ def _is_costmap(ends: Ends) -> bool:
 
 @once
 def _unread(seen: Index) -> Mapping[tuple[str, str], Sequence[Ends]]:
-    """Topics that nodes at work send and no node at work reads, by type and robot."""
+    """Return topics that nodes at work send and no node at work reads, by type and robot."""
     found: dict[tuple[str, str], list[Ends]] = defaultdict(list)
     for it in seen.topics:
         senders = [one for one in at_work(it.publishers) if team(one.node) == one.node]
@@ -205,9 +205,9 @@ def _sent(seen: Index) -> Mapping[tuple[str, str], Sequence[Ends]]:
 
 
 def _served(seen: Index, end: End) -> Iterator[Ends]:
-    """Services and actions of its type that nobody calls, in its robot; of a type that many have, with
-    its last word."""
-    robot, last = seen.robot(end.node), last_word(end.name)
+    """Yield services and actions of its type in its robot that nobody calls; if many have the type,
+    those with its last word."""
+    robot, last = seen.robot(end.node) or seen.robot(end.name), last_word(end.name)
     for it in _servers(seen).get((end.kind, end.type, robot), ()):
         own = any(one.node != end.node and seen.robot(one.node) == robot for one in it.servers)
         common = end.type.startswith(COMMON)
@@ -316,5 +316,5 @@ def _may_be(seen: Index, ends: Ends, end: End) -> bool:
 
 
 def _givers(ends: Ends) -> list[End]:
-    """Who sends or serves it; what only may be there is not offered."""
+    """Return who surely sends or serves it."""
     return [it for it in (*ends.publishers, *ends.servers) if it.sure == RUNS]

@@ -15,6 +15,7 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.grouping import dicts_by_key, lists_by_key
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import system_rule
+from multibot_rewrite.rules.system.tf_pieces import publishes_description
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Ends, Index, at_work, ends_of, nodes_of, once
 from multibot_rewrite.system.records import (
@@ -51,6 +52,13 @@ class MadeOf(NamedTuple):
 @system_rule("MG327", "lacks-what-its-likes-have", WARNING, absence=True)
 def lacks_what_its_likes_have(seen: Index) -> Iterator[Finding]:
     """Yield what one robot lacks and equal ones have; another finding about it replaces this one."""
+    told = [*_lost_of_likes(seen)]
+    yield from told
+    if not seen.expected:
+        yield from _lost_descriptions(seen, {it.robot for it in told})
+
+
+def _lost_of_likes(seen: Index) -> Iterator[Finding]:
     made = made_of(seen)
     for likes in alike(nodes_of_each(seen)):
         others = len(likes) - 1
@@ -69,6 +77,17 @@ def lacks_what_its_likes_have(seen: Index) -> Iterator[Finding]:
             yield from _lost_ends(
                 seen, made, robot, likes, [k for k in gone if k[0] in made[robot].nodes]
             )
+
+
+def _lost_descriptions(seen: Index, told: Set[str]) -> Iterator[Finding]:
+    """Find robots that have all nodes of another one but robot_state_publisher, however few."""
+    made = made_of(seen)
+    for robot, own in made.items():
+        for other, its in made.items() if own.nodes and robot not in told else ():
+            lost = [it for it in its.nodes if it not in own.nodes]
+            if len(lost) == 1 and publishes_description(seen, its.nodes[lost[0]]):
+                yield from _lost_nodes(seen, made, robot, (other, robot), lost)
+                break
 
 
 @once
@@ -120,13 +139,13 @@ def _are_alike(one: Set[str], other: Set[str]) -> bool:
 def _lost_nodes(
     seen: Index, made: Mapping[str, MadeOf], robot: str, likes: Sequence[str], lost: Sequence[str]
 ) -> Iterator[Finding]:
-    """All of one robot in one finding."""
+    """Report all nodes of one robot in one finding."""
     like = next(it for it in likes if it != robot)
     keys = [key for key in made[like].ends if key[0] in lost]
     own = _waiting(seen, made, robot, keys)
-    if not own and len(likes) < 3:
-        return
     theirs = sorted(made[like].nodes[it] for it in lost)
+    if not (own or len(likes) > 2 or any(publishes_description(seen, it) for it in theirs)):
+        return
     yield lacks_what_its_likes_have.finding(
         f"{robot} has no {shorten(sorted(it.strip('/') for it in lost), SEVERAL)}, as {like} has"
         f" ({shorten(theirs, SEVERAL)})",
@@ -138,7 +157,7 @@ def _lost_nodes(
 def _lost_ends(
     seen: Index, made: Mapping[str, MadeOf], robot: str, likes: Sequence[str], gone: Iterable[_Key]
 ) -> Iterator[Finding]:
-    """Those of a node in one finding."""
+    """Report all ends of a node in one finding."""
     like = next(it for it in likes if it != robot)
     by_node = lists_by_key((key[0], key) for key in gone)
     for plain, keys in by_node.items():
@@ -192,7 +211,7 @@ ENOUGH = 10
 
 @system_rule("MG326", "less-than-another-robot", WARNING)
 def less_than_another_robot(seen: Index) -> Iterator[Finding]:
-    """Of the robots that have the topic, the one with the most messages is the measure."""
+    """Report it compared with the robot that has the most messages on the topic."""
     yield from _silent(seen)
     yield from _slow(seen)
     yield from _slow_transforms(seen)
@@ -207,17 +226,16 @@ def less_than_another_robot(seen: Index) -> Iterator[Finding]:
         most = seen.known.messages[best]
         for robot, name in there.items() if most >= ENOUGH else ():
             count = seen.known.messages[name]
-            if not count:
-                message = f"{name} has no message, {best} has {most}"
-                yield less_than_another_robot.finding(message, robot=robot, names=(name,))
-            elif count * RATIO <= most and seen.known.seconds:
+            message = "" if count else f"{name} has no message, {best} has {most}"
+            if count and count * RATIO <= most and seen.known.seconds:
                 slow, usual = (f"{it / seen.known.seconds:.1f} Hz" for it in (count, most))
                 message = f"{name} came at {slow}, {best} at {usual}"
+            if message:
                 yield less_than_another_robot.finding(message, robot=robot, names=(name,))
 
 
 def _slow(seen: Index) -> Iterator[Finding]:
-    """Of a running system the rate of a sensor is known, from a second of it."""
+    """Report slow sensors of a running system, whose rates are known after a second."""
     rates = {it.topic: it.rate for it in seen.system.heard if it.rate}
     there: dict[tuple[str, str], dict[str, str]] = defaultdict(dict)
     for it in seen.topics if rates else ():
@@ -243,7 +261,7 @@ def _slow(seen: Index) -> Iterator[Finding]:
 
 
 def _slow_transforms(seen: Index) -> Iterator[Finding]:
-    """Odometry and localization, which go on without a pause: joints and what is seen need not."""
+    """Report slow odometry and localization, which never pause: joints and sensors may."""
     there: dict[tuple[str, str], dict[str, Edge]] = defaultdict(dict)
     for it in (edge for tree in seen.trees for edge in tree.edges if edge.rate):
         robot, parent = (
@@ -256,17 +274,17 @@ def _slow_transforms(seen: Index) -> Iterator[Finding]:
         best = max(own.values(), key=lambda it: it.rate)
         for robot, it in own.items():
             if it.rate * RATIO <= best.rate:
-                said = f"{it.parent} -> {it.child} on {it.topic} comes at {it.rate:.1f} Hz"
+                said, other = (f"{one.parent} -> {one.child} on {one.topic}" for one in (it, best))
                 yield less_than_another_robot.finding(
-                    f"{said}, {best.parent} -> {best.child} at {best.rate:.1f} Hz",
+                    f"{said} comes at {it.rate:.1f} Hz, {other} at {best.rate:.1f} Hz",
                     "see the node that sends it, and the processor time that it has",
                     robot=robot, names=(it.child, it.topic),
                 )  # fmt: skip
 
 
 def _silent(seen: Index) -> Iterator[Finding]:
-    """Of a running system one message a topic is known: of one robot it came, of the other not, which
-    has sent others."""
+    """Report a running system's topic of which one robot sent a message, and another robot none
+    although it has sent others."""
     heard = {it.topic for it in seen.system.heard}
     if any(it.code == _NOT_ALL for it in seen.system.environment.caveats):
         return
@@ -291,8 +309,8 @@ def _silent(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG322", "driver-missing", ERROR, absence=True, drawn="leak")
 def driver_missing(seen: Index) -> Iterator[Finding]:
-    """By its readers, and by another robot that has it, however much the two differ: all that one node
-    of the other robot does is one finding."""
+    """Report a missing driver by its readers, and another robot that has it: all that one node of
+    the other robot does is one finding."""
     lost: dict[tuple[str, str], list[Ends]] = defaultdict(list)
     actions = [it for it in seen.by_name.values() if it.kind == ACTION]
     for ends in (*seen.topics, *actions) if len(seen.robots) > 1 else ():
@@ -335,7 +353,7 @@ def _first_to_do(seen: Index) -> Mapping[tuple[str, str, str, str], str]:
 
 
 def _missed_side(seen: Index, ends: Ends) -> str:
-    """Return the role that nobody has at a robot's name although one of its nodes waits for it: to
+    """Return the role that is missing at a robot's name although one of its nodes waits for it: to
     send sensor data, to obey velocities, to serve an action; empty for none."""
     if ends.kind == ACTION:
         return SERVES if at_work(ends.clients) and not ends.servers else ""

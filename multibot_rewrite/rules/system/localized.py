@@ -37,7 +37,7 @@ class _Body(NamedTuple):
 
 @system_rule("MG415", "map-not-joined", ERROR, absence=True)
 def map_not_joined(seen: Index) -> Iterator[Finding]:
-    """Where the tree is in pieces below the odometry as well, that is the finding."""
+    """Report it unless the tree is in pieces below the odometry, which is another finding."""
     for tree in seen.trees:
         silent = (it for it in tree.listeners if switch(TF_SWITCHES, it))
         localizers = [it for it in (*tree.senders, *silent) if _starts_at(seen, it)]
@@ -54,7 +54,7 @@ def map_not_joined(seen: Index) -> Iterator[Finding]:
 
 
 def _starts_at(seen: Index, node: str) -> End | None:
-    """Where the node surely reads a start pose; None for one that needs none."""
+    """Return where the node surely reads a start pose; None for one that needs none."""
     read = (it for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES and it.sure == RUNS)
     return next((it for it in read if words.is_start_pose(seen.plain(it.name), it.type)), None)
 
@@ -65,15 +65,14 @@ def _body(seen: Index, tree: Tree, robot: str) -> _Body | None:
     if len({(it.child, it.parent) for it in tree.edges}) > len(above):
         return None
     frames = [it for it in {**above, **dict.fromkeys(above.values())} if _is_of(seen, it, robot)]
-    roots = {
-        root_of(it, above) for it in frames if seen.plain_frame(it) in (*BODY_FRAMES, _ODOM)
-    } - {*above}
-    if len(roots) != 1 or roots & {*WORLD_FRAMES}:
-        return None
     # What hangs on the map and has nothing below it.
     ends = above.keys() - {*above.values()}
-    loose = (it for it in above if it in ends and above[it] in WORLD_FRAMES)
-    return _Body(next(iter(roots)), tuple(it for it in loose if _is_of(seen, it, robot)))
+    loose = [it for it in frames if it in ends and above[it] in WORLD_FRAMES]
+    body = (it for it in frames if seen.plain_frame(it) in (*BODY_FRAMES, _ODOM))
+    roots = {root_of(it, above) for it in body if it not in loose} - {*above}
+    if len(roots) != 1 or roots & {*WORLD_FRAMES}:
+        return None
+    return _Body(next(iter(roots)), tuple(loose))
 
 
 def _is_of(seen: Index, frame: str, robot: str) -> bool:
@@ -131,7 +130,7 @@ _TOLERANCE = 10e-3
 
 @system_rule("MG416", "transform-refused", ERROR)
 def transform_refused(seen: Index) -> Iterator[Finding]:
-    """By the checks of BufferCore::setTransformImpl; the transforms of one topic and reason are one."""
+    """Report it by the checks of BufferCore::setTransformImpl, once per topic and reason."""
     edges = [it for tree in seen.trees for it in tree.edges]
     found = lists_by_key(((it.topic, why), it) for it in edges if (why := _why_dropped(it)))
     for (topic, why), edges in found.items():
@@ -179,7 +178,7 @@ _FAR = 20.0
 
 @system_rule("MG418", "part-far-away", WARNING)
 def part_far_away(seen: Index) -> Iterator[Finding]:
-    """By the length alone: what is below the map is as far away as the building is long."""
+    """Report it by the length alone: what is below the map is as far away as a building is long."""
     for tree in seen.trees:
         above = {it.child: it.parent for it in tree.edges}
         for it in tree.edges:

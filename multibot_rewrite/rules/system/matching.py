@@ -33,7 +33,7 @@ STAMPED = "Stamped"
 
 @system_rule("MG306", "types-differ", ERROR, all_ends=True)
 def types_differ(seen: Index) -> Iterator[Finding]:
-    """Where one of a node's ends has the type of the other side, or of the plan, it connects."""
+    """Report it unless one of a node's ends connects with the type of the other side, or the plan."""
     by_plan = planned_types(seen)
     for ends in seen.by_name.values():
         every = (*ends.publishers, *ends.subscribers, *ends.servers, *ends.clients)
@@ -94,8 +94,8 @@ def _stale(seen: Index, ends: Iterable[End]) -> str:
 
 
 def to_stamp(seen: Index, ends: Iterable[End]) -> Cause:
-    """Return what makes the velocities of all of a robot's Nav2 stamped, where that is the side that is
-    not; an empty cause where no parameter is known."""
+    """Return the parameters that make all velocities of a robot's Nav2 stamped, if that side is
+    not; an empty cause if no parameter is known."""
     bare = [it.node for it in ends if it.type and not it.type.endswith(STAMPED)]
     if not bare or not all(switch(STAMP_SWITCHES, it) for it in bare):
         return Cause("")
@@ -132,7 +132,7 @@ def _all_types(ends: Iterable[End]) -> set[tuple[str, str]]:
 
 
 def _apart(ends: Iterable[End], given: set[tuple[str, str]]) -> Mapping[str, Sequence[End]]:
-    """By node: the ends that connect with none of the types, where all of its own are known."""
+    """Return by node the ends that connect with none of the types, if all its types are known."""
     by_node = lists_by_key((end.node, end) for end in (ends if given else ()))
     # Both sides have a version of a type; one without a hash may be any.
     return {
@@ -176,8 +176,8 @@ def _by_a_switch(some: Set[str], others: Set[str]) -> bool:
 
 @system_rule("MG307", "qos-incompatible", ERROR)
 def qos_never_meets(seen: Index) -> Iterator[Finding]:
-    """One for each subscription and what it lacks; where several lack the same of one publisher, it is
-    the publisher's. Zenoh connects any two (rmw_zenoh design.md)."""
+    """Report each subscription and what it lacks; if several lack the same of one publisher, that
+    publisher. Zenoh connects any two (rmw_zenoh design.md)."""
     for (kind, name), ends in seen.by_name.items() if seen.system.environment.rmw != ZENOH else ():
         if kind != TOPIC or name in EVERYBODYS or not _refuses(ends):
             continue
@@ -233,7 +233,7 @@ def _never_meets(seen: Index, first: _Refused, *more: _Refused) -> Finding:
 
 @system_rule("MG309", "not-latched", ERROR)
 def not_latched(seen: Index) -> Iterator[Finding]:
-    """Where a subscriber asks for it, that is the finding; so is another QoS than a plan has."""
+    """Report it unless a subscriber asks for it, or a plan has another QoS: those are findings."""
     topics = seen.expected.system.topics if seen.expected else ()
     planned = {it.name: it.qos for it in topics if it.qos}
     for name, qos in planned.items():
@@ -253,7 +253,7 @@ def not_latched(seen: Index) -> Iterator[Finding]:
 
 
 def _offered_otherwise(seen: Index, name: str, qos: Iterable[tuple[str, str]]) -> Iterator[Finding]:
-    """Where it is known what is offered; a policy of which no word is known is as planned."""
+    """Report other QoS than planned, where known; a policy of unknown value counts as planned."""
     for end in seen.ends_at(TOPIC, name).publishers:
         offered = [(policy, word, getattr(end.qos, policy)) for policy, word in qos if end.qos]
         known = (it for it in offered if it[2] not in (it[1], "UNKNOWN", "SYSTEM_DEFAULT"))
@@ -282,7 +282,7 @@ def _with_durability(ends: Iterable[End], word: str) -> list[End]:
 
 
 def _misses_what_was_sent(seen: Index, ends: Ends) -> Iterator[Finding]:
-    """Who reads without it what is sent once. Who makes a map of scans sends it again and again."""
+    """Report who misses what is sent once; whoever makes a map of scans sends it again and again."""
     latched = nodes_of(_with_durability(ends.publishers, DURABILITY[1]))
     read = [it for node in latched for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES]
     again = {it.node for it in read if it.type != JOINTS and words.is_of_a_body(it.type)}
@@ -305,17 +305,15 @@ def _ask_latched(nodes: Sequence[str], name: str) -> Cause:
 
 
 def _is_latched(ends: Ends) -> bool:
-    """By type or by name: a map, a description, the transforms that hold for ever."""
+    """Return whether it is latched, by type or by name: a map, a description, static transforms."""
     words_ = ends.name.split("/")[-2:]
     return (ends.type == MAP and "map" in words_) or bool({*words_} & {DESCRIPTION, "tf_static"})
 
 
 @lru_cache(maxsize=1024)
 def qos_conflicts(offered: Qos, requested: Qos) -> tuple[tuple[str, str], ...]:
-    """Where two QoS do not connect by the rules of DDS: (offered, requested) for each policy.
-
-    A policy that is unknown or the system's default is no conflict.
-    """
+    """Return where two QoS do not connect by the rules of DDS: (offered, requested) for each
+    policy. A policy that is unknown or the system's default is no conflict."""
     words = (
         (offered.reliability, requested.reliability, RELIABILITY),
         (offered.durability, requested.durability, DURABILITY),
@@ -345,7 +343,7 @@ def _is_weaker(offered: str, requested: str, order: Sequence[str]) -> bool:
 
 
 def _seconds(time: float) -> float:
-    """rmw writes no limit as 0."""
+    """Return a time in seconds; rmw writes no limit as 0."""
     return time if time > 0 else inf
 
 

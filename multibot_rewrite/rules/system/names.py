@@ -213,7 +213,7 @@ def _hiding(seen: Index, meant: str) -> Iterator[str]:
 
 @once
 def _below_senders(seen: Index) -> Mapping[tuple[str, str], Sequence[str]]:
-    """Topics that have their publisher's own name before the last word, by what is around it."""
+    """Return topics with their publisher's own name before the last word, by the rest."""
     found: dict[tuple[str, str], list[str]] = defaultdict(list)
     for it in (one for own in _published(seen).values() for one in own):
         above, _, last = it.name.rpartition("/")
@@ -245,7 +245,7 @@ def _missed_topic(
     if front != other.name and end.name.startswith(f"{front}/"):
         cause = f"its namespace is there twice: name it {last_word(other.name)} in {sender}"
         remaps = (Remap(sender, other.name, end.name),)
-    elif seen.robot(end.name) and not seen.robot(other.name) and other.name not in EVERYBODYS:
+    elif seen.robot(end.name) not in ("", seen.robot(other.name)) and other.name not in EVERYBODYS:
         cause = f"pass the rule {other.name}:={end.name} to {sender}, or start it in the namespace"
         remaps = tuple(Remap(it, other.name, end.name) for it in nodes_of(other.publishers))
     elif other.type != end.type:
@@ -307,26 +307,30 @@ def _served(seen: Index) -> Mapping[tuple[str, str], _Served]:
 
 
 def _unserved(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
-    near = _served_instead(seen, end, served) or in_other_namespace(seen, end)
+    listed = listed_in_vain(seen, end)
+    outside = f"/{last_word(listed)}" if listed and f"/{last_word(listed)}" in seen.nodes else ""
+    near = "" if outside else _served_instead(seen, end, served) or in_other_namespace(seen, end)
     asks = "sends goals to" if end.kind == ACTION else "calls"
     lost = f"{asks} {end.name}, which {seen.nobody} serves"
-    listed = "" if near else listed_in_vain(seen, end)
+    listed = "" if near else listed
     by_type = None if near or listed else sent_instead(seen, end)
     if other := near or (by_type.name if by_type else ""):
         sure = near or end.kind == ACTION
         yield _missed_server(seen, end, lost, other, ERROR if sure else WARNING)
     elif listed and end.name.endswith(words.CHANGE_STATE):
         # A node that runs and is called nearly so: a letter wrong, or without the namespace.
-        same = (it for it in seen.nodes if it == f"/{last_word(listed)}")
-        space = listed.rpartition("/")[0]
-        others = [it for it in seen.nodes if it.rpartition("/")[0] == space]
-        meant = next(same, "") or nearest(listed, others, MISTYPED)
+        space, _, last = listed.rpartition("/")
+        others = {last_word(it): it for it in seen.nodes if it.rpartition("/")[0] == space}
+        meant = outside or others.get(nearest(last, others, MISTYPED), "")
         instead = f"; {meant} runs" if meant else ""
-        wait = f"it waits for {listed} and activates nothing after it: start it, or "
-        cause = not_managed(seen, end.node, [listed], wait)
+        wait = f"it waits for {listed} and activates nothing after it: start it"
+        cause = not_managed(seen, end.node, [listed], f"{wait}, or ")
+        if outside:
+            moved = Remap(outside, "__ns", space)
+            cause = Cause(f"{wait} in the namespace, with -r __ns:={space}", remaps=(moved,))
         yield server_names_miss.finding(
             f"{lost}: {listed} is in its list, and does not run{instead}",
-            cause.hint, settings=cause.settings,
+            cause.hint, settings=cause.settings, remaps=cause.remaps,
             robot=seen.robot(end.node), node=end.node, names=(end.name,), **where([end]),
         )  # fmt: skip
     elif not (listed or is_viewer(end.node)) and (
@@ -343,9 +347,9 @@ def _unserved(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
 
 
 def _waits(seen: Index, end: End) -> bool:
-    """Return whether it is an own program that calls what nobody serves. Nav2's and MoveIt's nodes,
-    tools and what every node serves are left out, and a view in which nodes are missing.
-    ``nothing_known_sends`` reports what is known by code alone."""
+    """Return whether it is the user's own program that calls what nobody serves. Nav2's and
+    MoveIt's nodes, tools and what every node serves are left out, and a view in which nodes are
+    missing. ``nothing_known_sends`` reports what is known by code alone."""
     theirs = is_viewer(end.node) or seen.is_tool(end.node) or team(end.node) != end.node
     usual = end.type.startswith(COMMON) or is_from_outside(end.name)
     # Beside other robots it may be one that is not started yet, if it is not its own.
@@ -361,8 +365,8 @@ def _waits(seen: Index, end: End) -> bool:
 
 @once
 def _called_by_robots(seen: Index) -> Mapping[tuple[str, str], tuple[list[str], list[str]]]:
-    """By kind and name without the robot's: the robots whose service or action is called in vain, and
-    those whose one is served."""
+    """Return by kind and name without the robot's: the robots whose service or action is called in
+    vain, and those whose one is served."""
     found: dict[tuple[str, str], tuple[list[str], list[str]]] = defaultdict(lambda: ([], []))
     for ends in seen.by_name.values():
         robot = seen.robot(ends.name) if ends.clients or ends.servers else ""
@@ -407,7 +411,7 @@ def _served_instead(seen: Index, end: End, served: _Served) -> str:
 
 
 def nobody_in(seen: Index, name: str, known: Collection[str]) -> str:
-    """Words for a name in a namespace without any node, where robots have it in theirs; else ""."""
+    """Return words for a name in a namespace without nodes, if robots have it in theirs; else ""."""
     if seen.robot(name):
         return ""
     for at in (at for at in range(2, len(name)) if name[at] == "/"):
@@ -426,8 +430,8 @@ def _named_by_robots(seen: Index) -> Mapping[str, Sequence[str]]:
 
 @system_rule("MG305", "service-of-two-nodes", ERROR, meant=(SERVES,))
 def service_of_two_nodes(seen: Index) -> Iterator[Finding]:
-    """Of two nodes with one name the nodes are the finding; two filters of robot_localization in one
-    robot both serve `set_pose`, which is how they are made."""
+    """Report services of two nodes; two nodes of one name are another finding, and two filters of
+    robot_localization in one robot serve `set_pose` by design."""
     for (kind, name), ends in seen.by_name.items():
         nodes = nodes_of(ends.servers) if ends.servers else ()
         if len(nodes) > 1 and (kind == ACTION or len(robots_of(seen, nodes)) > 1):

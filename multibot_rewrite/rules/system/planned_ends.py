@@ -9,7 +9,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence, S
 from multibot_rewrite.base.conventions import EVERYBODYS
 from multibot_rewrite.base.findings.finding import ERROR, Finding, Remap, Rule
 from multibot_rewrite.base.nearest import MISTYPED, nearest
-from multibot_rewrite.base.wording import SEVERAL, shorten, unique
+from multibot_rewrite.base.wording import SEVERAL, only, shorten, unique
 from multibot_rewrite.rules.declaration import planned_rule
 from multibot_rewrite.rules.system.causes import (
     DOES,
@@ -58,7 +58,7 @@ def missing(plan: Index, seen: Index) -> Mapping[EndKey, End]:
 
 @once
 def unplanned_ends(plan: Index, seen: Index) -> Mapping[str, Sequence[End]]:
-    """By node: the ends that are not planned, each once, without hidden ones."""
+    """Return by node the ends that are not planned, each once, without hidden ones."""
     found: dict[str, list[End]] = defaultdict(list)
     known = set(plan.by_key)
     for end in seen.sure.system.ends:
@@ -117,7 +117,7 @@ def probable_matches(
 
 
 def _letters(name: str) -> str:
-    """Its letters and digits in lower case."""
+    """Return its letters and digits in lower case."""
     return "".join(filter(str.isalnum, name)).lower()
 
 
@@ -133,8 +133,8 @@ def similar(name: str, known: Collection[str]) -> str:
 
 @planned_rule("MG102", "missing-endpoint", ERROR, absence=True, drawn="missing", nodes=False)
 def missing_endpoint(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Only where its node is in the graph. A name of no robot, or of another one, in its place or
-    besides is what that is to the other robots."""
+    """Report it only if its node is in the graph. A name of no robot, or of another one, in its
+    place or in addition is reported as the fault for the other robots."""
     if not seen.nodes:
         yield from _recorded(plan, seen)
         return
@@ -147,14 +147,15 @@ def missing_endpoint(plan: Index, seen: Index) -> Iterator[Finding]:
         used = _used_instead(plan, seen, planned)
         # Without one that is called so, the only one of its type is what the hint names.
         alike = [] if used else _of_its_type(plan, seen, planned)
-        taken.add((planned.node, used or next(iter(alike if len(alike) == 1 else ()), "")))
+        instead = used or only(alike)
+        taken.add((planned.node, instead))
         end = next((it for it in ends_of(seen, used) if it.node == planned.node), planned)
         robot = plan.robot_of.get(planned.node, "")
         rule = _of_wrong_robot(plan, end, robot) or missing_endpoint
         yield rule.finding(
             f"should {TO_DO[planned.role]} {planned.kind} {planned.name}, but does not",
             **_why_missing(plan, seen, planned, used)._asdict(),
-            robot=robot, node=planned.node, names=(planned.name, *[used] * bool(used)),
+            robot=robot, node=planned.node, names=(planned.name, *[instead] * bool(instead)),
         )  # fmt: skip
     for node, robot in plan.robot_of.items():
         for end in {it.name: it for it in unplanned_ends(plan, seen).get(node, ())}.values():
@@ -231,7 +232,7 @@ def _why_besides(plan: Index, end: End, other: str) -> Cause:
 
 
 def _why_missing(plan: Index, seen: Index, planned: End, used: str) -> Cause:
-    """Answers the most common question: why do we never get the topic /robot1/cmd_vel?"""
+    """Return the answer to the most common question: why does /robot1/cmd_vel never appear?"""
     if not used:
         managed = (planned.node, SERVICE, SERVES, f"{planned.node}/get_state") in plan.by_key
         state = f"; is it configured? ros2 lifecycle get {planned.node}" if managed else ""
@@ -255,7 +256,7 @@ def _why_missing(plan: Index, seen: Index, planned: End, used: str) -> Cause:
 
 
 def _why_remapped(plan: Index, planned: End, used: str, instead: str) -> Cause:
-    """Why an endpoint has a name that comes from a rule or parameter."""
+    """Return why an endpoint has a name that comes from a rule or parameter."""
     if not plan.robot(planned.name):
         _, place = plugin_of(plan, planned.node)
         why = f": a rule remaps it, but the plan has one {planned.name} for all robots"
@@ -305,8 +306,8 @@ def _unplanned(plan: Index, seen: Index, planned: End) -> list[End]:
 
 
 def _recorded(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Where it is not known which nodes run: a topic that each robot sends by the plan, and that is
-    there for some of them, or is there under a name of no robot."""
+    """Report, if running nodes are unknown, a topic that each robot sends by the plan, and that
+    exists for only some of them, or under a name of no robot."""
     there = {name: ends for (kind, name), ends in seen.by_name.items() if kind == TOPIC}
     for names in _of_each(plan.sure, PUBLISHES).values():
         others = [name for name in names.values() if name in there]
@@ -328,7 +329,7 @@ def _recorded(plan: Index, seen: Index) -> Iterator[Finding]:
 
 
 def _of_each(plan: Index, *roles: str) -> Mapping[str, Mapping[str, str]]:
-    """Name without the robot's -> robot -> planned topic that a node has in a role; tf is of each."""
+    """Return name without the robot's -> robot -> planned topic of a node in a role; tf is of each."""
     named = [name for _, kind, role, name in plan.by_key if kind == TOPIC and role in roles]
     trees = [it.tf_topic for it in plan.system.robots if it.frames]
     found: dict[str, dict[str, str]] = defaultdict(dict)

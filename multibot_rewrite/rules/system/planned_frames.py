@@ -51,7 +51,7 @@ Strays = Mapping[str, Sequence[Stray]]
 
 @planned_rule("MG207", "frame-without-robot-name", ERROR, nodes=False, absence=True)
 def frame_without_robot_name(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Of one robot only; else it is a frame of several robots."""
+    """Report it for one robot only; otherwise it is a frame of several robots."""
     for tree, robot, found in _of_each(plan, seen):
         if bare := [it for it in found if it.bare]:
             bare.sort(key=lambda it: robot.frames.index(it.meant))
@@ -129,11 +129,9 @@ def _first_word(plan: Index, frame: str, robot: str) -> str:
 def with_more_names(
     plan: Index, seen: Index
 ) -> Iterator[tuple[str, Cause, Robot, tuple[str, ...]]]:
-    """Message, cause, robot and frames: planned ones with the robot's name again, or another prefix.
-
-    Source: robot_state_publisher src/robot_state_publisher.cpp: frame_prefix is put in front of parent
-    and child of every transform, as it is.
-    """
+    """Yield message, cause, robot and frames: planned ones with the robot's name again, or another
+    prefix. Source: robot_state_publisher src/robot_state_publisher.cpp: frame_prefix is put in
+    front of parent and child of every transform, as it is."""
     for _, robot, found in _of_each(plan, seen):
         if names := tuple(it.frame for it in found if it.added):
             added = next(it.added for it in found if it.added)
@@ -222,7 +220,7 @@ def _planned(plan: Index) -> Mapping[str, Mapping[str, str]]:
 
 @once
 def _meant_by(plan: Index) -> Mapping[str, Mapping[str, str]]:
-    """By name without the robot's: the frame of each robot that has it."""
+    """Return by name without the robot's the frame of each robot that has it."""
     found: dict[str, dict[str, str]] = defaultdict(dict)
     for robot, frames in _planned(plan).items():
         for plain, frame in frames.items():
@@ -231,8 +229,9 @@ def _meant_by(plan: Index) -> Mapping[str, Mapping[str, str]]:
 
 
 def _with_meanings(plan: Index, robot: str, names: Sequence[str]) -> Iterator[Stray]:
-    """One frame may be another one of its own (``front_laser`` next to ``laser``): a prefix is in
-    front of both ends of a transform, and of all that a robot_state_publisher sends."""
+    """Yield frames with their planned meaning. A frame may resemble another one (``front_laser``
+    next to ``laser``): a prefix is in front of both ends of a transform, and of all that a
+    robot_state_publisher sends."""
     declared, whose = plan.declared[robot], plan.of_frames
     frames, tag = (*declared.frames, *declared.other_frames), whose.tag(robot)
     plain = {**{whose.without_robot(it, robot): it for it in frames}, **_planned(plan)[robot]}
@@ -262,7 +261,7 @@ def _in_front(frames: Sequence[str], name: str) -> str:
 
 @planned_rule("MG208", "frame-not-received", ERROR, absence=True, drawn="missing")
 def frame_not_received(plan: Index, seen: Index) -> Iterator[Finding]:
-    """One finding for a robot whose senders all run. Where no transform was received at all, tf may
+    """Report one finding for a robot whose senders all run. Without any received transform tf may
     not have been observed. A frame under another name has a finding of its own."""
     senders = _senders(plan) if seen.system.edges else {}
     heard: dict[str, set[str]] = defaultdict(set)
@@ -298,7 +297,7 @@ def _left_to_others(plan: Index, seen: Index, robot: Robot) -> Set[str]:
 
 
 def _senders(plan: Index) -> Mapping[str, set[str]]:
-    """By robot: its planned nodes that publish its tf."""
+    """Return by robot its planned nodes that publish its tf."""
     topics = {it.name: (it.tf_topic, static_topic(it.tf_topic)) for it in plan.system.robots}
     found: dict[str, set[str]] = defaultdict(set)
     robot_of = plan.robot_of

@@ -32,7 +32,7 @@ from multibot_rewrite.system.records import (
 
 @planned_rule("MG101", "missing-node", ERROR, absence=True, drawn="missing")
 def missing_node(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Of the plan; a robot without any of its nodes is one finding of ``missing_robot``."""
+    """Report nodes of the plan; a robot without any of its nodes is one ``missing_robot``."""
     for robot in plan.system.robots:
         for node in () if _is_missing(plan, seen, robot) else _missing(plan, seen, robot):
             match = matches(plan, seen).get(node, "")
@@ -58,7 +58,7 @@ def _groups(plan: Index) -> Iterator[tuple[tuple[str, ...], str]]:
 
 
 def _waiting(plan: Index, seen: Index, node: str) -> str:
-    """Who calls in vain what the node serves, or reads what it sends."""
+    """Return who calls in vain what the node serves, or reads what it sends."""
     for it in plan.by_node.get(node, ()):
         ends = seen.ends_at(it.kind, it.name)
         served = it.role == SERVES and not ends.servers and "lifecycle" not in it.type
@@ -98,7 +98,7 @@ def _not_started(plan: Index, node: str) -> Cause:
 
 @planned_rule("MG108", "unplanned-node", WARNING, drawn="unexpected")
 def unplanned_node(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Only where the plan has nodes of its robot."""
+    """Report it only if the plan has nodes of its robot."""
     if not unplanned_nodes(plan, seen):
         return
     meant = set(matches(plan, seen).values())
@@ -127,7 +127,7 @@ def unplanned_node(plan: Index, seen: Index) -> Iterator[Finding]:
 
 @planned_rule("MG109", "missing-robot", ERROR, absence=True, drawn="missing")
 def missing_robot(plan: Index, seen: Index) -> Iterator[Finding]:
-    """One finding in place of one for each node."""
+    """Report one finding instead of one for each node."""
     for robot in plan.system.robots:
         if _is_missing(plan, seen, robot):
             count = len(plan.own[robot.name])
@@ -153,7 +153,7 @@ def _machines(seen: Index) -> Machines:
 
 @planned_rule("MG125", "several-alternatives-run", ERROR)
 def several_alternatives_run(plan: Index, seen: Index) -> Iterator[Finding]:
-    """One finding a group."""
+    """Report one finding a group."""
     for group, robot in _groups(plan):
         running = tuple(node for node in group if node in seen.nodes)
         if len(running) > 1:
@@ -166,7 +166,7 @@ def several_alternatives_run(plan: Index, seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG112", "enclave-of-another-robot", ERROR, drawn="cross-talk")
 def enclave_of_another_robot(seen: Index) -> Iterator[Finding]:
-    """By the robots' names in the path of the enclave."""
+    """Report it by the robots' names in the path of the enclave."""
     robots = {*seen.robots}
     for name, enclave in dict.fromkeys((it.name, it.enclave) for it in seen.system.nodes):
         robot = seen.robot(name) if enclave else ""
@@ -186,7 +186,7 @@ def enclave_of_another_robot(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG113", "without-enclave", WARNING)
 def without_enclave(seen: Index) -> Iterator[Finding]:
-    """Of the nodes of robots, of which others are in one; one finding a robot."""
+    """Report, once a robot, its nodes without an enclave, if others are in one."""
     owned = [it for it in seen.system.nodes if seen.robot(it.name) and not seen.is_tool(it.name)]
     if not any(it.enclave for it in owned):
         return
@@ -209,7 +209,7 @@ _BRIDGES = ("bridge", "parameter_bridge")
 
 @planned_rule("MG121", "sender-not-planned", ERROR, drawn="cross-talk", nodes=False)
 def sender_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
-    """One finding for each node that may not send; of too many senders one a topic, at one that is not
+    """Report each node that may not send; of too many senders one a topic, at one that is not
     planned if there is one."""
     if not seen.nodes:
         yield from _too_many_recorded(plan, seen)
@@ -239,7 +239,7 @@ def _publishers(index: Index, name: str) -> list[str]:
 
 
 def _too_many_recorded(plan: Index, seen: Index) -> Iterator[Finding]:
-    """More publishers of a robot's topic than the plan has, where it is not known which nodes run."""
+    """Report more publishers of a robot's topic than planned, if running nodes are unknown."""
     single = {it.name for it in plan.system.topics if it.one_sender}
     for name in seen.published if seen.robots else ():
         own = {*_publishers(plan, name)}
@@ -252,7 +252,7 @@ def _too_many_recorded(plan: Index, seen: Index) -> Iterator[Finding]:
 
 @planned_rule("MG126", "bridged-topic-missing", ERROR, absence=True, drawn="missing")
 def bridged_topic_missing(plan: Index, seen: Index) -> Iterator[Finding]:
-    """One finding for a robot; one for all where nothing is bridged."""
+    """Report one finding for a robot; one for all if nothing is bridged."""
     rows = [(topic, role) for topic in plan.system.topics for role in topic.bridge]
     missing = [(topic, role) for topic, role in rows if not _is_carried(seen, topic, role)]
     if missing and len(missing) == len(rows):
@@ -266,7 +266,7 @@ def bridged_topic_missing(plan: Index, seen: Index) -> Iterator[Finding]:
 
 
 def _is_carried(seen: Index, topic: Topic, role: str) -> bool:
-    """Whether anything does with a topic what a bridge has to do."""
+    """Return whether anything does with a topic what a bridge has to do."""
     kind = SERVICE if role == SERVES else TOPIC
     ends = (it for it in ends_of(seen, topic.name) if (it.kind, it.role) == (kind, role))
     return any(topic.type in ("", it.type) for it in ends)

@@ -21,7 +21,7 @@ Difference = tuple[Parameter, str]
 
 @planned_rule("MG132", "parameter-not-planned", ERROR)
 def parameter_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
-    """One finding a node; a parameter that it does not have is not known."""
+    """Report one finding a node; a parameter that the node does not have is unknown."""
     told = (it for it in seen.system.parameters if (it.name, it.value) != (SIM_TIME, UNTOLD))
     values = {(it.node, it.name): it.value for it in told}
     for node, planned in lists_by_key((it.node, it) for it in plan.system.parameters).items():
@@ -57,14 +57,14 @@ def parameter_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
 
 
 def _is_same(planned: str, value: str) -> bool:
-    """1 is 1.0: people write either; true is not 1."""
+    """Return whether two values are the same: 1 is 1.0, as people write either; true is not 1."""
     if planned == value or not {"true", "false"}.isdisjoint((planned, value)):
         return planned == value
     return bool(parameter_value(planned) == parameter_value(value))
 
 
 def _is_serious(plan: Index, it: Parameter) -> bool:
-    """Whether the plan itself says it, or it is a frame of a robot."""
+    """Return whether the plan itself sets it, or it is a frame of a robot."""
     frames = plan.frames_of.get(plan.robot_of.get(it.node, ""), frozenset())
     named = [*frames, *(f"/{frame}" for frame in frames)]
     return not it.place.file or parameter_value(it.value) in named

@@ -22,7 +22,7 @@ _BRIDGE = lazy_compile("bridge|gz|gazebo|isaac|webots|zenoh|domain|free_fleet")
 
 @system_rule("MG314", "relayed-to-another-robot", ERROR, meant=(PUBLISHES,))
 def relayed_to_another_robot(seen: Index) -> Iterator[Finding]:
-    """Who also publishes what it reads is a bridge of all robots to another network."""
+    """Report relays, except a node that also publishes what it reads: a bridge to another network."""
     read = {
         (end.node, seen.plain(ends.name)): ends
         for ends in _of_bodies(seen)

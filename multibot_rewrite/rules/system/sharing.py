@@ -107,7 +107,7 @@ def data_of_another_robot(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG323", "two-maps", ERROR, meant=(PUBLISHES,))
 def two_maps(seen: Index) -> Iterator[Finding]:
-    """Of nodes of several robots on one topic it is a topic of several robots."""
+    """Report two maps, unless nodes of several robots send them: that is a topic of several robots."""
     for ends in seen.topics:
         nodes = nodes_of(ends.publishers) if ends.type == words.MAP else ()
         if len(nodes) < 2 or len(robots_of(seen, nodes)) > 1:
@@ -121,7 +121,7 @@ def two_maps(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG324", "joint-states-twice", WARNING, meant=(PUBLISHES,))
 def joint_states_twice(seen: Index) -> Iterator[Finding]:
-    """Several drivers with a part of the joints each are usual."""
+    """Report a second sender of joints that makes them up; several drivers with parts are usual."""
     for ends in seen.topics:
         nodes: Sequence[str] = nodes_of(ends.publishers) if ends.type == words.JOINTS else ()
         made_up = [node for node in nodes if last_word(node).startswith("joint_state_publisher")]
@@ -167,7 +167,7 @@ _ADVICE = {kind: said for (kind,), said in ROWS["addresses"]}
 
 
 def _one_device(seen: Index) -> Iterator[Finding]:
-    """All that two nodes of two robots have, by kind, at the second one."""
+    """Report all devices that two nodes of two robots share, by kind, at the second one."""
     first: dict[tuple[str, str, str], Address] = {}
     met: dict[tuple[str, str, str], list[tuple[Address, Address]]] = defaultdict(list)
     for it in seen.system.addresses:

@@ -44,8 +44,8 @@ ACTIVE, INACTIVE = "active", "--inactive"
 
 @system_rule("MG511", "not-active", ERROR)
 def not_active(seen: Index) -> Iterator[Finding]:
-    """One finding for the nodes of a robot that are in one state and have one manager. A plan may have
-    another state for a node."""
+    """Report nodes of a robot that are in one state and have one manager as one finding. A plan may
+    have another state for a node."""
     planned = seen.expected.system.nodes if seen.expected else ()
     states = {it.name: it.lifecycle for it in planned if it.lifecycle}
     found: dict[tuple[str, str, str, str], list[str]] = defaultdict(list)
@@ -157,7 +157,7 @@ MANY = 3
 
 @system_rule("MG301", "nodes-of-one-name", ERROR)
 def nodes_of_one_name(seen: Index) -> Iterator[Finding]:
-    """Many of them are one finding: two robots."""
+    """Report nodes of one name; many of them as one finding: two robots."""
     times = seen.nodes
     # Tools may run twice. Of two containers each gets the components of the other.
     twins = [
@@ -186,7 +186,7 @@ def nodes_of_one_name(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG302", "managed-twice", ERROR)
 def managed_twice(seen: Index) -> Iterator[Finding]:
-    """One finding for all nodes that the same managers have; an operator's tool is none."""
+    """Report all nodes with the same managers as one finding; an operator's tool does not count."""
     asked = [it for it in seen.by_name.values() if it.kind == SERVICE]
     managed = lists_by_key(
         (
@@ -234,7 +234,7 @@ class Missing(NamedTuple):
 
 
 def _not_exported(seen: Index) -> Iterator[Finding]:
-    """Nothing is said where no hardware is known: another description may have it."""
+    """Report missing interfaces if any hardware is known: another description may have them."""
     by_robot = lists_by_key((seen.robot(it.node), it) for it in seen.system.interfaces)
     for robot, known in by_robot.items():
         for it in missing(known):
@@ -286,7 +286,7 @@ def open_claims(known: Sequence[Interface]) -> list[Interface]:
 
 
 def claims_any(known: Iterable[Interface]) -> bool:
-    """Do the controllers claim an interface of this hardware? Else they are for another robot."""
+    """Return whether the controllers claim any interface of this hardware, and so are for it."""
     sides: dict[str, set[tuple[str, str]]] = {EXPORTS: set(), CLAIMS: set()}
     for it in known:
         sides[it.role].add((it.kind, it.name))
@@ -294,7 +294,7 @@ def claims_any(known: Iterable[Interface]) -> bool:
 
 
 def _claimed_twice(seen: Index) -> Iterator[Finding]:
-    """Of one controller; what two of them command is a rule about those that are active."""
+    """Report it of one controller; two controllers are reported if both are active."""
     for other, it in claimed_twice(seen.system.interfaces):
         yield interface_claimed_twice.finding(
             f"claims {it.name} by two parameters", f"name another joint{see((other, it))}",
@@ -306,7 +306,7 @@ interface_claimed_twice = declaration.CLAIMED_TWICE._replace(check=_claimed_twic
 
 
 def claimed_twice(known: Iterable[Interface]) -> Iterator[tuple[Interface, Interface]]:
-    """Command interfaces that one controller claims a second time, behind the first claim."""
+    """Yield command interfaces that one controller claims again, after the first claim."""
     first: dict[tuple[str, str], Interface] = {}
     for it in (it for it in known if (it.role, it.kind) == (CLAIMS, COMMAND)):
         other = first.setdefault((it.node, it.name), it)

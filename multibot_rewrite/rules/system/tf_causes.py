@@ -46,7 +46,7 @@ def where_set(plan: Index, node: str) -> str:
 def why_not_received(
     plan: Index, seen: Index, robot: Robot, frames: Sequence[str], undescribed: bool
 ) -> str:
-    """Why planned frames are in no transform; ``undescribed``: none of the description's is."""
+    """Return why planned frames are in no transform; ``undescribed``: none of the description's is."""
     theirs, name = [*foreign(plan, seen, robot)], robot.name
     publisher = state_publisher(plan, robot) or STATE_PUBLISHER
     described = "no planned node publishes its description: is the node that does it running?"
@@ -75,7 +75,7 @@ def why_not_received(
 
 
 def why_disconnected(plan: Index, seen: Index, robot: Robot, roots: Sequence[str]) -> Cause:
-    """Why the frames of a robot are in several pieces, with these roots."""
+    """Return why the frames of a robot are in several pieces, with these roots."""
     home = tree_topic(robot.tf_topic)
     edges = [edge for tree in seen.trees if tree.topic == home for edge in tree.edges]
     there = {(it.parent, it.child) for it in edges}
@@ -172,7 +172,7 @@ def _named(plan: Index, seen: Index) -> Mapping[str, Sequence[tuple[str, Edge]]]
 
 
 def _no_odometry(seen: Index, robot: Robot, roots: Sequence[str]) -> str:
-    """Two roots, of which one is that of an odometry frame that nothing is sent below."""
+    """Return a cause if one of two roots is an odometry frame without anything below it."""
     for odom, root in loose_odometry(seen) if len(roots) == 2 else ():
         if root in roots and seen.frame_robot(odom) in ("", robot.name):
             (other,) = {*roots} - {root}
@@ -194,7 +194,7 @@ def _bridged(plan: Index, seen: Index, robot: Robot) -> str:
 
 
 def _silent(plan: Index, seen: Index, robot: Robot, type_: str, bridged_alone: bool = False) -> str:
-    """Why nothing comes of a topic that the robot's nodes read, or a bridge has to publish for it."""
+    """Return why a topic is silent that the robot's nodes read, or a bridge has to publish."""
     silent = min(silent_topics(plan, seen, robot, type_), default="")
     if silent and any(it.bridge and it.name == silent for it in plan.system.topics):
         return f"nothing publishes {silent}, which a ros_gz_bridge has to bridge: is it started?"

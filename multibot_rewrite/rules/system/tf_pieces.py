@@ -43,8 +43,8 @@ _COMPARED = 20_000
 
 @system_rule("MG406", "tf-tree-in-pieces", ERROR, absence=True)
 def tf_tree_in_pieces(seen: Index) -> Iterator[Finding]:
-    """By the frames of a plan, and by the usual names of frames (REP 105): other pieces may be meant.
-    What a plan shows of a robot is all of it."""
+    """Report it by the frames of a plan, and by the usual names of frames (REP 105): other pieces
+    may be intended. A robot with a plan is checked by the plan alone."""
     plan, told = seen.expected, set()
     others = misnamed(plan, seen) if plan else ()
     for robot, roots in roots_by_robot(plan, seen) if plan else ():
@@ -58,7 +58,7 @@ def tf_tree_in_pieces(seen: Index) -> Iterator[Finding]:
 
 
 def _by_usual_names(seen: Index) -> Iterator[Finding]:
-    """Where nodes may run that are not known, one of them may join what is in pieces."""
+    """Report trees in pieces by usual names, unless an unknown node may join the pieces."""
     yield from told_not_to(seen)
     if seen.in_doubt:
         for tree in seen.trees:
@@ -122,8 +122,8 @@ def _misspelled(seen: Index) -> Iterator[Finding]:
 
 
 def _near(seen: Index, frames: Collection[str]) -> Callable[[str, str], str]:
-    """Of some frames the one that another one may be meant for, but for one that it is not: of its
-    robot, or of none; of very many frames of a robot the last ones are not compared with others."""
+    """Return a function: the frame, among some, that another one may be meant for, except one: of
+    its robot, or of none; of very many frames of a robot the last ones are not compared."""
     own = sets_by_key((seen.frame_robot(it), it) for it in frames)
     left: dict[str, int] = defaultdict(lambda: _COMPARED)
 
@@ -200,10 +200,8 @@ def told_not_to(seen: Index) -> Iterator[Finding]:
 
 
 def _senders_apart(seen: Index, tree: Tree) -> Iterator[Finding]:
-    """Nodes whose transforms are in another tree than those of the robot's first node.
-
-    If no node sends the root of the description, a driver that is not known may: that joins the two.
-    """
+    """Report nodes whose transforms are in another tree than those of the robot's first node. If no
+    node sends the root of the description, an unknown driver may: that joins the two."""
     for robot in unique(seen.robot(node) for it in tree.edges for node in it.publishers[:1]):
         edges = [it for it in tree.edges if {*map(seen.robot, it.publishers)} == {robot}]
         moving = {it.publishers: it for it in edges[::-1] if not is_of_description(seen, it)}
@@ -250,7 +248,7 @@ def publishes_description(seen: Index, node: str) -> bool:
 
 
 def _joined(pairs: Iterable[tuple[str, str]]) -> Callable[[str], str]:
-    """For a frame: one that stands for all that are joined with it."""
+    """Return a function: for a frame one that represents all that are joined with it."""
     above: dict[str, str] = {}
 
     def root(frame: str) -> str:

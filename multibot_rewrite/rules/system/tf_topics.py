@@ -28,9 +28,9 @@ _REMAP = "/tf:=tf and /tf_static:=tf_static"
 
 @system_rule("MG405", "tf-on-two-topics", ERROR, drawn="leak")
 def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
-    """Where the odd topic is another robot's, it is that robot's tree that is disturbed. One that is
-    not called tf, such as that of a simulator's ground truth, is no robot's tree; nor is one in its
-    namespace on which only nodes send that send to the robot's tree as well."""
+    """Report it unless the odd topic is another robot's: then that robot's tree is disturbed. A
+    topic not called tf, such as a simulator's ground truth, is no robot's tree; nor is one in its
+    namespace on which only nodes send that also send to the robot's tree."""
     senders: dict[str, dict[str, list[str]]] = defaultdict(dict)
     listeners: dict[str, dict[str, list[str]]] = defaultdict(dict)
     for tree in _called_tf(seen):
@@ -64,7 +64,7 @@ def _called_tf(seen: Index) -> list[Tree]:
 
 
 def _rviz_hears_nothing(seen: Index) -> Iterator[Finding]:
-    """RViz on a tf topic on which nothing is, while robots have theirs."""
+    """Report RViz on a tf topic without senders, while robots have theirs."""
     trees = _called_tf(seen)
     sent = [it.topic for it in trees if it.senders]
     for tree in trees:
@@ -82,8 +82,8 @@ def _rviz_hears_nothing(seen: Index) -> Iterator[Finding]:
 def _frames_of_another(
     seen: Index, senders: Mapping[str, Mapping[str, Sequence[str]]]
 ) -> Iterator[Finding]:
-    """One robot's frames on another one's topic: whoever sends them, where it is the other's by the
-    plan; else where it is not known who does."""
+    """Report one robot's frames on another one's topic: from any sender, if the topic is the
+    other's by the plan; otherwise if the sender is unknown."""
     for tree in _called_tf(seen):
         home = home_of(seen.expected, tree) if seen.expected else ()
         owners = home or [it for it in (seen.robot(tree.topic),) if it]
@@ -224,11 +224,17 @@ def _is_meant(seen: Index, node: str, role: str, topic: str) -> bool:
 
 
 def _home(seen: Index, robot: str, topics: Mapping[str, Sequence[str]]) -> str:
-    """Return a robot's tf topic: the known one, its own, or the one where most of its nodes send."""
+    """Return a robot's tf topic: the known one, its own, or the one where most of its nodes send, which
+    counts before its own where those of other robots send, too, and its frames have its name."""
     if robot in seen.home:
         return seen.home[robot]
+    most = max(topics, key=lambda it: len(topics[it]))
+    tree = next(it for it in seen.trees if it.topic == most)
+    named = any(seen.frame_robot(it.child) == robot for it in tree.edges)
+    if named and not {*map(seen.robot, tree.senders)} <= {"", robot}:
+        return most
     own = [it for it in topics if seen.robot(it) == robot and seen.plain(it).strip("/") == TF]
-    return next(iter(own), "") or max(topics, key=lambda it: len(topics[it]))
+    return next(iter(own), most)
 
 
 def _elsewhere(

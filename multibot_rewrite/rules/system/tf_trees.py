@@ -6,8 +6,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence, Set
 
-from multibot_rewrite.base.chains import chain_ends
-from multibot_rewrite.base.grouping import lists_by_key
+from multibot_rewrite.base.grouping import chain_ends, lists_by_key
 from multibot_rewrite.base.wording import unique
 from multibot_rewrite.system.index import Index, Tree, once
 from multibot_rewrite.system.records import OFF, PUBLISHES, Edge, Robot
@@ -16,7 +15,7 @@ from multibot_rewrite.system.tf_copies import tree_topic
 
 @once
 def homes(plan: Index) -> Mapping[str, Sequence[str]]:
-    """By tf topic: the robots whose it is by the layout."""
+    """Return by tf topic the robots that use it by the layout."""
     return lists_by_key((tree_topic(robot.tf_topic), robot.name) for robot in plan.system.robots)
 
 
@@ -73,19 +72,19 @@ def _robot_at_home(plan: Index, tree: Tree, frame: str) -> str:
 
 
 def frames_in(tree: Tree) -> Iterator[str]:
-    """Every frame of a tree, each once."""
+    """Yield every frame of a tree, each once."""
     return iter(dict.fromkeys(name for edge in tree.edges for name in (edge.child, edge.parent)))
 
 
 @once
 def by_child(seen: Index) -> Mapping[str, Mapping[str, Edge]]:
-    """By tf topic and child: a transform."""
+    """Return transforms by tf topic and child."""
     return {tree.topic: {edge.child: edge for edge in tree.edges} for tree in seen.trees}
 
 
 @once
 def frames_by_topic(seen: Index) -> Mapping[str, Set[str]]:
-    """By tf topic: every frame there."""
+    """Return every frame by tf topic."""
     return {tree.topic: {*frames_in(tree)} for tree in seen.trees}
 
 
@@ -121,5 +120,5 @@ def root_of(frame: str, above: Mapping[str, str]) -> str:
 
 
 def above_each(tree: Tree) -> dict[str, str]:
-    """By frame: its parent in a tree."""
+    """Return by frame its parent in a tree."""
     return {it.child: it.parent for it in tree.edges}

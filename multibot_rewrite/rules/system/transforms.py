@@ -23,13 +23,15 @@ from multibot_rewrite.rules.system.planned_frames import with_more_names
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Index, Tree, robots_of
 from multibot_rewrite.system.parameters import parameter_text
-from multibot_rewrite.system.records import SUBSCRIBES, Edge
+from multibot_rewrite.system.records import SUBSCRIBES, Edge, End
 from multibot_rewrite.system.tf_copies import static_topic
 from multibot_rewrite.system.tool_nodes import last_word
 
 _STATE_PUBLISHER, _STATIC = "robot_state_publisher", "static_transform_publisher"
 # These have a prefix for frames as well, on by default.
 _OF_CONTROLLERS = "enable_odom_tf"
+# What a node looks at to find the robot in the map.
+_SEEN = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2"
 
 
 @system_rule("MG401", "two-parents", ERROR)
@@ -64,7 +66,7 @@ def _senders(tree: Tree, edges: Iterable[Edge]) -> Sequence[str]:
 def _who_sends(
     seen: Index, tree: Tree, edges: Sequence[tuple[str, str]], senders: Sequence[str]
 ) -> str:
-    """Which of the senders may have sent these: who is known to first, then those of the frame's
+    """Return which of the senders may have sent these: known ones first, then those of the frame's
     robot."""
     frame = edges[0][1]
     robots = robots_of(seen, senders)
@@ -87,7 +89,7 @@ def _who_sends(
 
 @system_rule("MG402", "robots-frames-collide", ERROR)
 def robots_frames_collide(seen: Index) -> Iterator[Finding]:
-    """One robot may have no name in its frames, if all others have."""
+    """Report it also if one robot has no name in its frames and all others have."""
     for tree in seen.trees:
         who = collide(seen, tree)
         if who:
@@ -100,7 +102,7 @@ def robots_frames_collide(seen: Index) -> Iterator[Finding]:
 
 
 def collide(seen: Index, tree: Tree) -> str:
-    """Who sends frames that do not say whose they are; empty where nothing collides."""
+    """Return who sends frames that do not show their robot; empty if nothing collides."""
     senders = [it for it in tree.senders if it not in seen.relays]
     robots, bare = robots_of(seen, senders), set(_bare_frames(seen, tree))
     # Who sends on another robot's topic is a finding of its own.
@@ -142,7 +144,7 @@ def _bare_frames(seen: Index, tree: Tree) -> list[str]:
 
 
 def _is_of_several(seen: Index, edge: Edge) -> bool:
-    """Do nodes of several robots send it below frames of their own, perhaps with other values?"""
+    """Return whether nodes of several robots send it below frames of their own."""
     own = edge.parent not in WORLD_FRAMES and not edge.transform
     return own and edge.several and len(robots_of(seen, edge.publishers)) > 1
 
@@ -183,7 +185,7 @@ def tf_remaps(nodes: Iterable[str], topic: str, home: str) -> tuple[Remap, ...]:
 
 @system_rule("MG403", "tf-cycle", ERROR)
 def tf_cycle(seen: Index) -> Iterator[Finding]:
-    """Each circle once."""
+    """Report each circle once."""
     for tree in seen.trees:
         edges = lists_by_key((edge.child, edge) for edge in tree.edges)
         for circle in _circles(_parents(tree)):
@@ -201,7 +203,7 @@ def tf_cycle(seen: Index) -> Iterator[Finding]:
 
 
 def _circles(parents: Mapping[str, Iterable[str]]) -> Iterator[tuple[str, ...]]:
-    """Circles that have no frame in common, each from the parent to the child."""
+    """Yield circles that have no frame in common, each from the parent to the child."""
     left = {child: set(above) & parents.keys() for child, above in parents.items()}
     below = lists_by_key((parent, child) for child, above in left.items() for parent in above)
     _take_away(left, below, [child for child, above in left.items() if not above])
@@ -253,7 +255,7 @@ def static_and_moving(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG408", "transform-of-two-senders", ERROR)
 def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
-    """Where robots' frames collide, that is the finding; all transforms of a tree are one."""
+    """Report all such transforms of a tree as one, unless robots' frames collide."""
     for tree in seen.trees:
         if collide(seen, tree):
             continue
@@ -290,7 +292,7 @@ def transform_of_two_senders(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG407", "robots-name-twice", ERROR)
 def robots_name_twice(seen: Index) -> Iterator[Finding]:
-    """All frames of a robot and topic are one finding. What a plan shows of a robot is all of it."""
+    """Report all frames of a robot and topic as one. A robot with a plan is checked by it alone."""
     told = set()
     for message, cause, it, names in with_more_names(seen.expected, seen) if seen.expected else ():
         told.add(it.name)
@@ -330,9 +332,17 @@ def _without_prefix(nodes: Iterable[str]) -> Cause:
 
 
 def who_can_send(seen: Index, nodes: Sequence[str], edges: Sequence[Edge]) -> Sequence[str]:
-    """Return the nodes that can send one of these transforms; all if fewer than two are left."""
+    """Return the nodes that can send one of these transforms, below the map those that see where it is;
+    all if fewer than two are left."""
     found = [node for node in nodes if any(_can_send(seen, node, it) for it in edges)]
+    if all(seen.plain_frame(it.parent) in WORLD_FRAMES for it in edges):
+        seeing = [it for it in found if any(end.type in _SEEN for end in _read(seen, it))]
+        found = seeing if len(seeing) > 1 else found
     return found if len(found) > 1 else nodes
+
+
+def _read(seen: Index, node: str) -> Sequence[End]:
+    return [it for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES]
 
 
 def _can_send(seen: Index, node: str, edge: Edge) -> bool:
@@ -343,7 +353,7 @@ def _can_send(seen: Index, node: str, edge: Edge) -> bool:
         return above not in SENT_FRAMES
     if word.startswith(_STATIC):
         return edge.static
-    read = [it for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES]
+    read = _read(seen, node)
     if any(words.is_start_pose(seen.plain(it.name), it.type) for it in read):
         return above in WORLD_FRAMES
     drives = any(words.moves(it.name, it.type) for it in read)

@@ -42,7 +42,7 @@ _MISSES = (topic_names_miss, server_names_miss)
 
 @system_rule("MG316", "nothing-known-sends", NOTE, absence=True)
 def nothing_known_sends(seen: Index) -> Iterator[Finding]:
-    """All names of a robot are one finding; without those that others have under another name."""
+    """Report all names of a robot as one, without those that others have under another name."""
     left = [it for it in open_ends(seen) if not meant(seen, it)]
     rules = [it for it in _MISSES if it.check] if left else ()
     missed = {found.names[0] for it in rules if it.check for found in it.check(seen)}
@@ -123,8 +123,8 @@ def open_ends(seen: Index) -> list[End]:
 
 @system_rule("MG413", "frame-not-sent", WARNING, absence=True)
 def frame_not_sent(seen: Index) -> Iterator[Finding]:
-    """Each frame once a robot, with all that read it; other names than the usual ones may be those of a
-    driver."""
+    """Report each frame once a robot, with all that read it; other names than the usual ones may be
+    those of a driver."""
     readers: dict[tuple[str, str, str], dict[str, Lookup]] = {}
     robots = dict.fromkeys(seen.robot(it.node) for it in seen.system.lookups)
     sent = {name: [it for tree in trees_of(seen, name) for it in tree.edges] for name in robots}

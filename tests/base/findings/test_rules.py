@@ -5,12 +5,10 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import Any, cast
 
 import pytest
-from lint_calls import Settings, fix
 from paths import FIXTURES, ROOT
-from rule_examples import WITHOUT_FILE, found, is_built, whole
+from rule_examples import WITHOUT_FILE, found, is_built
 
 from multibot_rewrite.base.findings.finding import LEVELS, Rule
 from multibot_rewrite.lint import catalogue
@@ -66,40 +64,6 @@ def test_the_level_of_an_example_and_what_it_is_about(code: str, tmp_path: Path)
     elif about:
         lines = Path(it.file).read_text().splitlines()
         assert lines[it.line - 1][it.column - 1 :].lstrip().startswith(about)
-
-
-@pytest.mark.parametrize("code", [code for code in EXAMPLES if RULES[code].page.fixed])
-def test_the_fix_makes_just_what_is_shown(code: str, tmp_path: Path) -> None:
-    rule = RULES[code]
-    (finding,) = found(rule, rule.page.bad, tmp_path)
-    bad = Path(finding.file).read_bytes()
-    text, left = fix(finding.file, bad, Settings(select=(code,), **cast(Any, rule.options)))
-    assert text.decode() == whole(rule.page.fixed)
-    assert left == []
-
-
-def test_a_finding_of_a_line_alone_is_at_its_first_column() -> None:
-    rule = RULES["MB002"]
-    places = ({}, {"file": "a", "line": 3}, {"file": "a", "line": 3, "column": 7})
-    assert [rule.finding("m", "h", **it)[4:7] for it in places] == [  # type: ignore[arg-type]
-        ("", 0, 0), ("a", 3, 1), ("a", 3, 7),
-    ]  # fmt: skip
-
-
-def test_the_codes_with_a_fix() -> None:
-    fixed = {code for code, it in RULES.items() if it.page.fixed}
-    assert fixed == {
-        "MB002",
-        "MB126",
-        "MB128",
-        "MB133",
-        "MB134",
-        "MB136",
-        "MB140",
-        "MB141",
-        "MB142",
-        "MB301",
-    }
 
 
 def test_the_words_of_a_rule_are_all_there() -> None:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import pytest
 
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, WARNING, Finding
-from multibot_rewrite.base.findings.selection import OFF, Selection, fails, is_on, selected
+from multibot_rewrite.base.findings.selection import Selection, fails, is_on
 
 
 @pytest.mark.parametrize(
@@ -25,17 +25,6 @@ def test_the_longer_code_decides(
     select: tuple[str, ...], ignore: tuple[str, ...], code: str, on: bool
 ) -> None:
     assert is_on(Selection(select, ignore), code) is on
-
-
-def test_a_level_of_the_selection_is_that_of_the_finding() -> None:
-    found = [
-        Finding("MG108", WARNING, "x"),
-        Finding("MG101", ERROR, "y"),
-        Finding("MF1", NOTE, "z"),
-    ]
-    levels = {"MG": WARNING, "MG108": NOTE, "MF1": OFF}
-    chosen = selected(found, Selection(levels=levels))
-    assert [(it.code, it.level) for it in chosen] == [("MG108", NOTE), ("MG101", WARNING)]
 
 
 @pytest.mark.parametrize(

@@ -66,24 +66,6 @@ def test_parts_of_words_files_and_addresses_are_no_names(value: str) -> None:
     assert mentioned(value, PLAIN) == ""
 
 
-def test_a_file_is_no_name_whatever_it_is() -> None:
-    """Meshes, materials, pictures, descriptions, tables, programs, models of networks, recordings."""
-    kinds = (
-        "dae stl obj ply glb gltf usd usda usdc mtl material png jpg jpeg tga dds pgm bmp svg urdf"
-        " xacro srdf sdf world rviz yaml yml xml json toml ini csv txt lua py sh so bin pt onnx engine"
-        " pcd bag db3 mcap"
-    )
-    assert [it for it in kinds.split() if mentioned(f"arm.{it}", PLAIN)] == []
-
-
-@pytest.mark.parametrize("value", ['["wl","wr"]', "{left: wl}", "wl=1|wr=2", "wl.position", "(wl)"])
-def test_a_rewrite_warns_of_it(value: str) -> None:
-    links = '<link name="wl"/><link name="wr"/>'
-    text = f"<robot name='r'>{links}<gazebo><own>{value}</own></gazebo></robot>"
-    (found,) = (it for it in rewrite(text, "robot1").findings if it.code == "MB901")
-    assert "'wl'" in found.message and found.column == text.index(value) + 1
-
-
 @pytest.mark.parametrize(
     ("element", "warned"),
     [

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from multibot_rewrite import rewrite, rewrite_all
+from multibot_rewrite import MultibotError, ProofError, rewrite, rewrite_all
 from multibot_rewrite.base.naming import LAYOUTS
 
 BODY = """<link name="base"/><link name="w"/><joint name="j" type="continuous">
@@ -91,3 +91,25 @@ def test_a_plugin_outside_of_gazebo_is_reported(text: str, layout: str) -> None:
     assert "multibot robot1" not in one.text
     inside = rewrite(robot(f"<gazebo>{PLUGIN}</gazebo>"), "robot1", layout=layout)
     assert "MB112" not in {it.code for it in inside.findings}
+
+
+@pytest.mark.parametrize("affix", ["postfix", "prefix"])
+def test_a_rewrite_for_another_robot_is_told(affix: str) -> None:
+    """Also where nothing was inserted: every link has the name behind or before its slash."""
+    first = rewrite(robot(""), "robot1", affix=affix).text
+    assert [it.code for it in rewrite(robot(""), "robot2").findings] == []
+    assert [it.code for it in rewrite(first, "robot2", affix=affix).findings] == ["MB106"]
+    assert [it.code for it in rewrite(first.replace("robot1", "a_b"), "r2").findings] == ["MB106"]
+    one_other = first.replace(">", '><link name="lidar"/>', 1)
+    assert "MB106" not in [it.code for it in rewrite(one_other, "robot2", affix=affix).findings]
+
+
+@pytest.mark.parametrize("name", ["{", "{robot", "}", "{robot}", "{model}", "{{robot}}"])
+def test_braces_in_names_end_no_rewrite(name: str) -> None:
+    plugin = f"""<gazebo><plugin filename="libgazebo_ros_diff_drive.so" name="{name}"><ros>
+<namespace>{name}</namespace><remapping>odom:={name}</remapping></ros></plugin></gazebo>"""
+    for text in (robot(plugin), robot("", BODY.replace("base", name))):
+        try:
+            assert rewrite(text, "robot1").text
+        except MultibotError as error:
+            assert not isinstance(error, ProofError)

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
 from multibot_rewrite import rewrite
@@ -60,23 +58,3 @@ def test_sensors_whose_names_code_makes_behind_a_prefix(
     text = CAMERA.format("".join(map(SENSOR.format, names)), inside)
     made = rewrite(text, "robot1", layout="postfix", affix=affix)
     assert ", ".join(made.not_verified) == reasons
-
-
-UR = """<robot name="ur" xmlns:xacro="http://www.ros.org/wiki/xacro">
-<xacro:arg name="p" default=""/><link name="$(arg p)base"/>
-<ros2_control name="$(arg p)ur" type="system"><hardware>
-<plugin>ur_robot_driver/URPositionHardwareInterface</plugin>
-<param name="tf_prefix">{}</param></hardware></ros2_control></robot>"""
-
-
-@pytest.mark.parametrize(
-    ("value", "reasons"),
-    [("$(arg p)", ()), ("arm_", ("1 prefix parameter that no postfix reaches",))],
-)
-def test_a_prefix_with_the_name_that_an_argument_gave_needs_no_postfix(
-    tmp_path: Path, value: str, reasons: tuple[str, ...]
-) -> None:
-    file = tmp_path / "ur.urdf.xacro"
-    file.write_text(UR.format(value))
-    made = rewrite(file, "left", layout="postfix", xacro_args={"p": "{robot}_"})
-    assert made.not_verified == reasons

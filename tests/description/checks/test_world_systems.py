@@ -4,9 +4,7 @@
 from __future__ import annotations
 
 import pytest
-from description_calls import builtin_tree, collect, read_document
 
-from multibot_rewrite.description.checks.hazards import world_systems
 from multibot_rewrite.description.library import rewrite
 
 ROBOT = '<robot name="rover"><link name="base_link"/><gazebo>{}</gazebo></robot>'
@@ -28,18 +26,6 @@ def codes(inside: str, layout: str) -> list[str]:
 def test_a_system_of_the_world_is_not_proved() -> None:
     """gz-sensors issue 497: each copy of the robot loads it again."""
     assert codes(SENSORS, "both") == ["MB416"]
-
-
-@pytest.mark.parametrize(
-    ("name", "layout", "expected"),
-    [
-        ("/robot_state_publisher", "tf-per-robot", ["MB410"]),
-        ("/robot_state_publisher", "both", ["MB410"]),
-        ("robot_state_publisher", "both", []),
-    ],
-)
-def test_an_absolute_node_with_the_description(name: str, layout: str, expected: list[str]) -> None:
-    assert codes(CONTROL.format(name), layout) == expected
 
 
 def test_an_absolute_node_is_renamed_where_nodes_are() -> None:
@@ -74,13 +60,3 @@ def test_each_name_of_a_description_is_said_with_its_tag(tag: str) -> None:
                 if it.code == "MB410")  # fmt: skip
     assert found.message == f"<{tag}> '/x' is the same for all robots"
     assert found.hint == "use the part after the last slash"
-
-
-@pytest.mark.parametrize(("above", "told"), [("", True), ("world", False), ("gui", False)])
-def test_a_system_is_at_home_in_a_world(above: str, told: bool) -> None:
-    inside = f"<{above}>{SENSORS}</{above}>" if above else SENSORS
-    inventory = collect(
-        read_document(ROBOT.format(inside).encode(), "r"), builtin_tree((), "jazzy")
-    )
-    found = [it.message.partition(":")[0] for it in world_systems(inventory)]
-    assert found == ["gz-sim-sensors-system is loaded again with every robot"] * told

@@ -67,12 +67,6 @@ def test_nothing_active_is_proved_by_silence(inside: str, reason: str, layout: s
     assert reason in why(robot(inside), layout)
 
 
-def test_what_is_known_to_open_nothing_is_proved() -> None:
-    text = robot(hardware("mock_components/GenericSystem") + plugin("gazebo_grasp_fix"))
-    for layout in ("postfix", "tf-per-robot", "frames-per-robot", "both"):
-        assert why(text, layout, "humble") == ()
-
-
 def test_a_plugin_written_for_ros_1_beside_one_for_ros_2_is_that_of_ros_2() -> None:
     """gazebo_ros_camera.cpp of ROS 2: its node is called as the plugin, whatever ROS 1's tags say."""
     old = plugin("gazebo_ros_camera", "<cameraName>c</cameraName><frameName>a</frameName>")
@@ -103,10 +97,6 @@ def test_a_plugin_of_classic_is_not_proved_where_no_gazebo_loads_it(
     assert [it for it, reason in given.items() if not reason] == loaded
 
 
-def test_a_description_without_a_link_is_not_proved() -> None:
-    assert why('<robot name="r"/>') == ("1 robot without a link",)
-
-
 def test_the_last_hardware_block_counts() -> None:
     """ros2_control component_parser.cpp parse_resource_from_xml: each <hardware> replaces the one
     before it."""
@@ -114,13 +104,6 @@ def test_the_last_hardware_block_counts() -> None:
     blocks = "<hardware><plugin>{}</plugin></hardware><hardware><plugin>{}</plugin></hardware>"
     assert why(robot(hardware("", blocks.format(other, known)))) == ()
     assert why(robot(hardware("", blocks.format(known, other)))) == ("1 hardware class not known",)
-
-
-def test_the_same_text_for_all_with_something_active_is_not_proved() -> None:
-    sensor = '<sensor name="s" type="rgbd_camera"><camera/></sensor>'
-    text = robot(f'<gazebo reference="a">{sensor}</gazebo>')
-    assert why(text, "tf-per-robot") == ("1 description the same for all robots",)
-    assert why(text, "both") == ()
 
 
 # ---------------------------------------------------------------- ROS 1
@@ -226,15 +209,6 @@ def test_a_valid_topic(text: str, topic: str) -> None:
     assert as_valid_topic(text) == topic
 
 
-def test_a_private_gz_topic_is_everybodys() -> None:
-    inside = "<left_joint>j</left_joint><right_joint>j</right_joint><topic>~/cmd_vel</topic>"
-    text = robot(
-        '<gazebo><plugin name="gz::sim::systems::DiffDrive" filename="gz-sim-diff-drive-system">'
-        f"{inside}</plugin></gazebo>"
-    )
-    assert why(text) == ("1 command shared by all robots",)
-
-
 TRIGGER = (
     '<gazebo><plugin name="gz::sim::systems::TriggeredPublisher" '
     'filename="gz-sim-triggered-publisher-system"><input type="gz.msgs.Contacts" topic="{0}"/>'
@@ -243,12 +217,6 @@ TRIGGER = (
     '<gazebo reference="a"><sensor name="s" type="contact"><contact><topic>{1}</topic></contact>'
     "</sensor></gazebo>"
 )
-
-
-@pytest.mark.parametrize("layout", ["postfix", "tf-per-robot"])
-@pytest.mark.parametrize(("one", "other"), [("hit", "hit"), ("/hit", "hit"), ("hit", "/hit")])
-def test_ends_of_one_topic_stay_together(one: str, other: str, layout: str) -> None:
-    assert why(robot(TRIGGER.format(one, other)), layout) == ()
 
 
 def test_ends_that_part_are_told() -> None:
@@ -274,15 +242,6 @@ def test_a_topic_of_the_world_is_the_robots_where_it_sends_it(
     assert "robot1" in str(end.text)
     assert other.text == (end.text if sent == heard else "current/sea")
     assert strip(made.data, "robot1", layout=layout) == text.encode()
-
-
-def test_a_topic_that_is_kept_is_an_end_like_others() -> None:
-    """What the vocabulary leaves as it is does not hide that something else had the same topic."""
-    sent = '<gazebo reference="a"><sensor name="s" type="imu"><topic>/eye</topic></sensor></gazebo>'
-    for topic in ("/eye", "/star"):
-        world = plugin("BaseStation", f"<target_topic>{topic}</target_topic>")
-        parted = "1 topic whose ends no longer match" in why(robot(sent + world))
-        assert parted == (topic == "/eye")
 
 
 P3D = plugin("gazebo_ros_p3d", "<ros/>").replace('"p"', '"q"')
@@ -356,15 +315,6 @@ def test_the_camera_info_of_other_cameras_is_beside_their_image(type_: str, insi
     assert any("/boxes/a/camera_info" in it.message for it in made.findings)
     assert "camera_info_topic>" not in made.text.replace(INFO, "")
     assert rewrite(text, "robot1", topics="prefix", distro="jazzy").not_verified == ()
-
-
-def test_a_camera_has_an_own_camera_info() -> None:
-    made = rewrite(robot(SENSOR.format("camera", "<camera/>")), "robot1", distro="jazzy")
-    assert "<camera_info_topic>/boxes/camera_info/robot1</camera_info_topic>" in made.text
-    # Its image is a_image, and image_transport looks beside it.
-    assert made.not_verified == () and [it.code for it in made.findings] == ["MB439"]
-    assert "its camera_info" in given(made.findings)
-    assert '"/boxes/a/camera_info:=/boxes/camera_info/ROBOT"' in made.findings[0].hint
 
 
 # ---------------------------------------------------------------- controllers
@@ -469,12 +419,6 @@ def test_what_is_not_known_is_counted() -> None:
             if it.names[0] != "any_with_ros" and not says_what_it_opens(it)
         ]
         assert len(sections) <= most, [it.name for it in sections]
-
-
-def test_a_class_of_ros2_control_is_no_plugin_of_gazebo() -> None:
-    root = read_xml(robot(hardware("mock_components/GenericSystem")).encode(), "r.urdf")
-    parts = list(active_parts(root, load_vocabulary((), NEWEST_LTS)))
-    assert [it.kind for it in parts] == ["hardware class"]
 
 
 @pytest.mark.parametrize(

@@ -35,12 +35,6 @@ def test_a_camera_keeps_its_info_beside_its_image(
     assert codes(CAMERA.format(topic), **options) == found
 
 
-def test_an_image_without_info_beside_it_loses_none() -> None:
-    info = "<camera><camera_info_topic>/else/info</camera_info_topic></camera>"
-    text = CAMERA.replace("</sensor>", f"{info}</sensor>").format("/cam/image")
-    assert "MB439" not in codes(text)
-
-
 @pytest.mark.parametrize(
     ("name", "class_", "parameters"),
     [

@@ -41,27 +41,6 @@ def test_a_rule_that_matches_no_more_is_named(before: bytes, after: bytes) -> No
     assert found.rule.endswith(":=a")
 
 
-@pytest.mark.parametrize(
-    ("before", "after"),
-    [
-        (force("gazebo_ros_force:=a"), force("gazebo_ros_force:=a", namespace="robot1")),
-        (force("x:=a"), force("y:=a")),
-        (force("gazebo_ros_force:=a"), force("x:=y", "gazebo_ros_force:=a/robot1")),
-    ],
-)
-def test_a_rule_that_still_matches_is_not(before: bytes, after: bytes) -> None:
-    assert lost(before, after) == []
-
-
-def test_a_rewrite_that_loses_a_rule_is_not_proved() -> None:
-    source = PLUGIN.format("imu", "imu", "<namespace>a</namespace><remapping>imu:=raw</remapping>")
-    source = source.replace("libgazebo_ros_imu", "libhector_gazebo_ros_imu")
-    source = source.replace("</ros>", "</ros><topicName>/a/imu</topicName>")
-    made = rewrite(source, "robot1", affix="prefix")
-    assert made.not_verified == ("1 remap rule matching no name any more",)
-    assert [it.code for it in made.findings] == ["MB436"]
-
-
 def test_a_topic_that_the_layout_shares_may_lose_its_rule() -> None:
     source = PLUGIN.format("d", "planar_move", "<remapping>tf:=my_tf</remapping>")
     made = rewrite(source, "robot1", layout="frames-per-robot")

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import combinations
-from pathlib import Path
 
 import pytest
 from description_calls import BELOW, LAYOUTS, TOPIC, load_vocabulary, make_naming, meetings, read
@@ -64,28 +63,9 @@ def test_the_namespaces_around_a_plugin_are_joined(attributes: str, inside: str,
     assert topics(model(attributes, inside).encode(), MAIN) == [name]
 
 
-def test_a_name_that_the_spawner_gives_is_not_known() -> None:
-    text = model(' namespace="{name}"').encode()
-    assert topics(text, MAIN) == []
-
-
 @pytest.mark.parametrize("release", RELEASED)
 def test_gazebo_of_a_release_knows_no_namespace(release: str) -> None:
     assert topics(model(' namespace="robot"').encode(), release) == ["/cmd_vel"]
-
-
-def test_other_systems_take_their_topics_as_they_are() -> None:
-    system = (
-        '<plugin filename="gz-sim-velocity-control-system" name="v"><topic>push</topic></plugin>'
-    )
-    assert topics(model(' namespace="robot"', system).encode(), MAIN) == ["/push"]
-
-
-def test_default_topics_are_below_the_namespace() -> None:
-    plugin = '<plugin filename="gz-sim-diff-drive-system" name="d"/>'
-    text = model(' namespace="robot"', plugin).encode()
-    assert topics(text, MAIN, "model@namespace") == ["/robot"]
-    assert topics(text, "lyrical", "model@namespace") == []
 
 
 def written(source: str, layout: str, release: str) -> Iterator[tuple[str, bytes]]:
@@ -130,30 +110,6 @@ def test_what_cannot_be_each_robots_own_is_said() -> None:
         found = rewrite(source, "robot1", layout="tf-per-robot", distro=MAIN)
         assert "MG320" in {it.code for it in found.findings}
         assert any("topic" in reason for reason in found.not_verified)
-
-
-def test_a_rewrite_that_only_some_builds_of_gazebo_read_is_not_called_proved() -> None:
-    source = model(' namespace="robot"')
-    reasons = rewrite(source, "robot1", distro=MAIN).not_verified
-    assert reasons == ("1 model namespace that not every Gazebo reads",)
-    assert rewrite(source, "robot1", distro="lyrical").not_verified == ()
-
-
-def test_a_vocabulary_says_which_systems_read_it(tmp_path: Path) -> None:
-    """For a Gazebo that was built with more than main has; of what its Gazebo does not read there is no
-    proof."""
-    own = tmp_path / "own.vocab"
-    own.write_text("[plugin gz-sim-velocity-control-system]\nmodel_namespace: lyrical+\n")
-    system = (
-        '<plugin filename="gz-sim-velocity-control-system" name="v"><topic>push</topic></plugin>'
-    )
-    source = model(' namespace="robot"', system)
-    found = rewrite(
-        source, "robot1", layout="tf-per-robot", distro=MAIN, vocabulary=[str(own)]
-    ).text
-    assert "<topic>push</topic>" in found and 'namespace="robot1/robot"' in found
-    older = rewrite(source, "robot1", distro="lyrical", vocabulary=[str(own)])
-    assert {"MB419", "MG320"} == {it.code for it in older.findings}
 
 
 def test_below_a_root_namespace_a_topic_is_each_robots_own() -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import pytest
 
-from multibot_rewrite.base.model import InputError
 from multibot_rewrite.description.readback.xml import is_on, read_xml, text_of, values_at
 
 
@@ -71,8 +70,3 @@ def test_values(path: str, values: list[str]) -> None:
 )
 def test_booleans(text: str | None, on: bool | None, usual: bool) -> None:
     assert is_on(text, usual) is (usual if on is None else on)
-
-
-def test_what_is_no_xml_is_one_line() -> None:
-    with pytest.raises(InputError, match=r"rover\.urdf: cannot be read again: "):
-        read_xml(b"<robot><link></robot>", "rover.urdf")

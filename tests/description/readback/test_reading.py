@@ -89,13 +89,6 @@ def test_names_of_a_system(library: str, name: str) -> None:
     assert not reading(text).unknown
 
 
-def test_an_unknown_plugin_is_unknown_with_its_number() -> None:
-    text = plugin("libgazebo_ros_p3d.so") + plugin("libacme.so", "<ros/>", "acme")
-    found = reading(text)
-    assert found.unknown == ((1, "libacme.so"),)
-    assert [it.full_name for it in found.nodes] == ["/p", "/acme"]
-
-
 # gazebo_ros_imu.cpp of noetic reads robotNamespace and topicName, gazebo_ros_imu_sensor.cpp of ros2
 # neither; only ROS 2 has <ros>.
 @pytest.mark.parametrize(
@@ -157,17 +150,6 @@ def test_ros_1_topics_are_below_the_namespace() -> None:
     assert names(plugin("libgazebo_ros_p3d.so", absolute)) == ["/t"]
 
 
-def test_frames_are_links_and_those_of_plugins() -> None:
-    text = (
-        '<link name="base"/><group><link name="no_frame"/></group>'
-        + plugin("libgazebo_ros_diff_drive.so", "<odometry_frame><!-- x -->o</odometry_frame>")
-        + plugin("libgazebo_ros_planar_move.so", "<odometry_frame/>")
-    )
-    found = names(text, "frame")
-    # sdformat's Get<std::string>(name, default) gives "" for an element that is there and empty.
-    assert found == ["base", "o", "base_footprint", "base_footprint"]
-
-
 def test_names_that_are_looked_up_in_the_world() -> None:
     """gz_system.cpp: an IMU is found by its name alone, in every model."""
     system = (
@@ -177,12 +159,6 @@ def test_names_that_are_looked_up_in_the_world() -> None:
     )
     assert names(system, "sensor") == ["imu"]
     assert names(system.replace("GazeboSimSystem", "Other"), "sensor") == []
-
-
-def test_a_place_is_the_number_among_elements_of_the_tag() -> None:
-    text = plugin("libacme.so") + plugin("libgazebo_ros_diff_drive.so")
-    (node,) = (it for it in reading(text).names if it.kind == "node")
-    assert (node.tag, node.number, node.path) == ("plugin", 1, "@name")
 
 
 def test_topics_are_below_the_word_that_a_plugin_makes_them_of() -> None:

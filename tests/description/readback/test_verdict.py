@@ -11,7 +11,7 @@ from postfix_command import run
 
 from multibot_rewrite import RewriteRefused, rewrite, rewrite_all
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.description.checks.verdict import REASONS, given, not_verified
+from multibot_rewrite.description.checks.verdict import REASONS, not_verified
 
 LIDAR = """<robot name="r"><link name="a"/><gazebo reference="a">
 <sensor name="lidar" type="gpu_lidar"><topic>{}</topic></sensor></gazebo></robot>"""
@@ -71,18 +71,6 @@ SAID = {
 def test_every_reason_has_its_words() -> None:
     assert {code: of(code, code) for code in SAID} == {code: (it,) for code, it in SAID.items()}
     assert SAID.keys() == REASONS.keys()
-
-
-def test_what_is_taken_for_granted_is_said() -> None:
-    def said(*codes: str, world: tuple[str, ...] = ()) -> str:
-        return given([Finding(it, "note", "x") for it in codes], world)
-
-    assert said() == said("MB901") == ""
-    assert said("MR105") == "where each controller is spawned with its rules"
-    assert said("MB439", "MF845", world=("b", "a", "b")) == (
-        "where what shows an image has the rule for its camera_info and "
-        "where what each robot talks to has its number and where the world loads a, b"
-    )
 
 
 def test_every_reason_is_a_warning_of_a_rewrite() -> None:
@@ -164,14 +152,3 @@ def test_what_all_robots_share_is_no_refusal_of_two() -> None:
     text = LIDAR.format("{name}/scan")
     first, second = rewrite_all(text, ["left_b", "b"], separators={"topic": "_"})
     assert first.not_verified == second.not_verified == ("1 topic shared by all robots",)
-
-
-def test_a_model_of_another_file_is_not_proved() -> None:
-    """Nobody reads what its sensors publish; a world's models are no part of a robot."""
-    source = (
-        '<sdf version="1.9"><model name="rover"><link name="base"/>'
-        "<include><uri>model://lidar</uri><name>front</name></include></model></sdf>"
-    )
-    made = rewrite(source, "robot1", layout="both")
-    assert made.not_verified == ("1 included model not read",)
-    assert [it.code for it in made.findings] == ["MB906"]

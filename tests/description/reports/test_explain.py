@@ -17,30 +17,6 @@ ROBOT = fixture_text("explain_robot.urdf")
 SRDF = '<robot name="rover">\n<group name="all">\n<link name="base"/>\n</group></robot>'
 
 
-def told(line: int, **options: object) -> dict[str, tuple[str, str, str]]:
-    """Path -> (section or nothing, reason, new value) for a line of ``ROBOT``."""
-    found = explain(ROBOT, line, **options)
-    return {
-        item.path: (item.site.section if item.site else "", item.reason, item.new) for item in found
-    }
-
-
-def test_a_claimed_value_names_its_rewriter_and_its_declaration() -> None:
-    path = "robot/gazebo/plugin[libgazebo_ros_diff_drive.so]/robot_base_frame"
-    section, reason, new = told(9)[path]
-    assert section == "plugin gazebo_ros_diff_drive"
-    assert (reason, new) == ("link 'base', declared at line 2", "base/robot1")
-    assert told(9, robot="r2", affix="prefix")[path][2] == "r2/base"
-
-
-def test_a_kept_value_says_why() -> None:
-    assert told(4)["robot/joint@type"][:2] == (
-        "element joint",
-        "an enumeration: revolute, fixed, floating...",
-    )
-    assert told(3)["robot/link/visual/geometry/mesh@filename"][1] == "a file URI"
-
-
 @pytest.mark.parametrize(
     ("line", "path", "options", "words"),
     [
@@ -58,37 +34,6 @@ def test_a_value_that_stays_says_why(line: int, path: str, options: dict, words:
     assert item.new == item.value
 
 
-@pytest.mark.parametrize(
-    ("topic", "new"),
-    [
-        ("scan", "scan/robot1"),
-        ("/clock", "/clock"),
-    ],
-)
-def test_a_topic_is_renamed_unless_it_is_shared(topic: str, new: str) -> None:
-    lidar = f'<sensor name="s" type="gpu_lidar"><topic>{topic}</topic></sensor>'
-    text = f'<robot name="r"><link name="a"/><gazebo reference="a">\n{lidar}</gazebo></robot>'
-    (item,) = (it for it in explain(text.encode(), 2) if it.value == topic)
-    assert item.new == new
-    assert ("a shared topic" in item.reason) is (new == topic), item.reason
-
-
-def test_what_nothing_claims_is_told_apart() -> None:
-    found = told(11)
-    assert found["robot/gazebo/plugin[libown.so]/place"] == (
-        "",
-        "it holds the name 'laser'",
-        "laser",
-    )
-    assert found["robot/gazebo/plugin[libown.so]/speed"][1] == "it holds no declared name"
-
-
-def test_inserted_elements_are_listed_at_their_plugin() -> None:
-    (item,) = (item for item in explain(ROBOT, 7) if item.inserted)
-    assert "<remapping>cmd_vel:=cmd_vel/robot1</remapping>" in item.inserted
-    assert not [i for i in explain(ROBOT, 7, layout="L2") if "/tf:=" in "".join(i.inserted)]
-
-
 def test_an_empty_element_that_is_filled_says_what_empty_means() -> None:
     text = ROBOT.replace("</plugin>", "\n<ros>\n<namespace/></ros></plugin>", 1)
     line = next(at for at, row in enumerate(text.split("\n"), 1) if "<namespace/>" in row)
@@ -99,11 +44,6 @@ def test_an_empty_element_that_is_filled_says_what_empty_means() -> None:
     assert not [
         it for at in range(line) for it in explain(text, at, layout="L1") if "filled" in it.reason
     ]
-
-
-def test_a_refused_description_is_explained_all_the_same() -> None:
-    twice = ROBOT.replace('<link name="base"/>', '<link name="base"/><link name="base"/>')
-    assert {item.new for item in explain(twice, 2)} == {"base/robot1"}
 
 
 def test_an_srdf_is_explained_beside_its_urdf() -> None:
@@ -120,17 +60,6 @@ def test_every_claim_of_a_real_robot_is_explained_at_its_line() -> None:
         for item in explain(text, number):
             assert item.line == number
             assert item.inserted or item.value.strip() in text.split("\n")[number - 1]
-
-
-def test_the_command_prints_place_rewriter_and_result(capsys: pytest.CaptureFixture[str]) -> None:
-    line = next(
-        n for n, row in enumerate(ROVER.read_text().split("\n"), 1) if "<left_joint>" in row
-    )
-    assert main(["--why", f"{ROVER}:{line}", "bob"]) == 0
-    out = capsys.readouterr().out
-    assert out.startswith(f"{ROVER}:{line}:")
-    assert "claimed by [plugin gazebo_ros_diff_drive] classic_ros2.vocab:" in out
-    assert "for bob: 'left_wheel_joint_bob'" in out
 
 
 # Line of ROBOT -> words of each kind of value: as it is, kept, of nobody, and what is put in.

@@ -165,12 +165,6 @@ def test_every_guess_says_why() -> None:
     assert "\n# c: '1'\n" in text
 
 
-def test_of_several_values_at_one_path_the_telling_one_counts() -> None:
-    (section,) = suggested(plugin("<x>1</x><x>nobody</x><x>hip</x><x>hip knee</x>"))
-    (row,) = section.rows
-    assert (row.value, row.guess and row.guess.form) == ("hip knee", "list")
-
-
 def test_values_of_several_kinds_at_one_path_all_count() -> None:
     (section,) = suggested(plugin("<x>hip</x><x>arm</x><t>a:=b</t><t>arm</t>"))
     assert [row.guess and row.guess.kinds for row in section.rows] == [
@@ -185,41 +179,8 @@ def test_values_of_several_kinds_at_one_path_all_count() -> None:
     ]
 
 
-def test_a_value_tells_more_than_its_tag() -> None:
-    (section,) = suggested(plugin("<x_joint>nobody</x_joint><x_joint>hip</x_joint>"))
-    (row,) = section.rows
-    assert (row.value, row.guess and row.guess.by_tag) == ("hip", False)
-
-
-def test_plugins_of_one_name_share_a_section() -> None:
-    other = plugin("<y>arm</y>", 'filename="/opt/libacme.so"')
-    (section,) = suggested(plugin("<x>hip</x>") + other)
-    assert [row.path for row in section.rows] == ["x", "y"]
-
-
-def test_what_is_known_already_is_not_said_again() -> None:
-    ros = "<ros><remapping>a:=b</remapping></ros>"
-    (section,) = suggested(plugin(f"{ros}<x>hip</x>"))
-    assert section.blocks == ("ros",)
-    assert [row.path for row in section.rows] == ["x"]
-
-
-def test_hardware_with_parameters_gets_a_section() -> None:
-    (section,) = suggested(hardware('<param name="grip">hip</param><param name="n">3</param>'))
-    assert (section.type, section.name) == ("hardware", "acme/Arm")
-    assert [row.path for row in section.rows] == [
-        "hardware/param[@name=grip]",
-        "hardware/param[@name=n]",
-    ]
-
-
 def test_hardware_without_parameters_needs_none() -> None:
     assert suggested(hardware("")) == []
-
-
-def test_a_known_plugin_needs_none() -> None:
-    assert suggested(plugin("<x>hip</x>", 'filename="libgazebo_ros_diff_drive.so"')) == []
-    assert all(line.startswith("#") for line in text_for("").splitlines())
 
 
 # ---------------------------------------------------------------- it can be used as it is
@@ -287,16 +248,6 @@ def test_odd_values_become_comments_and_stay_on_their_line() -> None:
     assert [line for line in text.splitlines() if line.startswith("[")] == ["[plugin acme]"]
     assert "# {urn:q}y: 'hip'" in text
     assert "# param: 'hip'" in text or "\nparam uses joint " in text
-
-
-@pytest.mark.parametrize("name", ["a\nb.urdf", "/x/y: z.urdf", "[plugin x].urdf"])
-def test_a_file_of_any_name(name: str, tmp_path: Path) -> None:
-    text = vocabulary_text(suggested(plugin("<x>hip</x>")), name)
-    assert loaded(text, tmp_path).vocabulary.find("plugin", "acme")[0].sites[0].kinds == ("joint",)
-    # Its whole path in the head, its last word in each section.
-    path = " ".join(name.split())
-    assert text.startswith(f"# Guessed from {path}:")
-    assert f"\nabout: guessed from {path.split('/')[-1]}, not checked\n" in text
 
 
 @pytest.mark.more

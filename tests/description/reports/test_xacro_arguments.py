@@ -10,7 +10,7 @@ import pytest
 from description_calls import NEWEST_LTS, builtin_tree
 from paths import FIXTURES
 
-from multibot_rewrite import InputError, rewrite_all
+from multibot_rewrite import rewrite_all
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.reports import xacro_arguments
 from multibot_rewrite.description.reports.xacro_arguments import (
@@ -81,12 +81,6 @@ def test_a_path_goes_into_no_name() -> None:
     assert (meshes.uses, meshes.others, meshes.fault) == ((), 1, "")
 
 
-def test_a_namespace() -> None:
-    namespace = by_name(XACROS / "base.urdf.xacro")["namespace"]
-    assert namespace.uses == (Use("namespace", "whole", "", 2, 2, "{robot}"),)
-    assert namespace.value == "{robot}"
-
-
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
     ("default", "name", "use", "value"),
@@ -115,21 +109,6 @@ def test_the_command_that_is_advised_gives_every_robot_names_of_its_own(tmp_path
         assert one.data != two.data
         assert one.data.replace(b"r1", b"r2") == two.data
         assert one.prepared.job.naming.own
-
-
-def test_an_argument_that_is_declared_nowhere_is_given(write: Path) -> None:
-    path = written(write, '<link name="$(arg p)base"/>')
-    with pytest.raises(InputError, match="give it as p:=VALUE"):
-        found(path)
-    (argument,) = found(path, p="arm_").arguments
-    assert (argument.default, argument.uses[0].how) == ("arm_", "prefix")
-
-
-def test_the_first_default_counts(write: Path) -> None:
-    path = written(
-        write, '<xacro:arg name="p" default="a"/><xacro:arg name="p" default="b"/><link name="x"/>'
-    )
-    assert [(it.name, it.default) for it in found(path).arguments] == [("p", "a")]
 
 
 @pytest.mark.more
@@ -206,34 +185,3 @@ def test_wrong_use_is_one_line(
     err = capfd.readouterr().err
     assert said in err
     assert err.count("\n") == 1
-
-
-@pytest.mark.parametrize(
-    ("links", "value"), [(("${p}_base", "${p}_arm"), "{robot}"), (("${p}_base", "arm"), "")]
-)
-def test_a_default_in_every_name_stands_where_the_robots_name_goes(
-    links: tuple[str, str], value: str, write: Path
-) -> None:
-    """lbr_description: robot_name is lbr, and every link and joint begins with it."""
-    names = "".join(f'<link name="{it}"/>' for it in links)
-    body = '<xacro:arg name="robot_name" default="lbr"/><xacro:property name="p" '
-    made = found(written(write, f'{body}value="$(arg robot_name)"/>{names}'))
-    assert made.for_robots == ({"robot_name": value} if value else {})
-
-
-@pytest.mark.parametrize(
-    ("parent", "value", "missed"), [("$(arg prefix)a", "{robot}_", ""), ("a", "", "a")]
-)
-def test_an_argument_that_misses_a_link_is_not_for_robots(
-    write: Path, parent: str, value: str, missed: str
-) -> None:
-    """A joint that names its parent without the argument has no parent with it: no tree."""
-    arguments = by_name(
-        written(
-            write,
-            '<xacro:arg name="prefix" default=""/><link name="$(arg prefix)a"/>'
-            '<link name="$(arg prefix)b"/><joint name="$(arg prefix)j" type="fixed">'
-            f'<parent link="{parent}"/><child link="$(arg prefix)b"/></joint>',
-        )
-    )
-    assert (arguments["prefix"].value, arguments["prefix"].missed) == (value, missed)

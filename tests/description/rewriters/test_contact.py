@@ -139,50 +139,9 @@ def test_a_contact_sensor_follows(
         assert strip(result.data, "r1", affix=side, separators=UNDERSCORE) == source.encode()
 
 
-def test_a_collision_nobody_has_stays() -> None:
-    source = robot([BASE, Link("lidar", parent="base")], contact("lidar_collision"))
-    assert "<collision>lidar_collision</collision>" in rewrite(source, "r1").text
-
-
-@pytest.mark.parametrize("value", ["true", "1", "True", "TRUE", "yes", " true "])
-@pytest.mark.parametrize("tag", ["preserveFixedJoint", "disableFixedJointLumping"])
-def test_a_joint_that_is_kept_lumps_nothing(tag: str, value: str) -> None:
-    block = f'<gazebo reference="lidar_joint"><{tag}>{value}</{tag}></gazebo>'
-    links = [BASE, Link("lidar", parent="base")]
-    assert names(links, block) == ["base_collision", "lidar_collision"]
-
-
-@pytest.mark.parametrize("value", ["false", "0", "no", ""])
-def test_a_joint_that_is_not_kept_lumps(value: str) -> None:
-    block = (
-        f'<gazebo reference="lidar_joint"><preserveFixedJoint>{value}</preserveFixedJoint></gazebo>'
-    )
-    assert names([BASE, Link("lidar", parent="base")], block)[-1].startswith("base_fixed")
-
-
-def test_the_keeping_goes_by_the_joint_not_the_link() -> None:
-    block = '<gazebo reference="lidar"><preserveFixedJoint>true</preserveFixedJoint></gazebo>'
-    assert names([BASE, Link("lidar", parent="base")], block)[-1].startswith("base_fixed")
-
-
 def test_a_link_below_world_is_not_lumped() -> None:
     links = [Link("world", ()), Link("base", parent="world"), Link("lidar", parent="base")]
     assert names(links) == ["base_collision", "base_fixed_joint_lump__lidar_collision_1"]
-
-
-def test_a_joint_that_moves_lumps_nothing() -> None:
-    text = robot([BASE, Link("lidar", parent="base")]).replace("fixed", "revolute")
-    found = collision_map(etree.fromstring(text), postfixed)
-    assert found == {"base_collision": "base_r1_collision", "lidar_collision": "lidar_r1_collision"}
-
-
-def test_siblings_come_in_the_order_of_their_joints() -> None:
-    links = [BASE, Link("b", parent="base", joint="j2"), Link("a", parent="base", joint="j1")]
-    assert sorted(names(links)) == [
-        "base_collision",
-        "base_fixed_joint_lump__a_collision_1",
-        "base_fixed_joint_lump__b_collision_2",
-    ]
 
 
 def test_a_number_that_hangs_on_the_robots_name_is_refused() -> None:
@@ -227,16 +186,6 @@ def test_a_contact_of_sdf_spells_its_scopes(old: str, new: str) -> None:
     assert strip(result.data, "r1") == source.encode()
 
 
-def test_a_joint_circle_ends() -> None:
-    assert names([Link("a", parent="b"), Link("b", parent="a")]) == []
-
-
-def test_a_block_may_refer_to_a_link_or_a_joint() -> None:
-    blocks = '<gazebo reference="lidar"/><gazebo reference="lidar_joint"/>'
-    text = rewrite(robot([BASE, Link("lidar", parent="base")], blocks), "r1").text
-    assert '<gazebo reference="lidar/r1"/><gazebo reference="lidar_joint_r1"/>' in text
-
-
 def test_a_block_for_a_link_and_joint_of_one_name_is_reported() -> None:
     links = [BASE, Link("lidar", parent="base", joint="lidar")]
     try:
@@ -246,9 +195,3 @@ def test_a_block_for_a_link_and_joint_of_one_name_is_reported() -> None:
     else:
         assert '<gazebo reference="lidar/r1"/>' in result.text
         assert [finding.code for finding in result.findings] == ["MB203"]
-
-
-def test_a_block_for_nobody_stays_and_is_reported() -> None:
-    result = rewrite(robot([BASE], '<gazebo reference="bsae"/>'), "r1")
-    assert '<gazebo reference="bsae"/>' in result.text
-    assert [finding.code for finding in result.findings] == ["MB202"]

@@ -9,7 +9,7 @@ import pytest
 from lxml import etree
 
 from multibot_rewrite.base.model import Claim
-from multibot_rewrite.description.readback.parameters import default_of, holds
+from multibot_rewrite.description.readback.parameters import default_of
 from multibot_rewrite.description.rewriters.forms import FORMS, IN_FRONT, LONGEST
 from multibot_rewrite.description.rewriters.vocabulary.grammar import SPAWNED
 
@@ -128,8 +128,6 @@ PLUGIN = """<robot name="r"><link name="world"/><link name="base"/><link name="t
 <joint name="k"><parent link="base"/><child link="tip"/></joint>
 <gazebo><sensor name="eye"><plugin name="p"><on> true </on><way>left</way><image>/a/image</image>
 <bare>image</bare></plugin></sensor></gazebo></robot>"""
-MODEL = """<sdf><model name="m"{}><link name="one"/><link name="two"/><plugin name="p"/></model>
-</sdf>"""
 
 
 @pytest.mark.parametrize(
@@ -158,17 +156,3 @@ MODEL = """<sdf><model name="m"{}><link name="one"/><link name="two"/><plugin na
 def test_a_default_that_the_consumer_makes(default: str, value: str) -> None:
     plugin = next(etree.fromstring(PLUGIN).iter("plugin"))
     assert default_of(plugin, default) == value
-
-
-def test_the_first_link_of_a_model_is_its_canonical_one() -> None:
-    """sdformat: canonical_link, else the first link."""
-    for more, link in (("", "one"), (' canonical_link="two"', "two")):
-        assert (
-            default_of(next(etree.fromstring(MODEL.format(more)).iter("plugin")), "{link}") == link
-        )
-
-
-def test_a_sensor_is_not_there_for_a_plugin_of_the_model() -> None:
-    plugin = next(etree.fromstring(MODEL.format("")).iter("plugin"))
-    assert default_of(plugin, "{sensor}") == ""
-    assert holds(plugin, "x=false") and not holds(plugin, "x=true")

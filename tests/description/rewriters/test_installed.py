@@ -19,7 +19,6 @@ from paths import FIXTURES
 from multibot_rewrite import VocabularyError, rewrite, strip
 from multibot_rewrite.description.rewriters.vocabulary.installed import (
     advice,
-    announcing,
     installed,
     vocabulary_files,
 )
@@ -242,12 +241,6 @@ def test_a_newer_one_without_vocabulary_hides_an_older_one(make: Make) -> None:
     (home / "aa-2.0.dist-info" / "entry_points.txt").unlink()
     installed.cache_clear()
     assert installed() == ()
-
-
-def test_a_half_removed_distribution_is_none(make: Make) -> None:
-    home = make("aa", SECTION.format(name="aa"))
-    (home / "aa-1.0.dist-info").rename(home / "~a-1.0.dist-info")
-    assert announcing([str(home)]) == []
 
 
 @pytest.mark.slow

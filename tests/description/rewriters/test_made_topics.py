@@ -7,12 +7,9 @@ the name of the model, ``/joint/``, the joint, ``/cmd_thrust``.
 
 from __future__ import annotations
 
-from itertools import product
-
 import pytest
-from lxml import etree
 
-from multibot_rewrite import rewrite, strip
+from multibot_rewrite import rewrite
 
 ROV = """<sdf version="1.9"><model name="rov"><link name="hull"/><link name="prop"/>
 <joint name="fin" type="revolute"><parent>hull</parent><child>prop</child></joint>
@@ -20,35 +17,6 @@ ROV = """<sdf version="1.9"><model name="rov"><link name="hull"/><link name="pro
 {space}<joint_name>fin</joint_name></plugin>
 <plugin filename="ArduPilotPlugin" name="ArduPilotPlugin"><control channel="0">
 <jointName>fin</jointName><cmd_topic>{told}</cmd_topic></control></plugin></model></sdf>"""
-LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix", "frame-prefix")
-SPACES = ("rov", "boat", "/boat", "a/b")
-
-
-def heard(root: etree._Element) -> str:
-    plugin = root.find("model/plugin")
-    space = plugin.findtext("namespace") or root.find("model").get("name")
-    return f"/model/{space}/joint/{plugin.findtext('joint_name')}/cmd_thrust".replace("//", "/")
-
-
-@pytest.mark.parametrize(("layout", "space"), [*product(LAYOUTS, SPACES)])
-@pytest.mark.parametrize("affix", ["prefix", "postfix"])
-def test_a_thruster_hears_its_autopilot(layout: str, space: str, affix: str) -> None:
-    if layout == "frame-prefix" and affix == "postfix":
-        return
-    told = f"/model/{space}/joint/fin/cmd_thrust".replace("//", "/")
-    source = ROV.format(space=f"<namespace>{space}</namespace>", told=told)
-    made = rewrite(source, "robot1", layout=layout, affix=affix)
-    root = etree.fromstring(made.data)
-    assert root.findtext(".//cmd_topic") == heard(root)
-    assert "robot1" in heard(root)
-    assert strip(made.data, "robot1", layout=layout, affix=affix) == source.encode()
-
-
-@pytest.mark.parametrize("layout", ["frames-per-robot", "both", "postfix"])
-def test_a_thruster_without_a_namespace_hears_it_where_the_model_is_renamed(layout: str) -> None:
-    source = ROV.format(space="", told="/model/rov/joint/fin/cmd_thrust")
-    root = etree.fromstring(rewrite(source, "robot1", layout=layout).data)
-    assert root.findtext(".//cmd_topic") == heard(root) != "/model/rov/joint/fin/cmd_thrust"
 
 
 @pytest.mark.parametrize(

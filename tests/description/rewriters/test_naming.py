@@ -111,22 +111,6 @@ def test_nothing_is_removed_that_was_not_put_there(kind: str, text: str) -> None
         assert spelled(naming, kind, text[: span[0]] + text[span[1] :]) == text
 
 
-def test_frames_named_at_run_time_leave_links_and_joints() -> None:
-    naming = make_naming("frame-prefix")
-    kinds = ("frame", "link", "joint", "sensor", "hardware", "model")
-    names = [spelled(naming, kind, "x") for kind in kinds]
-    assert names == ["r1/x", "x", "x", "x", "x", "x"]
-    assert spelled(naming, "topic", "/scan") == "/r1/scan"
-    assert spelled(naming, "topic", "/tf") == "/tf"
-    assert spelled(naming, "frame", "map") == "map"
-
-
-@pytest.mark.parametrize("mark", ["", "//", " ", "x", "a_", ":", "::", "~", "\n", "<", "_//", "é"])
-def test_a_separator_that_cannot_be_is_refused(mark: str) -> None:
-    with pytest.raises(UsageError, match="separator link="):
-        make_naming(separators={"link": mark})
-
-
 @pytest.mark.parametrize(
     ("kind", "mark"),
     [
@@ -159,10 +143,3 @@ def test_overlap_is_what_its_text_says(side: str, robots: set[str], mark: str) -
         if (robot.endswith(mark + other) if side == POSTFIX else robot.startswith(other + mark))
     }
     assert set(overlap(naming, robots)) == expected
-
-
-def test_topics_that_meet_on_the_other_side_are_seen() -> None:
-    naming = make_naming(affix="postfix", topics="prefix", separators={"topic": "_"})
-    assert affix(naming, "topic", "x").spell("x", "b_left") == "b_left_x"  # type: ignore[union-attr]
-    assert affix(naming, "topic", "left_x").spell("left_x", "b") == "b_left_x"  # type: ignore[union-attr]
-    assert ("b_left", "b", "_") in overlap(naming, ["b_left", "b"])

@@ -128,22 +128,9 @@ def test_a_relative_rule_for_an_absolute_name_gets_one_that_still_matches() -> N
     assert strip(made.text, "robot1", layout="tf-per-robot") == source.encode()
 
 
-@pytest.mark.parametrize("rule", ["other:/tf:=tf", "rosservice:///tf:=tf"])
-def test_a_rule_that_is_not_for_this_topic_does_not_keep_one_from_it(rule: str) -> None:
-    made = rewrite(plugin("planar_move", rules(rule)), "robot1", layout="both")
-    assert name_in_graph(made.text, "/tf") == "/robot1/tf"
-
-
 def test_a_rule_for_another_node_keeps_its_left_side() -> None:
     made = rewrite(plugin("force", rules("other:/gazebo_ros_force:=push")), "robot1", layout="both")
     assert rule_texts(made.text) == ["other:/gazebo_ros_force:=push"]
-
-
-def test_a_namespace_in_a_rule_is_that_of_the_node() -> None:
-    source = plugin("force", rules("__ns:=/x", "/x/gazebo_ros_force:=push"))
-    for layout, wanted in (("both", "/robot1/x/push"), ("postfix", "/x/push/robot1")):
-        made = rewrite(source, "robot1", layout=layout)
-        assert name_in_graph(made.text, "gazebo_ros_force") == wanted
 
 
 @pytest.mark.parametrize(
@@ -165,24 +152,6 @@ def test_a_relative_name_below_a_namespace_is_not_shared(given: list[str], hint:
     assert name_in_graph(healthy.text, "gazebo_ros_force") == f"/{name}"
 
 
-def test_a_rule_of_an_unknown_plugin_moves_and_nothing_is_proved() -> None:
-    source = plugin("of_nobody", rules("/go:=cmd_vel", "/tf:=tf", "/diagnostics:=diagnostics"))
-    made = rewrite(source, "robot1", layout="both")
-    moved = ["/robot1/go:=cmd_vel", "/tf:=tf", "/diagnostics:=diagnostics"]
-    assert rule_texts(made.text) == moved
-    assert made.not_verified == ("1 plugin not known",)
-
-
-def test_rules_for_controllers_move_with_the_namespace_of_their_manager() -> None:
-    source = ROBOT.format(
-        '<plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" filename="gz_ros2_control-system">'
-        f"<ros>{rules('/base/cmd_vel:=go', '/tf:=tf')}</ros></plugin>"
-    )
-    texts = rule_texts(rewrite(source, "robot1", layout="both", distro="jazzy").text)
-    assert "/robot1/base/cmd_vel:=go" in texts
-    assert "/tf:=tf" in texts
-
-
 def test_an_argument_that_is_a_parameter_is_no_rule() -> None:
     flags = ("--ros-args", "-p", "use_sim_time:=true", "-r", "gazebo_ros_force:=push")
     source = plugin("force", "".join(f"<argument>{it}</argument>" for it in flags))
@@ -196,18 +165,3 @@ def test_an_argument_in_the_old_form_is_a_rule() -> None:
     made = rewrite(source, "robot1", layout="postfix")
     assert rule_texts(made.text) == ["gazebo_ros_force:=push/robot1"]
     assert made.not_verified == ()
-
-
-def test_an_argument_that_rcl_refuses_proves_nothing() -> None:
-    flags = ("--ros-args", "gazebo_ros_force:=push")
-    source = plugin("force", "".join(f"<argument>{it}</argument>" for it in flags))
-    assert rewrite(source, "robot1", layout="postfix").not_verified
-
-
-def test_a_rule_for_the_controller_manager_is_none_for_its_controllers() -> None:
-    source = ROBOT.format(
-        '<plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" filename="gz_ros2_control-system">'
-        f"<ros>{rules('controller_manager:/tf:=tf')}</ros></plugin>"
-    )
-    made = rewrite(source, "robot1", layout="both", distro="jazzy")
-    assert "<remapping>/tf:=tf<" in made.text

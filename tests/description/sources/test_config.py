@@ -10,7 +10,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from multibot_rewrite import UsageError, rewrite
+from multibot_rewrite import UsageError
 from multibot_rewrite.base.config import configured_vocabulary
 from multibot_rewrite.cli.urdf_postfix import main
 
@@ -43,34 +43,6 @@ def complaint(project: Path, text: str | bytes) -> str:
     assert message.startswith(f"{path}:")
     assert "\n" not in message
     return message.removeprefix(f"{path}:").strip()
-
-
-@pytest.mark.parametrize("near", ["robots/crane/in.urdf", "robots/crane", "", "nowhere/in.urdf"])
-def test_paths_hang_on_the_pyproject_above_the_input(project: Path, near: str) -> None:
-    assert configured_vocabulary(str(project / near)) == (str(project / "data/mine.vocab"),)
-
-
-def test_standard_input_stands_in_the_working_directory(
-    project: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(project / "robots")
-    assert configured_vocabulary("-") == (str(project / "data/mine.vocab"),)
-    monkeypatch.chdir(project.parent)
-    assert configured_vocabulary("-") == ()
-
-
-def test_only_the_nearest_pyproject_counts(project: Path) -> None:
-    (project / "robots" / "pyproject.toml").write_text('[project]\nname = "other"\n')
-    assert configured_vocabulary(str(project / "robots/crane/in.urdf")) == ()
-
-
-def test_files_keep_their_order_and_may_be_absolute(project: Path, tmp_path: Path) -> None:
-    other = tmp_path / "other.vocab"
-    other.write_text("")
-    listed = f'["{other}", "data/mine.vocab"]'
-    (project / "pyproject.toml").write_text(f"[tool.multibot-rewrite]\nvocabulary = {listed}\n")
-    found = configured_vocabulary(str(project / "in.urdf"))
-    assert found == (str(other), str(project / "data/mine.vocab"))
 
 
 @pytest.mark.parametrize(
@@ -131,27 +103,6 @@ def test_every_spelling_of_the_table_is_seen(project: Path, text: str) -> None:
 )
 def test_a_wrong_table_is_one_line(project: Path, text: str | bytes, words: str) -> None:
     assert words in complaint(project, text)
-
-
-def test_the_command_uses_it_and_the_library_does_not(
-    project: Path, capsysbinary: pytest.CaptureFixture[bytes]
-) -> None:
-    path = str(project / "robots" / "crane" / "in.urdf")
-    assert main([path, "robot1", "--fail-on", "warning"]) == 0
-    rewritten = capsysbinary.readouterr().out
-    assert b"<my_frame>base/robot1</my_frame>" in rewritten
-    assert "<my_frame>base</my_frame>" in rewrite(path, "robot1").text
-    out = project / "robots" / "out.urdf"
-    out.write_bytes(rewritten)
-    assert main([str(out), "robot1", "--undo"]) == 0
-    assert capsysbinary.readouterr().out.decode() == ROBOT
-
-
-def test_a_file_named_twice_is_read_once(project: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = str(project / "robots" / "crane" / "in.urdf")
-    again = str(project / "robots" / ".." / "data" / "mine.vocab")
-    assert main([path, "robot1", "--vocabulary", again]) == 0
-    assert "base/robot1</my_frame>" in capsys.readouterr().out
 
 
 def test_a_wrong_table_stops_the_command(project: Path, capsys: pytest.CaptureFixture[str]) -> None:

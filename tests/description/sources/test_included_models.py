@@ -12,15 +12,13 @@ from pathlib import Path
 import pytest
 from paths import fixture_text
 
-from multibot_rewrite import InputError, rewrite, strip
+from multibot_rewrite import InputError, rewrite
 from multibot_rewrite.base.findings.finding import ERROR
-from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.included_models import (
     VARIABLES,
     model_file,
     with_includes,
 )
-from multibot_rewrite.fleet.proposal.looking import NeededValues, look
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.rules.settings import Settings
 
@@ -47,17 +45,6 @@ def rover(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         (tmp_path / "models" / name / "model.sdf").write_text(text)
         (tmp_path / "models" / name / "model.config").write_text(CONFIG)
     return tmp_path / "models" / "rover" / "model.sdf"
-
-
-def test_all_is_known_renamed_and_proved(rover: Path) -> None:
-    done = rewrite(rover, "r1")
-    assert {it.code for it in done.findings} == set()
-    assert done.not_verified == ()
-    for name in (b"rotor/r1", b"spin_r1", b"top/r1", b"front_r1::camera_link/r1", b"tilt/r1"):
-        assert name in done.data, name
-    assert b"<include" not in done.data
-    whole = with_includes(rover.read_bytes(), str(rover))
-    assert strip(done.data, "r1") == whole
 
 
 def test_every_line_keeps_its_number(rover: Path) -> None:
@@ -90,14 +77,6 @@ def test_it_is_looked_for_where_gazebo_looks(
     assert [it.code for it in rewrite(alone, "r1").findings].count("MB906") == 2
     monkeypatch.setenv(variable, f"/nowhere:{rover.parents[1]}")
     assert rewrite(alone, "r1").not_verified == ()
-
-
-def test_the_file_is_the_one_that_the_config_names(rover: Path) -> None:
-    home = rover.parents[1] / "cam"
-    sdf = "<sdf version='1.10'>new.sdf</sdf><sdf version='1.9'>model.sdf</sdf>"
-    (home / "model.config").write_text(f"<model><name>c</name>{sdf}</model>")
-    (home / "new.sdf").write_text(CAM.replace("eye", "new_eye"))
-    assert b"new_eye" in rewrite(rover, "r1").data
 
 
 def test_a_file_beside_the_included_model_is_found_from_the_new_one(rover: Path) -> None:
@@ -179,13 +158,6 @@ def printed(file: Path, home: str) -> list[str]:
     return re.findall(r"<.*|[^\s<].*", "\n".join(it for it in lines if it))
 
 
-def test_init_takes_a_model_whose_links_are_included(rover: Path) -> None:
-    """sdformat: the links of an included model are the model's; MID has none of its own."""
-    mid = rover.parent.parent / "mid" / "model.sdf"
-    looked = look(str(mid), {}, Reach(), NeededValues(()))
-    assert (looked.links, looked.fault) == (2, "")
-
-
 INNER = """<sdf version="1.9"><model name="in" canonical_link="b"><pose>1 0 0 0 0 0</pose>
 <link name="a"/><!-- a note --><link name="b"><pose>0 0 1 0 0 0</pose></link>
 <model name="n"><link name="x"/></model><frame name="f"/>
@@ -237,17 +209,6 @@ def test_a_merged_model_is_placed_from_a_frame_that_stands_for_it(
         f'<axis><xyz expressed_in="{mine}>0 0 1</xyz></axis>'
         f'<axis2><xyz expressed_in="a">0 1 0</xyz></axis2></joint>{PLUGIN}'
     )
-
-
-def test_a_merged_model_without_a_pose_or_a_canonical_link(tmp_path: Path) -> None:
-    inner = '<sdf version="1.9"><model name="in"><link name="a"/><link name="b"/></model></sdf>'
-    found = put_in(
-        tmp_path, '<include merge="true"><uri>in.sdf</uri><name>x</name></include>', inner
-    )
-    first = (
-        '<frame name="_merged__x__model__" attached_to="a"><pose relative_to="__model__"/></frame>'
-    )
-    assert found.startswith(first)
 
 
 def test_a_model_is_nested_with_what_its_include_says(tmp_path: Path) -> None:
@@ -302,16 +263,6 @@ def test_only_the_include_of_a_model_in_a_file_without_a_world_is_one(tmp_path: 
         assert with_includes(text.encode(), str(tmp_path / "out.sdf")) == text.encode()
 
 
-@pytest.mark.parametrize(("files", "whole"), [(12, True), (13, False)])
-def test_includes_are_followed_so_deep(files: int, whole: bool, tmp_path: Path) -> None:
-    for at in range(files):
-        inner = f"<include><uri>m{at + 1}.sdf</uri></include>" if at + 1 < files else ""
-        text = f'<sdf version="1.9"><model name="m{at}"><link name="l"/>{inner}</model></sdf>'
-        (tmp_path / f"m{at}.sdf").write_text(text)
-    top = tmp_path / "m0.sdf"
-    assert (b"<include" not in with_includes(top.read_bytes(), str(top))) == whole
-
-
 @pytest.mark.parametrize(
     ("config", "found"),
     [
@@ -334,19 +285,3 @@ def test_the_file_of_a_model_is_the_newest_that_its_config_names(
     (home / "model.config").write_text(config)
     for uri in ("model://m", "m", "model://m/"):
         assert model_file(uri, str(tmp_path)) == (str(home / found) if found else "")
-
-
-def test_where_a_model_is_looked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where Gazebo is told, then in the folder of the file, the one above, and its models."""
-    for name in VARIABLES:
-        monkeypatch.delenv(name, raising=False)
-    told, own = tmp_path / "told", tmp_path / "own" / "deep"
-    places = [told, own, own.parent, own.parent / "models"]
-    for it in places:
-        it.mkdir(parents=True, exist_ok=True)
-        (it / "a.sdf").write_text("<sdf/>")
-    monkeypatch.setenv(VARIABLES[0], f":{told}")
-    for it in places:
-        assert model_file("model://a.sdf", str(own)) == str(it / "a.sdf")
-        (it / "a.sdf").unlink()
-    assert model_file("model://a.sdf", str(own)) == ""

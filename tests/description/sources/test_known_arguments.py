@@ -8,9 +8,7 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite import rewrite
-from multibot_rewrite.base.releases import NEWEST_LTS as LTS
-from multibot_rewrite.description.sources.job import read_job
-from multibot_rewrite.description.sources.known_arguments import joined, known_arguments
+from multibot_rewrite.description.sources.known_arguments import known_arguments
 from multibot_rewrite.lint.run import lint_files
 from multibot_rewrite.rules.settings import EVERY_FILE, ArgumentSet, Settings
 
@@ -46,18 +44,6 @@ def test_what_a_text_declares_and_reads(text: str, names: tuple[str, ...]) -> No
     assert known_arguments([text.encode()]) == (names, False)
 
 
-def test_declared_ones_are_first_and_each_is_there_once() -> None:
-    texts = [b"$(arg read) $(arg both)", b'<xacro:arg name="both"/>']
-    assert known_arguments(texts).names == ("both", "read")
-
-
-def test_a_computed_name_may_be_any_argument() -> None:
-    known = known_arguments([b"<link name=\"${xacro.arg(side + '_prefix')}\"/>"])
-    assert known.lacks(["left_prefix"]) == ()
-    assert joined([known_arguments([b""]), known]).lacks(["left_prefix"]) == ()
-    assert known_arguments([b""]).lacks(["left_prefix"]) == ("left_prefix",)
-
-
 @pytest.fixture
 def arm(tmp_path: Path) -> Path:
     (tmp_path / "parts.xacro").write_text(PARTS)
@@ -70,36 +56,9 @@ def said(arm: Path, **arguments: str) -> list[str]:
     return [f"{it.level} {it.message} ({it.hint})" for it in findings if it.code == "MB144"]
 
 
-def test_a_misspelt_argument_is_a_warning_with_the_one_that_is_meant(arm: Path) -> None:
-    (line,) = said(arm, tf_prefx="{robot}_")
-    assert line.startswith("warning argument 'tf_prefx' is given, and no file of this xacro")
-    assert line.endswith("(did you mean 'tf_prefix'?)")
-
-
 def test_an_argument_like_no_other_names_those_that_there_are(arm: Path) -> None:
     (line,) = said(arm, colour="red")
     assert line.endswith("(its arguments are with_gripper, tf_prefix, only_read)")
-
-
-def test_arguments_of_includes_are_known(arm: Path) -> None:
-    assert said(arm, tf_prefix="{robot}_", with_gripper="true") == []
-
-
-def test_a_file_without_arguments_says_so(tmp_path: Path) -> None:
-    (tmp_path / "r.xacro").write_text(f'{HEAD}<link name="a"/></robot>')
-    (line,) = said(tmp_path / "r.xacro")
-    assert "'only_read'" in line
-    assert line.endswith("(it has none)")
-
-
-def test_an_argument_may_be_for_the_srdf_alone(arm: Path) -> None:
-    text = f'{HEAD}<xacro:arg name="group" default="g"/><group name="$(arg group)">'
-    srdf = arm.parent / "arm.srdf.xacro"
-    srdf.write_text(f'{text}<link name="base_link"/></group></robot>')
-    given = {"group": "x", "only_read": "", "grop": "y"}
-    naming = rewrite(arm, "robot1", xacro_args={"only_read": ""}).prepared.job.naming
-    assert read_job(srdf, naming, arm, given, release=LTS).read.unread == ("grop",)
-    assert read_job(arm, naming, None, given, release=LTS).read.unread == ("grop", "group")
 
 
 def linted(arm: Path, names: list[str], **arguments: str) -> list[str]:

@@ -12,11 +12,8 @@ from lxml import etree
 from paths import FIXTURES
 
 from multibot_rewrite import RewriteRefused, UsageError, explain, rewrite, rewrite_all, strip
-from multibot_rewrite.base.naming import make_naming
-from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.readback.meeting import SHARED_CODES
 from multibot_rewrite.description.sources.expand import expand
-from multibot_rewrite.description.sources.job import read_job
 from multibot_rewrite.description.sources.own_names import filled
 
 ARM = FIXTURES / "xacros" / "arm.urdf.xacro"
@@ -81,21 +78,6 @@ def test_each_robot_is_an_expansion_of_its_own() -> None:
         assert it.text == rewrite(ARM, it.robot, xacro_args=PREFIX).text
 
 
-def test_a_prefix_stays_in_a_layout_that_leaves_frames_bare() -> None:
-    made = rewrite(ARM, "left", layout="tf-per-robot", xacro_args=PREFIX).text
-    assert names(made, "link") == [*ARMS_OWN, "camera_link"]
-    assert texts(made, "frame_name") == ["camera_link"]
-
-
-@pytest.mark.sample(1)
-@pytest.mark.parametrize("layout", ["tf-per-robot", "frames-per-robot", "both"])
-@pytest.mark.parametrize("value", ["{robot}", "robot1"])
-def test_a_namespace_is_there_once(layout: str, value: str) -> None:
-    made = rewrite(BASE, "robot1", layout=layout, xacro_args={"namespace": value}).text
-    assert texts(made, "namespace") == ["robot1", "/robot1"]
-    assert "robot1/robot1" not in made
-
-
 @pytest.mark.sample(1)
 @pytest.mark.parametrize("value", ["{robot}/arm", "fleet/{robot}"])
 def test_a_namespace_of_several_parts_is_the_robots_own(value: str) -> None:
@@ -104,38 +86,11 @@ def test_a_namespace_of_several_parts_is_the_robots_own(value: str) -> None:
     assert texts(made, "namespace") == [own, f"/{own}"]
 
 
-def test_a_name_that_only_looks_like_the_arguments_is_rewritten(tmp_path: Path) -> None:
-    body = '<link name="$(arg p)base"/><link name="left_hand"/>'
-    path = made('<xacro:arg name="p" default=""/>', body, tmp_path)
-    done = rewrite(path, "left", xacro_args={"p": "{robot}_"}).text
-    assert names(done, "link") == ["left_base", "left_hand/left"]
-
-
-def test_a_word_that_holds_the_robots_name_is_another_word(tmp_path: Path) -> None:
-    path = made('<xacro:arg name="p" default=""/>', '<link name="$(arg p)base"/>', tmp_path)
-    done = rewrite(path, "left", xacro_args={"p": "lefthand_"}).text
-    assert names(done, "link") == ["lefthand_base/left"]
-
-
-def test_an_argument_without_a_separator(tmp_path: Path) -> None:
-    path = made('<xacro:arg name="p" default=""/>', '<link name="$(arg p)base"/>', tmp_path)
-    done = rewrite(path, "left", xacro_args={"p": "my{robot}"}).text
-    assert names(done, "link") == ["myleftbase"]
-
-
 @pytest.mark.more
 def test_an_argument_that_takes_only_known_words_does_not_hide_the_others() -> None:
     given = {"namespace": "{robot}", "wheel": "small"}
     made = rewrite(BASE, "small", layout="both", xacro_args=given).text
     assert texts(made, "namespace") == ["small", "/small"]
-
-
-def test_an_argument_in_a_condition(tmp_path: Path) -> None:
-    head = '<xacro:arg name="p" default=""/>'
-    body = """<xacro:if value="${'$(arg p)' != ''}"><link name="$(arg p)/base"/></xacro:if>"""
-    body += '<link name="plain"/>'
-    done = rewrite(made(head, body, tmp_path), "left", xacro_args={"p": "{robot}"}).text
-    assert names(done, "link") == ["left/base", "plain/left"]
 
 
 @pytest.mark.parametrize("value", ["{ns}_", "{robot_name}_", "{robot}_{tf}_"])
@@ -162,14 +117,6 @@ def test_an_unknown_placeholder_is_refused(value: str) -> None:
 )
 def test_what_is_filled(text: str, becomes: str) -> None:
     assert filled({"it": text}, "r1") == {"it": becomes}
-
-
-def test_one_value_for_several_robots_is_refused() -> None:
-    with pytest.raises(UsageError) as refused:
-        list(rewrite_all(ARM, ["left", "right"], xacro_args={"tf_prefix": "left_"}))
-    assert str(refused.value) == (
-        "tf_prefix:=left_ puts left into names, and right gets it, too; write tf_prefix:={robot}_"
-    )
 
 
 def test_the_advice_leaves_the_name_of_the_argument_alone(tmp_path: Path) -> None:
@@ -300,18 +247,6 @@ def test_names_of_an_argument_are_not_shared_by_all(layout: str) -> None:
     assert not SHARED_CODES & {it.code for it in (*base.findings, *arm.findings)}
 
 
-def test_what_no_argument_reaches_is_still_found_to_be_shared(tmp_path: Path) -> None:
-    body = (
-        '<link name="$(arg p)a"/><gazebo reference="$(arg p)a">'
-        '<sensor name="lidar" type="gpu_lidar"><topic>{name}/left/scan</topic></sensor></gazebo>'
-    )
-    path = made('<xacro:arg name="p" default=""/>', body, tmp_path)
-    done = rewrite(path, "left", xacro_args={"p": "{robot}_"})
-    # The robot's name in it is not there by the argument: every robot would have it.
-    assert [it.code for it in done.findings] == ["MG320"]
-    assert "{name}/left/scan" in done.findings[0].message
-
-
 @pytest.mark.more
 def test_a_reference_without_the_argument_is_a_warning(tmp_path: Path) -> None:
     body = (
@@ -327,14 +262,6 @@ def test_a_reference_without_the_argument_is_a_warning(tmp_path: Path) -> None:
     assert rewrite(path, "left", layout="both").findings == ()
     right = made(head, body.format("$(arg p)"), tmp_path)
     assert rewrite(right, "left", layout="both", xacro_args={"p": "{robot}_"}).findings == ()
-
-
-def test_a_default_that_is_replaced_is_followed_as_well(tmp_path: Path) -> None:
-    path = made('<xacro:arg name="p" default="arm_"/>', '<link name="$(arg p)base"/>', tmp_path)
-    job = read_job(
-        path, make_naming(), xacro_args={"p": "{robot}_"}, words=["left"], release=NEWEST_LTS
-    )
-    assert job.own.plain == {("link", "arm_base"): "left_base"}
 
 
 @pytest.mark.more

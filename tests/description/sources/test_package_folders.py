@@ -12,11 +12,8 @@ from paths import fixture_text
 from multibot_rewrite.description.sources.packages import (
     find_in,
     in_sources,
-    is_for_ros_1,
     package_folder,
-    package_of,
     packages_below,
-    sources_around,
 )
 
 # What ROS 2 packages say, and what catkin's do.
@@ -57,45 +54,6 @@ def test_packages_are_found_by_their_manifests_else_by_their_folders(tree: Path)
     assert packages_below((str(tree), str(tree / "none")))["arm"] == (str(one), str(twice))
 
 
-def test_what_a_build_made_is_no_source(tree: Path) -> None:
-    skipped = ("build", "log", "lib", "lib64", "include", "bin", "node_modules", "cmake", ".git")
-    for name in skipped:
-        package(tree / name / "arm", "arm")
-    package(tree / "1" / "2" / "3" / "4", "deep")
-    package(tree / "1" / "2" / "3" / "5" / "6", "deeper")
-    package(package(tree / "outer", "outer") / "inner", "inner")
-    (tree / "link").symlink_to(tree / "outer")
-    found = packages_below((str(tree),))
-    assert {"deep", "outer", "5"} <= found.keys()
-    assert found.keys().isdisjoint({"arm", "deeper", "inner", "link", *skipped})
-
-
-def test_the_package_that_a_file_is_in(tree: Path) -> None:
-    home = package(tree / "arm", "arm")
-    assert package_of(str(home / "a.urdf")) == ("arm", str(home))
-    assert package_of(str(home / "1/2/3/4/5/a.urdf")) == ("arm", str(home))
-    assert package_of(str(home / "1/2/3/4/5/6/a.urdf")) is None
-    assert package_of(str(package(tree / "hand") / "a.urdf")) == ("hand", str(tree / "hand"))
-
-
-def test_a_package_is_the_own_one_or_that_of_the_environment(
-    tree: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    file = str(package(tree / "own" / "arm", "arm") / "a.urdf")
-    roots = (str(tree / "roots"),)
-    source, given = (package(tree / it / "hand", "hand") for it in ("sources", "roots"))
-    share = package(tree / "prefix" / "share" / "hand", "hand")
-    (tree / "bare" / "share" / "hand").mkdir(parents=True)
-    assert package_folder("arm", file, ()) == str(tree / "own" / "arm")
-    assert package_folder("hand", file, roots) == str(given)
-    assert package_folder("hand", file, ()) == ""
-    monkeypatch.setenv("AMENT_PREFIX_PATH", f"{tree / 'bare'}:{tree / 'prefix'}")
-    assert package_folder("hand", file, ()) == str(share)
-    monkeypatch.setenv("ROS_PACKAGE_PATH", f":{tree / 'sources'}")
-    assert package_folder("hand", file, ()) == str(source)
-    assert package_folder("hand", file, roots) == str(given)
-
-
 def test_a_package_may_be_beside_that_of_the_file(tree: Path) -> None:
     home, hand = package(tree / "arm", "arm"), package(tree / "hand", "hand")
     (tree / "foot").mkdir()
@@ -108,28 +66,6 @@ def test_a_package_may_be_beside_that_of_the_file(tree: Path) -> None:
     (alone / ".git").mkdir()
     assert package_folder("hand", str(alone / "a.urdf"), ()) == ""
     assert package_folder("hand", str(tree / "a.urdf"), ()) == ""
-
-
-def test_the_sources_around_a_package(tree: Path) -> None:
-    home = package(tree / "work" / "src" / "arm", "arm")
-    assert sources_around(str(home / "a.urdf")) == str(tree / "work" / "src")
-    # A workspace that was copied without its history has its packages in folders of src.
-    deep = package(tree / "work" / "src" / "arms" / "demo" / "arm", "arm")
-    assert sources_around(str(deep / "a.urdf")) == str(tree / "work" / "src")
-    lone = package(tree / "copied" / "demo" / "arm", "arm")
-    assert sources_around(str(lone / "a.urdf")) == str(tree / "copied" / "demo")
-    fresh = package(tree / "repository" / "src" / "hand", "hand")
-    (tree / "repository" / ".git").mkdir()
-    assert sources_around(str(fresh / "a.urdf")) == str(tree / "repository")
-    assert sources_around(str(tree / "a.urdf")) == ""
-
-
-@pytest.mark.parametrize(
-    ("more", "old"), [(CATKIN, True), (AMENT, False), (f"{CATKIN}{AMENT}", False), ("", False)]
-)
-def test_a_package_of_ros_1(tree: Path, more: str, old: bool) -> None:
-    assert is_for_ros_1(str(package(tree / "arm", "arm", more) / "a.urdf")) is old
-    assert not is_for_ros_1(str(tree / "a.urdf"))
 
 
 @pytest.mark.parametrize(
@@ -149,18 +85,6 @@ def test_a_path_as_it_is_on_the_disk(tree: Path, path: str, found: str) -> None:
     for name in ("p/Meshes/Arm.stl", "arm.stl", "p/both/a", "p/both/A", "p/sub/x"):
         written(tree / name)
     assert find_in(str(tree / "p"), path) == found
-
-
-def test_a_file_that_a_build_installs_elsewhere(tree: Path) -> None:
-    home = package(tree / "arm", "arm")
-    source = written(home / "description" / "urdf" / "arm.xacro")
-    written(home / "build" / "urdf" / "arm.xacro")
-    for name in ("a", "b"):
-        written(home / name / "rviz" / "view.rviz")
-    assert in_sources(str(home / "urdf" / "arm.xacro")) == source
-    assert in_sources(str(home / "urdf" / "rm.xacro")) == ""
-    assert in_sources(str(home / "rviz" / "view.rviz")) == ""
-    assert in_sources(str(tree / "urdf" / "arm.xacro")) == ""
 
 
 CMAKE = fixture_text("package_folders_cmake.txt")

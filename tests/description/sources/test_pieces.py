@@ -117,19 +117,6 @@ def test_the_pieces_of_a_name_stand_where_they_are_written(case: str, tmp_path: 
     assert found == wanted
 
 
-def test_the_text_of_an_element_has_pieces(tmp_path: Path) -> None:
-    path = tmp_path / "r.urdf.xacro"
-    path.write_text(
-        f'{HEAD}<xacro:property name="p" value="left"/>'
-        "<gazebo><topic>\n ${p}/scan </topic></gazebo></robot>"
-    )
-    text, pieces = values(expanded(path))[-1]
-    assert text == "\n left/scan "
-    assert [(it.text, it.kind) for it in pieces] == [
-        ("\n ", "literal"), ("left", "property"), ("/scan ", "literal"),
-    ]  # fmt: skip
-
-
 def test_a_name_in_yaml_stands_in_that_file(tmp_path: Path) -> None:
     (tmp_path / "names.yaml").write_text("arms:\n  - first\n  - 'second'\n")
     path = tmp_path / "r.urdf.xacro"
@@ -142,13 +129,6 @@ def test_a_name_in_yaml_stands_in_that_file(tmp_path: Path) -> None:
     for piece, text in ((first[0], "first"), (second[0], "second")):
         assert (piece.kind, os.path.basename(piece.file)) == ("YAML", "names.yaml")
         assert source[piece.start : piece.end] == text.encode()
-
-
-def test_a_name_behind_an_escape_is_what_an_expression_makes(tmp_path: Path) -> None:
-    path = tmp_path / "r.urdf.xacro"
-    path.write_text(f'{HEAD}<link name="a&amp;b_link"/></robot>')
-    _, pieces = values(expanded(path))[-1]
-    assert [it.kind for it in pieces] == ["expression"]
 
 
 @pytest.mark.more

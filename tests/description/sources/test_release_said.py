@@ -9,7 +9,6 @@ import pytest
 
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.sources.release_said import (
-    release_of_all,
     release_of_launch,
     release_said,
 )
@@ -59,31 +58,6 @@ def test_a_repository_says_its_release(
     found = release_said("", PLAIN, repository(tmp_path, workflow, package))
     assert found.release == release
     assert found.why.endswith(why) and bool(found.why) == bool(why)
-
-
-def test_what_is_told_and_loaded_comes_first(tmp_path: Path) -> None:
-    file = repository(tmp_path, "ROS_DISTRO: jazzy")
-    assert release_said("kilted", CLASSIC, file) == ("kilted", "")
-    assert release_said("", CLASSIC, file) == ("humble", "it loads libgazebo_ros_p3d.so")
-
-
-def test_several_files_say_one_release_or_none(tmp_path: Path) -> None:
-    classic, plain = tmp_path / "a.urdf", tmp_path / "b.urdf"
-    classic.write_bytes(CLASSIC)
-    plain.write_bytes(PLAIN)
-    files = [str(classic), str(plain)]
-    assert release_of_all("", files).release == "humble"
-    (tmp_path / "x").mkdir()
-    other = repository(tmp_path / "x", "ROS_DISTRO: jazzy")
-    assert release_of_all("", [*files, other]) == (NEWEST_LTS, "")
-    assert release_of_all("jazzy", files) == ("jazzy", "")
-
-
-def test_adapters_of_moveit_say_the_release() -> None:
-    old = b"request_adapters: default_planner_request_adapters/FixWorkspaceBounds"
-    assert release_said("", old, "").release == "humble"
-    new = b"[default_planning_request_adapters/CheckForStackedConstraints] # not " + old
-    assert release_said("", new, "").release == NEWEST_LTS
 
 
 @pytest.mark.parametrize(

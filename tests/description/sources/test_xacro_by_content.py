@@ -7,14 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from multibot_rewrite import UsageError, rewrite
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.description.sources.read import has_xacro, is_xacro
-from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
-from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.rules.settings import Settings
 
 SPACE = 'xmlns:xacro="http://ros.org/wiki/xacro"'
 TURTLEBOT = f"""\
@@ -44,18 +40,6 @@ def test_what_is_a_xacro(text: str, found: bool, tmp_path: Path) -> None:
     assert is_xacro(str(tmp_path / "r.urdf")) is found
     assert is_xacro(str(tmp_path / "there_is_none.urdf")) is False
     assert is_xacro("any.xacro") is True
-
-
-def test_it_is_expanded_and_takes_arguments(tmp_path: Path) -> None:
-    path = tmp_path / "r.urdf"
-    path.write_text(TURTLEBOT)
-    assert b'<link name="base_link"/>' in read_whole(str(path), {}).data
-    assert b'<link name="r1/base_link"/>' in read_whole(str(path), {"namespace": "r1/"}).data
-    assert '<link name="base_link/r1"/>' in rewrite(path, "r1").text
-    assert [it.code for it in lint_file(str(path), Settings(select=("MB105",)))] == []
-    path.write_text("<robot name='r'><link name='a'/></robot>")
-    with pytest.raises(UsageError, match="no xacro"):
-        read_whole(str(path), {"namespace": "r1/"})
 
 
 @pytest.mark.more

@@ -12,7 +12,6 @@ from counted_steps import growth
 
 from multibot_rewrite import InputError, RewriteRefused, rewrite
 from multibot_rewrite.base.bounded import MAX_BYTES
-from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.description.steps.document import attribute_slot, read_document, text_slot
 
 ROBOT = b'<robot name="r"/>'
@@ -179,13 +178,6 @@ def test_what_stands_before_the_root_is_kept(head: bytes) -> None:
     assert data == head + b"<robot name='r_r1'><link name='a/r1'/></robot>\r\n"
 
 
-def test_text_that_is_not_ascii_is_kept() -> None:
-    source = "\ufeff<robot name='ä'><link name='腕'/><!-- ß --></robot>"
-    assert rewrite(source, "r1").data.decode() == (
-        "\ufeff<robot name='ä_r1'><link name='腕/r1'/><!-- ß --></robot>"
-    )
-
-
 @pytest.mark.parametrize(
     "source",
     [
@@ -341,22 +333,3 @@ def test_a_text_is_renamed_in_any_spelling(old: str, new: str) -> None:
 def test_cdata_is_refused_by_place() -> None:
     with pytest.raises(RewriteRefused, match=r":3:1: error: MB104 'base' cannot be edited"):
         rewrite(TEXT.format("><![CDATA[base]]>"), "r1")
-
-
-def test_a_text_that_no_reader_takes_for_the_name_is_reported() -> None:
-    result = rewrite(TEXT.format(">ba<!--c-->se"), "r1")
-    assert [(finding.level, finding.line) for finding in result.findings] == [("warning", 3)]
-
-
-# TinyXML-2 reads the first of two texts, Python's ElementTree, as in spawn_entity.py, both as one.
-@pytest.mark.parametrize("text", [">base<!--c-->s", "><!--c-->base<!--d-->s", ">base <!--c--> s"])
-def test_a_text_cut_by_a_comment_is_refused(text: str) -> None:
-    with pytest.raises(RewriteRefused, match="MB104 'base' cannot be edited"):
-        rewrite(TEXT.format(text), "r1")
-
-
-@pytest.mark.parametrize(
-    ("offset", "place"), [(0, (1, 1)), (2, (1, 2)), (3, (1, 3)), (4, (2, 1)), (6, (2, 3))]
-)
-def test_lines_and_columns_count_characters_from_one(offset: int, place: tuple[int, int]) -> None:
-    assert locate("äb\ncd\n".encode(), offset) == place

@@ -11,7 +11,6 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from lxml import etree
 from urdfdom_cases import CHECK, check_urdf
 
 from multibot_rewrite import InputError, rewrite, strip
@@ -52,16 +51,6 @@ FAULTS = {
 }
 
 
-def test_prefixes_that_gazebo_had_are_bound_to_its_namespaces() -> None:
-    """Models of Gazebo Classic and of Drake leave their declarations out."""
-    stage = "http://playerstage.sourceforge.net/gazebo/xmlschema/#"
-    known = {it: stage + it for it in ("body", "controller", "joint", "sensor", "slider")}
-    known["drake"] = "http://drake.mit.edu"
-    for prefix, uri in known.items():
-        (child,) = etree.fromstring(well_formed(f"<robot><{prefix}:a/></robot>".encode()).text)
-        assert child.tag == f"{{{uri}}}a"
-
-
 def made(form: str, start: str, attributes: str, inside: str) -> bytes:
     return f"{start}{form.format(attributes, inside)}".encode()
 
@@ -91,12 +80,6 @@ def test_it_is_rewritten_byte_by_byte_and_said(name: str, form: str) -> None:
 def test_a_fault_that_all_readers_have_is_refused(name: str) -> None:
     with pytest.raises(InputError, match="not well-formed"):
         rewrite(made(URDF, *FAULTS[name]), "r1")
-
-
-def test_a_fault_has_its_place_in_the_source() -> None:
-    data = b'<robot name="r"><gz:a/><link name="a" name="b"/></robot>'
-    with pytest.raises(InputError, match=rf"m:1:{data.index(b'/><', 25) + 1}: .*redefined"):
-        rewrite(data, "r1", file="m")
 
 
 def test_what_is_written_in_values_and_texts_is_no_name() -> None:

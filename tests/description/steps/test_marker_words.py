@@ -17,12 +17,6 @@ def marker(distro: str) -> str:
     return next(it for it in lines if "<!-- multibot" in it and "/tf_static" in it)
 
 
-@pytest.mark.sample(1)
-@pytest.mark.parametrize("distro", ["humble", "jazzy", "kilted"])
-def test_controllers_take_rules_of_their_plugin(distro: str) -> None:
-    assert "all robots would share the root namespace, /tf, /tf_static)" in marker(distro)
-
-
 @pytest.mark.parametrize("distro", ["lyrical", "rolling"])
 def test_controllers_take_rules_of_their_spawner_alone(distro: str) -> None:
     """ros2_control 6.5.0 controller_manager.cpp, determine_controller_node_options."""

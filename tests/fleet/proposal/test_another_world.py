@@ -51,39 +51,3 @@ def test_a_robot_that_no_simulator_can_run_is_real(
     code, fleet = init(tmp_path, str(tmp_path / "rover.urdf"))
     assert (code, fleet["simulator"]) == (0, "none")
     assert "the robots are real, since it does not build as it is: MB610" in capsys.readouterr().err
-
-
-def test_a_simulator_that_was_asked_for_stays(tmp_path: Path) -> None:
-    (tmp_path / "rover.urdf").write_text(BODY.format("rover", "", PLUGIN))
-    code, fleet = init(tmp_path, str(tmp_path / "rover.urdf"), "--simulator", "gazebo")
-    assert (code, fleet["simulator"]) == (1, "gazebo")
-
-
-HARDWARE = """
-  <xacro:arg name="{0}" default="true"/>
-  <ros2_control name="drive" type="system"><hardware>
-      <xacro:if value="$(arg {0})"><plugin>acme/Driver</plugin></xacro:if>
-      <xacro:unless value="$(arg {0})"><plugin>gz_ros2_control/GazeboSimSystem</plugin></xacro:unless>
-    </hardware>
-    <joint name="turn"><command_interface name="velocity"/><state_interface name="position"/></joint>
-  </ros2_control>
-  <gazebo><plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin"
-   filename="gz_ros2_control-system">
-   <parameters>control.yaml</parameters></plugin></gazebo>
-"""
-CONTROL = """\
-controller_manager:
-  ros__parameters:
-    joint_state_broadcaster: {type: joint_state_broadcaster/JointStateBroadcaster}
-"""
-
-
-@pytest.mark.parametrize("switch", ["real_robot", "is_real", "use_mock", "hw", "use_fake_hardware"])
-def test_a_switch_that_is_called_after_the_real_robot_is_set(switch: str, tmp_path: Path) -> None:
-    body = BODY.format("rover", MASS, HARDWARE.format(switch))
-    space = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
-    (tmp_path / "rover.urdf.xacro").write_text(body.replace("<robot ", f"<robot {space} "))
-    (tmp_path / "control.yaml").write_text(CONTROL)
-    code, fleet = init(tmp_path, str(tmp_path / "rover.urdf.xacro"))
-    assert (code, fleet["arguments"]) == (0, {switch: "false"})
-    assert fleet["simulator"] == "gazebo"

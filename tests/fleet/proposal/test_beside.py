@@ -6,7 +6,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from small_robots import loads
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.proposal.companions import companions_of
@@ -52,18 +51,6 @@ def test_controllers_are_for_a_robot_that_has_a_manager(
     made = companions_of(looked(tmp_path, simulator, control), Found(params=(file, own)), "jazzy")
     assert made.left == ({file: why} if why else {})
     assert sorted(made.files["params"]) == sorted([own] if why else [file, own])
-
-
-@pytest.mark.parametrize("simulator", [NO_SIMULATOR, GZ, CLASSIC])
-def test_a_bridge_is_for_a_simulated_robot(simulator: str, tmp_path: Path) -> None:
-    bridge = tmp_path / "bridge.yaml"
-    bridge.write_text("- {ros_topic_name: scan, gz_topic_name: scan}\n")
-    made = companions_of(looked(tmp_path, simulator), Found(bridge=(str(bridge),)), "jazzy")
-    if simulator == NO_SIMULATOR:
-        assert made.left == {str(bridge): "the description has nothing for a simulator"}
-        assert not made.files.get("bridge")
-    else:
-        assert made.left == {} and made.files == {"bridge": (str(bridge),)}
 
 
 EKF = ("ekf_filter_node_odom", "ekf_filter_node_map", "navsat_transform")
@@ -122,7 +109,6 @@ def test_files_of_nodes_that_are_not_started(
     assert made.left.get(file, "").startswith(why)
 
 
-LIDAR_VIEW = "Visualization Manager:\n  Class: ''\n  Displays: []\n"
 EXPLORE = "/**:\n  ros__parameters: {costmap_topic: map}\n"
 PACKAGE = "<package><name>{}</name><export><build_type>ament_cmake</build_type></export></package>"
 ROBOT = (
@@ -148,21 +134,6 @@ def workspace(folder: Path, files: dict[str, str]) -> Path:
         path.write_text(text)
         (folder / name.split("/")[0] / "package.xml").write_text(PACKAGE.format(name.split("/")[0]))
     return folder
-
-
-@pytest.mark.parametrize("is_named", [False, True])
-def test_an_rviz_config_of_a_vendors_package_is_not_the_robots(
-    is_named: bool, tmp_path: Path
-) -> None:
-    """It shows no link of the robot, and its package does not launch the robot."""
-    launch = loads("../../rover_description/urdf/rover.urdf") if is_named else "# of its own\n"
-    files = {
-        "rover_description/urdf/rover.urdf": ROBOT.format("rover"),
-        "lidar_driver/rviz/lidar.rviz": LIDAR_VIEW,
-        "lidar_driver/launch/view.launch.py": launch,
-    }
-    text = written(workspace(tmp_path, files))
-    assert ("rviz: lidar_driver/rviz/lidar.rviz" in text) == is_named
 
 
 def test_a_file_for_any_node_that_a_vendor_gives_to_its_own_is_not_the_robots(

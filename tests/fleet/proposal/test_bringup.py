@@ -569,6 +569,19 @@ def test_the_launch_file_that_is_named_says_which_description(
     assert "example.urdf.xacro" not in out.read_text()
 
 
+def test_a_description_is_not_guessed_where_a_launch_file_loads_one_that_is_not_known(
+    robots: Path, capsys: Any
+) -> None:
+    publisher = RSP.format(", parameters=[{'robot_description': open(SHARE).read()}]")
+    share = "FindPackageShare('gone').perform(_) + '/a.urdf'"
+    function = f"OpaqueFunction(function=lambda _: [{publisher.replace('SHARE', share)}])"
+    (file,) = write(robots / "rover/launch", {"up": f"{function}; {DRIVER}"})
+    assert main(["init", str(robots), "--launch", file, "--yes", "-o", "-"]) == 2
+    said = capsys.readouterr().err
+    assert len(said.splitlines()) == 1 and "up.launch.py is in a fleet: " in said
+    assert "descriptions it loads is not known: package 'gone' is not installed here" in said
+
+
 def test_its_own_description_that_cannot_be_read_is_one_line(robots: Path, capsys: Any) -> None:
     """The command for another one keeps the launch file."""
     (file,) = write(robots / "rover/launch", {"up": READS.format("other", "example.urdf.xacro")})

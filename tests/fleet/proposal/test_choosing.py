@@ -108,15 +108,6 @@ def test_of_many_robots_some_are_named(tmp_path: Path, capsys: Any) -> None:
     assert "40 descriptions" in said and "kind_05.urdf and 34 more" in said
 
 
-def test_a_part_and_a_prop_are_no_rivals(two: Path) -> None:
-    (two / "tractor.urdf").unlink()
-    (two / "big_gripper.urdf").write_text(robot("big_gripper", "f1", "f2", "f3"))
-    (two / "tree.sdf").write_text(
-        '<sdf version="1.9"><model name="t"><link name="t"/></model></sdf>'
-    )
-    assert taken(two)["description"] == "digger.urdf"
-
-
 def test_a_part_alone_is_asked_for(tmp_path: Path, capsys: Any) -> None:
     camera = tmp_path / "camera.urdf"
     camera.write_text(robot("camera", "eye").replace("continuous", "fixed"))
@@ -167,19 +158,6 @@ def test_packages_of_a_copy_without_git_are_found(tmp_path: Path) -> None:
     text = robot("car", "a", more='<xacro:include filename="$(find wheels)/w.xacro"/>')
     (tmp_path / "robots/car/car.urdf.xacro").write_text(text.replace("<robot ", f"<robot {wiki} "))
     assert taken(tmp_path)["description"] == "robots/car/car.urdf.xacro"
-
-
-def test_what_is_launched_and_cannot_be_read_is_said(two: Path, capsys: Any) -> None:
-    """Another robot is not taken in its place."""
-    wiki = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
-    include = '<xacro:include filename="$(find not_there)/a.xacro"/>'
-    (two / "real.urdf.xacro").write_text(f'<robot name="real" {wiki}>{include}</robot>')
-    (two / "up.launch.py").write_text(loads("real.urdf.xacro"))
-    assert init(two) == 2
-    said = capsys.readouterr().err
-    assert len(said.splitlines()) == 1
-    assert "package 'not_there' is not found" in said and "the launch files load it" in said
-    assert not (two / "fleet.yaml").exists()
 
 
 @pytest.mark.more
@@ -338,19 +316,6 @@ def test_srdfs_and_moveit_files_are_known_by_what_macros_make(tmp_path: Path) ->
     fleet = taken(tmp_path)
     assert fleet["srdf"] == "one.srdf.xacro"
     assert fleet["companions"]["moveit"] in ("b/joint_limits.yaml", ["b/joint_limits.yaml"])
-
-
-@pytest.mark.parametrize("copy", ["model (copy).sdf", "model_copy.sdf", "model (1).sdf"])
-def test_a_copy_is_not_taken(tmp_path: Path, copy: str) -> None:
-    """The folder's name has a word of a part; that of the copy is read in the same way."""
-    folder = tmp_path / "x500_lidar_down"
-    folder.mkdir()
-    rotor = '<joint name="rotor" type="revolute"><parent>{0}</parent><child>b</child></joint>'
-    links = f'<link name="{{0}}"/><link name="b"/>{rotor}'
-    text = f'<sdf version="1.9"><model name="x500">{links}</model></sdf>'
-    (folder / "model.sdf").write_text(text.format("a"))
-    (folder / copy).write_text(text.format("a") + "<!-- old -->")
-    assert taken(tmp_path)["description"] == "x500_lidar_down/model.sdf"
 
 
 @pytest.mark.more

@@ -24,7 +24,6 @@ ROVER = Looked(
     "w/r.urdf.xacro", "r", "robot", 2, arguments=(("prefix", "{robot}_"), ("x", "1"), ("sim", "on")),
     switch="sim", needed=("x", "none"), model="w/r.sdf",
 )  # fmt: skip
-ARM = Looked("w/arm.urdf", "arm", "robot", 3)
 KEYS = {
     "layout": Choice("tf-per-robot", "plugins send tf"),
     "distro": Choice("jazzy", "the newest"),
@@ -114,22 +113,6 @@ def test_the_whole_text_of_one_description() -> None:
         "layout": "tf-per-robot", "distro": "jazzy", **COMMON, "robots": [
         {"name": "robot1", "pose": {"x": 0, "y": 0}}, {"name": "robot2"},
     ]}  # fmt: skip
-
-
-def test_robots_of_several_descriptions_have_their_own_keys() -> None:
-    bare = Member(ARM, Companions({}, "", {}, {}), ("arm1",), 0.5)
-    two = ONE._replace(members=[*ONE.members, bare], started=())
-    assert yaml.safe_load(text_of(two, "w/fleet.yaml")) == {
-        "layout": "tf-per-robot",
-        "distro": "jazzy",
-        "robots": [
-            {"name": "robot1", **COMMON, "pose": {"x": 0, "y": 0}},
-            {"name": "robot2", **COMMON},
-            {"name": "arm1", "description": "arm.urdf"},
-        ],
-    }
-    small = ONE._replace(members=[bare], refused={}, others=(), started=(), unread=(), notes=())
-    assert "not taken" not in (text := text_of(small, "w/f")) and "launch file" not in text
 
 
 @pytest.mark.parametrize(("count", "more"), [(10, ""), (12, "#   and 2 more\n")])

@@ -12,7 +12,6 @@ from typing import Any
 import closed_robot
 import pytest
 import yaml
-from fleet_folder import planned_fleet
 from paths import ROBOTS, ROOT
 
 from multibot_rewrite.cli.multibot import main
@@ -545,11 +544,3 @@ def test_the_reason_names_the_node_and_what_to_do_once_for_all_robots(tmp_path: 
         "/robot1/controller_manager)"
     )
     assert [it for _, it in trying.errors_of(steered(tmp_path))] == [said]
-
-
-def test_the_rule_that_the_reason_names_is_all_that_is_needed(tmp_path: Path) -> None:
-    fleet = steered(tmp_path, "~/tf_odometry:=tf")
-    assert trying.errors_of(fleet) == []
-    # Gazebo's plugin has the description already: nothing is told about the manager's own topic.
-    table = planned_fleet(fleet).fleet.table
-    assert [it for it in table.problems if it.code == "MR105"] == []

@@ -8,16 +8,12 @@ from pathlib import Path
 
 import pytest
 from lxml import etree
-from small_robots import loads
 
 from multibot_rewrite.fleet.proposal.choosing import (
     chosen,
-    launched_descriptions,
-    processes_with,
 )
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.searching import Found
-from multibot_rewrite.producers.launch.records import LaunchOrder
 
 LINK, JOINT = '<link name="{}"/>', '<joint name="{}" type="{}"/>'
 Made = Callable[..., Looked]
@@ -45,93 +41,9 @@ def made(tmp_path: Path) -> Made:
     return looked
 
 
-def put(folder: Path, name: str, data: str) -> str:
-    path = folder / name
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(data)
-    return str(path)
-
-
-def order(*robots: Looked, found: Found | None = None) -> str:
-    """The names of the files without their ends, the likeliest first."""
-    every = Found(every=tuple(it.path for it in robots))
-    made = chosen(robots, found or every)
-    return " ".join(Path(it.robot.path).stem for it in made.order)
-
-
-@pytest.mark.parametrize(
-    "word",
-    ["gripper", "hand", "finger", "camera", "sensor", "lidar", "tool", "effector", "mount", "wheel",
-     "dock", "geometry"],
-)  # fmt: skip
-def test_what_is_called_like_a_part_is_behind(word: str, made: Made) -> None:
-    assert order(made(f"my_{word}.urdf"), made("zzzzzzzzzzzzzzzzzzzzz.urdf")).startswith("zzz")
-
-
-def test_a_robot_has_links_and_moves(made: Made) -> None:
-    assert order(made("a.urdf", "a"), made("b.urdf", "ab")) == "b a"
-    assert order(made("a.urdf", moving=""), made("b.urdf")) == "b a"
-    # The number of links counts more than the name, the name more than what moves.
-    assert order(made("hand.urdf", "ab"), made("a.urdf", "a")) == "hand a"
-    assert order(made("hand.urdf"), made("a.urdf", moving="")) == "a hand"
-
-
-def test_of_two_alike_the_simulated_one_with_control_and_a_short_path_is_first(made: Made) -> None:
-    assert order(made("a.urdf"), made("b.urdf", simulator="gz")) == "b a"
-    assert order(made("a.urdf"), made("b.urdf", control=True)) == "b a"
-    assert order(made("aa.urdf"), made("b.urdf")) == "b aa"
-    assert order(made("b.urdf"), made("a.urdf")) == "a b"
-
-
-def test_what_is_launched_is_first_by_how_much_is_started(made: Made, tmp_path: Path) -> None:
-    one, two, three = made("a.urdf"), made("bb.urdf"), made("ccc.urdf")
-    launch = (
-        put(tmp_path, "x.launch.py", loads("bb.urdf", drivers=1)),
-        put(tmp_path, "y.launch.py", loads("ccc.urdf", drivers=2)),
-        put(tmp_path, "test.launch.py", loads("a.urdf", drivers=3)),
-        put(tmp_path, "read.launch.py", "open('a.urdf').read()"),
-    )
-    found = Found(every=(one.path, two.path, three.path), launch=launch)
-    assert order(one, two, three, found=found) == "ccc bb a"
-    assert [processes_with(it.path, found) for it in (one, two, three)] == [0, 2, 3]
-    assert launched_descriptions(found) == [two.path, three.path]
-    # One that was named counts whatever it is called and starts.
-    named = found._replace(named=(LaunchOrder(launch[2]),))
-    assert launched_descriptions(named) == [one.path]
-
-
-def test_of_files_of_one_name_that_which_is_read_is_launched(tmp_path: Path) -> None:
-    paths = tuple(put(tmp_path, f"{name}/r.urdf", text("a")) for name in ("one", "two"))
-    launch = put(tmp_path, "x.launch.py", loads("two/r.urdf"))
-    found = Found(every=paths, launch=(launch,))
-    assert [processes_with(it, found) for it in paths] == [0, 1]
-
-
-def test_what_only_shows_a_robot_is_behind_its_simulation(made: Made, tmp_path: Path) -> None:
-    """A window with sliders has as many processes as a spawner."""
-    one, two = made("a.urdf"), made("b.sdf")
-    shows = "Node(package='joint_state_publisher_gui', executable='joint_state_publisher_gui')"
-    show = put(tmp_path, "x.launch.py", loads("a.urdf").replace("*drivers]", f"{shows}]"))
-    found = Found(
-        every=(one.path, two.path), launch=(show, put(tmp_path, "y.launch.py", loads("b.sdf")))
-    )
-    assert [processes_with(it.path, found) for it in (one, two)] == [1, 2]
-
-
 def rivals(*robots: Looked, found: Found | None = None) -> tuple[list[str], list[str]]:
     made = chosen(robots, found or Found(every=tuple(it.path for it in robots)))
     return tuple([Path(it.robot.path).stem for it in them] for them in (made.rivals, made.alike))  # type: ignore[return-value]
-
-
-def test_who_may_be_meant_as_well(made: Made, tmp_path: Path) -> None:
-    first, other = made("a.urdf", "abc", "jk"), made("bb.urdf", "xyz", "lm")
-    assert rivals(first, other) == (["bb"], [])
-    # Another kind, and a part of the first one's joints, are not.
-    assert rivals(first, made("bb.urdf", "xyz", "")) == ([], [])
-    assert rivals(first, made("bb.urdf", "xyz", "j")) == ([], [])
-    launch = put(tmp_path, "x.launch.py", loads("a.urdf"))
-    paths = (first.path, other.path)
-    assert rivals(first, other, found=Found(every=paths, launch=(launch,))) == ([], [])
 
 
 def test_files_of_one_robot_are_alike(made: Made) -> None:

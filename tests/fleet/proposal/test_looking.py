@@ -55,16 +55,6 @@ def test_what_is_in_a_urdf(inside: str, simulator: str, control: bool, own_tf: b
 
 
 @pytest.mark.parametrize(
-    ("inside", "simulator"),
-    [("", "gz"), ('<plugin filename="libgazebo_ros_imu_sensor.so" name="p"/>', "classic")],
-)
-def test_what_is_in_an_sdf(inside: str, simulator: str) -> None:
-    text = f'<sdf version="1.9"><model name="m">{LINKS}{inside}</model></sdf>'
-    found = looking._looked("m.sdf", text.encode(), ())
-    assert found._replace(root=None) == Looked("m.sdf", "m", "sdf", 2, simulator)
-
-
-@pytest.mark.parametrize(
     ("inside", "nothing"),
     [
         (plugin("libgazebo_ros2_control.so", "<parameters/>"), True),

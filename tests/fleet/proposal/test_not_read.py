@@ -15,7 +15,7 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.proposal.choosing import is_srdf_launched, names_its_package
 from multibot_rewrite.fleet.proposal.companions import srdf_of
 from multibot_rewrite.fleet.proposal.looking import Looked
-from multibot_rewrite.fleet.proposal.searching import Found, search, text_of
+from multibot_rewrite.fleet.proposal.searching import search, text_of
 
 WIKI = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 GZ = (
@@ -31,15 +31,6 @@ def tetra(tmp_path: Path) -> Path:
     (tmp_path / "base.urdf").write_text(robot("tetra", "left", "right"))
     (tmp_path / "tetra_gz.xacro").write_text(GZ)
     return tmp_path
-
-
-def test_what_was_not_read_is_named_with_the_reason(tetra: Path, capsys: Any) -> None:
-    assert taken(tetra)["description"] == "base.urdf"
-    said, text = capsys.readouterr().err, (tetra / "fleet.yaml").read_text()
-    assert "tetra_gz.xacro was not used: xacro failed" in said and "not_there.xacro" in said
-    assert "#   tetra_gz.xacro: xacro failed" in text
-    assert "The description has nothing for a simulator" in text
-    assert "for another: multibot init" not in said, "no other one can be read"
 
 
 @pytest.mark.parametrize("launched", [["tetra_gz.xacro"], ["tetra_gz.xacro", "base.urdf"]])
@@ -75,16 +66,6 @@ def test_a_package_is_named_after_its_robot(
 ) -> None:
     (tmp_path / "package.xml").write_text(PACKAGE.format(package))
     assert names_its_package(str(tmp_path / file)) is named
-
-
-def test_of_rivals_the_one_that_the_package_is_named_after_is_taken(tmp_path: Path) -> None:
-    (tmp_path / "package.xml").write_text(PACKAGE.format("tractor_description"))
-    (tmp_path / "digger.urdf").write_text(robot("digger", "dig_left", "dig_right"))
-    (tmp_path / "tractor.urdf").write_text(robot("tractor", "pull_left", "pull_right"))
-    assert taken(tmp_path)["description"] == "tractor.urdf"
-    # A launch file says more than a name.
-    (tmp_path / "up.launch.py").write_text(loads("digger.urdf"))
-    assert taken(tmp_path, "--force")["description"] == "digger.urdf"
 
 
 LOADS = [
@@ -148,14 +129,6 @@ def test_the_fleet_file_names_them(tmp_path: Path) -> None:
     )
 
 
-def test_hidden_files_are_none_of_the_robot(tmp_path: Path) -> None:
-    for name in (".car.urdf", "car.urdf", "._car.rviz"):
-        (tmp_path / name).write_text(robot("car", "wheel"))
-    found = search([str(tmp_path)])
-    car = (f"{tmp_path}/car.urdf",)
-    assert found == Found(descriptions=car, every=car, folders=(str(tmp_path),))
-
-
 BROKEN = {
     "link": (lambda path: path.symlink_to(path), "it is a link to nothing"),
     "empty": (lambda path: path.write_text(""), "the file is empty"),
@@ -203,12 +176,6 @@ def test_a_value_that_no_xacro_takes_is_refused(
     urdf = tmp_path / "car.urdf"
     urdf.write_text(robot("car", "wheel"))
     assert main(["init", str(urdf), "x:=1", "--yes", "-o", "-"]) == 2
-
-
-def test_a_file_that_is_given_twice_is_one_robot(tmp_path: Path) -> None:
-    urdf = tmp_path / "car.urdf"
-    urdf.write_text(robot("car", "wheel"))
-    assert search([str(urdf), f"{tmp_path}/./car.urdf"]).descriptions == (str(urdf),)
 
 
 def test_the_schema_is_beside_the_fleet_file(tmp_path: Path, capsys: Any) -> None:

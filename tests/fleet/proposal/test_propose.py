@@ -78,59 +78,8 @@ def test_a_real_robot_that_stands_on_the_world_has_one_of_its_own() -> None:
     )
 
 
-@pytest.mark.parametrize(("apart", "places"), [(0.0, (0, 1.5, 3.5)), (2.0, (0, 2, 4))])
-def test_robots_stand_in_a_row_as_they_are_wide(apart: float, places: tuple[float, ...]) -> None:
-    """Half a metre between their outlines, in steps of half a metre."""
-    members = [member(names=("a", "b"), radius=0.3), member(names=("c",), radius=1.2)]
-    found = propose.poses_of(members, apart)
-    assert found == {name: {"x": 0, "y": y} for name, y in zip("abc", places, strict=True)}
-
-
-def test_a_real_robot_whose_description_has_its_place_gets_none() -> None:
-    assert propose.poses_of([standing_on("map"), member(names=("b",))], 0) == {
-        "b": {"x": 0, "y": 0}
-    }
-    for it in (standing_on("world"), standing_on("map", simulator="gz")):
-        assert propose.poses_of([it], 0) == {"a": {"x": 0, "y": 0}}
-
-
-def test_robots_are_numbered_and_several_descriptions_have_their_own_words() -> None:
-    assert propose.names_of(["rover"], 2) == [("robot1", "robot2")]
-    assert propose.names_of(["Rover-X", "arm"], 2) == [
-        ("rover_x1", "rover_x2"), ("arm1", "arm2"),
-    ]  # fmt: skip
-    words = ["UR5e", "ur5e", "3d", "--", "cam2", "_x_"]
-    assert propose.unlike(words) == ["ur5e", "ur5e_1_", "robot_3d", "robot", "cam", "x"]
-
-
-@pytest.mark.parametrize(
-    ("looked", "said"),
-    [
-        (Looked("a.urdf", fault="a.urdf:1: no XML", links=2), "a.urdf:1: no XML; more"),
-        (Looked("a.urdf", links=2), "a.urdf: nothing in it moves or senses; give the file"),
-        (Looked("a.urdf"), "a.urdf: it has no link; "),
-    ],
-)
-def test_why_a_description_is_not_taken(looked: Looked, said: str) -> None:
-    with pytest.raises(UsageError) as found:
-        seeing._refuse([looked, Looked("b.urdf", fault="other")], "; more")
-    assert str(found.value).startswith(said) and str(found.value).endswith("; more")
-    seeing._refuse([], "; more")
-
-
 def wanted(**more: Any) -> Wanted:
     return Wanted((), 2, {}, "jazzy", more.pop("named", False), **more)
-
-
-@pytest.mark.parametrize(
-    ("simulator", "has", "simulated"),
-    [("", "gz", True), ("", "", False), ("none", "gz", False), ("gazebo", "", True)],
-)
-def test_what_is_asked_for_counts_more_than_what_is_there(
-    simulator: str, has: str, simulated: bool
-) -> None:
-    looked = Looked("a.urdf", **({"simulator": has} if has else {}))
-    assert seeing._is_simulated(looked, wanted(simulator=simulator)) is simulated
 
 
 @pytest.mark.parametrize(

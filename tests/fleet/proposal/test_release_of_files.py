@@ -40,32 +40,3 @@ def test_the_release_is_that_which_has_most(
     file.write_text(MANAGER % own)
     assert release_of_files([str(file), str(tmp_path / "gone.yaml")]) == (release, why)
     assert release_of_files([]) == ("lyrical", "")
-
-
-NAV2 = """planner_server:
-  ros__parameters:
-    planner_plugins: [GridBased]
-    GridBased: {plugin: nav2_navfn_planner%sNavfnPlanner}
-behavior_server:
-  ros__parameters:
-    behavior_plugins: [spin]
-    spin: {plugin: nav2_behaviors%sSpin}
-"""
-
-
-# navigation2 nav2_navfn_planner/global_planner_plugin.xml: name="nav2_navfn_planner/NavfnPlanner" in
-# Humble, "nav2_navfn_planner::NavfnPlanner" from Jazzy on; likewise nav2_behaviors/behavior_plugin.xml.
-@pytest.mark.parametrize(
-    ("signs", "release", "why"),
-    [
-        (("/", "/"), "humble", "lyrical lacks 2 parameters or plugins of nav2.yaml"),
-        (("::", "::"), "lyrical", ""),
-        (("/", "::"), "lyrical", ""),
-    ],
-)
-def test_the_names_of_plugins_tell_the_release(
-    signs: tuple[str, str], release: str, why: str, tmp_path: Path
-) -> None:
-    file = tmp_path / "nav2.yaml"
-    file.write_text(NAV2 % signs)
-    assert release_of_files([str(file)]) == (release, why)

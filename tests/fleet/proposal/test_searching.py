@@ -9,10 +9,9 @@ from pathlib import Path
 import pytest
 from paths import CORPUS, FIXTURES
 
-from multibot_rewrite import rewrite
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.fleet.proposal import searching
-from multibot_rewrite.fleet.proposal.searching import Found, search, without
+from multibot_rewrite.fleet.proposal.searching import Found, search
 
 ROBOT = '<robot name="r"/>'
 PARAMS = "a:\n  ros__parameters: {b: 1}\n"
@@ -69,54 +68,6 @@ def put(folder: Path, **files: str) -> None:
         path.write_text(text)
 
 
-def test_what_a_build_has_written_is_no_other_robot(tmp_path: Path) -> None:
-    made = {"fleet__manifest_dot_json": "{}", "fleet__plan_dot_yaml": "robots: {}"}
-    put(tmp_path, own_dot_urdf=ROBOT, fleet__robot1__own_dot_urdf=ROBOT, **made)
-    # urdf-postfix alone leaves its mark, as a rewrite of the first robot shows.
-    rover = str(FIXTURES / "robots" / "rover.urdf")
-    put(tmp_path, out__robot1_dot_urdf=rewrite(rover, "robot1").text)
-    assert search([str(tmp_path)]).descriptions == (str(tmp_path / "own.urdf"),)
-
-
-def test_a_description_in_a_folder_that_is_named_is_there_once(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The folder as an absolute path, the description as a relative one."""
-    put(tmp_path, package_dot_xml="<package><name>p</name></package>", urdf__a_dot_urdf=ROBOT,
-        config__p_dot_yaml=PARAMS)  # fmt: skip
-    monkeypatch.chdir(tmp_path)
-    found = search([str(tmp_path), "urdf/a.urdf"])
-    assert found.params == (str(tmp_path / "config" / "p.yaml"),)
-    assert found.descriptions == ("urdf/a.urdf",)
-
-
-def test_hidden_and_built_folders_are_left_out(tmp_path: Path) -> None:
-    left = ("build", "install", "log", "node_modules", "test", "tests", "__pycache__", ".git")
-    for folder in (*left, "urdf", "builds"):
-        (tmp_path / folder).mkdir()
-        (tmp_path / folder / "r.urdf").write_text(ROBOT)
-    found = search([str(tmp_path)]).descriptions
-    assert found == (str(tmp_path / "builds" / "r.urdf"), str(tmp_path / "urdf" / "r.urdf"))
-
-
-def test_a_description_that_is_named_goes_with_its_package(tmp_path: Path) -> None:
-    put(tmp_path, package_dot_xml="<package><name>p</name></package>", urdf__a_dot_urdf=ROBOT,
-        urdf__b_dot_urdf=ROBOT, config__p_dot_yaml=PARAMS)  # fmt: skip
-    named = str(tmp_path / "urdf" / "a.urdf")
-    found = search([named])
-    assert found.descriptions == (named,)
-    assert [Path(it).name for it in found.every] == ["a.urdf", "b.urdf"]
-    assert [Path(it).name for it in found.params] == ["p.yaml"]
-    other = without(found, found.params)
-    assert other.params == () and other.every == found.every
-    gone = str(tmp_path / "gone")
-    with pytest.raises(UsageError) as caught:
-        search([gone])
-    assert str(caught.value) == (
-        f"{gone}: there is no such file or folder; give a description or a folder"
-    )
-
-
 @pytest.mark.parametrize(
     ("included", "left"),
     [
@@ -133,12 +84,6 @@ def test_what_another_file_includes_is_no_robot(included: str, left: bool, tmp_p
     assert found == (["all.xacro", "part.xacro"] if left else ["all.xacro"])
 
 
-def test_a_file_that_includes_itself_is_one(tmp_path: Path) -> None:
-    include = '<robot name="r"><xacro:include filename="a.xacro"/></robot>'
-    put(tmp_path, a_dot_xacro=include)
-    assert len(search([str(tmp_path)]).descriptions) == 1
-
-
 def test_a_folder_with_too_many_files_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -150,26 +95,6 @@ def test_a_folder_with_too_many_files_is_refused(
         UsageError, match=r"it has more than 1 files; name the folder of one package"
     ):
         search([str(tmp_path)])
-
-
-def test_of_a_file_that_cannot_be_read_nothing_is_known(tmp_path: Path) -> None:
-    (tmp_path / "a").write_bytes(b"a\xff")
-    assert searching.text_of(str(tmp_path / "a")) == "a\ufffd"
-    assert searching.data_of_file(str(tmp_path / "gone")) == b""
-
-
-@pytest.mark.parametrize("many", [2, 3])
-def test_files_that_include_each_other_are_no_parts(many: int, tmp_path: Path) -> None:
-    """A loop has no first file; whoever expands one of them gets the reason."""
-    for at in range(many):
-        include = f'<xacro:include filename="{(at + 1) % many}.xacro"/>'
-        (tmp_path / f"{at}.xacro").write_text(f'<robot name="r">{include}</robot>')
-    (tmp_path / "part.xacro").write_text(ROBOT)
-    (tmp_path / "top.xacro").write_text(
-        '<robot name="r"><xacro:include filename="part.xacro"/></robot>'
-    )
-    found = [Path(it).name for it in search([str(tmp_path)]).descriptions]
-    assert found == [*(f"{at}.xacro" for at in range(many)), "top.xacro"]
 
 
 def _refusal(path: str) -> str:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Any
 
@@ -14,10 +13,9 @@ from small_robots import PACKAGE, robot
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.file.fleet_data import FleetText
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.proposal.looking import Looked
-from multibot_rewrite.fleet.proposal.owners import moveit_of_others, of_other_robots
+from multibot_rewrite.fleet.proposal.owners import moveit_of_others
 from multibot_rewrite.fleet.proposal.searching import Found
 
 MODEL = '<robot name="{0}"><link name="{0}_base"/></robot>'
@@ -54,17 +52,9 @@ def test_what_is_tried_is_what_is_written(options: list[str], tmp_path: Path, ca
     assert {it["description"] for it in made["robots"]} == {
         f"../{it}/robot.urdf" for it in ("a", "b", "c")
     }
-    assert "does not build" not in capsys.readouterr().err
-
-
-def test_paths_are_from_the_folder_of_the_fleet_file(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    files(tmp_path, **{"src/a.urdf": MODEL.format("a"), "src/b.urdf": MODEL.format("b")})
-    (tmp_path / "elsewhere").mkdir()
-    monkeypatch.chdir(tmp_path / "elsewhere")
-    made = fleet_of(tmp_path, "../src/a.urdf", "../src/b.urdf")
-    assert {it["description"] for it in made["robots"]} == {"../src/a.urdf", "../src/b.urdf"}
+    told = capsys.readouterr().err
+    assert "does not build" not in told
+    assert ("9 robots, 3 of each, of robot.urdf" in told) is ("3" in options)
 
 
 def test_values_that_robots_share_may_be_one_object(tmp_path: Path) -> None:
@@ -76,15 +66,6 @@ def test_values_that_robots_share_may_be_one_object(tmp_path: Path) -> None:
     circle.append(circle)
     with pytest.raises(InputError, match="a value holds itself"):
         read_fleet({"robots": circle}, "", {})
-
-
-def test_a_text_is_read_as_the_file_that_it_will_be(tmp_path: Path) -> None:
-    files(tmp_path, **{"a.urdf": MODEL.format("a")})
-    text = "robots: [{name: one, description: ../a.urdf}]\n"
-    made = read_fleet(FleetText(str(tmp_path / "sub" / "f.yaml"), text), "", {})
-    assert os.path.abspath(made.robots[0].description) == str(tmp_path / "a.urdf")
-    with pytest.raises(InputError, match=r"sub/f\.yaml:1: .*b\.urdf does not exist"):
-        read_fleet(FleetText(str(tmp_path / "sub" / "f.yaml"), text.replace("a.u", "b.u")), "", {})
 
 
 def test_a_file_is_of_the_robot_in_whose_folder_it_is(tmp_path: Path) -> None:
@@ -101,17 +82,6 @@ def test_a_file_is_of_the_robot_in_whose_folder_it_is(tmp_path: Path) -> None:
     made = fleet_of(tmp_path, *paths, "-n", "1")
     own = {it["name"]: it["companions"]["params"] for it in made["robots"]}
     assert own == {f"{it}1": [f"../{it}_description/config/own.yaml"] for it in ("left", "right")}
-
-
-def test_of_one_folder_a_file_is_of_the_robot_it_is_called_after() -> None:
-    """rover.rviz is not the arm's; what is called after neither may be of both."""
-    arm, rover = Looked("w/arm.urdf"), Looked("w/rover.urdf")
-    found = Found(
-        rviz=("w/rover.rviz", "w/rover_nav.rviz", "w/roverlike.rviz"), params=("w/arm.yaml",)
-    )
-    assert of_other_robots(arm, [arm, rover], found) == {"w/rover.rviz", "w/rover_nav.rviz"}
-    assert of_other_robots(rover, [arm, rover], found) == {"w/arm.yaml"}
-    assert of_other_robots(arm, [arm], found) == set()
 
 
 def test_kinematics_are_of_the_robot_that_has_the_groups(tmp_path: Path) -> None:
@@ -138,23 +108,6 @@ def test_what_another_robot_of_the_fleet_has_is_not_left_over(tmp_path: Path) ->
     made = fleet_of(tmp_path, *paths, "-n", "1")
     assert made["robots"][0]["companions"] == {"params": ["../config.yaml"]}
     assert "config.yaml: it is for" not in (tmp_path / "made/fleet.yaml").read_text()
-
-
-def test_files_of_packages_that_the_robot_is_not_from_are_not_listed(tmp_path: Path) -> None:
-    for name in ("car_description", "other"):
-        files(
-            tmp_path / name,
-            **{
-                "package.xml": PACKAGE.format(name),
-                "first.rviz": "Visualization Manager: {Displays: []}\n",
-                "second.rviz": "Visualization Manager: {Displays: []}\n",
-            },
-        )
-    files(tmp_path, **{"car_description/car.urdf": robot("car", "wheel")})
-    fleet_of(tmp_path, str(tmp_path))
-    text = (tmp_path / "made/fleet.yaml").read_text()
-    assert "#   ../car_description/second.rviz: first.rviz of another folder was taken" in text
-    assert "../other/" not in text
 
 
 def test_robots_of_two_simulators_are_the_first_reason(tmp_path: Path, capsys: Any) -> None:

@@ -142,7 +142,7 @@ ODD: dict[str, tuple[dict[str, str], list[Change]]] = {
 
 
 @pytest.mark.more
-@pytest.mark.sample(4)
+@pytest.mark.sample(10)
 @pytest.mark.parametrize("name", ODD)
 def test_nothing_is_found(name: str, tmp_path: Path) -> None:
     files, changes = ODD[name]

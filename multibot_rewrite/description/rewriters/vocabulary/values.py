@@ -142,7 +142,7 @@ class WiredTopic(NamedTuple):
 
     @property
     def is_moved(self) -> bool:
-        """Is it below the value of a parameter, so that no rule is needed to move it?"""
+        """Return whether it is below a parameter's value, so that no rule is needed to move it."""
         return "{" in self.name
 
 

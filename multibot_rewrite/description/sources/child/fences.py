@@ -43,8 +43,8 @@ def version() -> int:
 
 
 def enclose(readable: Iterable[str] = (), writable: Iterable[str] = ()) -> bool:
-    """Take all but what is below these paths from this process, and from what it starts; False where
-    that is not possible. What is writable can be read as well."""
+    """Deny this process, and what it starts, all paths but these; return False if that is not
+    possible. What is writable can be read as well."""
     known = version()
     if not known or not SYSTEM or not no_new_privileges():
         return False
@@ -90,8 +90,8 @@ class Files(NamedTuple):
 
 
 def put_up(wanted: Collection[str], seconds: float, files: Files | None = None) -> list[str]:
-    """Put up those fences, for good; the names of those that this system has. Without ``files`` none
-    can be opened."""
+    """Restrict this process for good; return the restrictions that this system has. Without
+    ``files`` it can open none."""
     memory = _memory()
     ways: Mapping[str, Callable[[], bool]] = {
         frames.LIMITS: lambda: limit(seconds, memory, files is not None),
@@ -103,7 +103,7 @@ def put_up(wanted: Collection[str], seconds: float, files: Files | None = None) 
 
 
 def limit(seconds: float, memory: int, files: bool = False) -> bool:
-    """Bounds of time and memory; no new process, and without ``files`` no new file or byte in one."""
+    """Limit time and memory; no new process, and without ``files`` no file or byte is written."""
     undumpable()
     signal.setitimer(signal.ITIMER_REAL, seconds)
     whole = int(seconds) + 1

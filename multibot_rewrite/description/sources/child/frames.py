@@ -89,7 +89,7 @@ def asking(read: Callable[[int], bytes], write: Callable[[bytes], object]) -> As
 
 
 def connect(xacro: Any, substitution: Any, ask: Ask) -> None:
-    """From now on what xacro opens, looks for and reads of the environment comes from the parent."""
+    """Let the parent answer what xacro opens, looks for and reads of the environment from now on."""
 
     def opened(name: str, *_: object, **__: object) -> io.TextIOBase:
         return io.TextIOWrapper(io.BytesIO(ask(READ, name)), "utf-8")

@@ -90,7 +90,7 @@ def joined(texts: Sequence[str]) -> PiecedText:
 
 
 def placed(text: str, place: Spot) -> PiecedText:
-    """Return a text that is literally at a place."""
+    """Return a text that knows it is copied from a place in a file."""
     return PiecedText(text, [Piece(len(text), place)] if text else ())
 
 
@@ -224,7 +224,7 @@ def _quoted(text: str, part: str) -> Spot | None:
 
 
 def _of(part: str) -> Spot | None:
-    """Return the place of an expression that is literally somewhere, or None."""
+    """Return the place in a file of a text that is copied from there, or None."""
     pieces = pieces_of(part)
     whole = len(pieces) == 1 and pieces[0].place
     return whole._replace(length=len(part)) if whole and not whole.length else None

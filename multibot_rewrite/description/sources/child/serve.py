@@ -71,7 +71,7 @@ def main() -> None:
 
 
 def _asked(control: socket.socket, children: set[int]) -> bool:
-    """Do what the parent asks for next; is there more to come?"""
+    """Do what the parent asks for next; return whether there is more to come."""
     ready, _, _ = select.select([control], [], [], None if children else IDLE_SECONDS)
     if not ready:
         return False
@@ -121,7 +121,7 @@ def _end(pid: int) -> int:
 
 
 def _work(descriptor: int) -> None:
-    """Read what is to be done, put up the fences, do it, tell the result."""
+    """Read the order, restrict this process, do it, and send the result."""
     inbox: BinaryIO = os.fdopen(descriptor, "rb", closefd=False)
     outbox: BinaryIO = os.fdopen(descriptor, "wb", buffering=0, closefd=False)
     request = json.loads(received(inbox.read, {REQUEST: MOST_TEXT})[1])

@@ -33,8 +33,7 @@ def own_mux(nodes: Iterable[NodeFacts], added: Collection[str]) -> tuple[str, ..
 
 
 def to_the_drive(node: NodeFacts) -> NodeFacts:
-    """Return the twist_mux with its output on the usual topic of a drive, where no rule has it on
-    another: its own name is there to be remapped."""
+    """Return the twist_mux with its output on the usual topic of a drive, unless a rule has another."""
     return with_rules(node, {it: it.remapped or _DRIVE for it in sent_commands(node)})
 
 

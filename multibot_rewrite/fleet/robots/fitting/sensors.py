@@ -98,8 +98,7 @@ def by_sensor(node: NodeFacts, offered: Mapping[str, Sequence[str]]) -> NodeFact
 def hearing_sensors(
     node: NodeFacts, nodes: Sequence[NodeFacts], offered: Mapping[str, Sequence[str]]
 ) -> NodeFacts:
-    """Return the node with the robot's only topic of a sensor where it would hear one that nobody
-    sends."""
+    """Return the node with the robot's only topic of a sensor in place of one that nobody sends."""
     kinds = [wanted(node, it) for it in node.endpoints]
     ends = []
     for end, kind in zip(node.endpoints, kinds, strict=True):

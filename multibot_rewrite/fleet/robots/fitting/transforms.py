@@ -8,6 +8,7 @@ from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.conventions import BODY_FRAMES
+from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.description.rewriters.own_defaults import MODEL, default_of, frame_sites
 from multibot_rewrite.description.rewriters.text import text_at
@@ -102,6 +103,11 @@ def sends_too(nodes: Iterable[NodeFacts], free: Collection[str], sent: Sequence[
     sure = (it for it in nodes if not it.when)
     own = {_place(it, bodies) for it in _in_files(sure, free)}
     return any(_place(it, bodies) in own for it in sent)
+
+
+def have_two_parents(sent: Iterable[Edge]) -> bool:
+    """Do transforms that plugins have ``sent`` give a frame two parents? Not all of them are for tf."""
+    return any(len(it) > 1 for it in sets_by_key((it.child, it.parent) for it in sent).values())
 
 
 def _place(edge: Edge, bodies: Collection[str]) -> tuple[str, str]:

@@ -66,7 +66,7 @@ def inside() -> dict[str, str]:
 
 @contextmanager
 def standing_in(**more: Mapping[str, Any]) -> Iterator[None]:
-    """``import launch`` finds the stand-in inside, and all else what it found before."""
+    """Let ``import launch`` find the stand-in inside, and all else what it found before."""
     found: dict[str, Mapping[str, Any]] = {**contents(), **more}
     every = {name: found[package] for name, package in inside().items()} | found
     made = {name: ModuleType(name) for name in every}

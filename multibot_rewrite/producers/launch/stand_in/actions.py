@@ -36,7 +36,7 @@ class Action(Kept):
 
 
 def expose_action(name: str) -> Any:
-    """For files in XML and YAML, which are not read here."""
+    """Return a decorator for files in XML and YAML, which are not read here."""
     return lambda exposed: exposed
 
 

@@ -30,5 +30,5 @@ class Names(NamedTuple):
 
 @cache
 def names() -> Names:
-    """Those of ``launch.yaml``."""
+    """Return the names of ``launch.yaml``."""
     return Names(**load_own_yaml(__file__, "launch.yaml"))

@@ -132,7 +132,7 @@ def _texts(context: LaunchContext, given: Mapping[str, Text]) -> dict[str, str]:
 
 
 def _replace(found: Any, values: Mapping[str, Any]) -> None:
-    """Every value of a key of this name, wherever it is."""
+    """Replace every value of a key of this name, at any depth."""
     if isinstance(found, dict):
         for key, below in found.items():
             _replace(below, values)

@@ -174,7 +174,7 @@ def get_package_share_path(package_name: str, print_warning: bool = True) -> Pat
 
 
 def get_packages_with_prefixes() -> dict[str, str]:
-    """Each package with the folder that it is installed in."""
+    """Return each package with the folder that it is installed in."""
     prefixes = reversed(_prefixes())
     return {
         name: it for it in prefixes for name in os.listdir(os.path.join(it, _INDEX, "packages"))

@@ -95,7 +95,7 @@ class ParameterFile:
 
 
 def evaluate_parameters(context: LaunchContext, parameters: Iterable[Any]) -> tuple[Any, ...]:
-    """Files as paths, values by name; raises TypeError for a value that is none."""
+    """Return files as paths, values by name; raises TypeError for a value that is neither."""
     return tuple(_evaluated(context, it) for it in parameters)
 
 
@@ -109,7 +109,7 @@ def _evaluated(context: LaunchContext, given: Any) -> Any:
 
 
 def flat(given: Any) -> Any:
-    """Parameters with dotted names; files stay as they are, and what nothing is known of."""
+    """Return parameters with dotted names; files and unknown values stay as they are."""
     return dict(_flat(given, ())) if isinstance(given, Mapping) else given
 
 

@@ -53,7 +53,7 @@ def parse_substitution(value: str) -> Parts:
 
 
 def _parts(text: str, at: int, plain: re.Pattern[str], quote: str) -> tuple[Parts, int]:
-    """Texts and substitutions from a place on, and where they end."""
+    """Return texts and substitutions from a place on, and where they end."""
     parts: Parts = []
     while True:
         if found := plain.match(text, at):

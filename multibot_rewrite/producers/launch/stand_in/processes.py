@@ -159,12 +159,12 @@ class ForLoop(Action):
 
 
 def each_of(values: Text, actions: Iterable[Any]) -> ForEach:
-    """``<for_each>``: its actions, of which ``$(for-var)`` reads the values."""
+    """Return ``<for_each>``: its actions, in which ``$(for-var)`` reads the values."""
     return ForEach(values, lambda **known: _repeated(actions, known))
 
 
 def loop_of(length: Text, name: str, actions: Iterable[Any]) -> ForLoop:
-    """``<for>``: its actions, of which ``$(index)`` reads the number."""
+    """Return ``<for>``: its actions, in which ``$(index)`` reads the number."""
     return ForLoop(length, lambda i: _repeated(actions, {name: i}), name)
 
 

@@ -153,7 +153,7 @@ def text_of(context: LaunchContext, value: Text) -> str:
 
 
 def str_of(value: Any) -> Text:
-    """Any value as a text, or several of them."""
+    """Return any value as a text, or a list as several of them."""
     if isinstance(value, list | tuple):
         return [str_of(it) for it in value]
     return value if hasattr(value, "perform") else str(value)
@@ -241,7 +241,7 @@ def _chosen(it: Any, context: LaunchContext) -> str:
 
 
 def _anonymous(it: Any, context: LaunchContext) -> str:
-    """launch takes a random name; it is one for the same text."""
+    """Return one name for the same text, where launch takes a random one."""
     name = text_of(context, it.name)
     return str(context.launch_configurations.setdefault(f"anon{name}", f"{name}_anonymous"))
 

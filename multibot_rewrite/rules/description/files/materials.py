@@ -64,7 +64,7 @@ def _defines(material: etree._Element) -> bool:
 
 @rule("MB132", "material-differs", WARNING)
 def material_differs(subject: Subject) -> Iterator[Problem]:
-    """Each visual whose own definition is ignored."""
+    """Report each visual whose own definition is ignored."""
     looks = [it for it in _looks(subject) if len(it) and it.get("name") and _defines(it)]
     tops = _materials(subject.elements) if looks else []
     first = {it.get("name", ""): _look(it) for it in reversed(tops)}

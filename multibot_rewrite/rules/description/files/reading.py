@@ -44,13 +44,13 @@ package_not_found = declare("MB119", "not-expanded", NOTE)
 
 @rule("MB105", "placeholder-left", WARNING, formats=(URDF, *EVERY))
 def leftover(subject: Subject) -> Iterator[Problem]:
-    """One finding for a description, at the first of them."""
+    """Report the first ``${...}`` or ``$(...)`` that xacro left in a description."""
     return leftover_xacro(subject.inventory)
 
 
 @rule("MB106", "already-rewritten", WARNING, options=OF_TWO)
 def already(subject: Subject) -> Iterator[Problem]:
-    """One finding per file, for the first robot whose name is in it."""
+    """Report the first robot whose name is in a file already."""
     # What has a robot's name by an argument has it by its author.
     robots = [it for it in subject.settings.robots if it not in subject.arguments]
     found = already_rewritten(subject.inventory, robots, False)
@@ -60,7 +60,7 @@ def already(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB109", "sdf-world", ERROR, options=OF_TWO)
 def sdf_world(subject: Subject) -> Iterator[Problem]:
-    """Every world of the file; one that is only a world has no robots."""
+    """Report every world of the file; one that is only a world has no robots."""
     return worlds(subject.inventory) if subject.settings.robots else iter(())
 
 
@@ -71,7 +71,7 @@ def sdf_world(subject: Subject) -> Iterator[Problem]:
     options={"arguments": (ArgumentSet(EVERY_FILE, (("tf_prefix", "left_"),)),)},
 )
 def argument_not_read(subject: Subject) -> Iterator[Problem]:
-    """Arguments of one expansion; one that is for many files need not be for each."""
+    """Report unread arguments of one expansion; one that is for many files need not be for each."""
     if not subject.given:
         return
     from multibot_rewrite.description.checks.arguments import unread_arguments
@@ -88,7 +88,7 @@ def argument_not_read(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB147", "default-of-another-file", WARNING)
 def default_of_another_file(subject: Subject) -> Iterator[Problem]:
-    """Of two files of which none includes the other: a file may set what those in it have."""
+    """Report two files with different defaults; a file may set defaults for those it includes."""
     if len(subject.sources) < 3:
         return
     from multibot_rewrite.description.sources.included_by import includers
@@ -142,7 +142,7 @@ def xml_declaration(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB141", "byte-order-mark", NOTE)
 def byte_order_mark(subject: Subject) -> Iterator[Problem]:
-    """With a fix."""
+    """Report a byte order mark, with a fix."""
     if subject.document.source.startswith(BOM):
         edit = Edit(0, len(BOM), b"", None)
         root = subject.document.root
@@ -151,7 +151,7 @@ def byte_order_mark(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB142", "unused-namespace", NOTE)
 def unused_namespace(subject: Subject) -> Iterator[Problem]:
-    """Prefixes of the root that are written nowhere else in the file."""
+    """Report prefixes of the root that are used nowhere else in the file."""
     root, source = subject.document.root, subject.document.source
     if not root.nsmap or subject.origins:
         return
@@ -169,7 +169,7 @@ def unused_namespace(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB146", "loose-xml", WARNING, formats=(URDF, SRDF, XACRO))
 def loose_xml(subject: Subject) -> Iterator[Problem]:
-    """As the rewrite says it; xacro itself cannot read what is wrong here."""
+    """Report it as the rewrite does; xacro itself cannot read what is wrong here."""
     found = () if subject.origins else loosely_written(subject.document)
     level = ERROR if subject.format == XACRO else ""
     yield from (it._replace(level=level) for it in found)

@@ -32,7 +32,7 @@ from multibot_rewrite.rules.subject import Subject
 
 @rule("MB110", "misspelt", WARNING, formats=(URDF, SRDF, PARAMS, MOVEIT))
 def misspelt(subject: Subject) -> Iterator[Problem]:
-    """Elements, attributes, parameters; what a plugin or <hardware> loads; interfaces."""
+    """Report misspelt elements, attributes and parameters, loaded classes, and interfaces."""
     yield from faults("misspelt", subject)
     yield from misspelt_libraries(subject)
     yield from misspelt_hardware(subject)
@@ -44,7 +44,7 @@ not_read = rule("MB111", "not-read", NOTE, formats=(URDF, PARAMS))(partial(fault
 
 @rule("MB112", "misplaced", WARNING)
 def misplaced(subject: Subject) -> Iterator[Problem]:
-    """By what each reader looks for where, and sensors that no block of a link has."""
+    """Report elements where no reader looks for them, and sensors that no block of a link has."""
     yield from faults("misplaced", subject)
     yield from duplicates.sensors_of_joints(subject)
     yield from duplicates.sensors_elsewhere(subject)
@@ -52,7 +52,7 @@ def misplaced(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB115", "missing", ERROR, formats=(URDF, SRDF, PARAMS, MOVEIT))
 def missing(subject: Subject) -> Iterator[Problem]:
-    """By what each reader requires."""
+    """Report what a reader requires and the file lacks."""
     root = subject.document.root
     for it in faults("missing", subject):
         # What includes a part of a robot may have its name.
@@ -82,7 +82,7 @@ of_another_simulator = rule("MB163", "parameter-of-other-simulator", WARNING)(
 
 @rule("MB120", "unreadable-value", ERROR, formats=(URDF, SRDF, PARAMS, MOVEIT))
 def unreadable_value(subject: Subject) -> Iterator[Problem]:
-    """All but those with a substitution: MB105 reports them."""
+    """Report all but values with a substitution: MB105 reports them."""
     yield from (it for it in faults("value", subject) if "$" not in it.message)
     yield from unreadable_numbers(subject)
 
@@ -94,7 +94,7 @@ unknown_word = rule("MB124", "unknown-word", ERROR, formats=(URDF, SRDF, PARAMS,
 
 @rule("MB125", "out-of-range", ERROR, formats=(URDF, PARAMS, MOVEIT))
 def out_of_range(subject: Subject) -> Iterator[Problem]:
-    """By what each reader takes, and what a sensor needs to see anything; MB120 has what is misread."""
+    """Report values that readers refuse or that blind a sensor; MB120 reports misread ones."""
     misread = {it.element for it in faults("value", subject)}
     yield from faults("range", subject)
     yield from (it for it in unusable_numbers(subject) if it.element not in misread)
@@ -103,7 +103,7 @@ def out_of_range(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB170", "angle-in-degrees", WARNING)
 def angle_in_degrees(subject: Subject) -> Iterator[Problem]:
-    """Values below <gazebo> and of plugins, and limits."""
+    """Report angles below <gazebo> and of plugins, and limits, that are in degrees."""
     yield from faults("degrees", subject)
     yield from joints.origins_in_degrees(subject)
     yield from joints.limits_in_degrees(subject)
@@ -121,7 +121,7 @@ _LIMITED = {"initial_charge": "capacity"}
 
 
 def sees_nothing(subject: Subject) -> Iterator[Problem]:
-    """Pictures without a pixel, scans without a ray, negative rates, ranges in millimetres."""
+    """Report pictures without a pixel, scans without a ray, negative rates, ranges in millimetres."""
     for sensor in subject.elements.every("sensor"):
         type_ = sensor.get("type", "")
         yield from _none_of(sensor)
@@ -186,7 +186,7 @@ FAMILIES = (("gz-sim-", "-system"), ("gazebo_ros_", ""))
 
 @rule("MB160", "class-not-in-library", ERROR)
 def class_not_in_library(subject: Subject) -> Iterator[Problem]:
-    """Systems that come with Gazebo: their libraries have no other classes, in any release."""
+    """Report classes that the libraries of Gazebo's own systems do not have in any release."""
     for it in simulator_plugins(subject):
         library = library_of(it)
         if "::" in it.get("filename", ""):
@@ -257,7 +257,7 @@ def _is_in_sources(subject: Subject, package: str) -> bool:
 
 @rule("MB172", "library-of-ignition", WARNING)
 def library_of_ignition(subject: Subject) -> Iterator[Problem]:
-    """Libraries by their old names, in releases that no longer know them."""
+    """Report libraries by their old names, in releases that no longer know them."""
     release = subject.settings.distro
     if release not in WITHOUT_IGNITION:
         return

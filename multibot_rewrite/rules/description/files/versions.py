@@ -24,14 +24,14 @@ _REFUSED = ("word", "missing", "value", "range", "rotation-twice")
 
 @rule("MB126", "rotation-twice", ERROR)
 def rotation_twice(subject: Subject) -> Iterator[Problem]:
-    """With a fix where both are the same."""
+    """Report it with a fix if both are the same."""
     for it in faults("rotation-twice", subject):
         yield it._replace(edits=convert.one_rotation(_text(subject), it.element, "rpy"))
 
 
 @rule("MB127", "no-rotation", WARNING)
 def no_rotation(subject: Subject) -> Iterator[Problem]:
-    """Quaternions that cannot be made one of length 1."""
+    """Report quaternions that cannot be made one of length 1."""
     if versions.version_of(subject.document.root) < QUATERNIONS:
         return
     for origin in convert.rotated_origins(subject.document.root):
@@ -43,7 +43,7 @@ def no_rotation(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB128", "needs-later-version", WARNING)
 def needs_later_version(subject: Subject) -> Iterator[Problem]:
-    """With a fix that keeps the pose that is written."""
+    """Report it with a fix that keeps the pose in the file."""
     hint = 'write version="1.1" in <robot>' if _reads(subject) >= QUATERNIONS else ""
     for it in faults("needs-later-version", subject):
         yield it._replace(edits=_read_now(subject, it.element), hint=hint)
@@ -62,7 +62,7 @@ def _read_now(subject: Subject, element: _Element) -> tuple[Edit, ...]:
 
 @rule("MB129", "ignored-limit", NOTE)
 def ignored_limit(subject: Subject) -> Iterator[Problem]:
-    """Limits that came with version 1.2; one finding for a <limit>."""
+    """Report limits that came with version 1.2; one finding for a <limit>."""
     newest = versions.KNOWN[-1]
     read = min(versions.version_of(subject.document.root), _reads(subject)) >= newest
     for joint in subject.robot.joints if not read else ():
@@ -77,7 +77,7 @@ def ignored_limit(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB133", "version-of-release", ERROR, options={"distro": "jazzy"})
 def version_of_release(subject: Subject) -> Iterator[Problem]:
-    """With a fix where the file means the same in URDF 1.0."""
+    """Report it with a fix if the file means the same in URDF 1.0."""
     root = subject.document.root
     declared, reads = versions.read_version(root.get("version", "")), _reads(subject)
     if root.tag == "robot" and declared in versions.KNOWN and declared > reads:
@@ -90,7 +90,7 @@ def version_of_release(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB134", "capsule-in-gazebo", WARNING)
 def capsule_in_gazebo(subject: Subject) -> Iterator[Problem]:
-    """One finding for a link, with a fix."""
+    """Report capsules, one finding for a link, with a fix."""
     root = subject.document.root
     if next(root.iterchildren("gazebo"), None) is None:
         return
@@ -101,7 +101,7 @@ def capsule_in_gazebo(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB135", "capsule-in-rviz", NOTE)
 def capsule_in_rviz(subject: Subject) -> Iterator[Problem]:
-    """One finding for a link."""
+    """Report capsules, one finding for a link."""
     reader = versions.reader_of(subject.settings.distro, versions.RVIZ)
     for link, shapes in _links_with_capsules(subject, "visual"):
         if reader.reads != versions.CAPSULE:
@@ -111,7 +111,7 @@ def capsule_in_rviz(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB136", "quaternion-in-mujoco", WARNING, options={"targets": ("mjcf",)})
 def quaternion_in_mujoco(subject: Subject) -> Iterator[Problem]:
-    """With a fix; what urdfdom does not read or refuses, other rules report."""
+    """Report it with a fix; other rules report what urdfdom does not read or refuses."""
     root = subject.document.root
     if "mjcf" not in subject.settings.targets or versions.version_of(root) < QUATERNIONS:
         return

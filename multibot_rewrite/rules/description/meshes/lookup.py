@@ -54,7 +54,7 @@ class MeshFile(NamedTuple):
 
 @memoized
 def lookups(subject: Subject) -> tuple[MeshFile, ...]:
-    """Each file that can be looked for once, by the first element that names it."""
+    """Return each file that can be looked for, once, with the first element that names it."""
     file, roots = subject.document.file.removesuffix(EXPANDED), subject.settings.roots
     first = {it.name: it for it in reversed(used_files(subject)) if it.scheme in ("package", "")}
     asked = (it for it in reversed(first.values()) if "$" not in it.name and "\\" not in it.name)
@@ -121,7 +121,7 @@ def _packages(name: str, first: str, file: str, roots: tuple[str, ...]) -> tuple
 
 @rule("MB701", "mesh-missing", ERROR)
 def mesh_missing(subject: Subject) -> Iterator[Problem]:
-    """Files of packages that were found, and relative ones."""
+    """Report missing files of packages that were found, and missing relative ones."""
     lost = (it for it in lookups(subject) if it.folders and not it.found)
     alike = lists_by_key(
         (_missing_folder(it) or (it.path,), it) for it in lost if not _elsewhere(subject, it)
@@ -147,7 +147,7 @@ def _missing_folder(it: MeshFile) -> tuple[str, ...]:
 
 @rule("MB713", "mesh-elsewhere", NOTE)
 def mesh_elsewhere(subject: Subject) -> Iterator[Problem]:
-    """Relative files that are in the package, but not where the path says."""
+    """Report relative files that are in the package, but not where the path says."""
     for it in lookups(subject):
         found = _elsewhere(subject, it) if it.folders and not it.found else ""
         if found:
@@ -176,7 +176,7 @@ def _elsewhere(subject: Subject, it: MeshFile) -> str:
 
 @rule("MB702", "package-not-found", NOTE)
 def package_not_found(subject: Subject) -> Iterator[Problem]:
-    """Once for each package."""
+    """Report each missing package once."""
     lost = [it for it in lookups(subject) if it.path and not it.folders]
     for package, it in {it.used.path.partition("/")[0]: it for it in reversed(lost)}.items():
         yield problem(it.used, f"package {package!r} was not found", "give its folder with --roots")
@@ -184,7 +184,7 @@ def package_not_found(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB703", "mesh-name-case", ERROR)
 def mesh_name_case(subject: Subject) -> Iterator[Problem]:
-    """Paths that differ from the file only in upper and lower case."""
+    """Report paths that differ from the file only in upper and lower case."""
     for it in lookups(subject):
         if it.found and it.found != os.path.normpath(it.path):
             message = f"{it.path!r} is {it.found!r} on the disk"
@@ -213,7 +213,7 @@ def box_of(subject: Subject, mesh: _Element, whole: bool = True) -> Extent | Non
 
 @memoized
 def _paths(subject: Subject) -> Mapping[str, str]:
-    """Where the meshes are on the disk, by the name in the description."""
+    """Return where the meshes are on the disk, by the name in the description."""
     asked = (
         (it, [os.path.join(above, it.found) for above in it.folders]) for it in lookups(subject)
     )
@@ -224,7 +224,7 @@ def _paths(subject: Subject) -> Mapping[str, str]:
 
 @rule("MB714", "mesh-units", WARNING)
 def mesh_units(subject: Subject) -> Iterator[Problem]:
-    """Each mesh once; the beginning of a file is enough to tell that it is too large."""
+    """Report each mesh once; the beginning of a file is enough to tell that it is too large."""
     seen: set[tuple[str, str]] = set()
     for mesh in (it.element for it in used_files(subject) if it.element.tag == "mesh"):
         key = (mesh.get("filename", ""), mesh.get("scale", ""))

@@ -37,7 +37,7 @@ class Used(NamedTuple):
 
 @memoized
 def used_files(subject: Subject) -> tuple[Used, ...]:
-    """Every file that a link's shapes and materials name, in document order."""
+    """Return every file that a link's shapes and materials name, in document order."""
     tags, elements = ("mesh", "texture"), subject.elements
     files = elements.root.iter(*tags) if elements.every("texture") else elements.every("mesh")
     found = ((it, it.get("filename")) for it in files)
@@ -81,7 +81,7 @@ def path_of_one_machine(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB705", "backslash-in-path", WARNING)
 def backslash_in_path(subject: Subject) -> Iterator[Problem]:
-    """File names with a backslash."""
+    """Report file names with a backslash."""
     for it in used_files(subject):
         if "\\" in it.name:
             right = it.name.replace("\\", "/")
@@ -90,7 +90,7 @@ def backslash_in_path(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB706", "mesh-without-file", ERROR)
 def mesh_without_file(subject: Subject) -> Iterator[Problem]:
-    """Meshes of a link's shapes with an empty name or none; SDF's have a ``<uri>``."""
+    """Report meshes of a link's shapes with an empty name or none; SDF's have a ``<uri>``."""
     for mesh in subject.elements.every("mesh"):
         name = mesh.get("filename")
         if (name is None or not name.strip()) and _is_shape(mesh):
@@ -146,7 +146,7 @@ PARTLY = {ending: said for (ending,), said in ROWS["meshes"]}
 
 @rule("MB707", "mesh-format-unknown", WARNING)
 def mesh_format_unknown(subject: Subject) -> Iterator[Problem]:
-    """Extensions of meshes that no program knows."""
+    """Report extensions of meshes that no program knows."""
     for it in _meshes(subject):
         ending = _ending(it)
         if ending not in ("stl", "dae", "obj") and ending not in PARTLY:
@@ -166,7 +166,7 @@ def _ending(it: Used) -> str:
 
 @rule("MB708", "mesh-format-partly", NOTE)
 def mesh_format_partly(subject: Subject) -> Iterator[Problem]:
-    """Once for each such format."""
+    """Report each such format once."""
     seen = set()
     for it in _meshes(subject):
         ending = _ending(it)

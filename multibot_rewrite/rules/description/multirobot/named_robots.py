@@ -85,7 +85,7 @@ shared_below_namespace = rule(
 
 @rule("MB424", "collision-number-unstable", ERROR, options=OF_TWO)
 def collision_number_unstable(subject: Subject) -> Iterator[Problem]:
-    """Contacts that a rewrite rejects as MB424."""
+    """Report contacts that a rewrite rejects as MB424."""
     if not subject.settings.robots or subject.document.root.find(".//contact") is None:
         return
     from multibot_rewrite.description.rewriters.contact import respell_collisions
@@ -106,7 +106,7 @@ def collision_number_unstable(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB426", "process-wide-rule", WARNING, options={"distro": "humble"})
 def process_wide_rule(subject: Subject) -> Iterator[Problem]:
-    """Rules that apply to other robots' nodes; if no robots are named, those with absolute targets."""
+    """Report rules that apply to other robots' nodes; without named robots absolute targets."""
     settings = subject.settings
     naming = settings.naming if settings.robots else AS_WRITTEN
     yield from hazards.process_wide(subject.inventory, naming)

@@ -104,7 +104,7 @@ def _names_in(text: str) -> Iterator[str]:
 
 
 def _properties_by_name(root: _Element) -> Mapping[str, list[str]]:
-    """Name -> the properties whose values use it."""
+    """Return a name -> the properties whose values use it."""
     every = ((it, it.get("value", "")) for it in root.iter("{*}property"))
     made = ((it, value) for it, value in every if "$" in value and is_xacro(it))
     users = lists_by_key(
@@ -130,7 +130,7 @@ def parameters(macro: _Element) -> list[str]:
 
 
 def prefixes(names: list[str]) -> list[str]:
-    """Those of the names that people use for a prefix."""
+    """Return those of the names that people use for a prefix."""
     return [it for it in names if PREFIX.fullmatch(it)]
 
 
@@ -163,7 +163,7 @@ _BUILTIN = frozenset(
 
 @rule("MB417", "prefix-forgotten", WARNING, formats=(XACRO,))
 def prefix_forgotten(subject: Subject) -> Iterator[Problem]:
-    """Literal names where others have the prefix, and literal uses of names that have it."""
+    """Report literal names where others have the prefix, and literal uses of names that have it."""
     for scope in scopes(subject.document.root):
         for kind in ("link", "joint"):
             yield from _forgotten(scope, [it for it in scope.declared if it.element.tag == kind])
@@ -179,7 +179,7 @@ def prefix_forgotten(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB418", "prefix-unused", WARNING, formats=(XACRO,))
 def prefix_unused(subject: Subject) -> Iterator[Problem]:
-    """Parameters and arguments that nothing in the file reads, and no included file can."""
+    """Report parameters and arguments that nothing in the file reads, and no included file can."""
     root = subject.document.root
     for macro in root.iter("{*}macro"):
         names = prefixes(parameters(macro)) if is_xacro(macro) else []
@@ -202,7 +202,7 @@ def prefix_unused(subject: Subject) -> Iterator[Problem]:
 
 
 def _forgotten(scope: Scope, declared: list[WrittenName]) -> Iterator[Problem]:
-    """Literal names, where most links (joints) have the prefix."""
+    """Report literal names, where most links (joints) have the prefix."""
     bare = [it for it in declared if not it.words and it.text.strip("/") not in WORLD_FRAMES]
     prefixed = sum(1 for it in declared if it.words & scope.prefix_names)
     owner = "this file" if scope.macro is None else f"macro {scope.macro.get('name', '')!r}"

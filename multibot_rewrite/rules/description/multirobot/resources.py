@@ -17,7 +17,7 @@ from multibot_rewrite.system.records import NOWHERE
 
 @rule("MB411", "one-controller-file", NOTE)
 def one_controller_file(subject: Subject) -> Iterator[Problem]:
-    """Literal ``<parameters>`` of plugins that load a controller manager."""
+    """Report literal ``<parameters>`` of plugins that load a controller manager."""
     plugins = process_wide_plugins(subject)
     found = [it for plugin in plugins for it in plugin.iterchildren("parameters")]
     starts = starts_of(subject, found)
@@ -57,7 +57,7 @@ one_device = declaration.ONE_DEVICE._replace(
 
 @rule("MB415", "sensor-found-by-bare-name", NOTE)
 def sensor_found_by_bare_name(subject: Subject) -> Iterator[Problem]:
-    """Only if no robots are named: otherwise MB425 knows whether their names differ."""
+    """Report such sensors only if no robots are named: otherwise MB425 knows if names differ."""
     sensors = subject.inventory.declared["sensor"].values()
     if subject.settings.robots or not any(claim_is_fixed(subject, it) for it in sensors):
         return
@@ -67,7 +67,7 @@ def sensor_found_by_bare_name(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB416", "world-system-in-robot", WARNING)
 def world_system_in_robot(subject: Subject) -> Iterator[Problem]:
-    """Plugins whose library is one of the world's systems."""
+    """Report plugins whose library is one of the world's systems."""
     for it in hazards.world_systems(subject.inventory):
         yield it._replace(
             hint="write its <plugin> into the <world>, once, and take it out of the robot"

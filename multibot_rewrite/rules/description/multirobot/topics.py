@@ -33,8 +33,8 @@ ONE_TF = make_naming("frames-per-robot")
 
 
 def claims_of(subject: Subject, kinds: tuple[str, ...]) -> list[Claim]:
-    """Claims whose first kind is one of ``kinds``, which are no names of links or joints; only plugins,
-    sensors and hardware have them."""
+    """Return claims whose first kind is one of ``kinds``, which are no names of links or joints;
+    only plugins, sensors and hardware have them."""
     by_kind = _claims_by_kind(subject) if subject.inventory.hosts else {}
     found = [it for kind in kinds for it in by_kind.get(kind, ())]
     return [claim for _, claim in sorted(found, key=itemgetter(0))]
@@ -55,7 +55,7 @@ def is_plain(text: str) -> bool:
 
 
 def tag_of(claim: Claim) -> str:
-    """How a message names the element of a claim."""
+    """Return how a message names the element of a claim."""
     name = claim.element.get("name") if claim.element.tag == "param" else None
     return f"parameter {name!r}" if name else f"<{claim.element.tag}>"
 
@@ -67,7 +67,7 @@ def process_wide_plugins(subject: Subject) -> set[_Element]:
 
 
 def inserted(subject: Subject) -> Iterator[tuple[_Element, tuple[str, str, str]]]:
-    """Kind, default and tag of what urdf-postfix would insert, except namespaces."""
+    """Yield kind, default and tag of what urdf-postfix would insert, except namespaces."""
     for host, it in _insertions(subject):
         tag = it.xml[1:].partition(">")[0].partition(" ")[0]
         if it.shared and it.kind != "namespace" and tag != "remapping":
@@ -107,7 +107,7 @@ GZ_SECTIONS = ("plugin gz-", "element sensor", "element gazebo", "sensor ")
 
 @rule("MB401", "absolute-topic", NOTE)
 def absolute_topic(subject: Subject) -> Iterator[Problem]:
-    """Absolute ROS names that are not shared by the settings."""
+    """Report absolute ROS names that are not shared by the settings."""
     has_wide = controller_way(subject.inventory.release).process_wide
     wide = process_wide_plugins(subject) if has_wide else set()
     shared = subject.settings.naming.shared_topics | set(TF_TOPICS)
@@ -133,7 +133,7 @@ def _target(claim: Claim) -> str:
 
 @rule("MB402", "gz-topic-shared", NOTE)
 def gz_topic_shared(subject: Subject) -> Iterator[Problem]:
-    """Literal gz topics."""
+    """Report literal gz topics."""
     claims = [it for it in claims_of(subject, ROS_KINDS) if _is_gz(it)]
     if not claims or _is_classic(subject):
         return
@@ -160,7 +160,7 @@ def _is_classic(subject: Subject) -> bool:
 
 @rule("MB413", "default-topic-shared", NOTE)
 def default_topic_shared(subject: Subject) -> Iterator[Problem]:
-    """Topics, services and prefixes of names that would have to be inserted for a robot."""
+    """Report topics, services and prefixes of names that would have to be inserted for a robot."""
     for element, (kind, old, _) in inserted(subject):
         if kind in NOUNS:
             message = f"its default {NOUNS[kind]} {old!r} is the same for every robot"
@@ -169,7 +169,7 @@ def default_topic_shared(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB403", "hard-coded-namespace", NOTE)
 def hard_coded_namespace(subject: Subject) -> Iterator[Problem]:
-    """Each literal namespace, at its first place."""
+    """Report each literal namespace, at its first place."""
     plain = (it for it in claims_of(subject, ("namespace",)) if is_plain(it.value))
     found = lists_by_key((it.value, it) for it in plain if claim_is_fixed(subject, it))
     for value, claims in found.items():
@@ -195,7 +195,7 @@ def no_namespace(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB410", "one-robot-description", NOTE)
 def one_robot_description(subject: Subject) -> Iterator[Problem]:
-    """Absolute names of descriptions and of the nodes that hold them."""
+    """Report absolute names of descriptions and of the nodes that hold them."""
     found = [*hazards.one_description(subject.inventory, AS_WRITTEN)]
     starts = starts_of(subject, [it.element for it in found])
     yield from (it for it in found if is_fixed(subject, starts[it.element], ""))
@@ -203,19 +203,19 @@ def one_robot_description(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB419", "ignored-model-namespace", WARNING)
 def ignored_model_namespace(subject: Subject) -> Iterator[Problem]:
-    """Each of them."""
+    """Report each ignored namespace."""
     return ignored_namespaces(subject.inventory, subject.tree)
 
 
 @rule("MB429", "model-namespace-in-use", WARNING, options={"distro": "rolling"})
 def model_namespace_in_use(subject: Subject) -> Iterator[Problem]:
-    """Each of them."""
+    """Report each namespace that is in use."""
     return used_namespaces(subject.inventory, subject.tree)
 
 
 @rule("MB404", "robot-name-in-frame", WARNING)
 def robot_name_in_frame(subject: Subject) -> Iterator[Problem]:
-    """Frames that are a link with something and a slash in front."""
+    """Report frames that are a link with something and a slash in front."""
     links = subject.inventory.declared["link"]
     for claim in subject.inventory.claims if subject.inventory.hosts else ():
         if "/" not in claim.value or "frame" not in claim.site.kinds:
@@ -232,7 +232,7 @@ def robot_name_in_frame(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB406", "default-frame-shared", NOTE)
 def default_frame_shared(subject: Subject) -> Iterator[Problem]:
-    """Frames that would have to be inserted for a robot."""
+    """Report frames that would have to be inserted for a robot."""
     for element, item in inserted(subject):
         if item[0] in ("frame", "link"):
             message = f"without <{item[2]}> the plugin uses {item[1]!r}, the same for every robot"
@@ -241,7 +241,7 @@ def default_frame_shared(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB433", "default-frame-below-model", NOTE)
 def default_frame_below_model(subject: Subject) -> Iterator[Problem]:
-    """Frames that would be below the name by which the model is spawned."""
+    """Report frames that would be below the name by which the model is spawned."""
     for element, item in missing_defaults(subject):
         if item.kind in FRAME_KINDS:
             tag = item.xml[1:].partition(">")[0]
@@ -252,7 +252,7 @@ def default_frame_below_model(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB407", "fixed-odometry-frame", NOTE)
 def fixed_odometry_frame(subject: Subject) -> Iterator[Problem]:
-    """Literal odometry frames that are no links and hold no robot's name."""
+    """Report literal odometry frames that are no links and hold no robot's name."""
     if not subject.inventory.hosts:
         return
     links, shared = subject.inventory.declared["link"], subject.settings.naming.shared_frames
@@ -272,7 +272,7 @@ def fixed_odometry_frame(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB408", "tf-not-remapped", NOTE)
 def tf_not_remapped(subject: Subject) -> Iterator[Problem]:
-    """Plugins with tf switched on and no rule for it, unless the robots share one /tf."""
+    """Report plugins that send tf without a rule for it, unless the robots share one /tf."""
     if subject.settings.robots and not subject.settings.naming.layout.tf_per_robot:
         return
     for host in subject.inventory.hosts:

@@ -97,7 +97,7 @@ def wheels_turn_wrong(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB624", "wheel-cannot-turn", ERROR)
 def wheel_cannot_turn(subject: Subject) -> Iterator[Problem]:
-    """Each such joint that a drive names."""
+    """Report each such joint that a drive names."""
     for element, joint in wheel_joints(subject):
         if fault := _fault_of(joint):
             yield Problem(element, f"wheel joint {joint.name!r} {fault}", "", "make it continuous")
@@ -120,7 +120,7 @@ def _fault_of(joint: Joint) -> str:
 
 @rule("MB636", "wheel-without-grip", WARNING)
 def wheel_without_grip(subject: Subject) -> Iterator[Problem]:
-    """Blocks of links on a continuous joint that something drives, if nothing else moves the robot."""
+    """Report blocks of driven links on a continuous joint, if nothing else moves the robot."""
     blocks = [it for it in subject.elements.tops("gazebo") if it.get("reference")]
     driven = driven_joints(subject) if blocks and not _is_pushed(subject) else ()
     wheels = {
@@ -161,10 +161,8 @@ DRIVEN = ("revolute", "continuous", "prismatic")
 
 @rule("MB633", "too-weak-for-gravity", NOTE)
 def too_weak_for_gravity(subject: Subject) -> Iterator[Problem]:
-    """Driven joints with an effort that are not balanced at 0, if 0 is within their limits.
-
-    Where nothing says what is driven, all are.
-    """
+    """Report driven joints with an effort that are not balanced at 0, if 0 is within their limits.
+    Without any known drive all joints count as driven."""
     driven = driven_joints(subject)
     for joint in subject.robot.joints:
         if driven and joint.name not in driven:
@@ -181,7 +179,7 @@ def too_weak_for_gravity(subject: Subject) -> Iterator[Problem]:
 
 
 def _most(subject: Subject, joint: Joint) -> float:
-    """More than gravity can do at a joint whatever its axis: one quick look, enough for most."""
+    """Return an upper bound of gravity at a joint with any axis: quick, and enough for most."""
     pose = link_poses(subject).get(joint.child)
     weight = carried(subject).get(joint.child, NO_WEIGHT)
     if pose is None or not weight.mass:
@@ -214,7 +212,7 @@ def _load(subject: Subject, joint: Joint) -> float:
 
 @rule("MB634", "tips-over", WARNING)
 def tips_over(subject: Subject) -> Iterator[Problem]:
-    """Robots with a drive whose collisions are all simple, and which stand on more than one point."""
+    """Report robots with a drive and simple collisions that stand on more than one point."""
     points = contacts(subject) if drives(subject) else None
     corners = hull(points) if points else []
     if len(corners) < 2:
@@ -241,7 +239,7 @@ NO_WEIGHT = Weight(0.0, (0.0, 0.0, 0.0))
 
 @memoized
 def carried(subject: Subject) -> Mapping[str, Weight]:
-    """Each link with all that is below it, in the root's frame, all joints at 0."""
+    """Return each link with all that is below it, in the root's frame, all joints at 0."""
     poses = link_poses(subject)
     found = dict.fromkeys(poses, NO_WEIGHT)
     afloat, origins = _without_gravity(subject), subject.elements.first("origin")
@@ -272,7 +270,7 @@ def _without_gravity(subject: Subject) -> set[str]:
 
 
 def _together(one: Weight, other: Weight) -> Weight:
-    """Two weights as one."""
+    """Return two weights as one."""
     if not one.mass or not other.mass:
         return one if one.mass else other
     mass = one.mass + other.mass

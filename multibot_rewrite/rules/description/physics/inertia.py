@@ -52,7 +52,7 @@ def moves(robot: Robot, name: str) -> bool:
 
 
 def parts_with_mass(robot: Robot) -> dict[str, int]:
-    """Body -> how many of its links have a mass."""
+    """Return body -> how many of its links have a mass."""
     count = dict.fromkeys(robot.body.values(), 0)
     for link, inertial in inertials(robot):
         if link.name in robot.body and inertial.mass != 0:
@@ -78,7 +78,7 @@ DENSEST, MASSIVE = 25_000.0, 5.0
 
 @rule("MB605", "inertia-zero", WARNING)
 def inertia_zero(subject: Subject) -> Iterator[Problem]:
-    """Bodies with mass and no inertia, also not from a link that is fixed to them."""
+    """Report bodies with mass and no inertia, also not from a link that is fixed to them."""
     robot = subject.robot
     parts: dict[str, int] | None = None
     for link, inertial in inertials(robot):
@@ -94,7 +94,7 @@ def inertia_zero(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB606", "impossible-inertia", ERROR)
 def impossible_inertia(subject: Subject) -> Iterator[Problem]:
-    """Inertias that no distribution of mass has, by more than rounding."""
+    """Report inertias that no distribution of mass has, by more than rounding."""
     root, release = subject.document.root, subject.settings.distro
     parts: dict[str, int] | None = None
     for link, inertial in inertials(subject.robot):
@@ -152,7 +152,7 @@ def _moment(inertia: _Element, name: str) -> float | None:
 
 @rule("MB608", "inertia-scale", WARNING)
 def inertia_scale(subject: Subject) -> Iterator[Problem]:
-    """Radii of gyration that no robot has, or that do not fit the size of the link's shapes."""
+    """Report radii of gyration that no robot has, or that do not fit the size of the shapes."""
     for link, inertial in inertials(subject.robot):
         mass, moments = inertial.mass, inertial.moments
         if mass is None or moments is None or mass < LIGHT:
@@ -180,7 +180,7 @@ def inertia_scale(subject: Subject) -> Iterator[Problem]:
 
 
 def _size(link: _Element) -> float:
-    """How far a link's shapes reach from its origin; 0 if it has a mesh, whose size is not known."""
+    """Return how far a link's shapes reach from its origin; 0 if it has a mesh of unknown size."""
     far = 0.0
     for geometry in link.iter("geometry"):
         shape = next(geometry.iterchildren("*"), None)
@@ -221,7 +221,7 @@ def fault_of(moments: Vector) -> str:
 
 
 def eigenvalues(moments: tuple[float, ...]) -> Vector:
-    """Those of a symmetric 3x3 matrix, in order."""
+    """Return the eigenvalues of a symmetric 3x3 matrix, in order."""
     size = max(map(abs, moments))
     xx, xy, xz, yy, yz, zz = (it / size for it in moments)
     off = xy * xy + xz * xz + yz * yz
@@ -297,7 +297,7 @@ def no_inertia(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB612", "mass-tiny", NOTE)
 def mass_tiny(subject: Subject) -> Iterator[Problem]:
-    """Bodies of nearly no mass."""
+    """Report bodies of nearly no mass."""
     robot = subject.robot
     if not any(it.mass is not None and 0 < it.mass <= TINY_MASS for _, it in inertials(robot)):
         return
@@ -310,7 +310,7 @@ def mass_tiny(subject: Subject) -> Iterator[Problem]:
 
 
 def _masses(robot: Robot) -> dict[str, float]:
-    """Body -> its mass with all that is fixed to it; what is not a number counts as 1 kg."""
+    """Return body -> its mass with all that is fixed to it; what is no number counts as 1 kg."""
     mass = dict.fromkeys(robot.body.values(), 0.0)
     for link, inertial in inertials(robot):
         body = robot.body.get(link.name)

@@ -27,7 +27,7 @@ LARGE_SCALE, SMALL_SCALE, UNEVEN = 50.0, 1e-5, 100.0
 
 @rule("MB611", "visual-without-collision", NOTE)
 def visual_without_collision(subject: Subject) -> Iterator[Problem]:
-    """Bodies; one finding for the robot where no link has a collision."""
+    """Report bodies; one finding for the robot if no link has a collision."""
     robot, root = subject.robot, subject.document.root
     if root.tag != "robot" or not robot.joints:
         return
@@ -50,7 +50,7 @@ def _bodies_with(subject: Subject, tag: str) -> dict[str, None]:
 
 @rule("MB614", "shape-units", WARNING)
 def shape_units(subject: Subject) -> Iterator[Problem]:
-    """Shapes longer than LONG_SHAPE metres; a long and thin one may be a rail."""
+    """Report shapes longer than LONG_SHAPE metres; a long and thin one may be a rail."""
     for shape in _geometries(subject.elements, *inertia.SHAPES):
         sizes = inertia.sizes_of(shape)
         if sizes and min(sizes) >= LONG_SHAPE / 5 and max(sizes) >= LONG_SHAPE:
@@ -61,7 +61,7 @@ def shape_units(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB615", "shape-missing", WARNING)
 def shape_missing(subject: Subject) -> Iterator[Problem]:
-    """Elements without a shape that urdfdom reads."""
+    """Report elements without a shape that urdfdom reads."""
     # MB128 reports a capsule in a file of URDF 1.0.
     known = {*inertia.SHAPES, "mesh", "capsule"}
     found = parts(subject) if subject.document.root.tag == "robot" else ()
@@ -117,7 +117,7 @@ FAR, FAR_OF_MESH, LIGHT = 1.0, 3.0, 0.01
 
 @rule("MB631", "collision-away", WARNING)
 def collision_away(subject: Subject) -> Iterator[Problem]:
-    """Links with shapes of known size, and links with one mesh for both."""
+    """Report links with shapes of known size, and links with one mesh for both."""
     for link in subject.robot.links:
         seen, hard = _shapes(subject)[link.element]
         if not seen or not hard or _alike(subject, seen[0], hard[0]):
@@ -181,7 +181,7 @@ def _extent(subject: Subject, shape: _Element, pose: Pose) -> Extent | None:
 
 
 def _gap(one: Extent, other: Extent | None) -> float:
-    """How far two boxes are apart; 0 where they touch or the other is not known."""
+    """Return how far two boxes are apart; 0 if they touch or the other is unknown."""
     if other is None:
         return 0.0
     if min(max(minus(it.high, it.low)) for it in (one, other)) < MARKER:
@@ -191,7 +191,7 @@ def _gap(one: Extent, other: Extent | None) -> float:
 
 
 def _apart(one: Extent, other: Extent) -> float:
-    """How far two boxes are apart; below 0 where one is in the other."""
+    """Return how far two boxes are apart; below 0 if one is in the other."""
     ways = zip(one.low, one.high, other.low, other.high, strict=True)
     return max(max(low - b, a - high) for low, high, a, b in ways)
 
@@ -209,7 +209,7 @@ def _covers_next(subject: Subject, link: Link, hard: _Shapes) -> bool:
 
 
 def _moved(subject: Subject, seen: _Shapes, hard: _Shapes) -> float:
-    """How far the one collision is from the one visual of the same mesh."""
+    """Return how far the one collision is from the one visual of the same mesh."""
     if len(seen) != 1 or len(hard) != 1:
         return 0.0
     (one, visual), (other, collision) = seen[0], hard[0]
@@ -225,7 +225,7 @@ def _moved(subject: Subject, seen: _Shapes, hard: _Shapes) -> float:
 
 @rule("MB632", "centre-of-mass-outside", WARNING)
 def centre_of_mass_outside(subject: Subject) -> Iterator[Problem]:
-    """Links whose shapes have a known size; others only where the centre is metres away from all."""
+    """Report links with shapes of known size; others only if the centre is metres from all."""
     for link, inertial in inertia.inertials(subject.robot):
         if (inertial.mass or 0) < LIGHT:
             continue
@@ -239,7 +239,7 @@ def centre_of_mass_outside(subject: Subject) -> Iterator[Problem]:
 
 
 def _outside(subject: Subject, link: Link, centre: Vector) -> float:
-    """How far a centre is from the shapes of its link, if that is too far."""
+    """Return how far a centre is from the shapes of its link, if that is too far."""
     seen, hard = _shapes(subject)[link.element]
     shapes = seen + hard
     # A mesh may show less than what weighs: the shafts of an arm's wrist are within the link before.

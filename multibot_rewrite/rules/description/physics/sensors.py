@@ -42,8 +42,8 @@ _OPTICAL = lazy_compile(r"(?:^|[_/-])optical(?:[_/-]?(?:frame|link|joint))?(?:[_
 
 @rule("MB625", "optical-frame-not-rotated", WARNING)
 def optical_frame_not_rotated(subject: Subject) -> Iterator[Problem]:
-    """Links with optical at the end of their names that are not turned, and neither is what they are
-    fixed to."""
+    """Report links with optical at the end of their names that are not rotated, nor is what they
+    are fixed to."""
     for link in subject.robot.links:
         if not _OPTICAL.search(link.name.lower()):
             continue
@@ -66,7 +66,7 @@ def _is_straight(pose: Pose | None) -> bool:
 
 @rule("MB626", "camera-at-optical-frame", WARNING)
 def camera_at_optical_frame(subject: Subject) -> Iterator[Problem]:
-    """Cameras at a link whose joint turns it as an optical frame, with no rotation of their own."""
+    """Report cameras at a link that its joint rotates as an optical frame, without an own rotation."""
     for it in sensors(subject):
         if it.type not in CAMERAS or "optical" not in it.link.name.lower():
             continue
@@ -85,7 +85,7 @@ def _is_optical(pose: Pose) -> bool:
 
 @rule("MB627", "sensor-in-ground", WARNING)
 def sensor_in_ground(subject: Subject) -> Iterator[Problem]:
-    """Sensors below the lowest point of all driven wheels."""
+    """Report sensors below the lowest point of all driven wheels."""
     found = [it for it in sensors(subject) if it.type in CAMERAS | LIDARS]
     ground = ground_of(subject) if found else None
     if ground is None:
@@ -100,7 +100,7 @@ def sensor_in_ground(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB628", "scan-turned-around", WARNING)
 def scan_turned_around(subject: Subject) -> Iterator[Problem]:
-    """Ranges, and angles; a Classic lidar that casts rays turns them the other way round."""
+    """Report ranges and angles; a Classic lidar that casts rays swaps inverted angles itself."""
     for it in subject.elements.every("lidar", "ray", "logical_camera"):
         sensor = it.getparent()
         casts = sensor is not None and sensor.get("type") == "ray"
@@ -135,7 +135,7 @@ def camera_clip(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB630", "lidar-in-its-housing", WARNING)
 def lidar_in_its_housing(subject: Subject) -> Iterator[Problem]:
-    """Lidars that cast rays at collisions; those on a graphics card do not see faces from behind."""
+    """Report lidars that cast rays at collisions; on a graphics card they pass faces from behind."""
     for it in sensors(subject):
         near = number_at(it.element, "ray/range/min") if it.type == "ray" else None
         way = 0.0 if near is None else _way_out(it)
@@ -147,7 +147,7 @@ def lidar_in_its_housing(subject: Subject) -> Iterator[Problem]:
 
 
 def _way_out(sensor: Sensor) -> float:
-    """How far a ray along x is inside a collision shape of the sensor's link."""
+    """Return how far a ray along x is inside a collision shape of the sensor's link."""
     found = [0.0]
     for element, shape in shapes_of(sensor.link.element, "collision"):
         own = origin_of(element)

@@ -41,7 +41,7 @@ UNDRIVEN = ("fixed", "floating", "planar", "")
 
 @rule("MB223", "transmission-without-joint", WARNING)
 def transmission_without_joint(subject: Subject) -> Iterator[Problem]:
-    """Transmissions of the robot; those of the PR2 name joints by other tags."""
+    """Report transmissions of the robot; those of the PR2 name joints by other tags."""
     with_joint = subject.elements.first("joint")
     for it in subject.elements.tops("transmission"):
         if it in with_joint:
@@ -53,7 +53,7 @@ def transmission_without_joint(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB224", "driven-fixed-joint", ERROR)
 def driven_fixed_joint(subject: Subject) -> Iterator[Problem]:
-    """Joints that ros2_control is to move and that cannot."""
+    """Report joints that ros2_control is to move and that cannot."""
     for it, joint in controlled_joints(subject):
         if joint.type == "fixed":
             message = f"joint {joint.name!r} is fixed"
@@ -62,7 +62,7 @@ def driven_fixed_joint(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB225", "fixed-transmission", WARNING)
 def fixed_transmission(subject: Subject) -> Iterator[Problem]:
-    """Joints of transmissions that cannot move."""
+    """Report joints of transmissions that cannot move."""
     if all(it.type != "fixed" for it in subject.robot.joints):
         return
     for transmission in subject.elements.tops("transmission"):
@@ -74,7 +74,7 @@ def fixed_transmission(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB226", "commanded-mimic", WARNING)
 def commanded_mimic(subject: Subject) -> Iterator[Problem]:
-    """Mimicking joints with a command interface of their own."""
+    """Report mimicking joints with a command interface of their own."""
     for it, other in _mimicking(subject):
         if it.find("command_interface") is not None:
             message = f"joint {it.get('name')!r} mimics {other!r} and has a command interface"
@@ -84,7 +84,7 @@ def commanded_mimic(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB227", "mimic-without-its-joint", WARNING)
 def mimic_without_its_joint(subject: Subject) -> Iterator[Problem]:
-    """Mimicking joints whose leader is not in the same <ros2_control>."""
+    """Report mimicking joints whose leader is not in the same <ros2_control>."""
     yield from mimic_of_none(subject)
     joints = (it for it in subject.elements.owners() if it.tag == "joint")
     beside = sets_by_key((it.getparent(), name_of(it)) for it in joints)
@@ -97,7 +97,7 @@ def mimic_without_its_joint(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB228", "undriven-joint", NOTE)
 def undriven_joint(subject: Subject) -> Iterator[Problem]:
-    """One finding per robot: the joints that were forgotten, or are passive."""
+    """Report, once per robot, joints that nothing drives: forgotten or passive."""
     if not subject.elements.tops("ros2_control", "transmission"):
         return
     named = driven_joints(subject)
@@ -114,7 +114,7 @@ def _needs_a_drive(joint: Joint) -> bool:
 
 
 def _mimicking(subject: Subject) -> Iterator[tuple[_Element, str]]:
-    """Joints in <ros2_control> that follow another one, and which."""
+    """Yield joints in <ros2_control> that follow another one, and which."""
     for it, joint in controlled_joints(subject):
         mimic = joint.element.find("mimic")
         if mimic is not None and it.get("mimic", "").strip().lower() not in ("false", "0"):
@@ -123,7 +123,7 @@ def _mimicking(subject: Subject) -> Iterator[tuple[_Element, str]]:
 
 @rule("MB231", "repeated-interface", ERROR)
 def repeated_interface(subject: Subject) -> Iterator[Problem]:
-    """Interfaces of one component."""
+    """Report interfaces of one component."""
     for owner in subject.elements.owners():
         seen: set[tuple[str, str]] = set()
         for it in owner.iterchildren(COMMAND, STATE):
@@ -137,7 +137,7 @@ def repeated_interface(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB232", "interface-of-two-systems", ERROR)
 def interface_of_two_systems(subject: Subject) -> Iterator[Problem]:
-    """One finding for two systems: the first of what both export."""
+    """Report, once for two systems, the first interface that both export."""
     first: dict[str, _Element] = {}
     both: dict[tuple[_Element, _Element], list[tuple[_Element, str]]] = {}
     for system in subject.elements.tops("ros2_control"):
@@ -155,7 +155,7 @@ def interface_of_two_systems(subject: Subject) -> Iterator[Problem]:
 
 
 def misspelt_interfaces(subject: Subject) -> Iterator[Problem]:
-    """Interfaces of joints."""
+    """Report interfaces of joints."""
     for owner in subject.elements.owners():
         for it in owner.iterchildren(COMMAND, STATE) if owner.tag == "joint" else ():
             name = name_of(it)
@@ -167,7 +167,7 @@ def misspelt_interfaces(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB239", "commanded-joint-without-state", NOTE)
 def commanded_joint_without_state(subject: Subject) -> Iterator[Problem]:
-    """One finding a robot: the first of such joints; another system may have the state."""
+    """Report the first such joint of a robot; another system may have the state."""
     systems = [
         it for it in subject.elements.tops("ros2_control") if it.find("hardware") is not None
     ]
@@ -188,7 +188,7 @@ def _meant(name: str) -> str:
 
 @rule("MB233", "simulated-hardware-not-loaded", WARNING)
 def simulated_hardware_not_loaded(subject: Subject) -> Iterator[Problem]:
-    """Systems of simulators in a whole description without any plugin that makes a manager."""
+    """Report systems of simulators in a whole description without a plugin for the manager."""
     if not subject.robot.links or manager_plugins(subject):
         return
     for _, it, simulator in simulated(subject):
@@ -199,7 +199,7 @@ def simulated_hardware_not_loaded(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB234", "no-controllers-file", ERROR)
 def no_controllers_file(subject: Subject) -> Iterator[Problem]:
-    """Plugins of gz_ros2_control; that of Classic goes on without a file."""
+    """Report plugins of gz_ros2_control; that of Classic goes on without a file."""
     for plugin in manager_plugins(subject):
         library = library_of(plugin)
         given = [it for it in plugin.iterchildren("parameters") if text_of(it)]
@@ -232,8 +232,9 @@ def no_controllers_file(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB242", "nothing-to-control", ERROR)
 def nothing_to_control(subject: Subject) -> Iterator[Problem]:
-    """Plugins of the two simulators in a whole description without a system: component_parser.cpp
-    throws, gz_ros2_control_plugin.cpp and gazebo_ros2_control_plugin.cpp catch it."""
+    """Report plugins of the two simulators in a whole description without a system:
+    component_parser.cpp throws, gz_ros2_control_plugin.cpp and gazebo_ros2_control_plugin.cpp catch
+    it."""
     if not subject.robot.links or subject.elements.every("ros2_control"):
         return
     for plugin in manager_plugins(subject):
@@ -246,7 +247,7 @@ def nothing_to_control(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB235", "hardware-of-other-simulator", ERROR)
 def hardware_of_other_simulator(subject: Subject) -> Iterator[Problem]:
-    """Systems of one simulator where there are plugins of the other alone."""
+    """Report systems of one simulator if there are only plugins of the other."""
     libraries = {library_of(it) for it in manager_plugins(subject)}
     there = [it for it in SIMULATORS if libraries & set(it.plugins)]
     for _, it, simulator in simulated(subject):
@@ -257,10 +258,8 @@ def hardware_of_other_simulator(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB236", "joint-with-two-drivers", WARNING)
 def joint_with_two_drivers(subject: Subject) -> Iterator[Problem]:
-    """Joints that plugins drive, against command interfaces and each other: once a joint.
-
-    Whoever has a command interface of a joint holds it while no controller claims it (``hold_joints``).
-    """
+    """Report, once a joint, joints that plugins drive together with command interfaces or each
+    other. A command interface holds its joint while no controller claims it (``hold_joints``)."""
     rivals = {
         (name_of(joint), simulator.name): "<ros2_control>"
         for system, _, simulator in simulated(subject)
@@ -281,7 +280,7 @@ def joint_with_two_drivers(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB238", "interface-not-simulated", WARNING)
 def interface_not_simulated(subject: Subject) -> Iterator[Problem]:
-    """Command interfaces of joints in systems of simulators; misspelt ones are MB110's."""
+    """Report command interfaces of joints in systems of simulators; MB110 has misspelt ones."""
     for system, plugin, simulator in simulated(subject):
         for joint in system.iterchildren("joint"):
             for it in joint.iterchildren(COMMAND):

@@ -108,8 +108,8 @@ _BODIES = ("body", "frame", "replicate")
 
 @rule("MB245", "mujoco-joint-without-name", ERROR)
 def mujoco_joint_without_name(subject: Subject) -> Iterator[Problem]:
-    """Those of the model that the hardware names, and of what it includes; joints of a <default> and
-    the like are no joints."""
+    """Report joints of the model that the hardware names, and of its includes; joints of a
+    <default> and the like do not count."""
     for system in subject.elements.tops("ros2_control"):
         param = system.find("hardware/param[@name='mujoco_model']")
         if param is None or text_at(system, "hardware/plugin") != _MUJOCO:
@@ -148,7 +148,7 @@ def _claimed(subject: Subject) -> list[tuple[_Element, tuple[Interface, ...]]]:
 
 
 def _chosen(subject: Subject) -> tuple[str, ...]:
-    """How the interfaces begin whose names are chosen by an argument of xacro: the controllers that
+    """Return the beginnings of interface names that an argument of xacro chooses: controllers that
     claim another one are for another choice."""
     if not subject.origins:
         return ()
@@ -173,7 +173,7 @@ def _at(it: Interface) -> str:
 
 
 def _files(subject: Subject, system: _Element) -> Iterator[tuple[_Element, str, bool]]:
-    """Each file of controllers, where it is named, and whether it is surely this robot's."""
+    """Yield each file of controllers, where it is named, and whether it is surely this robot's."""
     named = [
         element
         for host in subject.inventory.hosts

@@ -25,7 +25,7 @@ from multibot_rewrite.rules.subject import Subject, name_of
 
 @rule("MB201", "duplicate-name", ERROR)
 def duplicate_name(subject: Subject) -> Iterator[Problem]:
-    """Every one except the first."""
+    """Report every one except the first."""
     yield from declared_twice(subject)
     for mild in (repeated_joint, duplicate_transmission, system_twice):
         yield from (it._replace(level=WARNING) for it in mild(subject))
@@ -34,7 +34,7 @@ def duplicate_name(subject: Subject) -> Iterator[Problem]:
 
 
 def declared_twice(subject: Subject) -> Iterator[Problem]:
-    """Links and joints; one finding for all that one macro call repeats."""
+    """Report links and joints; one finding for all that one macro call repeats."""
     pairs = repeated(subject.inventory)
     calls = lists_by_key((_cause(subject, *pair) or pair[0], pair) for pair in pairs)
     for (claim, first), *more in calls.values():
@@ -49,7 +49,7 @@ def declared_twice(subject: Subject) -> Iterator[Problem]:
 
 
 def _cause(subject: Subject, claim: Claim, first: Claim) -> object:
-    """Why xacro wrote an element twice: the macro call, or the file included again."""
+    """Return why xacro wrote an element twice: the macro call, or the file included again."""
     if not subject.origins:
         return None
     starts = (bisect_left(subject.document.starts, it.start) for it in (first, claim))
@@ -61,7 +61,7 @@ def _cause(subject: Subject, claim: Claim, first: Claim) -> object:
 
 
 def repeated_joint(subject: Subject) -> Iterator[Problem]:
-    """Components of one kind and name in one system."""
+    """Report components of one kind and name in one system."""
     for system in subject.elements.every("ros2_control"):
         components = system.iterchildren("joint", "sensor", "gpio")
         keys = (((it.tag, name_of(it)), it) for it in components if name_of(it))
@@ -71,7 +71,7 @@ def repeated_joint(subject: Subject) -> Iterator[Problem]:
 
 
 def duplicate_hardware(subject: Subject) -> Iterator[Problem]:
-    """Every name that another element has."""
+    """Report every name that another element has."""
     systems = subject.elements.tops("ros2_control")
     for it in _repeated((name_of(system), system) for system in systems if name_of(system)):
         message = f"there is another <ros2_control> {name_of(it)!r}"
@@ -79,7 +79,7 @@ def duplicate_hardware(subject: Subject) -> Iterator[Problem]:
 
 
 def duplicate_sensor(subject: Subject) -> Iterator[Problem]:
-    """Sensors in blocks for one link, or for links that fixed joints merge into one in Gazebo."""
+    """Report sensors in blocks for one link, or for links that Gazebo merges at fixed joints."""
     root = subject.document.root
     inside = ((it.getparent(), it) for it in subject.elements.every("sensor"))
     bodies = subject.robot.body
@@ -102,7 +102,7 @@ def duplicate_sensor(subject: Subject) -> Iterator[Problem]:
 
 
 def duplicate_material(subject: Subject) -> Iterator[Problem]:
-    """Materials right below the root; a link may repeat one."""
+    """Report materials right below the root; a link may repeat one."""
     materials = subject.elements.tops("material")
     for it in _repeated((it.get("name"), it) for it in materials if it.get("name")):
         message = f"material {it.get('name')!r} is defined twice"
@@ -111,7 +111,7 @@ def duplicate_material(subject: Subject) -> Iterator[Problem]:
 
 
 def one_node_twice(subject: Subject) -> Iterator[Problem]:
-    """Plugins whose name is that of a node."""
+    """Report plugins whose name is that of a node."""
     nodes = [it for it in subject.inventory.claims if it.site.kinds == ("node",)]
     found = (
         ((text_at(it.element, "ros/namespace").strip("/"), it.value.strip()), it.element)
@@ -124,7 +124,7 @@ def one_node_twice(subject: Subject) -> Iterator[Problem]:
 
 
 def system_twice(subject: Subject) -> Iterator[Problem]:
-    """Systems of a model that say the same twice: both publish on the same topics."""
+    """Report identical systems of a model: both publish on the same topics."""
     systems = [it for it in subject.elements.every("plugin") if "::" in it.get("name", "")]
     if len(systems) < 2:
         return
@@ -142,7 +142,7 @@ def _scope(plugin: _Element) -> object:
 
 
 def duplicate_transmission(subject: Subject) -> Iterator[Problem]:
-    """Transmissions of the robot, not those of a <ros2_control>."""
+    """Report transmissions of the robot, not those of a <ros2_control>."""
     found = subject.elements.tops("transmission")
     for it in _repeated((name_of(it), it) for it in found if name_of(it)):
         yield Problem(it, f"there is another transmission {name_of(it)!r}", "name", "rename one")
@@ -176,13 +176,13 @@ SINGLE = {form: it for it in _SINGLE for form in (it, _camel(it))}
 
 @rule("MB203", "link-and-joint", WARNING)
 def link_and_joint(subject: Subject) -> Iterator[Problem]:
-    """Every such reference."""
+    """Report every such reference."""
     yield from ambiguous(subject.inventory)
 
 
 @rule("MB210", "contradicting-blocks", NOTE)
 def contradicting_blocks(subject: Subject) -> Iterator[Problem]:
-    """Properties of which a link or joint has one."""
+    """Report properties of which a link or joint has only one."""
     values: dict[tuple[str, str], str] = {}
     for block in subject.elements.tops("gazebo"):
         target = block.get("reference", "")
@@ -197,8 +197,8 @@ def contradicting_blocks(subject: Subject) -> Iterator[Problem]:
 
 
 def sensors_elsewhere(subject: Subject) -> Iterator[Problem]:
-    """Sensors of Gazebo in a link of a URDF, which sdformat's converter passes over; those of other
-    readers name their parent, and have their rate in an attribute."""
+    """Report sensors of Gazebo in a link of a URDF, which sdformat's converter passes over; those
+    of other readers name their parent, and have their rate in an attribute."""
     for it in subject.elements.every("sensor"):
         above = it.getparent()
         link = None if above is None else subject.robot.link.get(above.get("name", ""))
@@ -209,7 +209,7 @@ def sensors_elsewhere(subject: Subject) -> Iterator[Problem]:
 
 
 def sensors_of_joints(subject: Subject) -> Iterator[Problem]:
-    """Sensors in the block of a joint: SDF has only those of forces there (sdformat joint.sdf)."""
+    """Report sensors in a joint's block: SDF has only those of forces there (sdformat joint.sdf)."""
     for block_ in subject.elements.tops("gazebo"):
         name = block_.get("reference", "")
         if name in subject.robot.joint and name not in subject.robot.link:
@@ -222,7 +222,7 @@ def sensors_of_joints(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB241", "topic-of-two-sensors", WARNING)
 def topic_of_two_sensors(subject: Subject) -> Iterator[Problem]:
-    """Topics as they are written; the first sensor keeps its own."""
+    """Report topics as they are in the file; the first sensor keeps its own."""
     first: dict[str, str] = {}
     for sensor in subject.elements.every("sensor"):
         topic, name = text_at(sensor, "topic"), sensor.get("name", "")

@@ -103,7 +103,7 @@ undeclared_sdf_name = rule("MB219", "undeclared-sdf-name", WARNING)(partial(unde
 
 @rule("MB221", "padded-reference", ERROR)
 def padded_reference(subject: Subject) -> Iterator[Problem]:
-    """Attributes that are the name of a link or joint."""
+    """Report attributes that are the name of a link or joint."""
     declared = subject.inventory.declared
     for claim in references(subject).doubtful:
         name = claim.value.strip()
@@ -120,7 +120,7 @@ AS_WRITTEN = make_naming("tf-per-robot")
 
 @rule("MB230", "frame-of-joint-and-plugin", WARNING)
 def frame_with_two_parents(subject: Subject) -> Iterator[Problem]:
-    """Plugins that send odometry to a link below the root."""
+    """Report plugins that send odometry to a link below the root."""
     for plugin, parent, child in _sent(subject):
         sends = f"sends {parent} -> {child}"
         if parent == child:
@@ -134,7 +134,7 @@ def frame_with_two_parents(subject: Subject) -> Iterator[Problem]:
 
 
 def _sent(subject: Subject) -> Iterator[tuple[_Element, str, str]]:
-    """Each plugin with the transform of odometry that it sends."""
+    """Yield each plugin with the transform of odometry that it sends."""
     root, served = subject.document.root, subject.inventory.served
     for host, section in served:
         # gz-sim's send theirs by a bridge.
@@ -150,7 +150,7 @@ def _sent(subject: Subject) -> Iterator[tuple[_Element, str, str]]:
 
 @rule("MB217", "frame-not-a-link", WARNING)
 def frame_not_a_link(subject: Subject) -> Iterator[Problem]:
-    """Frames that the robot does not have; others than misspelt ones may be a localisation's."""
+    """Report frames that the robot lacks; misspelt ones only: others may be a localization's."""
     declared = subject.inventory.declared
     links = declared["link"]
     meant: dict[str, str] = {}

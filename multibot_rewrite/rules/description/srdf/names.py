@@ -38,7 +38,7 @@ def of_moveit(
 
 
 def level_of(subject: Subject) -> str:
-    """How bad a name is that the URDF does not have, where it is no error: Pinocchio leaves a joint
+    """Return the level of a name that the URDF lacks, if it is no error: Pinocchio leaves a joint
     of a state out and reads no group; a URDF that was found may be another variant of the robot."""
     is_named = subject.settings.urdf and not is_pinocchios(subject.document.root)
     return "" if is_named else WARNING
@@ -55,7 +55,7 @@ def undeclared_for_moveit(code: str) -> Callable[[Subject], Iterator[Problem]]:
 
 @srdf_rule("MB801", "srdf-without-urdf", NOTE)
 def srdf_without_urdf(subject: Subject) -> Iterator[Problem]:
-    """One finding per file."""
+    """Report, once per file, that no URDF was found."""
     root = subject.document.root
     if subject.beside is None:
         message = f"no URDF of a robot {root.get('name', '')!r} with its links was found"
@@ -69,14 +69,14 @@ other_robot = srdf_rule("MB802", "other-robot", WARNING, options={"urdf": "r.urd
 
 @srdf_rule("MB803", "srdf-link", ERROR)
 def srdf_link(subject: Subject) -> Iterator[Problem]:
-    """Of Pinocchio, which reads none of these, a warning."""
+    """Report undeclared links; in an SRDF of Pinocchio, which reads none of them, as a warning."""
     level = level_of(subject)
     yield from (it._replace(level=level) for it in undeclared("MB803", subject))
 
 
 @srdf_rule("MB804", "srdf-joint", ERROR)
 def srdf_joint(subject: Subject) -> Iterator[Problem]:
-    """All but the free flyer in a state for Pinocchio, which leaves the others out: a warning."""
+    """Report all joints but a free flyer's state for Pinocchio, where others are a warning."""
     level = level_of(subject)
     yield from (
         it._replace(level=level)
@@ -90,7 +90,7 @@ srdf_group = srdf_rule("MB805", "srdf-group", ERROR)(undeclared_for_moveit("MB80
 
 @srdf_rule("MB806", "srdf-duplicate", ERROR)
 def srdf_duplicate(subject: Subject) -> Iterator[Problem]:
-    """Every declaration but the first."""
+    """Report every declaration but the first."""
     for claim, _ in repeated(subject.inventory):
         message = f"there is another {claim.element.tag} {claim.value.strip()!r}"
         yield Problem(claim.element, message, claim.attribute, "rename one")
@@ -98,7 +98,7 @@ def srdf_duplicate(subject: Subject) -> Iterator[Problem]:
 
 @srdf_rule("MB815", "virtual-joint-not-at-root", WARNING)
 def virtual_joint_not_at_root(subject: Subject) -> Iterator[Problem]:
-    """Virtual joints; a fixed one is right where the root link is ``world``, as Gazebo wants it."""
+    """Report virtual joints; a fixed one is right if the root link is ``world``, as for Gazebo."""
     robot = subject.beside
     roots = [it.name for it in robot.links if it.name not in robot.above] if robot else []
     root = roots[0] if len(roots) == 1 else ""
@@ -112,7 +112,7 @@ def virtual_joint_not_at_root(subject: Subject) -> Iterator[Problem]:
 
 @srdf_rule("MB807", "stale-pair", WARNING)
 def stale_pair(subject: Subject) -> Iterator[Problem]:
-    """One finding per name, at its first pair."""
+    """Report each name once, at its first pair."""
     found = list(undeclared("MB807", subject))
     names = Counter(_link(it) for it in found)
     for it in found:
@@ -128,7 +128,7 @@ def _link(problem: Problem) -> str:
 
 @srdf_rule("MB809", "duplicate-pair", NOTE)
 def duplicate_pair(subject: Subject) -> Iterator[Problem]:
-    """One finding per file; the order of the two does not matter."""
+    """Report one finding per file; the order of the two does not matter."""
     first: dict[frozenset[str], _Element] = {}
     found = []
     for it in subject.document.root.iterchildren("disable_collisions"):
@@ -144,7 +144,7 @@ def duplicate_pair(subject: Subject) -> Iterator[Problem]:
 
 @srdf_rule("MB818", "self-pair", WARNING)
 def self_pair(subject: Subject) -> Iterator[Problem]:
-    """Pairs to disable or to enable."""
+    """Report pairs to disable or to enable."""
     for it in subject.document.root.iterchildren("disable_collisions", "enable_collisions"):
         one = text_of(it, "link1")
         if one and one == text_of(it, "link2"):
@@ -153,7 +153,7 @@ def self_pair(subject: Subject) -> Iterator[Problem]:
 
 @srdf_rule("MB819", "pair-without-shape", NOTE)
 def pair_without_shape(subject: Subject) -> Iterator[Problem]:
-    """One finding per link, at its first pair."""
+    """Report each link once, at its first pair."""
     robot = subject.beside
     reported = set()
     for it in subject.document.root.iterchildren("disable_collisions") if robot else ():
@@ -169,7 +169,7 @@ def pair_without_shape(subject: Subject) -> Iterator[Problem]:
 
 @srdf_rule("MB820", "adjacent-links", NOTE)
 def adjacent_links(subject: Subject) -> Iterator[Problem]:
-    """One finding per file, if it disables any pair."""
+    """Report one finding per file, if it disables any pair."""
     root, robot = subject.document.root, subject.beside
     pairs = list(root.iterchildren("disable_collisions"))
     if robot is None or not pairs:

@@ -29,7 +29,7 @@ ROUNDING = 1e-4
 @srdf_rule("MB808", "duplicate-state", WARNING)
 @of_moveit
 def duplicate_state(subject: Subject) -> Iterator[Problem]:
-    """Every state but the first of its name."""
+    """Report every state but the first of its name."""
     seen = set()
     for it in subject.document.root.iterchildren("group_state"):
         key = text_of(it), text_of(it, "group")
@@ -42,7 +42,7 @@ def duplicate_state(subject: Subject) -> Iterator[Problem]:
 @srdf_rule("MB812", "state-of-another-group", WARNING)
 @of_moveit
 def state_of_another_group(subject: Subject) -> Iterator[Problem]:
-    """Joints of states that exist and are not in the group, of which all groups are known."""
+    """Report joints of states that exist and are not in the group, if all its groups are known."""
     robot = subject.beside
     if robot is None:
         return
@@ -59,7 +59,7 @@ def state_of_another_group(subject: Subject) -> Iterator[Problem]:
 
 @srdf_rule("MB813", "state-beyond-limits", WARNING)
 def state_beyond_limits(subject: Subject) -> Iterator[Problem]:
-    """Joints of one value that have limits."""
+    """Report joints of one value that have limits."""
     robot = subject.beside
     for it, _, name in _states(subject.document.root) if robot else ():
         assert robot is not None
@@ -94,7 +94,7 @@ def _limits(joint: Joint) -> tuple[float, float] | None:
 
 @srdf_rule("MB810", "broken-chain", ERROR)
 def broken_chain(subject: Subject) -> Iterator[Problem]:
-    """Chains whose links exist."""
+    """Report chains whose links exist."""
     robot = subject.beside
     for it in subject.document.root.iterfind("group/chain") if robot else ():
         base, tip = text_of(it, "base_link"), text_of(it, "tip_link")

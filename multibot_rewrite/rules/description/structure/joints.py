@@ -33,7 +33,7 @@ FAR = 50.0
 
 @rule("MB519", "zero-axis", ERROR)
 def zero_axis(subject: Subject) -> Iterator[Problem]:
-    """Axes of length 0."""
+    """Report axes of length 0."""
     for joint, axis, length in _axes(subject):
         if length == 0:
             fault = "is 0 0 0" if axis.get("xyz") else "has no xyz, which is 0 0 0"
@@ -42,7 +42,7 @@ def zero_axis(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB520", "axis-length", WARNING)
 def axis_length(subject: Subject) -> Iterator[Problem]:
-    """Axes whose length is neither 0 nor 1."""
+    """Report axes whose length is neither 0 nor 1."""
     for joint, axis, length in _axes(subject):
         if length and abs(length - 1) > TOLERANCE:
             message = f"axis of joint {joint.name!r} has the length {length:.4g}"
@@ -64,7 +64,7 @@ def _axes(subject: Subject) -> list[tuple[Joint, _Element, float]]:
 
 @rule("MB522", "fixed-joint-ignores", NOTE)
 def fixed_joint_ignores(subject: Subject) -> Iterator[Problem]:
-    """One finding per joint; exporters write <axis> and <dynamics> everywhere."""
+    """Report once per joint; exporters write <axis> and <dynamics> everywhere."""
     for joint in subject.robot.joints:
         if joint.type != "fixed":
             continue
@@ -78,7 +78,7 @@ def fixed_joint_ignores(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB523", "floating-or-planar", WARNING)
 def floating_or_planar(subject: Subject) -> Iterator[Problem]:
-    """Joints of these two types."""
+    """Report joints of these two types."""
     for joint in subject.robot.joints:
         if joint.type in ("floating", "planar"):
             tf = "gets no transform" if joint.type == "floating" else "is fixed in tf"
@@ -87,7 +87,7 @@ def floating_or_planar(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB524", "joint-origin-units", WARNING)
 def joint_origin_units(subject: Subject) -> Iterator[Problem]:
-    """Origins that are farther away than any robot is long."""
+    """Report origins that are farther away than any robot is long."""
     for joint, origin in joints_with(subject.robot, "origin"):
         xyz = vector(origin.get("xyz"))
         if xyz and max(map(abs, xyz)) >= FAR:
@@ -111,7 +111,7 @@ STRICT = KNOWN[2]
 
 @rule("MB509", "limit-missing", ERROR)
 def limit_missing(subject: Subject) -> Iterator[Problem]:
-    """Joints without a limit that they need, and limits without a part that they need."""
+    """Report joints without a limit that they need, and limits without a part that they need."""
     strict = version_of(subject.document.root) >= STRICT
     motor = () if strict else ("effort", "velocity")
     for joint in subject.robot.joints:
@@ -130,7 +130,7 @@ def limit_missing(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB511", "limits-inverted", ERROR)
 def limits_inverted(subject: Subject) -> Iterator[Problem]:
-    """Lower limits above the upper one; in URDF 1.2 of any joint."""
+    """Report lower limits above the upper one; in URDF 1.2 of any joint."""
     types = TYPES if version_of(subject.document.root) >= STRICT else BOUNDED
     for joint, limit, lower, upper in _bounds(subject):
         if lower > upper and joint.type in types:
@@ -140,7 +140,7 @@ def limits_inverted(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB512", "limits-zero-range", NOTE)
 def limits_zero_range(subject: Subject) -> Iterator[Problem]:
-    """Equal limits: an exporter's mistake, or a frame that Gazebo should not merge."""
+    """Report equal limits: an exporter's mistake, or a frame that Gazebo should not merge."""
     for joint, limit, lower, upper in _bounds(subject):
         if lower == upper and joint.type in BOUNDED:
             who = f"{joint.type} joint {joint.name!r}"
@@ -149,7 +149,7 @@ def limits_zero_range(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB515", "zero-limit", NOTE)
 def zero_limit(subject: Subject) -> Iterator[Problem]:
-    """One finding per joint; joints that mimic another one or cannot move need no effort."""
+    """Report once per joint; one that mimics another or cannot move needs no effort."""
     for joint, limit in joints_with(subject.robot, "limit"):
         if joint.type not in ONE_AXIS or "mimic" in joint.parts:
             continue
@@ -164,7 +164,7 @@ def zero_limit(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB516", "continuous-limits", WARNING)
 def continuous_limits(subject: Subject) -> Iterator[Problem]:
-    """Bounds of less than a turn: a whole turn means the same as continuous."""
+    """Report bounds of less than a turn: a whole turn means the same as continuous."""
     for joint, limit in joints_with(subject.robot, "limit"):
         if joint.type != "continuous" or limit.get("lower") is None:
             continue
@@ -176,8 +176,8 @@ def continuous_limits(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB517", "prismatic-units", WARNING)
 def prismatic_units(subject: Subject) -> Iterator[Problem]:
-    """Long ranges; one that is the same to both sides is mostly a virtual joint without real limits,
-    and one that moves nothing stands for something else: a pressure, a dial."""
+    """Report long ranges; an equal one to both sides is mostly a virtual joint without real limits,
+    and a joint that moves nothing represents something else: a pressure, a dial."""
     for joint, limit, lower, upper in _bounds(subject):
         far = max(abs(lower), abs(upper))
         is_long = joint.type == "prismatic" and LONG_WAY <= far < 1e4 and lower != -upper
@@ -195,7 +195,7 @@ def _moves_nothing(robot: Robot, joint: Joint) -> bool:
 
 
 def limits_in_degrees(subject: Subject) -> Iterator[Problem]:
-    """Round numbers that are many turns in radians, and an angle in degrees."""
+    """Report round numbers that are many turns in radians, and an angle in degrees."""
     for joint, limit, lower, upper in _bounds(subject):
         if joint.type == "revolute" and (_is_degrees(lower) or _is_degrees(upper)):
             message = f"revolute joint {joint.name!r} turns from {lower:g} to {upper:g} radians"
@@ -204,7 +204,7 @@ def limits_in_degrees(subject: Subject) -> Iterator[Problem]:
 
 
 def origins_in_degrees(subject: Subject) -> Iterator[Problem]:
-    """Rotations of more than a turn by a round number: nobody writes 90 radians."""
+    """Report rotations of more than a turn by a round number: nobody writes 90 radians."""
     origins = subject.elements.every("origin")
     different = {it.get("rpy", "") for it in origins}
     large = filter(_LARGE.search, different)
@@ -240,7 +240,7 @@ def _bounds(subject: Subject) -> list[tuple[Joint, _Element, float, float]]:
 
 @rule("MB532", "soft-limits", WARNING)
 def soft_limits(subject: Subject) -> Iterator[Problem]:
-    """Against hard limits that leave a range themselves."""
+    """Report soft limits compared with hard limits that leave a range themselves."""
     for joint, safety in joints_with(subject.robot, "safety_controller"):
         limit = joint.parts.get("limit")
         if joint.type not in BOUNDED or limit is None:
@@ -261,7 +261,7 @@ def soft_limits(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB534", "dynamics-empty", ERROR)
 def dynamics_empty(subject: Subject) -> Iterator[Problem]:
-    """Dynamics without a value."""
+    """Report dynamics without a value."""
     for joint, dynamics in joints_with(subject.robot, "dynamics"):
         if dynamics.get("damping") is None and dynamics.get("friction") is None:
             message = f"<dynamics> of joint {joint.name!r} has neither damping nor friction"

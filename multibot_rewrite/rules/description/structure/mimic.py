@@ -28,7 +28,7 @@ from multibot_rewrite.rules.subject import Subject
 
 @rule("MB526", "mimic-loop", ERROR)
 def mimic_loop(subject: Subject) -> Iterator[Problem]:
-    """Each loop, at its first mimic, and each mimic of the joint it is in."""
+    """Report each loop, at its first mimic, and each mimic of the joint it is in."""
     for joint, mimic in joints_with(subject.robot, "mimic"):
         if mimic.get("joint") == joint.name and joint.name:
             yield Problem(mimic, f"joint {joint.name!r} mimics itself", "joint")
@@ -41,7 +41,7 @@ def mimic_loop(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB528", "mimic-chain", NOTE)
 def mimic_chain(subject: Subject) -> Iterator[Problem]:
-    """Mimics of mimics; a loop is MB526."""
+    """Report mimics of mimics; a loop is MB526."""
     leader = _leaders(subject.robot)
     chained = {name: follows for name, follows in leader.items() if follows in leader}
     round_ = {name for loop in _loops(chained) for name in loop}
@@ -54,7 +54,7 @@ def mimic_chain(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB529", "mimic-of-fixed", ERROR)
 def mimic_of_fixed(subject: Subject) -> Iterator[Problem]:
-    """Mimics of joints without one position; the mimic of a fixed joint does not matter."""
+    """Report mimics of joints without one position; the mimic of a fixed joint does not matter."""
     others = {*TYPES} - {*ONE_AXIS}
     for joint, mimic in joints_with(subject.robot, "mimic"):
         leader = subject.robot.joint.get(mimic.get("joint", ""))
@@ -65,7 +65,7 @@ def mimic_of_fixed(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB530", "mimic-multiplier-zero", WARNING)
 def mimic_multiplier_zero(subject: Subject) -> Iterator[Problem]:
-    """Mimics whose joint never moves."""
+    """Report mimics whose joint never moves."""
     for joint, mimic in joints_with(subject.robot, "mimic"):
         if value_of(mimic, "multiplier", 1.0) == 0 and joint.type in ONE_AXIS:
             message = f"joint {joint.name!r} never moves: the multiplier of its mimic is 0"
@@ -73,7 +73,7 @@ def mimic_multiplier_zero(subject: Subject) -> Iterator[Problem]:
 
 
 def _leaders(robot: Robot) -> dict[str, str]:
-    """Mimicking joint -> the joint it follows."""
+    """Return mimicking joint -> the joint it follows."""
     return {
         joint.name: mimic.get("joint", "")
         for joint, mimic in joints_with(robot, "mimic")
@@ -105,7 +105,7 @@ CONTROLLER = "gz-sim-joint-position-controller-system"
 
 @rule("MB536", "mimic-beyond-limits", WARNING)
 def mimic_beyond_limits(subject: Subject) -> Iterator[Problem]:
-    """Joints with limits that follow a joint with limits."""
+    """Report joints with limits that follow a joint with limits."""
     for joint, mimic in joints_with(subject.robot, "mimic"):
         leader = subject.robot.joint.get(mimic.get("joint", ""))
         own, its = _bounds(joint), None if leader is None else _bounds(leader)
@@ -137,7 +137,7 @@ def _outside(value: float, bounds: Bounds) -> bool:
 
 @rule("MB537", "start-beyond-limits", WARNING)
 def start_beyond_limits(subject: Subject) -> Iterator[Problem]:
-    """Values that are numbers, of joints with a range."""
+    """Report values that are numbers, of joints with a range."""
     for element, name in _starts(subject):
         joint, value = subject.robot.joint.get(name), number(text_of(element))
         bounds = None if joint is None else _bounds(joint)
@@ -149,7 +149,7 @@ def start_beyond_limits(subject: Subject) -> Iterator[Problem]:
 
 
 def _starts(subject: Subject) -> Iterator[tuple[_Element, str]]:
-    """Each value that a joint starts at, and the joint."""
+    """Yield each value that a joint starts at, and the joint."""
     for system in subject.elements.tops("ros2_control"):
         for joint in system.iterchildren("joint"):
             for state in joint.iterchildren("state_interface"):
@@ -172,7 +172,7 @@ _WHOLE = {"rw_rate": "a whole number of hertz", "thread_priority": "a whole numb
 
 
 def unreadable_numbers(subject: Subject) -> Iterator[Problem]:
-    """Rates and limits of <ros2_control> that are no numbers."""
+    """Report rates and limits of <ros2_control> that are no numbers."""
     for system in subject.elements.tops("ros2_control"):
         for name, words in _WHOLE.items():
             text = system.get(name, "0")
@@ -190,15 +190,16 @@ def unreadable_numbers(subject: Subject) -> Iterator[Problem]:
 
 
 def _level(subject: Subject, param: _Element, text: str) -> str:
-    """Humble keeps min and max and reads neither (component_parser.cpp:261), later releases go on
-    without them (``retrieve_min_max_interface_values``); an empty value is none."""
+    """Return the level: Humble keeps min and max and reads neither (component_parser.cpp:261),
+    later releases go on without them (``retrieve_min_max_interface_values``); an empty value is
+    none."""
     if param.get("name") == "initial_value":
         return "" if text else WARNING
     return NOTE if since_jazzy(subject) else WARNING
 
 
 def mimic_of_none(subject: Subject) -> Iterator[Problem]:
-    """Joints of <ros2_control> that are to mimic and have no <mimic> in the robot."""
+    """Report joints of <ros2_control> that are to mimic and have no <mimic> in the robot."""
     for it, joint in controlled_joints(subject):
         is_to = it.get("mimic", "").strip().lower() in ("true", "1")
         if is_to and "mimic" not in joint.parts:
@@ -216,7 +217,7 @@ def controlled_joints(subject: Subject) -> Iterator[tuple[_Element, Joint]]:
 
 @rule("MB538", "command-beyond-limits", WARNING)
 def command_beyond_limits(subject: Subject) -> Iterator[Problem]:
-    """Positions against lower and upper, velocities and efforts against theirs."""
+    """Report positions beyond lower and upper, velocities and efforts beyond theirs."""
     for system in subject.elements.tops("ros2_control"):
         for it in system.iterchildren("joint"):
             joint = subject.robot.joint.get(it.get("name", ""))

@@ -23,7 +23,7 @@ WITHOUT_LINKS = frozenset(("material", "webots"))
 
 @rule("MB501", "several-roots", ERROR)
 def several_roots(subject: Subject) -> Iterator[Problem]:
-    """Every root except the one with the most links below it; a misspelled child link is MB202."""
+    """Report every root except that of the largest tree; a misspelled child link is MB202."""
     robot = subject.robot
     found = roots(robot)
     if len(found) < 2:
@@ -55,7 +55,7 @@ def no_link(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB503", "kinematic-loop", ERROR)
 def kinematic_loop(subject: Subject) -> Iterator[Problem]:
-    """Each loop, at the last of its joints in the file."""
+    """Report each loop, at the last of its joints in the file."""
     order: dict[_Element, int] = {}
     for joints in [] if is_tree(subject.robot) else loops(subject.robot):
         order = order or {it.element: at for at, it in enumerate(subject.robot.joints)}
@@ -70,7 +70,7 @@ def kinematic_loop(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB504", "several-parents", ERROR)
 def several_parents(subject: Subject) -> Iterator[Problem]:
-    """Every joint but the first that has the link as its child; copies of a joint are MB201."""
+    """Report every joint but the first with the link as its child; copies of a joint are MB201."""
     for name, joints in subject.robot.above.items():
         for joint in joints[1:]:
             if joint.name != joints[0].name and joint.parent != name:
@@ -81,7 +81,7 @@ def several_parents(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB505", "unreachable-link", ERROR)
 def unreachable_link(subject: Subject) -> Iterator[Problem]:
-    """One finding, at the first link; links in the loop itself are MB503."""
+    """Report one finding, at the first link; links in the loop itself are MB503."""
     robot = subject.robot
     if is_tree(robot):
         return
@@ -98,7 +98,7 @@ def unreachable_link(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB506", "joint-to-itself", ERROR)
 def joint_to_itself(subject: Subject) -> Iterator[Problem]:
-    """Joints from a link to itself."""
+    """Report joints from a link to itself."""
     for joint in subject.robot.joints:
         if joint.parent == joint.child and joint.parent:
             message = f"joint {joint.name!r} has {joint.child!r} as its parent and as its child"
