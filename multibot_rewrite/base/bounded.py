@@ -58,8 +58,7 @@ _INDENTED = rf"[ \t\-?:]{{{MAX_DEPTH // 2}}}"
 _STEPS = {ord("["): 1, ord("{"): 1, ord("]"): -1, ord("}"): -1}
 _NO_BRACKETS = bytes(set(range(256)) - _STEPS.keys() - {ord('"')})
 
-# The texts of files that an editor has open, by their real paths: they are read in place of the disk's.
-# Filled by processes that answer one question of an editor, and by no others.
+# The texts that an editor has open, by the files' real paths, in a process that answers one question.
 OPEN_TEXTS: dict[str, bytes] = {}
 
 

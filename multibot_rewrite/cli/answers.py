@@ -37,25 +37,14 @@ from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.fleet.one_file import names_in_file
 from multibot_rewrite.lint.catalogue import rules
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.config.configured import (
-    Configured,
-    configured,
-    is_excluded,
-    with_options,
-)
+from multibot_rewrite.lint.config.configured import configured, is_excluded, with_options
 from multibot_rewrite.lint.failures import failure
 from multibot_rewrite.lint.files.included import set_among
 from multibot_rewrite.lint.files.named import descriptions_below
 from multibot_rewrite.lint.fix import fix
+from multibot_rewrite.refactor import source_edits as edits
 from multibot_rewrite.refactor.package import Description, Expanding, Package, read_package
 from multibot_rewrite.refactor.rename import KINDS, rename_symbol
-from multibot_rewrite.refactor.source_edits import (
-    SourceEdit,
-    ValueEdit,
-    change_of,
-    source_edit,
-    spans,
-)
 from multibot_rewrite.rules.settings import Settings
 
 _LINTED = (*DESCRIPTIONS, SRDF, WORLD, *(kind for kind, _ in BESIDE))
@@ -92,15 +81,13 @@ def diagnose(options: argparse.Namespace, path: str) -> Sequence[Finding]:
     """Return the findings of a file; none for a file of a kind that is not linted."""
     kind = recognised(read_file(path))
     try:
-        config = _configured(options, path)
-        if is_excluded(path, config):
-            return ()
-        if kind == FLEET:
-            fleet = closed_plan(plan_fleet(read_fleet(path, config.settings.distro, os.environ)))
+        settings = _settings(options, path)
+        if settings and kind == FLEET:
+            fleet = closed_plan(plan_fleet(read_fleet(path, settings.distro, os.environ)))
             found = (*fleet.table.problems, *fleet.gaps)
             return [it if it.file else it._replace(file=path) for it in found]
         is_linted = kind in _LINTED or path.endswith(_ENDS)
-        return lint_file(path, config.settings) if is_linted else ()
+        return lint_file(path, settings) if settings and is_linted else ()
     except RewriteRefused as error:
         return error.findings
     except MultibotError as error:
@@ -108,15 +95,17 @@ def diagnose(options: argparse.Namespace, path: str) -> Sequence[Finding]:
         return [failure(path, own, Settings())]
 
 
-def _configured(options: argparse.Namespace, path: str) -> Configured:
+def _settings(options: argparse.Namespace, path: str) -> Settings | None:
+    """Return the settings for a file; None for one that the configuration leaves out."""
     config = with_options(configured(path, options.config), **given(options))
     settings, _ = of_release(options.distro or config.distro, config.settings, [path])
-    return config._replace(settings=set_among([path], settings))
+    return None if is_excluded(path, config) else set_among([path], settings)
 
 
 def fixed(options: argparse.Namespace, path: str) -> bytes:
     """Return the text of a file with all its safe fixes."""
-    return fix(path, read_file(path), _configured(options, path).settings)[0]
+    settings = _settings(options, path)
+    return fix(path, read_file(path), settings)[0] if settings else read_file(path)
 
 
 def explain(options: argparse.Namespace, path: str, word: str, codes: Sequence[str]) -> str:
@@ -163,7 +152,7 @@ def _in_description(it: Description) -> Iterator[Place]:
     for claim, names in zip(it.inventory.claims, it.inventory.names, strict=True):
         for name in names:
             kind = _kind(name.kind, *name.kinds[:1])
-            change = change_of(document, claim, name.at, name.at + len(name.text), "")
+            change = edits.change_of(document, claim, name.at, name.at + len(name.text), "")
             if kind and (found := _span(it, change)):
                 source = it.sources.get(found.file) or document.source
                 ends = locate(source, found.start), locate(source, found.end)
@@ -175,18 +164,18 @@ def _kind(*kinds: str) -> str:
     return next((own for kind in kinds for own, its in KINDS.items() if kind in its), "")
 
 
-def _span(it: Description, change: ValueEdit) -> SourceEdit | None:
+def _span(it: Description, change: edits.ValueEdit) -> edits.SourceEdit | None:
     """Return the edit that makes a change; where none does, one of the tag that has the value."""
     document = it.inventory.document
     if it.read is None:
-        span = next(spans(document, [change]))
-        return span and SourceEdit(it.path, *span)
-    found = source_edit(it.read, document, change)
-    if isinstance(found, SourceEdit):
+        span = next(edits.spans(document, [change]))
+        return span and edits.SourceEdit(it.path, *span)
+    found = edits.source_edit(it.read, document, change)
+    if isinstance(found, edits.SourceEdit):
         return found
     origin = it.read.origins.of(change.element)
     end = tag_end(it.read.sources[origin.file], origin.start) if origin else 0
-    return origin and SourceEdit(origin.file, origin.start, end, b"")
+    return origin and edits.SourceEdit(origin.file, origin.start, end, b"")
 
 
 def _in_other_files(package: Package) -> Iterator[Place]:

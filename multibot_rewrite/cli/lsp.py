@@ -33,8 +33,7 @@ try:
     from pygls.uris import from_fs_path
     from pygls.workspace import TextDocument
 except ImportError as error:
-    hint = "pip install 'multibot_rewrite[lsp]'"
-    raise Unusable(f"an editor cannot be served: {error}; {hint}") from None
+    raise Unusable(f"{error}: editors need it: pip install 'multibot_rewrite[lsp]'") from None
 
 # Seconds: without a change before a file is linted, and after which an answer is given up.
 PAUSE, MOST = 0.05, 60.0
@@ -49,10 +48,9 @@ _BEFORE, _AFTER = (re.compile(it) for it in (r"[^\s\"'<>=,(){}\[\]]*$", r"^[^\s\
 class Server(LanguageServer):
     """The open files of an editor, and what was found in them."""
 
-    options: argparse.Namespace
-
     def __init__(self) -> None:
         super().__init__("urdf-lint", __version__)
+        self.options = argparse.Namespace()
         self.context = get_context("forkserver")
         self.context.set_forkserver_preload(["multibot_rewrite.cli.warm"])
         self.found: dict[str, Sequence[Finding]] = {}

@@ -63,7 +63,8 @@ def shard_bytes(entries: Mapping[str, Entry]) -> bytes:
         for key, it in entries.items()
     }
     table = [(*question, answer) for question, answer in numbers]
-    body = json.dumps((table, written), separators=(",", ":"), default=_as_map).encode()
+    bytes_as = {"default": lambda it: {_BYTES: it.decode(_BYTES)}}
+    body = json.dumps((table, written), separators=(",", ":"), **bytes_as).encode()
     return f"{digest(body)}\n".encode() + body
 
 
@@ -99,11 +100,6 @@ def bound(folder: str) -> None:
         if left > MOST_IN_ALL // 2 or number >= MOST_FILES // 2:
             with suppress(OSError):
                 os.unlink(path)
-
-
-def _as_map(value: bytes) -> dict[str, str]:
-    """Return a map for bytes, which JSON does not have."""
-    return {_BYTES: value.decode(_BYTES)}
 
 
 def _tuples(value: Any) -> Any:
