@@ -63,8 +63,9 @@ def shard_bytes(entries: Mapping[str, Entry]) -> bytes:
         for key, it in entries.items()
     }
     table = [(*question, answer) for question, answer in numbers]
-    bytes_as = {"default": lambda it: {_BYTES: it.decode(_BYTES)}}
-    body = json.dumps((table, written), separators=(",", ":"), **bytes_as).encode()
+    body = json.dumps(
+        (table, written), separators=(",", ":"), default=lambda it: {_BYTES: it.decode(_BYTES)}
+    ).encode()
     return f"{digest(body)}\n".encode() + body
 
 
