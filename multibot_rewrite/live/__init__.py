@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A running system looked at: what is in it, what is wrong with it, what changes."""
+"""A running system: what is in it, what is wrong with it, what changes."""

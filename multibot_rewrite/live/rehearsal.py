@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A remap table -> stub nodes, in a graph of their own, and what a look there sees. Each has the names
+"""A remap table -> stub nodes, in a graph of their own, and what a snapshot of it has. Each has the names
 of its node's code, rcl gets the remap rules.
 
 A stub has the rules that reach its node in the table's release: a controller those that its manager

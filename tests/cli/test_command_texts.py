@@ -440,7 +440,9 @@ def test_headings_and_names_are_painted() -> None:
          "unknown option --dry-run; --diff does that,"
          " which urdf-postfix, urdf-lint, multibot rename take"),
         (["--xyzabc"], "unknown option --xyzabc"),
-        (["--github"], "unknown option --github; use --format github"),
+        (["--github"],
+         "unknown option --github; --format does that,"
+         " which urdf-postfix, urdf-lint, multibot build and 5 more take"),
         # Dashes are not counted.
         (["--fxxrm"], "unknown option --fxxrm; did you mean '--form'?"),
         (["a", "b"], "unexpected b"),

@@ -73,7 +73,7 @@ def rewritten_before(inventory: Inventory) -> Iterator[Problem]:
 
 
 def _in_every_name(inventory: Inventory) -> Iterator[str]:
-    """Yield what every link has behind a slash, or in front of one, and the model beside a ``_``."""
+    """Yield what every link has behind a slash, or in front of one, and the model next to a ``_``."""
     model = next((it.text for it in _names(inventory, ("model",))), "")
     links = [it.text for it in _names(inventory, ("link",))]
     for at, beside in ((-1, model.endswith), (0, model.startswith)):

@@ -167,7 +167,7 @@ def with_launched(
 
 
 def _publishes_another(it: LaunchedNode) -> bool:
-    """Return whether it publishes the description of something beside the robot, by a rule for its
+    """Return whether it publishes the description of something else than the robot, by a rule for its
     topic."""
     old = (old.lstrip("/") for old, _ in it.remappings)
     return it.package == STATE_PUBLISHER and _DESCRIPTION in old

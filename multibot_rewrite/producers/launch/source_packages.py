@@ -5,7 +5,7 @@ there as sources, as a build installs them, and an empty folder for others.
 Source: ament_index_python (a file ``share/ament_index/resource_index/packages/NAME`` below a prefix of
 AMENT_PREFIX_PATH stands for a package, its files are in ``share/NAME``). What a build installs is known
 by ``install(DIRECTORY config/ DESTINATION share/x/params)`` in CMakeLists.txt; of a package in Python
-the folders inside of its module are beside those of the package, too.
+the folders inside of its module are next to those of the package, too.
 """
 
 from __future__ import annotations
