@@ -423,3 +423,13 @@ ROV = """<sdf version="1.9"><model name="rov"><link name="hull"/><link name="pro
 def test_names_in_other_topics(told: str, new: str) -> None:
     source = ROV.format(space="<namespace>rov</namespace>", told=told)
     assert f"<cmd_topic>{new}</cmd_topic>" in rewrite(source, "robot1").data.decode()
+
+
+def test_a_topic_below_the_namespace_of_a_system() -> None:
+    """gz-sim src/systems/multicopter_motor_model: its topic is below the robotNamespace alone."""
+    told = "/quad/command/motor_speed"
+    source = ROV.format(space="<robotNamespace>quad</robotNamespace>", told=told)
+    source = source.replace("gz-sim-thruster-system", "gz-sim-multicopter-motor-model-system")
+    source = source.replace("Thruster", "MulticopterMotorModel").replace("joint_name", "jointName")
+    new = "<cmd_topic>/quad_robot1/command/motor_speed</cmd_topic>"
+    assert new in rewrite(source, "robot1").data.decode()
