@@ -221,6 +221,27 @@ def test_a_node_that_is_not_planned_is_said_with_what_it_does() -> None:
     assert codes(check(seen_plan(diagnose(before)), alone)) == ["MG108"]
 
 
+def test_a_node_that_is_not_planned_is_named_once() -> None:
+    maps = [f"/robot1/{it} {MAP}" for it in ("map", "floor_map")]
+    lines = [f"as before: /robot1/map_server publishes {it}" for it in maps]
+    lines += ["as before: /robot1/planner", "as before: /robot2/planner"]
+    new = [f"running: /robot1/slam publishes {it}" for it in maps]
+    before, after = read_looks("\n".join([*lines, *new]))
+    told = check(seen_plan(diagnose(before)), after)
+    assert codes(told) == ["MG323", "MG323"]
+    assert ["not in the plan" in it.hint for it in told] == [True, False]
+
+
+def test_a_missing_sender_explains_that_nobody_subscribes() -> None:
+    lines = [f"planned: /robot1/lidar publishes /robot1/scan {SCAN}"]
+    lines += [f"planned: /robot1/amcl subscribes /robot1/scan {SCAN}"]
+    plan, graph = read_example(
+        "\n".join([*lines, "as planned: /robot1/rsp", "running: /robot1/amcl"])
+    )
+    (it,) = check(plan, graph)
+    assert it.code == "MG101" and "(MG102)" in it.hint
+
+
 def test_a_missing_node_explains_the_tree_that_it_joins() -> None:
     plan, graph = read_example(
         "planned: frames of robot1 on /robot1/tf: base_link, laser\n"
