@@ -34,8 +34,8 @@ from multibot_rewrite.companions.named_file import (
 )
 from multibot_rewrite.companions.names.rename_map import KINDS, is_declared, spell
 from multibot_rewrite.companions.params.rewrite import read_params, rewrite_params
+from multibot_rewrite.companions.rviz.read_config import RvizRobot
 from multibot_rewrite.companions.rviz.rewrite import read_rviz, rewrite_rviz
-from multibot_rewrite.companions.rviz.values import RvizRobot
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.records import NodeFacts

@@ -47,13 +47,14 @@ from multibot_rewrite.companions.rviz.read_config import (
     TOPIC,
     RvizConfig,
     RvizItem,
+    RvizRobot,
     fixed_frame,
+    item_splices,
     read_config,
     targets,
     value,
 )
 from multibot_rewrite.companions.rviz.rewrite import frame_splices
-from multibot_rewrite.companions.rviz.values import RvizRobot, item_splices
 from multibot_rewrite.companions.yaml_text import (
     YamlText,
     cut_out,

@@ -11,8 +11,7 @@ import yaml
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.companions.names.rename_map import CompanionNames
-from multibot_rewrite.companions.rviz.read_config import rviz_data
-from multibot_rewrite.companions.rviz.values import RvizRobot
+from multibot_rewrite.companions.rviz.read_config import RvizRobot, rviz_data
 from multibot_rewrite.companions.yaml_text import YamlText, pairs
 
 Declared = dict[str, dict[str, Any]]

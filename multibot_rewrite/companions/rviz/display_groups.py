@@ -20,15 +20,13 @@ from multibot_rewrite.companions.rviz.read_config import (
     Colour,
     RvizConfig,
     RvizItem,
-    rviz_data,
-    value,
-)
-from multibot_rewrite.companions.rviz.values import (
     RvizRobot,
     changed_values,
     is_name,
     item_splices,
     robot_value,
+    rviz_data,
+    value,
 )
 from multibot_rewrite.companions.yaml_text import (
     Block,

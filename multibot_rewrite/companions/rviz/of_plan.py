@@ -14,9 +14,15 @@ from typing import Any
 from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
 from multibot_rewrite.base.naming import LAYOUTS, PREFIX, TF_TOPICS, make_naming
 from multibot_rewrite.companions.rviz.display_groups import leaves
-from multibot_rewrite.companions.rviz.read_config import TOPIC, palette, read_config, rviz_data
+from multibot_rewrite.companions.rviz.read_config import (
+    TF_PREFIX,
+    TOPIC,
+    RvizRobot,
+    palette,
+    read_config,
+    rviz_data,
+)
 from multibot_rewrite.companions.rviz.rewrite import RvizText, rewrite_rviz
-from multibot_rewrite.companions.rviz.values import TF_PREFIX, RvizRobot
 from multibot_rewrite.companions.yaml_text import YamlText, found_at, quoted
 from multibot_rewrite.spelling.shown import Shown, shown_by_robot, world_of_plan
 from multibot_rewrite.system.records import Robot, System

@@ -33,7 +33,11 @@ from multibot_rewrite.companions.rviz.read_config import (
     PROCESS,
     Colour,
     RvizConfig,
+    RvizRobot,
     fixed_frame,
+    frame_of,
+    is_name,
+    item_splices,
     palette,
     read_colour,
     read_config,
@@ -41,7 +45,6 @@ from multibot_rewrite.companions.rviz.read_config import (
     value,
     views_of,
 )
-from multibot_rewrite.companions.rviz.values import RvizRobot, frame_of, is_name, item_splices
 from multibot_rewrite.companions.rviz.window_checks import config_findings
 from multibot_rewrite.companions.sites import site_at
 from multibot_rewrite.companions.yaml_text import (

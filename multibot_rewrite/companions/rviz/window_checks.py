@@ -16,10 +16,10 @@ from multibot_rewrite.companions.rviz.read_config import (
     PROCESS,
     RvizConfig,
     fixed_frame,
+    frame_of,
     value,
     views_of,
 )
-from multibot_rewrite.companions.rviz.values import frame_of
 from multibot_rewrite.companions.yaml_text import found_at, pairs
 from multibot_rewrite.spelling.plan import tf_topic
 

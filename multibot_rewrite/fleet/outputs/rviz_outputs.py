@@ -15,9 +15,8 @@ from multibot_rewrite.base.naming import find_layout
 from multibot_rewrite.companions.names.robot_topics import fleet_topics
 from multibot_rewrite.companions.rviz.display_groups import is_for_one, shown_in
 from multibot_rewrite.companions.rviz.of_plan import bridged_window, windows_of_plan
-from multibot_rewrite.companions.rviz.read_config import read_config
+from multibot_rewrite.companions.rviz.read_config import RvizRobot, read_config
 from multibot_rewrite.companions.rviz.rewrite import RvizText, read_for, rewrite_rviz
-from multibot_rewrite.companions.rviz.values import RvizRobot
 from multibot_rewrite.companions.rviz.window_checks import ONE_TF_TOPIC
 from multibot_rewrite.fleet.checks.written_files import wrong_in_file
 from multibot_rewrite.fleet.fleet_plan import FleetPlan

@@ -15,8 +15,13 @@ from multibot_rewrite.companions.names.by_kind import expressible, frames_differ
 from multibot_rewrite.companions.names.placeholders import filled, is_robot
 from multibot_rewrite.companions.names.rename_map import is_declared
 from multibot_rewrite.companions.params.sections import ANY, ParamSection, flattened, scalars
-from multibot_rewrite.companions.rviz.read_config import GRAPH_NAMESPACE, RvizItem, text_of
-from multibot_rewrite.companions.rviz.values import LINK, TF_PREFIX
+from multibot_rewrite.companions.rviz.read_config import (
+    GRAPH_NAMESPACE,
+    LINK,
+    TF_PREFIX,
+    RvizItem,
+    text_of,
+)
 from multibot_rewrite.companions.sites import Site
 from multibot_rewrite.knowledge.parameter_entries import OWN_KINDS, PORT, RUN_TIME
 from multibot_rewrite.knowledge.parameters import is_absolute
