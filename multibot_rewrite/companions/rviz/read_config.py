@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An RViz config as records: displays, tools and panels, and where each holds a name."""
+"""An RViz config as records: displays, tools and panels, where each holds a name, and the value of
+that name for a robot."""
 
 from __future__ import annotations
 
