@@ -11,8 +11,14 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
-from multibot_rewrite.fleet.robots.fitting.commands import by_way_of_relays, driving, of_one_type
-from multibot_rewrite.fleet.robots.fitting.mux import own_mux, through_a_mux, to_the_drive
+from multibot_rewrite.fleet.robots.fitting.commands import (
+    by_way_of_relays,
+    driving,
+    of_one_type,
+    own_mux,
+    through_a_mux,
+    to_the_drive,
+)
 from multibot_rewrite.fleet.robots.fitting.node_topics import usual_values
 from multibot_rewrite.fleet.robots.fitting.sensors import (
     by_sensor,
