@@ -12,16 +12,14 @@ from multibot_rewrite.base.releases import share_release
 from multibot_rewrite.knowledge.node_entries import (
     GRAPH_KEYS,
     NODE_KEYS,
+    PARAMETER_KEYS,
     check_name,
     checked_endpoint,
     endpoints_of,
-    read_node,
-    taken_over,
-)
-from multibot_rewrite.knowledge.parameter_entries import (
-    PARAMETER_KEYS,
     read_guesses,
+    read_node,
     read_parameters,
+    taken_over,
 )
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts, NodeParameters
 from multibot_rewrite.knowledge.yaml_with_lines import (

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.releases import has_release
+from multibot_rewrite.knowledge.node_entries import OWN_KINDS, has_default
 from multibot_rewrite.knowledge.node_library import NodeLibrary
-from multibot_rewrite.knowledge.parameter_entries import OWN_KINDS, has_default
 from multibot_rewrite.knowledge.records import Branch, NodeParameters, Param
 from multibot_rewrite.knowledge.stacks import every_release, with_file
 

@@ -27,7 +27,7 @@ from multibot_rewrite.description.rewriters.vocabulary import (
     split_path,
     split_step,
 )
-from multibot_rewrite.knowledge.parameter_entries import OWN_KINDS
+from multibot_rewrite.knowledge.node_entries import OWN_KINDS
 from multibot_rewrite.knowledge.records import Param
 from multibot_rewrite.producers import evidence
 from multibot_rewrite.spelling.records import Given

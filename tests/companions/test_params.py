@@ -40,7 +40,7 @@ from made_params import (
 from paths import ROOT
 
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.knowledge.parameter_entries import KINDS
+from multibot_rewrite.knowledge.node_entries import KINDS
 from multibot_rewrite.lint import catalogue
 
 INTERFACES = ("command_interfaces", "state_interfaces", "interfaces")

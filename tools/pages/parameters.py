@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.knowledge.parameter_entries import PREFIX_KINDS, has_default
+from multibot_rewrite.knowledge.node_entries import PREFIX_KINDS, has_default
 from multibot_rewrite.knowledge.parameters import KnownNodes, built_in_nodes
 from multibot_rewrite.knowledge.records import NodeParameters, Param
 

@@ -11,14 +11,13 @@ from collections.abc import Iterable
 from typing import Any
 
 from multibot_rewrite.base import editors
-from multibot_rewrite.knowledge.node_entries import ENDPOINT_KEYS
+from multibot_rewrite.knowledge.node_entries import ENDPOINT_KEYS, KINDS, PARAM_KEYS
 from multibot_rewrite.knowledge.node_library import (
     ENTRY_KEYS,
     ENTRY_OF_NODE,
     FILE_KEYS,
     STACK_KEYS,
 )
-from multibot_rewrite.knowledge.parameter_entries import KINDS, PARAM_KEYS
 from multibot_rewrite.system.records import ROLES
 from tools.schemas import address
 

@@ -13,7 +13,7 @@ from multibot_rewrite.companions.names.placeholders import is_robot, without_rob
 from multibot_rewrite.companions.params.sections import NO_NAME, ParamSection
 from multibot_rewrite.companions.sites import FROM_NODE, FROM_PARENT, IN_FULL, Site, slot_of
 from multibot_rewrite.companions.yaml_text import YamlText, items, names_below, refused
-from multibot_rewrite.knowledge.parameter_entries import OWN_KINDS, PREFIX_KINDS
+from multibot_rewrite.knowledge.node_entries import OWN_KINDS, PREFIX_KINDS
 from multibot_rewrite.knowledge.parameters import KnownNodes, guess, is_absolute, is_below_costmap
 from multibot_rewrite.knowledge.records import Branch, NodeParameters, Param
 

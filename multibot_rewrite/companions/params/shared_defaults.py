@@ -42,7 +42,7 @@ from multibot_rewrite.companions.yaml_text import (
     newline,
     quoted,
 )
-from multibot_rewrite.knowledge.parameter_entries import PREFIX_KINDS
+from multibot_rewrite.knowledge.node_entries import PREFIX_KINDS
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import NodeParameters
 

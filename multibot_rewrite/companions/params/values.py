@@ -21,7 +21,7 @@ from multibot_rewrite.companions.params.name_sites import SectionNames, name_in
 from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.sites import Site, found_in
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, pairs, replaced
-from multibot_rewrite.knowledge.parameter_entries import GRAPH_NAME_KINDS, RUN_TIME, SWITCH_KINDS
+from multibot_rewrite.knowledge.node_entries import GRAPH_NAME_KINDS, RUN_TIME, SWITCH_KINDS
 from multibot_rewrite.knowledge.parameters import KnownNodes, is_absolute
 
 # Frames and links are one tree; the odometry's frame is in it, and in no description.

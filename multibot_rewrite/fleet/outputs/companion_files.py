@@ -41,7 +41,7 @@ from multibot_rewrite.fleet.outputs.output_file import (
 )
 from multibot_rewrite.fleet.robots.rewritten_robots import OWN_PORTS
 from multibot_rewrite.fleet.robots.robot_groups import RobotGroup, group_robots
-from multibot_rewrite.knowledge.parameter_entries import PORT, RUN_TIME
+from multibot_rewrite.knowledge.node_entries import PORT, RUN_TIME
 from multibot_rewrite.knowledge.parameters import KnownNodes, load_known_nodes
 from multibot_rewrite.producers.evidence.nodes import children_of
 from multibot_rewrite.producers.launch.handed_on import HandedOn

@@ -21,7 +21,7 @@ from multibot_rewrite.companions.names.placeholders import is_robot
 from multibot_rewrite.companions.sites import GZ_TOPIC, SECTION, Site
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.twice import BETWEEN
-from multibot_rewrite.knowledge.parameter_entries import RUN_TIME
+from multibot_rewrite.knowledge.node_entries import RUN_TIME
 from multibot_rewrite.rules.declaration import OF_TWO, remark
 from multibot_rewrite.rules.subject import Robots
 

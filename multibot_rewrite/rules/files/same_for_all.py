@@ -23,7 +23,7 @@ from multibot_rewrite.companions.rviz.read_config import (
     text_of,
 )
 from multibot_rewrite.companions.sites import Site
-from multibot_rewrite.knowledge.parameter_entries import OWN_KINDS, PORT, RUN_TIME
+from multibot_rewrite.knowledge.node_entries import OWN_KINDS, PORT, RUN_TIME
 from multibot_rewrite.knowledge.parameters import is_absolute
 from multibot_rewrite.producers.addresses import held_by
 from multibot_rewrite.rules.declaration import TWO, of_robots, remark, remark_at, robots_rule
