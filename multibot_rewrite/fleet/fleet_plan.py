@@ -49,7 +49,7 @@ from multibot_rewrite.fleet.robots.simulators import (
     note,
     without_world_systems,
 )
-from multibot_rewrite.spelling.table_checks import UNREACHABLE_NAME
+from multibot_rewrite.spelling.way_checks import UNREACHABLE_NAME
 
 
 class FleetPlan(NamedTuple):

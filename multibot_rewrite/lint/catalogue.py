@@ -23,7 +23,7 @@ HOMES = {
     "fleet.robots": "joined_robots rewritten_robots robot_nodes simulators start_poses",
     "producers.evidence": "nodes",
     "producers.launch": "findings",
-    "spelling": "table_checks way_checks",
+    "spelling": "way_checks",
 }
 
 

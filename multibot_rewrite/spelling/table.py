@@ -27,8 +27,15 @@ from multibot_rewrite.spelling.of_runs import (
     with_names,
 )
 from multibot_rewrite.spelling.records import Rule, Run, Table
-from multibot_rewrite.spelling.table_checks import PROBE, asked_for, unreachable, useless_rules
-from multibot_rewrite.spelling.way_checks import NOT_TAKEN, is_stand_in, not_taken
+from multibot_rewrite.spelling.way_checks import (
+    NOT_TAKEN,
+    PROBE,
+    asked_for,
+    is_stand_in,
+    not_taken,
+    unreachable,
+    useless_rules,
+)
 
 NOTHING: Mapping[str, Sequence[Run]] = {}
 # The full name of a robot's node, by its name in the stack.
