@@ -57,7 +57,7 @@ from multibot_rewrite.companions.yaml_text import (
     replaced,
 )
 from multibot_rewrite.description.rewriters.forms import NamePart
-from multibot_rewrite.description.rewriters.made_topics import STEM, parts_of
+from multibot_rewrite.description.rewriters.model_namespaces import STEM, parts_of
 
 # gz topics of the whole simulation, like those below /world.
 WORLD = frozenset({"clock", "stats"})

@@ -14,7 +14,7 @@ from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.companions.names.rename_map import NO_OWN, CompanionNames
 from multibot_rewrite.companions.yaml_text import Splice
 from multibot_rewrite.description.rewriters.forms import Declared
-from multibot_rewrite.description.rewriters.made_topics import NO_WORDS, Stems
+from multibot_rewrite.description.rewriters.model_namespaces import NO_WORDS, Stems
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.spelling.of_runs import placed
 

@@ -67,7 +67,7 @@ from multibot_rewrite.companions.yaml_text import (
 )
 from multibot_rewrite.description.joining.part import PREFIXED, prefixing
 from multibot_rewrite.description.rewriters.forms import Declared
-from multibot_rewrite.description.rewriters.made_topics import words_of
+from multibot_rewrite.description.rewriters.model_namespaces import words_of
 from multibot_rewrite.description.steps.collect import Inventory
 
 _OF_ALL = "joint_state_broadcaster/JointStateBroadcaster"

@@ -20,7 +20,7 @@ from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.companions.formats import kind_alone, read_named, rewrite_alone
 from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.rename_map import KINDS, NO_OWN, companion_names
-from multibot_rewrite.description.rewriters.made_topics import given_topics, words_of
+from multibot_rewrite.description.rewriters.model_namespaces import given_topics, words_of
 from multibot_rewrite.description.sources.job import Job, read_jobs
 from multibot_rewrite.description.sources.read import Source
 from multibot_rewrite.description.sources.whole import read_whole

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from multibot_rewrite.base.conventions import ROWS
 from multibot_rewrite.base.naming import NAMESPACE, NOT_PLAIN, Naming, spelled
 from multibot_rewrite.description.rewriters.forms import Declared
-from multibot_rewrite.description.rewriters.made_topics import NO_WORDS, Stems
+from multibot_rewrite.description.rewriters.model_namespaces import NO_WORDS, Stems
 from multibot_rewrite.description.rewriters.spelling import resolve
 
 # Kinds of names in a description that a kind of value may refer to, tried in order.

@@ -14,8 +14,11 @@ from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import FOR_OLD_GAZEBO, Claim, InputError, SiteRow
 from multibot_rewrite.description.rewriters import spelling
 from multibot_rewrite.description.rewriters.forms import Declared
-from multibot_rewrite.description.rewriters.made_topics import names_in_topics
-from multibot_rewrite.description.rewriters.model_namespaces import below_models, own_namespaces
+from multibot_rewrite.description.rewriters.model_namespaces import (
+    below_models,
+    names_in_topics,
+    own_namespaces,
+)
 from multibot_rewrite.description.rewriters.remap_rules import names_in_rules
 from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.rewriters.tree import Tree, TreeNode

@@ -20,7 +20,7 @@ from multibot_rewrite.description.checks.twice import CARRYING
 from multibot_rewrite.description.library import Rewrite, rewrite_job
 from multibot_rewrite.description.own_ports import numbered, ports_of
 from multibot_rewrite.description.readback.meeting import NUMBERED, SHARED_CODES
-from multibot_rewrite.description.rewriters.made_topics import given_topics, words_of
+from multibot_rewrite.description.rewriters.model_namespaces import given_topics, words_of
 from multibot_rewrite.description.sources.job import (
     PARTS,
     FilesRead,
