@@ -26,11 +26,13 @@ from multibot_rewrite.fleet.launch.launched_robot import (
     under_plugins,
 )
 from multibot_rewrite.fleet.outputs.output_file import params_of
-from multibot_rewrite.fleet.robots.fitting.fitted import described, fitted, free_nodes
-from multibot_rewrite.fleet.robots.fitting.transforms import (
+from multibot_rewrite.fleet.robots.fitting.fitted import (
     brings_transforms,
     changed_frames,
+    described,
+    fitted,
     fitting_frames,
+    free_nodes,
     have_two_parents,
     is_led_elsewhere,
     sends_too,

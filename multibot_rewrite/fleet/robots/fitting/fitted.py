@@ -1,16 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
 """Settings of a robot's nodes that no file of the robot makes: they fit what its description and its
-files have.
+files have. Transforms: what sends them, which nodes would send one a second time; frames of nodes:
+those of the robot in the place of usual ones that it has not.
 
 What the user's files say stays. A node that a node set adds gets the type of commands, the frames
 and the transforms with which it works with them."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.fleet.file.robot_spec import RobotSpec
+from multibot_rewrite.base.conventions import BODY_FRAMES
+from multibot_rewrite.base.grouping import sets_by_key
+from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.description.rewriters.own_defaults import MODEL, default_of, frame_sites
+from multibot_rewrite.description.rewriters.text import text_at
+from multibot_rewrite.description.steps.collect import collect
+from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec
+from multibot_rewrite.fleet.outputs.output_file import own_yaml
 from multibot_rewrite.fleet.robots.fitting.commands import (
     by_way_of_relays,
     driving,
@@ -19,25 +28,187 @@ from multibot_rewrite.fleet.robots.fitting.commands import (
     through_a_mux,
     to_the_drive,
 )
-from multibot_rewrite.fleet.robots.fitting.node_topics import usual_values
+from multibot_rewrite.fleet.robots.fitting.node_topics import controllers, plugins, usual_values
 from multibot_rewrite.fleet.robots.fitting.sensors import (
     by_sensor,
     hearing_sensors,
     offered_topics,
     with_odometry,
 )
-from multibot_rewrite.fleet.robots.fitting.transforms import (
-    root_link,
-    sent_by_plugins,
-    with_root,
-    without_second_senders,
-)
 from multibot_rewrite.fleet.robots.member import Member
+from multibot_rewrite.knowledge.conditions import parse_condition
 from multibot_rewrite.knowledge.records import MOVE_GROUP, TWIST_MUX, NodeFacts
+from multibot_rewrite.producers.ends import bridge_rows
 from multibot_rewrite.producers.evidence.filling import sent_with
-from multibot_rewrite.spelling.bridged_topics import TF_TYPE
-from multibot_rewrite.spelling.records import Run
-from multibot_rewrite.system.records import Edge
+from multibot_rewrite.spelling.bridged_topics import TF_ELEMENT, TF_TYPE
+from multibot_rewrite.spelling.records import Given, Run
+from multibot_rewrite.spelling.transforms import edges_in, sent_by
+from multibot_rewrite.system.records import NOWHERE, SUBSCRIBES, Edge, edge_of
+from multibot_rewrite.system.tool_nodes import last_word
+
+# The layout in which a description keeps its frames.
+_NAMING = make_naming("tf-per-robot")
+_TF = "tf"
+
+
+def sent_by_plugins(member: Member, spec: RobotSpec) -> tuple[Edge, ...]:
+    """Return the transforms that plugins of the description send to tf; none of a real robot."""
+    if spec.simulator == REAL:
+        return ()
+    elsewhere = _led_elsewhere(spec)
+    found = (edge for topic, edge in _sent_by_systems(member) if topic not in elsewhere)
+    return (*found, *(it for node in plugins(member) for it in sent_by(node, "")))
+
+
+def is_led_elsewhere(member: Member, spec: RobotSpec) -> bool:
+    """Return whether a bridge file of the robot has its drive's transform on another topic than tf."""
+    elsewhere = _led_elsewhere(spec)
+    return bool(elsewhere) and any(topic in elsewhere for topic, _ in _sent_by_systems(member))
+
+
+def _sent_by_systems(member: Member) -> Iterator[tuple[str, Edge]]:
+    """Yield the transforms of the simulator's systems, each with the last word of its topic there."""
+    for host, section in collect(member.source, member.tree).served:
+        sites = frame_sites(host, section, _NAMING)
+        frames = [text_at(host, it.path) or default_of(host, it.default, _NAMING) for it in sites]
+        if len(frames) == 2:
+            parent, child = (it.removeprefix(MODEL) for it in frames)
+            yield last_word(text_at(host, TF_ELEMENT) or _TF), edge_of(parent, child)
+
+
+def brings_transforms(spec: RobotSpec) -> bool:
+    """Return whether a bridge file of the robot or of its launch files has a row with transforms."""
+    paths = spec.companions.get("bridge", ())
+    return any(it.end.type == TF_TYPE for path in paths for it in bridge_rows(own_yaml(spec, path)))
+
+
+def _led_elsewhere(spec: RobotSpec) -> set[str]:
+    """Return the last words of the simulator's topics with transforms that bridge files of the robot
+    have on no tf."""
+    led: dict[str, set[str]] = defaultdict(set)
+    for path in spec.companions.get("bridge", ()):
+        for it in bridge_rows(own_yaml(spec, path)):
+            if it.end.type == TF_TYPE and it.end.role != SUBSCRIBES:
+                led[last_word(it.inside)].add(last_word(it.end.name))
+    return {inside for inside, names in led.items() if _TF not in names}
+
+
+def sent_by_controllers(nodes: Iterable[NodeFacts]) -> Iterator[Edge]:
+    """Yield the transforms of the controllers that surely run."""
+    yield from (it for node in controllers(nodes) for it in sent_by(node, ""))
+
+
+def without_second_senders(
+    nodes: Sequence[NodeFacts], free: Collection[str], sent: Sequence[Edge]
+) -> Iterator[NodeFacts]:
+    """Yield the nodes, free ones with their transforms off where another one sends them: two would
+    take the frame from each other."""
+    bodies = {*BODY_FRAMES, *(it.child for it in sent)}
+    taken = {_place(it, bodies) for it in (*sent, *_in_files(nodes, free))}
+    for node in nodes:
+        own = {_place(it, bodies) for it in sent_by(node, "")}
+        switch = _switch_of(node) if node.name in free and not own.isdisjoint(taken) else ""
+        yield (node._replace(sends=(), usual=(*node.usual, (switch, False))) if switch else node)
+        taken |= set() if switch else own
+
+
+def _in_files(nodes: Iterable[NodeFacts], free: Collection[str]) -> Iterator[Edge]:
+    yield from (it for node in nodes if node.name not in free for it in sent_by(node, ""))
+
+
+def sends_too(nodes: Iterable[NodeFacts], free: Collection[str], sent: Sequence[Edge]) -> bool:
+    """Return whether a node that surely runs and is not ``free`` sends what plugins have ``sent``."""
+    bodies = {*BODY_FRAMES, *(it.child for it in sent)}
+    sure = (it for it in nodes if not it.when)
+    own = {_place(it, bodies) for it in _in_files(sure, free)}
+    return any(_place(it, bodies) in own for it in sent)
+
+
+def have_two_parents(sent: Iterable[Edge]) -> bool:
+    """Do transforms that plugins have ``sent`` give a frame two parents? Not all of them are for tf."""
+    return any(len(it) > 1 for it in sets_by_key((it.child, it.parent) for it in sent).values())
+
+
+def _place(edge: Edge, bodies: Collection[str]) -> tuple[str, str]:
+    """Return what a transform places, and where: a robot has one place, whichever of its frames has
+    it."""
+    return edge.parent, "" if edge.child in bodies else edge.child
+
+
+def _switch_of(node: NodeFacts) -> str:
+    """Return the parameter that, alone, switches all transforms of a node off; empty for none."""
+    asked = (one for it in node.sends for terms in parse_condition(it.condition) for one in terms)
+    values = usual_values(node)
+    for name in dict.fromkeys(it.parameter for it in asked):
+        off = {**values, name: Given(False, NOWHERE)}
+        if not any(sent_with(node, off)):
+            return name
+    return ""
+
+
+ODOM = "odom"
+Frames = Mapping[str, str]
+NO_FRAMES: Frames = {}
+
+
+def fitting_frames(member: Member, nodes: Iterable[NodeFacts], sent: Sequence[Edge]) -> Frames:
+    """Return the usual frames that nothing of the robot has, each with the frame that its drive has in
+    that place."""
+    placed = next((it for it in sent if it.child in BODY_FRAMES or it.parent == ODOM), None)
+    if placed is None:
+        return NO_FRAMES
+    links = {it.get("name", "") for it in member.source.root.iter("link", "frame")}
+    given = {frame.default for it in nodes for frame in it.frames if frame.given}
+    has = links | given | {frame for it in sent for frame in it[:2]}
+    wanted = {**dict.fromkeys(BODY_FRAMES, placed.child), ODOM: placed.parent}
+    return {name: it for name, it in wanted.items() if name not in has}
+
+
+def with_frames(node: NodeFacts, fits: Frames) -> NodeFacts:
+    """Return the node with frames that the robot has, where no file sets them."""
+    frames = (
+        it if it.given else it._replace(default=fits.get(it.default, it.default))
+        for it in node.frames
+    )
+    return node._replace(frames=tuple(frames)) if fits else node
+
+
+def changed_frames(
+    nodes: Iterable[NodeFacts], before: Iterable[NodeFacts]
+) -> Mapping[tuple[str, str], str]:
+    """Return the frames of nodes that are others than ``before``, where no file sets them: by the
+    node's last name and the parameter."""
+    old = {(node.name, it.parameter): it.default for node in before for it in node.frames}
+    return {
+        (node.kind.rpartition("/")[2], it.parameter): it.default
+        for node in nodes
+        for it in node.frames
+        if not it.given and old.get((node.name, it.parameter), it.default) != it.default
+    }
+
+
+def root_link(member: Member) -> str:
+    """Return the link that no joint holds, where another usual one of the body is below it; empty for
+    none."""
+    children = {it.child for it in edges_in(member.source.root)}
+    roots = [
+        name
+        for it in member.source.root.iterfind("link")
+        if (name := it.get("name", "")) not in children
+    ]
+    return roots[0] if len(roots) == 1 and not children.isdisjoint(BODY_FRAMES) else ""
+
+
+def with_root(node: NodeFacts, root: str) -> NodeFacts:
+    """Return the node with the root of the description as the frame that it places: a link that a
+    joint holds has a parent already."""
+    placed = {it.child for it in node.sends}
+    frames = (
+        it._replace(default=root) if it.parameter in placed and it.default in BODY_FRAMES else it
+        for it in node.frames
+    )
+    return node._replace(frames=tuple(frames)) if root else node
+
 
 RVIZ = "rviz2"
 
