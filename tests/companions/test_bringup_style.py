@@ -20,7 +20,7 @@ from paths import FIXTURES, SUPPORT, fixture_text
 
 from multibot_rewrite import InputError, UsageError, load_fleet
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.companions.params.bringup_style import below_namespace, for_bringup
+from multibot_rewrite.companions.params.shared_defaults import below_namespace, for_bringup
 from multibot_rewrite.companions.yaml_text import read_yaml
 
 ROVER = FIXTURES / "robots" / "rover.urdf"

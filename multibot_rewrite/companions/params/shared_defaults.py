@@ -1,25 +1,32 @@
 # SPDX-License-Identifier: Apache-2.0
 """Parameters that a file does not set, with a default that all robots would share: lines to insert.
-Nodes and controllers that no section is for: sections with what must differ by robot.
+Nodes and controllers that no section is for: sections with what must differ by robot. And a robot's
+file in the form that nav2_bringup takes: its sections have no namespace.
 
 Without a section a node runs with its defaults: amcl looks for base_footprint, and a controller
 puts an empty prefix before joints, where the description of each robot has another name.
-"""
+
+The launch files there put a file below the robot's namespace (RewrittenYaml with ``root_key``), so a
+namespace of its own would be there twice, and rcl refuses ``/robot1//robot1/``. slam_toolbox is the one
+node that gets the file as it is, and only if the file has a key of that name (HasNodeParams).
+Sources: nav2_bringup launch/slam_launch.py, nav2_common rewritten_yaml.py and has_node_params.py, all
+releases from humble (1.1.20) to rolling (a3a97043e)."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import yaml
 
 from multibot_rewrite.base.conventions import PLACEHOLDER
-from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, declare
 from multibot_rewrite.base.naming import spelled
 from multibot_rewrite.companions.context import NAMESPACE_SLOT, Context, full_name
 from multibot_rewrite.companions.names.by_kind import SPELLERS, expressible
 from multibot_rewrite.companions.params.name_sites import SectionNames
+from multibot_rewrite.companions.params.rcl_parameters import parameters_text
 from multibot_rewrite.companions.params.sections import (
     ANY,
     MANAGER,
@@ -31,6 +38,7 @@ from multibot_rewrite.companions.params.sections import (
     identify_node,
     identify_sections,
     is_for,
+    raw_sections,
 )
 from multibot_rewrite.companions.params.values import NO_PREFIX, ParamsJob, frames_stay
 from multibot_rewrite.companions.yaml_text import (
@@ -40,7 +48,10 @@ from multibot_rewrite.companions.yaml_text import (
     inserted as lines_inserted,
     line_start,
     newline,
+    pairs,
     quoted,
+    replaced,
+    spliced,
 )
 from multibot_rewrite.knowledge.node_entries import PREFIX_KINDS
 from multibot_rewrite.knowledge.parameters import KnownNodes
@@ -236,3 +247,77 @@ def _section(full: str, lines: Sequence[DefaultLine]) -> Iterator[str]:
     keys = (f"/{'/'.join(above)}", name) if len(above) > 1 else (full,)
     yield from (f"{'  ' * at}{key}:" for at, key in enumerate((*keys, PARAMETERS)))
     yield from (f"{'  ' * (len(keys) + 1)}{it.path}: {it.value}" for it in lines)
+
+
+_SLAM = "slam_toolbox"
+_WHY = "# nav2_bringup wants this key, and gives slam_toolbox the file without a namespace.\n"
+_MAP_NAME = DefaultLine(
+    "# /map by default, and nothing would move /map_metadata", "map_name", "map"
+)
+
+OUTSIDE = declare(
+    "MF132",
+    "section-outside-of-bringup",
+    ERROR,
+    formats=("params",),
+    options={"stack": ["nav2", "rviz"], "params_style": "bringup", "layout": "both"},
+)
+
+
+Values = Mapping[str, Mapping[str, object]]
+NO_MORE: Values = {}
+
+
+def for_bringup(
+    document: YamlText, namespace: str, more: Values = NO_MORE
+) -> tuple[str, tuple[Finding, ...]]:
+    """Return the text of a file made for the robot in ``namespace``, without that namespace.
+
+    ``more`` are further values of nodes that have a section in it: there is one file for all that is
+    started. Raises InputError for a file that rcl rejects.
+    """
+    sections = {id(it.keys[0]): it for it in raw_sections(document)}
+    made = [it for section in sections.values() for it in _changed(document, section, namespace)]
+    splices = [it for it in made if isinstance(it, Splice)]
+    findings = tuple(it for it in made if isinstance(it, Finding))
+    named = {below_namespace(it.path, namespace) for it in sections.values()}
+    added = {f"**/{node}": values for node, values in more.items() if node in named}
+    # The keys of these sections are others than those of the file.
+    behind = f"\n{parameters_text(added)[1:-1]}\n" if added else ""
+    return spliced(document, splices) + behind, findings
+
+
+def _changed(document: YamlText, section: RawSection, namespace: str) -> Iterator[Splice | Finding]:
+    """Yield the new key of a section, with more values if it is the first below that key."""
+    key = section.keys[0]
+    below = below_namespace(key.value, namespace)
+    if PLACEHOLDER.search(key.value):
+        return
+    if below is None:
+        message = f"section {key.value} is for a node that is not in the namespace /{namespace}"
+        hint = "nav2_bringup puts all sections there; put this one into a file of its own"
+        yield found_at(document, key, OUTSIDE, message, hint)
+    elif below == _SLAM:
+        at, column = key.start_mark.index, key.start_mark.column
+        new = f"{_WHY}{' ' * column}{_SLAM}: {{}}\n{' ' * column}{quoted(f'**/{_SLAM}')}"
+        yield Splice(at, key.end_mark.index, new)
+        if _MAP_NAME.path not in {it.value for it, _ in pairs(section.body)}:
+            yield inserted(document, section.body, [_MAP_NAME])
+    else:
+        yield replaced(key, below)
+
+
+def below_namespace(key: str, namespace: str) -> str | None:
+    """Return the rest of a section's name below a namespace; None if no node there has it.
+
+    below_namespace("/robot1/amcl", "robot1") == "amcl"
+    below_namespace("/**", "robot1") == "**"
+    """
+    tokens = key.strip("/").split("/")
+    for word in namespace.split("/"):
+        if tokens and tokens[0] == "**":
+            break
+        if not tokens or tokens[0] not in (word, "*"):
+            return None
+        tokens.pop(0)
+    return "/".join(tokens) or "**"

@@ -15,7 +15,7 @@ from types import MappingProxyType
 from multibot_rewrite.base.findings.finding import NOTE, Finding, declare
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, make_naming
-from multibot_rewrite.companions.params.bringup_style import for_bringup
+from multibot_rewrite.companions.params.shared_defaults import for_bringup
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.fleet.file.fleet_file import BRINGUP, FleetFile
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
