@@ -23,8 +23,13 @@ from multibot_rewrite.knowledge.records import (
     SentTransform,
     Untold,
 )
-from multibot_rewrite.producers.sources.files import Packages, Read, read_program
-from multibot_rewrite.producers.sources.programs import Start, start_of
+from multibot_rewrite.producers.sources.programs import (
+    Packages,
+    Read,
+    Start,
+    read_program,
+    start_of,
+)
 from multibot_rewrite.producers.sources.records import OTHERWISE, Place, Value, parameter_in
 from multibot_rewrite.producers.sources.resolve import (
     EACH,
