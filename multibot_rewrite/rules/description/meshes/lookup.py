@@ -268,7 +268,7 @@ def _box(path: str, state: tuple[int, ...], whole: bool) -> Extent | None:
     except OSError:
         return None
     if path.lower().endswith(COLLADA):
-        from multibot_rewrite.description.checks.collada import (
+        from multibot_rewrite.description.checks.shapes import (
             collada_box,
         )  # few descriptions are near such a file
 
