@@ -14,7 +14,7 @@ import pytest
 from lxml import etree
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.outputs.given_world import world_topics
+from multibot_rewrite.fleet.outputs.world_file import world_topics
 
 BOAT = """<sdf version="1.9"><model name="boat"><link name="hull"/>
 <link name="mast"><sensor name="imu" type="imu"/></link></model></sdf>"""

@@ -13,8 +13,8 @@ from multibot_rewrite.companions.named_file import BRIDGE, MOVEIT, PARAMS, Named
 from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.fleet.outputs.given_world import world_topics
 from multibot_rewrite.fleet.outputs.output_file import OutputFile, line_in_source
+from multibot_rewrite.fleet.outputs.world_file import world_topics
 from multibot_rewrite.fleet.robots.member import line_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import RobotGroup

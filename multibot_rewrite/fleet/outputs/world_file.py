@@ -1,26 +1,226 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``world.sdf``: an empty world for gz-sim that runs the sensors of the robots.
+"""``world.sdf``: a world of the user's without the robot that it has, since the launch file spawns each of
+the fleet (what names that robot names those of the fleet); or an empty one for gz-sim that runs the
+sensors of the robots.
 
 Gazebo's own empty.sdf has physics, user commands, the scene and contacts; a lidar, a camera or an IMU
 sends nothing in it. Source: gz-sim gz-sim8 examples/worlds/empty.sdf, sensors_demo.sdf, and the names
 in src/systems (ign-gazebo6 of Humble calls the libraries ignition-gazebo-...).
-"""
+
+A block of a plugin that names it (``<wind_obj>`` of VRX, ``<performer>`` of gz-sim) is there for each
+robot; a parameter of the plugin itself can name one robot only, and names the first.
+Sources: gz-sim examples/worlds/levels.sdf; osrf/vrx vrx_gz/src/USVWind.cc, ScoringPlugin.cc."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import os
+import re
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from lxml.etree import _Element
 
 from multibot_rewrite.base.bounded import own_text
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding, declare
+from multibot_rewrite.base.grouping import lists_by_key
+from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.base.releases import has_release
+from multibot_rewrite.companions.names.rename_map import is_declared, spell
+from multibot_rewrite.description.rewriters.text import text_at, text_of
+from multibot_rewrite.description.rewriters.tree import library_key
+from multibot_rewrite.description.sources.included_models import model_file
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.description.steps.apply import cut
+from multibot_rewrite.description.steps.document import Document, read_document, tag_end, text_slot
+from multibot_rewrite.description.steps.spans import Spans
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.fleet.outputs.given_world import own_world
 from multibot_rewrite.fleet.outputs.output_file import FilesAndFindings, OutputFile
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.simulators import is_simulated, systems_of
-from multibot_rewrite.knowledge.worlds import SYSTEMS
+from multibot_rewrite.knowledge.worlds import DEFAULTS, SENT_BY, SENT_BY_ANY, SYSTEMS
 from multibot_rewrite.rules.facts.simulators import needed_systems
+
+_SCOPE = "::"
+_BELOW_MODEL = r"((?:^|/)model/){}(?=/|$)"
+WORLD_ROBOT = declare("MF846", "robot-of-the-world", NOTE, formats=("fleet",))
+
+
+class _Kind(NamedTuple):
+    """Robots of one description, what that is called in the world, and its files."""
+
+    robots: Sequence[RewrittenRobot]
+    names: frozenset[str]
+    files: frozenset[str]
+
+
+class _Text(NamedTuple):
+    """The world as it is read, where its elements are, and the places of the fleet file."""
+
+    document: Document
+    spans: Spans
+    file: str
+    line: int
+
+
+def own_world(
+    path: str, robots: Sequence[RewrittenRobot], systems: str, file: str, line: int
+) -> tuple[bytes, list[Finding]]:
+    """Return the world for these robots with the ``systems`` that it lacks, and the findings for
+    this ``line`` of the fleet file. Raises InputError for a file that is no world."""
+    document = read_document(read_file(path), path)
+    world = document.root.find("world")
+    if world is None:
+        raise InputError(f"{path}:1: there is no <world> in it; simulator_world takes an SDF world")
+    it = _Text(document, Spans(document), file, line)
+    at = tag_end(document.source, it.spans.start_of(world))
+    edits = [Edit(at, at, b"\n" + systems.rstrip("\n").encode(), None)] if systems else []
+    edits += _own_paths(it)
+    findings: list[Finding] = []
+    for kind in _kinds(robots):
+        gone = []
+        for one in world.iterchildren("include", "model"):
+            uri = text_at(one, "uri")
+            found = model_file(uri, os.path.dirname(os.path.abspath(path))) if uri else ""
+            is_of_file = bool(found) and os.path.realpath(found) in kind.files
+            gone += [one] if is_of_file or _name(one) in kind.names else []
+        names = kind.names | {name for one in gone if (name := _name(one))}
+        for one in gone:
+            edits.append(Edit(*it.spans.of(one), b"", None))
+            findings.append(_said(it, one, f"the world's {_name(one)!r} is left out", NOTE))
+        inside = {below for one in gone for below in one.iter()}
+        for plugin in world.iter("plugin"):
+            if plugin not in inside:
+                for edit in _in_plugin(it, plugin, kind._replace(names=names)):
+                    (edits if isinstance(edit, Edit) else findings).append(edit)  # type: ignore[arg-type]
+    # In order, without those inside of another one.
+    apart: list[Edit] = []
+    for edit in sorted(edits, key=lambda one: (one.start, -one.end)):
+        if not apart or edit.start >= apart[-1].end:
+            apart.append(edit)
+    return b"".join(cut(document.source, apart)), findings
+
+
+def world_topics(path: str) -> dict[str, str]:
+    """Return the gz topics of a user's world, or of Gazebo's empty one, each with its type: empty
+    if unknown."""
+    root = read_document(read_file(path), path).root if path else None
+    world = root.find("world") if root is not None else None
+    if root is None or world is None:
+        return _sent("empty", DEFAULTS)
+    plugins = [library_key(it.get("filename") or "") for it in world.iterchildren("plugin")]
+    systems = [it.removeprefix("gz-sim-").removesuffix("-system") for it in plugins]
+    texts = (text_of(it) for it in world.iter("*") if str(it.tag).endswith("topic"))
+    named = {*texts, *(it.get("topic", "") for it in world.iter("*"))} - {""}
+    told = {f"/{it.lstrip('/')}": "" for it in named}
+    return told | _sent(world.get("name", ""), systems or DEFAULTS)
+
+
+def _sent(world: str, systems: Sequence[str]) -> dict[str, str]:
+    own = (SENT_BY_ANY, *(SENT_BY.get(it, {}) for it in systems))
+    return {
+        f"/world/{world}/{name}": f"gz.msgs.{type_}" for it in own for name, type_ in it.items()
+    }
+
+
+def _kinds(robots: Sequence[RewrittenRobot]) -> Iterator[_Kind]:
+    found = lists_by_key((it.spec.simulated or it.spec.description, it) for it in robots)
+    for alike in found.values():
+        root = alike[0].member.source.root
+        model = root if root.tag == "robot" else next(root.iter("model"), root)
+        spec = alike[0].spec
+        files = (os.path.realpath(one) for one in (spec.description, spec.simulated) if one)
+        # What stands before all links, as in wamv/base_link, is the name that its launch spawns it by.
+        links = [it.get("name", "") for it in root.iter("link") if it.get("name")]
+        prefixes = {it.partition("/")[0] if "/" in it else "" for it in links}
+        names = {model.get("name", ""), *(prefixes if len(prefixes) == 1 else ())} - {""}
+        yield _Kind(alike, frozenset(names), frozenset(files))
+
+
+def _name(one: _Element) -> str:
+    return one.get("name") or text_at(one, "name") or text_at(one, "uri").rpartition("/")[2]
+
+
+def _in_plugin(it: _Text, plugin: _Element, kind: _Kind) -> Iterator[Edit | Finding]:
+    for block in (one for one in plugin.iterchildren("*") if len(one)):
+        texts_in = (text_of(one) for one in block.iter("*") if not len(one))
+        if not any(_new(text, kind.robots[0], kind.names, False) for text in texts_in):
+            continue
+        start, end = it.spans.of(block)
+        texts = [_block(it, block, kind, robot) for robot in kind.robots]
+        yield Edit(start, end, b"\n".join(texts), None)
+    leaves = [one for one in plugin.iterchildren("*") if not len(one)]
+    named = [one for one in leaves if _new(text_of(one), kind.robots[0], kind.names, False)]
+    for one in leaves:
+        new = _new(text_of(one), kind.robots[0], kind.names, bool(named))
+        slot = text_slot(it.document.source, it.spans.start_of(one), text_of(one)) if new else None
+        if slot:
+            yield Edit(*slot, new.encode(), None)
+    if named and len(kind.robots) > 1:
+        who = plugin.get("name") or plugin.get("filename") or "plugin"
+        first = kind.robots[0].spec.name
+        message = f"{who} of the world names one robot in <{named[0].tag}>: now {first} alone"
+        yield _said(it, named[0], message, WARNING)
+
+
+def _block(it: _Text, block: _Element, kind: _Kind, robot: RewrittenRobot) -> bytes:
+    """Return the block for one robot; its own name, if it has one, becomes the robot's."""
+    source = it.document.source
+    start, end = it.spans.of(block)
+    edits = []
+    for one in block.iter("*"):
+        text = text_of(one) if not len(one) else ""
+        new = _new(text, robot, kind.names, True)
+        slot = text_slot(source, it.spans.start_of(one), text) if new else None
+        edits += [Edit(slot[0] - start, slot[1] - start, new.encode(), None)] if slot else []
+    own = re.compile(rb"""\bname\s*=\s*["']([^"'<]*)""").search(
+        source, start, tag_end(source, start)
+    )
+    if own and robot is not kind.robots[0]:
+        at = own.end(1) - start
+        edits.append(Edit(at, at, f"_{robot.spec.name}".encode(), None))
+    return b"".join(cut(source[start:end], sorted(edits)))
+
+
+def _new(value: str, robot: RewrittenRobot, names: frozenset[str], tied: bool) -> str:
+    """Return what a value becomes for a robot, empty if it does not name it; in what is ``tied`` to
+    the robot, links and joints become its own."""
+    model, scope, rest = value.partition(_SCOPE)
+    if value in names:
+        return robot.spec.model
+    if scope and model in names:
+        return _SCOPE.join((robot.spec.model, *(_part(it, robot) for it in rest.split(_SCOPE))))
+    made = value
+    for name in names:
+        made = re.sub(_BELOW_MODEL.format(re.escape(name)), rf"\g<1>{robot.spec.model}", made)
+    if made == value and tied:
+        made = _part(value, robot)
+    return made if made != value else ""
+
+
+def _part(value: str, robot: RewrittenRobot) -> str:
+    for kind in ("link", "joint", "sensor"):
+        if is_declared(robot.names, kind, value):
+            return spell(robot.names, kind, value)
+    return value
+
+
+def _own_paths(it: _Text) -> Iterator[Edit]:
+    """Yield edits that make relative paths absolute: the copy of the world is in another folder."""
+    folder = os.path.dirname(os.path.abspath(it.document.file))
+    for one in it.document.root.iter("uri", "filename"):
+        text = text_of(one)
+        path = os.path.join(folder, text)
+        if text and "://" not in text and os.path.exists(path):
+            slot = text_slot(it.document.source, it.spans.start_of(one), text)
+            if slot:
+                yield Edit(*slot, f"file://{path}".encode(), None)
+
+
+def _said(it: _Text, one: _Element, message: str, level: str) -> Finding:
+    place = f"{it.document.file}:{one.sourceline}"
+    hint = f"{place}; robots are spawned by the launch file" if level == NOTE else f"see {place}"
+    return WORLD_ROBOT.finding(message, hint, level=level, file=it.file, line=it.line)
+
 
 FILE = "world.sdf"
 # The release whose Gazebo has libraries of the old name.
