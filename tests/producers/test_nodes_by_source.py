@@ -17,7 +17,7 @@ from paths import FIXTURES
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.evidence.filling import filled
-from multibot_rewrite.producers.sources import expressions, files
+from multibot_rewrite.producers.sources import expressions, programs
 from multibot_rewrite.producers.sources.facts import NodeSource, node_of_program
 from multibot_rewrite.producers.sources.records import parameter_in
 from multibot_rewrite.spelling.of_runs import ends_of, with_names
@@ -489,7 +489,7 @@ def without_reader(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setitem(sys.modules, name, None)
     monkeypatch.setattr(expressions, "find_spec", lambda name: None)
     expressions._tools.cache_clear()
-    files._parsed.cache_clear()
+    programs._parsed.cache_clear()
 
 
 @pytest.mark.usefixtures("without_reader")

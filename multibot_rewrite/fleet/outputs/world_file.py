@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``world.sdf``: a world of the user's without the robot that it has, since the launch file spawns each of
-the fleet (what names that robot names those of the fleet); or an empty one for gz-sim that runs the
-sensors of the robots.
+"""``world.sdf``: a world of the user's without the robot that it has, since the launch file spawns
+each of the fleet (what names that robot names those of the fleet); or an empty one for gz-sim that
+runs the sensors of the robots.
 
 Gazebo's own empty.sdf has physics, user commands, the scene and contacts; a lidar, a camera or an IMU
 sends nothing in it. Source: gz-sim gz-sim8 examples/worlds/empty.sdf, sensors_demo.sdf, and the names
