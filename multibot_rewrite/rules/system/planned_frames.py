@@ -13,20 +13,18 @@ from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.rules.declaration import planned_rule
 from multibot_rewrite.rules.system.causes import Cause, caused
 from multibot_rewrite.rules.system.planned_ends import similar
-from multibot_rewrite.rules.system.tf_causes import (
-    is_described,
-    sent_by_robot,
-    state_publisher,
-    where_set,
-    why_not_received,
-)
 from multibot_rewrite.rules.system.tf_trees import (
     by_child,
     frames_by_topic,
     frames_in,
     home_of,
+    is_described,
     robots_on,
+    sent_by_robot,
+    state_publisher,
     taken_elsewhere,
+    where_set,
+    why_not_received,
 )
 from multibot_rewrite.system.index import Index, Tree, once
 from multibot_rewrite.system.ownership import SEPARATORS

@@ -22,7 +22,6 @@ from multibot_rewrite.base.wording import only, unique
 from multibot_rewrite.rules.declaration import see, system_rule, where
 from multibot_rewrite.rules.system.causes import to_set
 from multibot_rewrite.rules.system.planned_frames import misnamed
-from multibot_rewrite.rules.system.tf_causes import why_disconnected
 from multibot_rewrite.rules.system.tf_trees import (
     above_each,
     loose_odometry,
@@ -30,6 +29,7 @@ from multibot_rewrite.rules.system.tf_trees import (
     root_of,
     roots_by_robot,
     sent_elsewhere,
+    why_disconnected,
 )
 from multibot_rewrite.system.index import Index, Tree, robots_of
 from multibot_rewrite.system.parameters import parameter_text
