@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The descriptions and files that a launch file names -> what ``urdf-lint`` and ``build`` say of them.
+"""The descriptions and files that a launch file names -> what ``urdf-lint`` and ``build`` say of them;
+and what the lint finds in a description that robots run with -> what of it stops them.
 
 A description that is put into a simulator is asked what a simulator leaves out of it as well. What is
 not read from a file of its own is told where the launch file has it.
-"""
+
+That is every error, and what Gazebo leaves out of a robot that runs in it. Where the description is
+only sent, nothing counts that only a simulator reads. The build and check-launch ask it."""
 
 from __future__ import annotations
 
@@ -16,26 +19,70 @@ import yaml
 
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.conventions import CLOCK
-from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Rule, locate
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.releases import ROS_2
 from multibot_rewrite.companions.formats import read_named
 from multibot_rewrite.companions.named_file import BRIDGE, PARAMS, kind_of
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.description.steps.document import Document, read_document
 from multibot_rewrite.lint.beside import context_of
 from multibot_rewrite.lint.check import lint_data
-from multibot_rewrite.lint.described import in_use, may_stop
 from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.launch.bridges import expands, is_bridge, told_rows
 from multibot_rewrite.producers.launch.launched import InSimulator, Launched, file_of
 from multibot_rewrite.producers.launch.records import LaunchedNode
 from multibot_rewrite.rules.files import bridges
 from multibot_rewrite.rules.files.judge import judged
-from multibot_rewrite.rules.settings import Settings
+from multibot_rewrite.rules.settings import LEFT_OUT, Settings
 from multibot_rewrite.spelling.bridged_topics import DIRECTIONS
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import NOWHERE, Place
+
+# What has no effect in this simulator and this ROS, a joint that is not found there, and two senders.
+_NO_EFFECT = ("MB163", "MB211", "MB243")
+# Names, inertias and systems that only a simulator refuses.
+_OF_SIMULATOR = ("MB160", "MB305", "MB306", "MB606", "MB624")
+# A robot without a shape runs, and whether its file is there depends on the machine.
+_SHAPES = ("MB701", "MB703")
+
+
+def may_stop(rule: Rule) -> bool:
+    """Return whether a finding of the rule can be one of these."""
+    return rule.level == ERROR or rule.code in (*LEFT_OUT, *_NO_EFFECT)
+
+
+def in_use(found: Iterable[Finding], document: Document, simulated: bool) -> Iterator[Finding]:
+    """Yield the findings that count for a robot with this document, with their level there."""
+    for it in found:
+        level = _in_simulator(it) if simulated else _only_sent(it, document)
+        if level:
+            yield it._replace(level=level)
+
+
+def is_of_simulator(it: Finding, document: Document) -> bool:
+    """Return whether a finding is no error if the description is only sent."""
+    return _only_sent(it, document) != ERROR
+
+
+def _in_simulator(it: Finding) -> str:
+    if it.level == ERROR:
+        return WARNING if it.code in _SHAPES else ERROR
+    return WARNING if it.level == WARNING and it.code in (*LEFT_OUT, *_NO_EFFECT) else ""
+
+
+def _only_sent(it: Finding, document: Document) -> str:
+    if it.level != ERROR or it.code in LEFT_OUT or _is_below_gazebo(it, document):
+        return ""
+    return WARNING if it.code in (*_SHAPES, *_OF_SIMULATOR) else ERROR
+
+
+def _is_below_gazebo(it: Finding, document: Document) -> bool:
+    starts = zip(document.elements, document.starts, strict=True)
+    tops = ((top, at) for top, at in starts if top.getparent() is document.root)
+    before = [top for top, at in tops if locate(document.source, at)[0] <= it.line]
+    return bool(before) and before[-1].tag == "gazebo"
+
 
 # What is wrong as soon as a second model has it, too.
 _AGAIN = "MB416"

@@ -17,7 +17,7 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, URDF, Finding, R
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.described import may_stop
+from multibot_rewrite.lint.launched import may_stop
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.rules.settings import Settings
 

@@ -58,8 +58,8 @@ def _linted(
     """Yield what is wrong with a document, except what is right in the one ``made`` of it."""
     # What only looks at a robot's files needs none of the lint.
     from multibot_rewrite.lint.check import lint_subject, unsuppressed
-    from multibot_rewrite.lint.described import in_use, is_of_simulator, may_stop
     from multibot_rewrite.lint.files.subjects import make_subject
+    from multibot_rewrite.lint.launched import in_use, is_of_simulator, may_stop
     from multibot_rewrite.rules.description.names import reserved_name
 
     found = lint_subject(make_subject(document, settings), may_stop)
