@@ -11,7 +11,7 @@ from lxml import etree
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.checks.judged import left_open
+from multibot_rewrite.fleet.checks.closed_plan import left_open
 from multibot_rewrite.fleet.checks.robot_system import of_sources, with_controllers
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
