@@ -14,10 +14,10 @@ from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.fleet.checks.described import wrong_in_descriptions
 from multibot_rewrite.fleet.checks.meeting import robots_meet
 from multibot_rewrite.fleet.checks.named_twice import declared_twice, other_manager
-from multibot_rewrite.fleet.file.filled_arguments import with_own_arguments
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import Sources
 from multibot_rewrite.fleet.file.shape import placed, with_shape
+from multibot_rewrite.fleet.file.simulator_switch import with_own_arguments
 from multibot_rewrite.fleet.fleet import Fleet, assemble, merge
 from multibot_rewrite.fleet.launch.launched_files import (
     with_bridge_namespaces,
