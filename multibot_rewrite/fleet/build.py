@@ -29,7 +29,6 @@ from multibot_rewrite.fleet.outputs.cell_outputs import cell_outputs
 from multibot_rewrite.fleet.outputs.commands_file import commands_file
 from multibot_rewrite.fleet.outputs.companion_files import companion_files
 from multibot_rewrite.fleet.outputs.controller_files import with_own_controllers
-from multibot_rewrite.fleet.outputs.free_fleet import configurations as free_fleet
 from multibot_rewrite.fleet.outputs.moveit_parameters import moveit_parameters
 from multibot_rewrite.fleet.outputs.output_file import (
     PLAN,
@@ -50,7 +49,11 @@ from multibot_rewrite.fleet.outputs.rviz_outputs import (
 )
 from multibot_rewrite.fleet.outputs.shape_outputs import copied
 from multibot_rewrite.fleet.outputs.world_file import world_file
-from multibot_rewrite.fleet.outputs.zenoh_configuration import ZENOH, configurations
+from multibot_rewrite.fleet.outputs.zenoh_configuration import (
+    ZENOH,
+    configurations,
+    configurations as free_fleet,
+)
 from multibot_rewrite.fleet.robots.robot_groups import said_once, split_per_robot
 from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
 from multibot_rewrite.spelling.domain_bridge import bridge_files
