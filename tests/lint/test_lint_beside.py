@@ -17,7 +17,7 @@ from multibot_rewrite.companions.named_file import BRIDGE, MOVEIT, PARAMS, RVIZ,
 from multibot_rewrite.knowledge.declared import FILE, is_known
 from multibot_rewrite.knowledge.nodl.lookup import INDEX
 from multibot_rewrite.lint.check import lint_data, lint_file
-from multibot_rewrite.rules.files.bounds import beyond
+from multibot_rewrite.rules.files.parameter_files import beyond
 from multibot_rewrite.rules.settings import Settings
 from tools.interfaces.declared_table import ID, plugin_owners, table
 from tools.interfaces.parameter_facts import read_parameters

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from multibot_rewrite.rules.files.bounds import beyond, polygon_of
+from multibot_rewrite.rules.files.parameter_files import beyond, polygon_of
 from multibot_rewrite.rules.files.wheels import _inscribed_radius
 
 

@@ -17,8 +17,12 @@ from multibot_rewrite.description.sources.packages import packages_below, source
 from multibot_rewrite.knowledge.declared import DECLARED, DEMANDED, READ, YAML, Declared, stands_for
 from multibot_rewrite.knowledge.packages import older
 from multibot_rewrite.rules.declaration import remark_at
-from multibot_rewrite.rules.files.bounds import beyond
-from multibot_rewrite.rules.files.parameter_files import facts_of_node, of_parameter, of_release
+from multibot_rewrite.rules.files.parameter_files import (
+    beyond,
+    facts_of_node,
+    of_parameter,
+    of_release,
+)
 from multibot_rewrite.rules.files.plugin_names import older_nodes
 from multibot_rewrite.rules.files.plugins import RENAMED
 from multibot_rewrite.rules.files.section_facts import Section, Setting, sections

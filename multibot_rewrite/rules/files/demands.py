@@ -18,8 +18,7 @@ from multibot_rewrite.knowledge.declared import DEMANDED
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.rules.declaration import remark_at
-from multibot_rewrite.rules.files.bounds import is_number
-from multibot_rewrite.rules.files.parameter_files import of_release
+from multibot_rewrite.rules.files.parameter_files import is_number, of_release
 from multibot_rewrite.rules.files.section_facts import Section, Setting, filled, sections
 from multibot_rewrite.system.parameters import Value
 

@@ -34,7 +34,7 @@ from multibot_rewrite.rules.facts.drives import (
     separation,
     wheel_of,
 )
-from multibot_rewrite.rules.files.bounds import polygon_of
+from multibot_rewrite.rules.files.parameter_files import polygon_of
 from multibot_rewrite.rules.files.section_facts import Section, Setting, sections
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.rules.subject import Robots, Subject, subject_of
