@@ -52,7 +52,7 @@ from multibot_rewrite.fleet.outputs.world_file import world_file
 from multibot_rewrite.fleet.outputs.zenoh_configuration import (
     ZENOH,
     configurations,
-    configurations as free_fleet,
+    free_fleet_files,
 )
 from multibot_rewrite.fleet.robots.robot_groups import said_once, split_per_robot
 from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
@@ -176,7 +176,7 @@ def _tables(plan: FleetPlan, fleet: Fleet, planned: System) -> Iterator[OutputFi
         made = configurations(planned, plan.file.zenoh)
         yield from (OutputFile(f"{ZENOH}/{name}", data) for name, data in made)
     if plan.file.apart.free_fleet:
-        yield from (OutputFile(*it) for it in free_fleet(planned, plan.file.apart.free_fleet))
+        yield from (OutputFile(*it) for it in free_fleet_files(planned, plan.file.apart.free_fleet))
     yield from (OutputFile(*it) for it in bridge_files(planned))
     yield OutputFile(TABLE, _remappings(fleet.table).encode())
 

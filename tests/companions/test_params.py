@@ -24,19 +24,7 @@ from companion_calls import (
     stack_of,
 )
 from hypothesis import given, strategies as st
-from made_params import (
-    DECLARED,
-    JOINTS,
-    L1,
-    L2,
-    L3,
-    L4,
-    LINKS,
-    codes,
-    made,
-    section,
-    setting,
-)
+from made_params import DECLARED, JOINTS, L1, L2, L3, L4, LINKS, codes, made, section, setting
 from paths import ROOT
 
 from multibot_rewrite.base.model import InputError, UsageError

@@ -12,13 +12,11 @@ import yaml
 from paths import ROBOTS
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.companions.rviz import of_plan
 from multibot_rewrite.companions.rviz.read_config import read_config, rviz_data
 from multibot_rewrite.companions.yaml_text import read_yaml
+from multibot_rewrite.fleet.outputs import rviz_outputs
 from multibot_rewrite.system.json import from_yaml
-from multibot_rewrite.system.records import (
-    PUBLISHES,
-)
+from multibot_rewrite.system.records import PUBLISHES
 
 FLEET = """\
 layout: {layout}
@@ -42,11 +40,11 @@ def test_every_type_has_its_display() -> None:
         "geometry_msgs/msg/PolygonStamped": "Polygon", "geometry_msgs/msg/PoseArray": "PoseArray",
         **{f"visualization_msgs/msg/{it}": it for it in ("Marker", "MarkerArray")},
     } == rviz_data()["shown"]  # fmt: skip
-    assert {*of_plan._COLOURED} == {
+    assert {*rviz_outputs._COLOURED} == {
         "LaserScan", "PointCloud2", "Range", "Path", "Polygon", "PoseArray"
     }  # fmt: skip
-    assert {*of_plan._QOS} == {"LaserScan", "PointCloud2", "Map"}
-    assert of_plan._TOOLS == {"SetInitialPose": "initialpose", "SetGoal": "goal_pose"}
+    assert {*rviz_outputs._QOS} == {"LaserScan", "PointCloud2", "Map"}
+    assert rviz_outputs._TOOLS == {"SetInitialPose": "initialpose", "SetGoal": "goal_pose"}
 
 
 @pytest.mark.more

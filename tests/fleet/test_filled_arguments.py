@@ -19,7 +19,7 @@ from multibot_rewrite import InputError
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.description.reports import xacro_arguments
 from multibot_rewrite.fleet.build import Outputs
-from multibot_rewrite.fleet.file import filled_arguments
+from multibot_rewrite.fleet.file import simulator_switch
 
 SPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 ARM = """
@@ -212,7 +212,7 @@ def test_one_look_serves_all_robots(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         looked.append(path)
         return look(path, *more, **keys)
 
-    monkeypatch.setattr(filled_arguments, "find_arguments", counted)
+    monkeypatch.setattr(simulator_switch, "find_arguments", counted)
     robots = [f"robot{at}" for at in range(5)]
     outputs = made(
         xacro(tmp_path, "tf_prefix", ARM), robots, **WITH_PREFIX, arguments={"x": "{robot}"}
@@ -229,7 +229,7 @@ def test_two_examples_of_names_with_different_separators_are_told() -> None:
     )
     robot: Any = SimpleNamespace(name="r1", tag="r1", namespace="/r1")
     made = xacro_arguments.Argument("tf_prefix", "", uses, 0, "")
-    found = filled_arguments._choice(made, make_naming("frames-per-robot", "prefix"), robot)
+    found = simulator_switch._choice(made, make_naming("frames-per-robot", "prefix"), robot)
     both = "{robot}base of a link and {robot}elbow of a joint"
     said = f"it makes {both}, and these get different separators"
     assert (found.value, found.reason) == ("", said)

@@ -303,7 +303,7 @@ SELECTORS: dict[str, Callable[[_Element], list[str]]] = {
 def _flavour(found: Sequence[VocabularySection], element: _Element) -> VocabularySection | None:
     """Return the ROS 1 or ROS 2 section of plugins with one file name: the children tell them
     apart, ROS 2 where none do. A ``ros`` child is ROS 2, because nothing in ROS 1 reads one. What
-    decides for the whole document is in the plugin definitions already (``sources/dialect.py``).
+    decides for the whole document is in the plugin definitions already (``sources/release_said.py``).
     Source: gazebo_ros_pkgs branches noetic-devel (camelCase, robotNamespace), ros2 (snake_case)."""
     if element.find("ros") is not None:
         found = [section for section in found if section.ros != "1"]

@@ -32,13 +32,7 @@ from multibot_rewrite.producers.launch.known_node import STATIC
 from multibot_rewrite.producers.launch.launched import Launched, world_files
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import LaunchedNode
-from multibot_rewrite.rules.declaration import (
-    LAUNCH,
-    OF_NO_NODE,
-    at,
-    launch_rule,
-    said_of_section,
-)
+from multibot_rewrite.rules.declaration import LAUNCH, OF_NO_NODE, at, launch_rule, said_of_section
 from multibot_rewrite.rules.description.files import reading
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.way_checks import RULE_WITHOUT_NAME
