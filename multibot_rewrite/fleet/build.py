@@ -25,11 +25,10 @@ from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.launch_file import fleet_starts, launch_file
 from multibot_rewrite.fleet.launch.starts import FleetStarts
 from multibot_rewrite.fleet.outputs.bridge_outputs import bridge_outputs
-from multibot_rewrite.fleet.outputs.cell_outputs import cell_outputs
 from multibot_rewrite.fleet.outputs.commands_file import commands_file
 from multibot_rewrite.fleet.outputs.companion_files import companion_files
 from multibot_rewrite.fleet.outputs.controller_files import with_own_controllers
-from multibot_rewrite.fleet.outputs.moveit_parameters import moveit_parameters
+from multibot_rewrite.fleet.outputs.moveit_parameters import cell_outputs, moveit_parameters
 from multibot_rewrite.fleet.outputs.output_file import (
     PLAN,
     FilesAndFindings,

@@ -21,7 +21,7 @@ from multibot_rewrite.fleet.file.fleet_file import BRINGUP
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.starts import SIMULATOR, RobotStarts
 from multibot_rewrite.fleet.outputs import moveit_parameters, spawn
-from multibot_rewrite.fleet.outputs.cell_outputs import parameters_path
+from multibot_rewrite.fleet.outputs.moveit_parameters import parameters_path
 from multibot_rewrite.fleet.outputs.output_file import (
     described_path,
     expanded_name,

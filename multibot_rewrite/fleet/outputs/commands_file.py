@@ -12,8 +12,7 @@ from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.launch_actions import controller
 from multibot_rewrite.fleet.launch.launch_file import domains_of
 from multibot_rewrite.fleet.outputs import spawn, teleop
-from multibot_rewrite.fleet.outputs.cell_outputs import cell_commands
-from multibot_rewrite.fleet.outputs.moveit_parameters import moveit_commands
+from multibot_rewrite.fleet.outputs.moveit_parameters import cell_commands, moveit_commands
 from multibot_rewrite.fleet.outputs.output_file import FilesAndFindings, OutputFile, path_for
 from multibot_rewrite.fleet.outputs.relays import relays
 from multibot_rewrite.fleet.outputs.shape_outputs import vendor_commands

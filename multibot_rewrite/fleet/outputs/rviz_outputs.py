@@ -32,8 +32,12 @@ from multibot_rewrite.companions.rviz.window_checks import ONE_TF_TOPIC
 from multibot_rewrite.companions.yaml_text import YamlText, found_at, quoted
 from multibot_rewrite.fleet.checks.written_files import wrong_in_file
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.fleet.outputs.cell_outputs import cell_window, parameters_path
-from multibot_rewrite.fleet.outputs.moveit_parameters import FILE, has_moveit
+from multibot_rewrite.fleet.outputs.moveit_parameters import (
+    FILE,
+    cell_window,
+    has_moveit,
+    parameters_path,
+)
 from multibot_rewrite.fleet.outputs.output_file import (
     FilesAndFindings,
     OutputFile,
