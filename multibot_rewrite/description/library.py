@@ -225,7 +225,7 @@ def rewrite_job(job: Job, robots: Sequence[str], again: bool = False) -> Iterato
     left = left_to_world(template.inventory.document, job.aside)
     unread: Iterable[Finding] = ()
     if job.read.unread:
-        from multibot_rewrite.description.checks.arguments import unread_arguments
+        from multibot_rewrite.description.checks.references import unread_arguments
 
         document = template.inventory.document
         found = unread_arguments(document.root, job.read.unread, job.read.arguments)

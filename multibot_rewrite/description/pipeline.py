@@ -45,7 +45,7 @@ def prepare(
     plan = make_plan(inventory, naming)
     findings = [*audit.audit(inventory, plan.renames, tree), *plan.findings]
     if own.robot:
-        from multibot_rewrite.description.checks.arguments import missed_by_arguments
+        from multibot_rewrite.description.checks.references import missed_by_arguments
 
         missed = missed_by_arguments(inventory, plan.renames, own.plain, own.robot)
         findings += to_findings(inventory.document, missed, WARNING)

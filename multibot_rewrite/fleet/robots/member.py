@@ -11,8 +11,8 @@ from lxml import etree
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.rosnames import RemapRule, bind, resolve_bound
-from multibot_rewrite.description.checks.arguments import UNREAD
 from multibot_rewrite.description.checks.links_and_joints import read_robot, weighs
+from multibot_rewrite.description.checks.references import UNREAD
 from multibot_rewrite.description.library import Rewrite
 from multibot_rewrite.description.readback.meeting import SHARED_CODES
 from multibot_rewrite.description.readback.nodes import RuntimeName, rules_of

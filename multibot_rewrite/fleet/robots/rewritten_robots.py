@@ -15,7 +15,7 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.companions.names.rename_map import CompanionNames, companion_names, with_srdf
 from multibot_rewrite.description import pipeline
-from multibot_rewrite.description.checks.arguments import UNREAD
+from multibot_rewrite.description.checks.references import UNREAD
 from multibot_rewrite.description.checks.twice import CARRYING
 from multibot_rewrite.description.library import Rewrite, rewrite_job
 from multibot_rewrite.description.own_ports import numbered, ports_of

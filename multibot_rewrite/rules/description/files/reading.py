@@ -74,7 +74,7 @@ def argument_not_read(subject: Subject) -> Iterator[Problem]:
     """Report unread arguments of one expansion; one that is for many files need not be for each."""
     if not subject.given:
         return
-    from multibot_rewrite.description.checks.arguments import unread_arguments
+    from multibot_rewrite.description.checks.references import unread_arguments
     from multibot_rewrite.description.sources.known_arguments import known_arguments
 
     known = known_arguments(subject.sources.values())
