@@ -22,20 +22,20 @@ from multibot_rewrite.cli.walk import check_link, is_same_file
 from multibot_rewrite.description.checks.verdict import not_verified
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.sources.release_said import MANIFEST
-from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.fleet.build import (
+    NOTE,
+    OutputChanges,
+    hash_of,
+    make_outputs,
+    manifest,
+    output_changes,
+    read_manifest,
+)
 from multibot_rewrite.fleet.checks.read_back import read_back
 from multibot_rewrite.fleet.file.fleet_file import input_files, read_fleet
 from multibot_rewrite.fleet.file.robot_choice import Choice
 from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleet.launch.launch_file import LAUNCH
-from multibot_rewrite.fleet.manifest import (
-    NOTE,
-    OutputChanges,
-    hash_of,
-    manifest,
-    output_changes,
-    read_manifest,
-)
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.system.coverage import Coverage, coverage
 

@@ -16,11 +16,11 @@ from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.usage import asked_number, check_xacro, policy, robots, xacro_args
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.fleet.build import hash_of, inputs_of
 from multibot_rewrite.fleet.file.fleet_data import without_place
 from multibot_rewrite.fleet.file.fleet_file import input_files, read_fleet
 from multibot_rewrite.fleet.file.robot_choice import Choice
 from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
-from multibot_rewrite.fleet.manifest import hash_of, inputs_of
 from multibot_rewrite.pages.page import Framed
 from multibot_rewrite.pages.view.page import Meshes, bare, meshes_of, title_of, to_frame, to_html
 from multibot_rewrite.pages.view.scene import ShownScene, ViewedRobot, moved, scene_of

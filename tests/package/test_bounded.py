@@ -23,7 +23,7 @@ from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.fleet.manifest import read_manifest
+from multibot_rewrite.fleet.build import read_manifest
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.stacks import user_stack
 from multibot_rewrite.knowledge.yaml_with_lines import read_yaml_with_lines

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.companions.yaml_text import YamlText, pairs, read_yaml
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.fleet.manifest import folders_of
+from multibot_rewrite.fleet.build import folders_of
 from multibot_rewrite.fleet.outputs.params_style import ZONES
 from multibot_rewrite.producers.evidence.parameter_files import named_values
 from multibot_rewrite.system.parameters import parameter_text
