@@ -22,8 +22,7 @@ from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.companions.names.rename_map import KINDS, NO_OWN, companion_names
 from multibot_rewrite.description.rewriters.model_namespaces import given_topics, words_of
 from multibot_rewrite.description.sources.job import Job, read_jobs
-from multibot_rewrite.description.sources.read import Source
-from multibot_rewrite.description.sources.whole import read_whole
+from multibot_rewrite.description.sources.read import Source, read_whole
 from multibot_rewrite.rules.files.judge import judged_once
 from multibot_rewrite.rules.files.wheels import with_description
 
