@@ -15,8 +15,7 @@ import struct
 import sys
 
 from multibot_rewrite.description.sources.child.fences import CREATE_RULESET, RESTRICT_SELF
-from multibot_rewrite.description.sources.child.seccomp import MACHINES
-from multibot_rewrite.description.sources.child.system import control, no_new_privileges
+from multibot_rewrite.description.sources.child.seccomp import MACHINES, control, no_new_privileges
 
 # include/uapi/linux/filter.h, seccomp.h and prctl.h; prctl and seccomp have a number for each machine.
 _LOAD, _EQUAL, _ANSWER, _ALLOW = 0x20, 0x15, 0x06, 0x7FFF0000

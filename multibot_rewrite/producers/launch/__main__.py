@@ -30,7 +30,7 @@ from multibot_rewrite.description.sources.child.frames import (
     framed,
     received,
 )
-from multibot_rewrite.description.sources.child.system import die_with_parent
+from multibot_rewrite.description.sources.child.seccomp import die_with_parent
 from multibot_rewrite.producers.launch.confined import (
     NOT_FENCED,
     NotFencedError,

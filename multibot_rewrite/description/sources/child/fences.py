@@ -20,7 +20,7 @@ from contextlib import suppress
 from typing import NamedTuple, NoReturn
 
 from multibot_rewrite.description.sources.child import frames, seccomp
-from multibot_rewrite.description.sources.child.system import SYSTEM, no_new_privileges, undumpable
+from multibot_rewrite.description.sources.child.seccomp import SYSTEM, no_new_privileges, undumpable
 
 # The same numbers on every architecture (since Linux 5.13).
 CREATE_RULESET, _ADD_RULE, RESTRICT_SELF = 444, 445, 446

@@ -1,23 +1,48 @@
 # SPDX-License-Identifier: Apache-2.0
-"""seccomp: the kernel refuses this process every system call but a few.
+"""
 
 What is left computes, asks for memory, and reads and writes what is open. Where Landlock says which
 files may be opened, so do the calls that open files and folders. Sources: Linux,
 Documentation/userspace-api/seccomp_filter.rst, arch/x86/entry/syscalls/syscall_64.tbl,
-include/uapi/asm-generic/unistd.h.
-"""
+include/uapi/asm-generic/unistd.h."""
 
 from __future__ import annotations
 
 import ctypes
 import errno
 import os
+import signal
 import struct
+import sys
 from collections.abc import Mapping
 from functools import cache
 from typing import NamedTuple
 
-from multibot_rewrite.description.sources.child.system import control, no_new_privileges
+_SET_PDEATHSIG, _SET_DUMPABLE, _SET_NO_NEW_PRIVS = 1, 4, 38
+
+SYSTEM = ctypes.CDLL(None, use_errno=True) if sys.platform == "linux" else None
+
+
+def control(*arguments: object) -> bool:
+    """Call ``prctl``; return whether it succeeded."""
+    numbers = [ctypes.c_ulong(it) if isinstance(it, int) else it for it in arguments[1:]]
+    return SYSTEM is not None and SYSTEM.prctl(arguments[0], *numbers) == 0
+
+
+def no_new_privileges() -> bool:
+    """Give up new privileges: otherwise an unprivileged process may not restrict itself."""
+    return control(_SET_NO_NEW_PRIVS, 1, 0, 0, 0)
+
+
+def undumpable() -> bool:
+    """Hide the memory of this process, and its files in /proc, from others of this user."""
+    return control(_SET_DUMPABLE, 0, 0, 0, 0)
+
+
+def die_with_parent() -> bool:
+    """Let the kernel end this process with its parent; returns whether it does."""
+    return control(_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
+
 
 _SET_SECCOMP, _MODE_FILTER = 22, 2
 # Instructions: load a word, compare, compare bits, answer.

@@ -36,7 +36,7 @@ from multibot_rewrite.description.sources.child.frames import (
     received,
 )
 from multibot_rewrite.description.sources.child.run_xacro import Expanded
-from multibot_rewrite.description.sources.child.system import die_with_parent
+from multibot_rewrite.description.sources.child.seccomp import die_with_parent
 
 IDLE_SECONDS = 10.0
 MOST_LOOKS, BETWEEN_SECONDS = 250, 0.002
