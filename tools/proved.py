@@ -21,7 +21,7 @@ from typing import NamedTuple
 from multibot_rewrite.base.findings.finding import RewriteRefused
 from multibot_rewrite.base.model import InputError, MultibotError
 from multibot_rewrite.base.naming import LAYOUTS, WORLD_SYSTEMS
-from multibot_rewrite.description.checks.verdict import REASONS
+from multibot_rewrite.description.checks.meeting import REASONS
 from multibot_rewrite.description.library import rewrite_all
 
 # Kind of robot -> what its text has; the first that is there counts.

@@ -19,7 +19,7 @@ from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.report import About, check_report, chosen, report_beside, with_coverage
 from multibot_rewrite.cli.usage import asked_number
 from multibot_rewrite.cli.walk import check_link, is_same_file
-from multibot_rewrite.description.checks.verdict import not_verified
+from multibot_rewrite.description.checks.meeting import not_verified
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.sources.release_said import MANIFEST
 from multibot_rewrite.fleet.build import (

@@ -32,7 +32,7 @@ from multibot_rewrite.cli.rewrite_use import (
 )
 from multibot_rewrite.cli.usage import rewriting, robots, xacro_args
 from multibot_rewrite.cli.walk import standard_input
-from multibot_rewrite.description.checks.verdict import given, not_verified
+from multibot_rewrite.description.checks.meeting import given, not_verified
 from multibot_rewrite.description.library import Rewrite, rewrite_all, strip
 from multibot_rewrite.description.readback.meeting import NUMBERED
 from multibot_rewrite.description.sources.own_names import filled, name_robot

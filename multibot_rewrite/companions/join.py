@@ -21,7 +21,7 @@ from multibot_rewrite.companions.joined import (
     part_moveit,
     part_rviz,
 )
-from multibot_rewrite.description.checks.verdict import not_verified
+from multibot_rewrite.description.checks.meeting import not_verified
 from multibot_rewrite.description.joining.from_file import plain_text, plain_texts
 from multibot_rewrite.description.joining.join import GivenPart, JoinedText, join_texts
 from multibot_rewrite.description.joining.part import Part, ReadPart, prefixing

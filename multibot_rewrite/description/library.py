@@ -18,8 +18,8 @@ from multibot_rewrite.base.naming import DEFAULT_LAYOUT, leaves, make_naming
 from multibot_rewrite.base.releases import release_told
 from multibot_rewrite.base.rosnames import check_robot_name, check_robot_names
 from multibot_rewrite.description import pipeline
+from multibot_rewrite.description.checks.meeting import not_verified
 from multibot_rewrite.description.checks.problem import to_findings
-from multibot_rewrite.description.checks.verdict import not_verified
 from multibot_rewrite.description.readback.meeting import OPENED
 from multibot_rewrite.description.rewriters.vocabulary.grammar import split_opens
 from multibot_rewrite.description.sources.job import Job, read_job, read_jobs

@@ -1,16 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What all robots of a description would share, by the second reading of what was written."""
+"""What all robots of a description would share, by the second reading of what was written; and what a
+rewrite may be called for it: verified, or rewritten and not verified, and why."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 
 from lxml.etree import _Element
 
+from multibot_rewrite.base.bounded import own_rows
+from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import InputError, ProofError
 from multibot_rewrite.base.naming import NAMESPACE, TWIN, Naming, spelled
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.description.checks.hazards import ALONE
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.readback import meeting
@@ -178,3 +183,30 @@ def _of_controllers(
         " and build print the lines"
     )
     return Problem(element, message, None, hint, (), meeting.NOT_TAKEN)
+
+
+# Code -> what is counted and what is said of it. A rewrite with one of these findings is not verified.
+REASONS = {code: (what, why) for code, what, why in own_rows(__file__, "reasons.schema")}
+
+# What is verified of a description and hangs on what starts it: a code, and how the summary says it.
+GIVEN = {
+    meeting.NOT_TAKEN: "where each controller is spawned with its rules",
+    ELSEWHERE: "where what shows an image has the rule for its camera_info",
+    meeting.NUMBERED: "where what each robot talks to has its number",
+}
+
+
+def given(findings: Iterable[Finding], of_world: Iterable[str] = ()) -> str:
+    """Return the conditions of ``verified``: of controllers, and of systems that were left to the
+    world; empty without any."""
+    codes = {it.code for it in findings}
+    said = [words for code, words in GIVEN.items() if code in codes]
+    systems = ", ".join(sorted(set(of_world)))
+    return " and ".join([*said, *([f"where the world loads {systems}"] if systems else [])])
+
+
+def not_verified(findings: Iterable[Finding]) -> tuple[str, ...]:
+    """Return why a rewrite with these findings is not verified, with counts; empty where it is."""
+    counts = Counter(it.code for it in findings)
+    found = ((counts[code], *words) for code, words in REASONS.items() if counts[code])
+    return tuple(f"{plural(count, what)} {why}" for count, what, why in found)

@@ -8,7 +8,7 @@ from lxml import etree
 
 from multibot_rewrite import rewrite, rewrite_all, strip
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.description.checks.verdict import GIVEN, given
+from multibot_rewrite.description.checks.meeting import GIVEN, given
 from multibot_rewrite.description.readback.active import active_parts, says_what_it_opens
 from multibot_rewrite.description.readback.meeting import NOT_TAKEN
 from multibot_rewrite.description.readback.other_topics import as_valid_topic

@@ -11,7 +11,7 @@ from postfix_command import run
 
 from multibot_rewrite import RewriteRefused, rewrite, rewrite_all
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.description.checks.verdict import REASONS, not_verified
+from multibot_rewrite.description.checks.meeting import REASONS, not_verified
 
 LIDAR = """<robot name="r"><link name="a"/><gazebo reference="a">
 <sensor name="lidar" type="gpu_lidar"><topic>{}</topic></sensor></gazebo></robot>"""
