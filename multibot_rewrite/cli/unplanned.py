@@ -26,7 +26,7 @@ from multibot_rewrite.rules.system.planned_nodes import missing_robot
 from multibot_rewrite.system.coverage import Coverage
 from multibot_rewrite.system.domains import unnamed
 from multibot_rewrite.system.records import System, doubts
-from multibot_rewrite.system.tool_nodes import is_tool
+from multibot_rewrite.system.words import is_tool
 
 
 def run(options: argparse.Namespace, domains: Sequence[int] = ()) -> int:

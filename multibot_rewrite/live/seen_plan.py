@@ -12,8 +12,7 @@ from multibot_rewrite.live.diagnose import Diagnosis
 from multibot_rewrite.system.guess import GuessedRobot
 from multibot_rewrite.system.records import Edge, End, Node, Robot, System
 from multibot_rewrite.system.tf_copies import tree_topic
-from multibot_rewrite.system.tool_nodes import is_tool
-from multibot_rewrite.system.words import OF_EVERY_NODE
+from multibot_rewrite.system.words import OF_EVERY_NODE, is_tool
 
 # The robot of a graph in which no name has a robot's.
 NAMELESS = GuessedRobot("robot1", "")

@@ -22,7 +22,7 @@ from multibot_rewrite.rules.system.tf_trees import root_of
 from multibot_rewrite.spelling.plan import to_yaml as plan_to_yaml
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 from multibot_rewrite.system.guess import GuessedRobot
-from multibot_rewrite.system.tool_nodes import is_tool
+from multibot_rewrite.system.words import is_tool
 
 STACK = "seen"
 FILES = ("fleet.yaml", "nodes.yaml", "robot.urdf", "plan.yaml")

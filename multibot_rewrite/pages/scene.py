@@ -39,7 +39,7 @@ from multibot_rewrite.system.records import (
     System,
     alternatives,
 )
-from multibot_rewrite.system.tool_nodes import is_tool
+from multibot_rewrite.system.words import is_tool
 
 # Of findings: errors first, what is not certain last.
 _ORDER = (ERROR, WARNING, NOTE, INCONCLUSIVE)

@@ -11,7 +11,7 @@ from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.knowledge.records import UNKNOWN, Endpoint, NodeFacts
 from multibot_rewrite.system.parameters import ANY_NAME, Value
 from multibot_rewrite.system.records import NOWHERE, Place
-from multibot_rewrite.system.tool_nodes import is_viewer
+from multibot_rewrite.system.words import is_viewer
 
 # A remap rule, as rcl takes it: what it matches, and what comes in its place.
 Rule: TypeAlias = tuple[str, str]

@@ -18,7 +18,7 @@ from multibot_rewrite.system.records import (
     answering,
     doubts,
 )
-from multibot_rewrite.system.tool_nodes import is_tool
+from multibot_rewrite.system.words import is_tool
 
 # How nodes came into the graph that a plan is compared with.
 LAUNCHED, SEEN = "launched", "seen"

@@ -32,7 +32,7 @@ from multibot_rewrite.system.records import (
     Node,
     System,
 )
-from multibot_rewrite.system.tool_nodes import is_hidden
+from multibot_rewrite.system.words import is_hidden
 
 MAX_DOMAIN = 232
 LOCALHOST = "LOCALHOST"

@@ -20,7 +20,7 @@ from multibot_rewrite.base.conventions import BODY_FRAMES, OF_A_ROBOT, USUAL_FRA
 from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.system.ownership import SEPARATORS, Whose
 from multibot_rewrite.system.records import TOPIC, Edge, System
-from multibot_rewrite.system.tool_nodes import is_tool
+from multibot_rewrite.system.words import is_tool
 
 # Topics that a whole robot has; a lidar alone has a scan, and a camera sends tf.
 _WHOLE = frozenset(("cmd_vel", "odom", "joint_states", "robot_description"))

@@ -33,7 +33,7 @@ from multibot_rewrite.system.records import (
     surely,
 )
 from multibot_rewrite.system.tf_copies import copying_nodes, tree_topic
-from multibot_rewrite.system.tool_nodes import is_tool, is_viewer
+from multibot_rewrite.system.words import is_tool, is_viewer
 
 # In the order of the fields of Ends.
 _PLACE = {role: at for at, role in enumerate((PUBLISHES, SUBSCRIBES, SERVES, CALLS))}

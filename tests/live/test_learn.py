@@ -22,9 +22,7 @@ from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER
 from multibot_rewrite.knowledge.node_library import NodeLibrary, stack_of
 from multibot_rewrite.knowledge.records import MANAGER, TRANSPORTS, Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, user_stack
-from multibot_rewrite.live.learning.choosing import (
-    choose_nodes,
-)
+from multibot_rewrite.live.learning.choosing import choose_nodes
 from multibot_rewrite.live.learning.learn import LearnedNode, learn
 from multibot_rewrite.live.learning.nodes_file import to_yaml
 from multibot_rewrite.spelling.of_runs import expanded, parsed
@@ -46,7 +44,7 @@ from multibot_rewrite.system.records import (
     Node,
     System,
 )
-from multibot_rewrite.system.tool_nodes import is_tool
+from multibot_rewrite.system.words import is_tool
 
 LAYOUTS = ("L1", "L2", "L3", "L4")
 ROBOTS = ("robot1", "robot2")

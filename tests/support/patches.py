@@ -22,8 +22,7 @@ from multibot_rewrite.system.records import (
     Qos,
     System,
 )
-from multibot_rewrite.system.tool_nodes import is_viewer
-from multibot_rewrite.system.words import CHANGE_STATE, MAP, NODE_NAMES
+from multibot_rewrite.system.words import CHANGE_STATE, MAP, NODE_NAMES, is_viewer
 
 CLOCK = "rosgraph_msgs/msg/Clock"
 STAMPED, BARE = "geometry_msgs/msg/TwistStamped", "geometry_msgs/msg/Twist"

@@ -20,7 +20,7 @@ from multibot_rewrite.producers.launch.handed_on import handed_on
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchOrder
 from multibot_rewrite.producers.launch.spawners import is_spawner
-from multibot_rewrite.system.tool_nodes import is_viewer
+from multibot_rewrite.system.words import is_viewer
 
 # A robot to read a launch file for.
 ANY = "robot1"

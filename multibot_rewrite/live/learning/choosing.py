@@ -15,7 +15,7 @@ from multibot_rewrite.base.nearest import nearest_few
 from multibot_rewrite.base.rosnames import check_full_name, check_namespace
 from multibot_rewrite.knowledge.records import TRANSPORTS, Endpoint
 from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SERVES, SERVICE, TOPIC, System
-from multibot_rewrite.system.tool_nodes import is_tool
+from multibot_rewrite.system.words import is_tool
 
 # A tf2 listener without a node creates its own node, named after its address.
 HELPER = re.compile(LISTENER + "[0-9a-f]+")

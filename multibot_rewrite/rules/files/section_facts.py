@@ -33,7 +33,7 @@ from multibot_rewrite.rules.files.plugins import plugins_in
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.parameters import Value
 from multibot_rewrite.system.records import NOWHERE, Place
-from multibot_rewrite.system.tool_nodes import last_word
+from multibot_rewrite.system.words import last_word
 
 
 class Beside(NamedTuple):

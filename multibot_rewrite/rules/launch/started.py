@@ -36,7 +36,7 @@ from multibot_rewrite.rules.declaration import LAUNCH, at, launch_rule
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 from multibot_rewrite.system.records import PUBLISHES, RUNS, SERVICE, SUBSCRIBES
-from multibot_rewrite.system.tool_nodes import last_word
+from multibot_rewrite.system.words import last_word
 
 _START_MANAGER = (
     "start ros2_control_node there, load gz_ros2_control in the description, or name the launch file "

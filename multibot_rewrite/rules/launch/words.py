@@ -37,7 +37,7 @@ from multibot_rewrite.rules.description.files import reading
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.spelling.way_checks import RULE_WITHOUT_NAME
 from multibot_rewrite.system.records import Place
-from multibot_rewrite.system.tool_nodes import last_word
+from multibot_rewrite.system.words import last_word
 
 _ANGLES = ("--roll", "--pitch", "--yaw")
 _QUATERNION = ("--qx", "--qy", "--qz", "--qw")

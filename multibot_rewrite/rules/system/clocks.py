@@ -30,7 +30,7 @@ from multibot_rewrite.system.records import (
     Edge,
     without_clock,
 )
-from multibot_rewrite.system.tool_nodes import is_viewer, last_word
+from multibot_rewrite.system.words import is_viewer, last_word
 
 _IS_TIMED = lazy_compile("|".join(map(translate, TIMED)))
 

@@ -26,7 +26,7 @@ from multibot_rewrite.rules.system.sharing import own_names
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Ends, Index, at_work, nodes_of, once, robots_of
 from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, RUNS, SUBSCRIBES, TOPIC, End
-from multibot_rewrite.system.tool_nodes import is_hidden, is_tool, is_viewer, last_word
+from multibot_rewrite.system.words import is_hidden, is_tool, is_viewer, last_word
 
 # A person drives with these.
 _BY_HAND = lazy_compile("teleop|joy|keyboard|gamepad")

@@ -15,7 +15,7 @@ from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Ends, Index, at_work, ends_of, once, spaces
 from multibot_rewrite.system.records import CALLS, PUBLISHES, RUNS, SERVICE, SUBSCRIBES, End
-from multibot_rewrite.system.tool_nodes import is_viewer, last_word
+from multibot_rewrite.system.words import is_viewer, last_word
 
 _DIGITS = lazy_compile(r"_?\d+")
 # So alike that it is a slip: cmd_vel_smoth, not cmd_vel_ui beside cmd_vel_nav.

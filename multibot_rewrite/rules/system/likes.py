@@ -30,7 +30,7 @@ from multibot_rewrite.system.records import (
     Edge,
     End,
 )
-from multibot_rewrite.system.tool_nodes import is_viewer, last_word
+from multibot_rewrite.system.words import is_viewer, last_word
 
 # Fewer nodes in common say nothing.
 _ENOUGH = 3

@@ -19,8 +19,7 @@ from multibot_rewrite.rules.system.causes import Cause, caused, plugin_of, to_se
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Ends, Index, at_work, nodes_of, once
 from multibot_rewrite.system.records import SUBSCRIBES, TOPIC, ZENOH, End, Qos
-from multibot_rewrite.system.tool_nodes import is_viewer, last_word
-from multibot_rewrite.system.words import DESCRIPTION, JOINTS, MAP
+from multibot_rewrite.system.words import DESCRIPTION, JOINTS, MAP, is_viewer, last_word
 
 # The words of each policy, the weakest first; any other word does not say what is in force.
 RELIABILITY = ("BEST_EFFORT", "RELIABLE")

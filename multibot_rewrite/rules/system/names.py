@@ -13,13 +13,7 @@ from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import and_then, shorten, unique
 from multibot_rewrite.rules.declaration import see, system_rule, where
-from multibot_rewrite.rules.system.causes import (
-    ACTION_PARTS,
-    NONE,
-    Cause,
-    Spelled,
-    alike,
-)
+from multibot_rewrite.rules.system.causes import ACTION_PARTS, NONE, Cause, Spelled, alike
 from multibot_rewrite.rules.system.instead import (
     COMMON,
     MANAGER,
@@ -40,7 +34,7 @@ from multibot_rewrite.system.index import (
 )
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import ACTION, RUNS, SERVES, SERVICE, TOPIC, End
-from multibot_rewrite.system.tool_nodes import in_namespaces_above, is_spawner, is_viewer, last_word
+from multibot_rewrite.system.words import in_namespaces_above, is_spawner, is_viewer, last_word
 
 ABSENT = "is that robot started, and is its name right?"
 

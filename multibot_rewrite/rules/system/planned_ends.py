@@ -33,18 +33,9 @@ from multibot_rewrite.rules.system.names import service_of_two_nodes
 from multibot_rewrite.rules.system.sharing import data_of_another_robot, topic_of_several_robots
 from multibot_rewrite.system.index import TF, EndKey, Index, ends_of, once
 from multibot_rewrite.system.ownership import NameOwnership
-from multibot_rewrite.system.records import (
-    PUBLISHES,
-    RUNS,
-    SERVES,
-    SERVICE,
-    SUBSCRIBES,
-    TOPIC,
-    End,
-)
+from multibot_rewrite.system.records import PUBLISHES, RUNS, SERVES, SERVICE, SUBSCRIBES, TOPIC, End
 from multibot_rewrite.system.tf_copies import copying_nodes
-from multibot_rewrite.system.tool_nodes import in_namespaces_above
-from multibot_rewrite.system.words import is_order
+from multibot_rewrite.system.words import in_namespaces_above, is_order
 
 # With more names than these, some name is always similar.
 MOST_CANDIDATES = 50

@@ -14,7 +14,7 @@ from multibot_rewrite.rules.system.commands import LIMITS
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Ends, Index, at_work, nodes_of, once
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
-from multibot_rewrite.system.tool_nodes import last_word
+from multibot_rewrite.system.words import last_word
 
 # What holds several networks, or a simulator, together.
 _BRIDGE = lazy_compile("bridge|gz|gazebo|isaac|webots|zenoh|domain|free_fleet")

@@ -15,14 +15,8 @@ from multibot_rewrite.rules.declaration import see, system_rule, where
 from multibot_rewrite.rules.system.causes import Cause, names_another
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import NO_NAMESPACE, Ends, Index, at_work, nodes_of, robots_of
-from multibot_rewrite.system.records import (
-    COMPUTER,
-    PUBLISHES,
-    SUBSCRIBES,
-    Address,
-    End,
-)
-from multibot_rewrite.system.tool_nodes import is_viewer, last_word
+from multibot_rewrite.system.records import COMPUTER, PUBLISHES, SUBSCRIBES, Address, End
+from multibot_rewrite.system.words import is_viewer, last_word
 
 
 def own_names(seen: Index, ends: Ends, robots: Sequence[str]) -> Cause:

@@ -37,7 +37,7 @@ from multibot_rewrite.system.records import (
     Interface,
     clocks,
 )
-from multibot_rewrite.system.tool_nodes import is_tool, is_viewer, last_word
+from multibot_rewrite.system.words import is_tool, is_viewer, last_word
 
 ACTIVE, INACTIVE = "active", "--inactive"
 

@@ -35,7 +35,7 @@ from multibot_rewrite.system.index import Index, Tree, robots_of
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import NOWHERE, OFF, Edge
 from multibot_rewrite.system.tf_copies import tree_topic
-from multibot_rewrite.system.tool_nodes import last_word
+from multibot_rewrite.system.words import last_word
 
 # So many pairs of frames of a robot are compared.
 _COMPARED = 20_000

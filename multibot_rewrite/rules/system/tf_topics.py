@@ -19,7 +19,7 @@ from multibot_rewrite.rules.system.transforms import collide, tf_remaps
 from multibot_rewrite.system.index import Index, Tree, once
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Edge, incomplete
 from multibot_rewrite.system.tf_copies import static_topic
-from multibot_rewrite.system.tool_nodes import is_viewer, last_word
+from multibot_rewrite.system.words import is_viewer, last_word
 
 TF = "tf"
 _BRIDGE = "_bridge"

@@ -25,7 +25,7 @@ from multibot_rewrite.system.index import Index, Tree, robots_of
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import SUBSCRIBES, Edge, End
 from multibot_rewrite.system.tf_copies import static_topic
-from multibot_rewrite.system.tool_nodes import last_word
+from multibot_rewrite.system.words import last_word
 
 _STATE_PUBLISHER, _STATIC = "robot_state_publisher", "static_transform_publisher"
 # These have a prefix for frames as well, on by default.

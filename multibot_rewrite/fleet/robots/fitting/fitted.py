@@ -44,7 +44,7 @@ from multibot_rewrite.spelling.bridged_topics import TF_ELEMENT, TF_TYPE
 from multibot_rewrite.spelling.records import Given, Run
 from multibot_rewrite.spelling.transforms import edges_in, sent_by
 from multibot_rewrite.system.records import NOWHERE, SUBSCRIBES, Edge, edge_of
-from multibot_rewrite.system.tool_nodes import last_word
+from multibot_rewrite.system.words import last_word
 
 # The layout in which a description keeps its frames.
 _NAMING = make_naming("tf-per-robot")
