@@ -13,13 +13,13 @@ from multibot_rewrite.base.findings.finding import Rule
 HOMES = {
     "companions.params": "rewrite shared_defaults values",
     "companions.rviz": "window_checks",
-    "description.checks": "arguments robots",
+    "description.checks": "references robots",
     "description.steps": "plan",
     "fleet.checks": "across_domains lacking named_twice of_robots shared_names",
     "fleet.file": "simulator_switch",
     "fleet.launch": "launched_files",
-    "fleet.outputs": "bridge_outputs cell_outputs controller_files moveit_parameters params_style"
-    " rviz_outputs spawn world_file",
+    "fleet.outputs": "bridge_outputs controller_files moveit_parameters params_style rviz_outputs"
+    " spawn world_file",
     "fleet.robots": "joined_robots rewritten_robots robot_nodes simulators start_poses",
     "producers.evidence": "nodes",
     "producers.launch": "findings",

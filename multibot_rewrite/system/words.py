@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What names and types of a system say: which topics move a robot, which say where it is or what it sees;
-which nodes run with any fleet and are no part of a robot: tools, and what simulators start."""
+"""What names and types of a system say: which topics move a robot, which say where it is or what it
+sees; which nodes run with any fleet and are no part of a robot: tools, and what simulators start."""
 
 from __future__ import annotations
 

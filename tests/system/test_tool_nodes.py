@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from multibot_rewrite.system import tool_nodes
+from multibot_rewrite.system import words
 
 
 @pytest.mark.parametrize(
@@ -26,7 +26,7 @@ from multibot_rewrite.system import tool_nodes
 def test_a_tool_is_known_by_its_word_or_by_a_pattern(
     node: str, more: tuple[str, ...], tool: bool
 ) -> None:
-    assert tool_nodes.is_tool(node, more) is tool
+    assert words.is_tool(node, more) is tool
 
 
 @pytest.mark.parametrize(
@@ -41,7 +41,7 @@ def test_a_tool_is_known_by_its_word_or_by_a_pattern(
     ],
 )
 def test_what_the_last_word_says(node: str, viewer: bool, hidden: bool, spawner: bool) -> None:
-    said = (tool_nodes.is_viewer(node), tool_nodes.is_hidden(node), tool_nodes.is_spawner(node))
+    said = (words.is_viewer(node), words.is_hidden(node), words.is_spawner(node))
     assert said == (viewer, hidden, spawner)
 
 
@@ -55,4 +55,4 @@ def test_what_the_last_word_says(node: str, viewer: bool, hidden: bool, spawner:
     ],
 )
 def test_a_name_moved_to_the_namespaces_above(node: str, name: str, above: list[str]) -> None:
-    assert list(tool_nodes.in_namespaces_above(node, name)) == above
+    assert list(words.in_namespaces_above(node, name)) == above
