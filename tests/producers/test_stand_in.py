@@ -26,7 +26,7 @@ from multibot_rewrite.producers.launch.stand_in import (
     standing_in,
     values,
 )
-from multibot_rewrite.producers.launch.stand_in.parse import parse_substitution
+from multibot_rewrite.producers.launch.stand_in.frontend import parse_substitution
 from multibot_rewrite.producers.launch.stand_in.values import LaunchConfiguration, LaunchContext
 from multibot_rewrite.system.records import Place
 

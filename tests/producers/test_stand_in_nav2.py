@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 import yaml
 
-from multibot_rewrite.producers.launch.stand_in import nav2
+from multibot_rewrite.producers.launch.stand_in import parameters as nav2
 from multibot_rewrite.producers.launch.stand_in.values import LaunchContext
 
 PARAMS = """\

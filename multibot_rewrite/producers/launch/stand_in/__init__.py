@@ -16,10 +16,9 @@ from typing import Any
 
 from multibot_rewrite.producers.launch.stand_in import (
     actions,
-    nav2,
+    frontend,
     packages,
     parameters,
-    parse,
     processes,
     ros,
     values,
@@ -27,7 +26,7 @@ from multibot_rewrite.producers.launch.stand_in import (
 from multibot_rewrite.producers.launch.stand_in.actions import not_read
 from multibot_rewrite.producers.launch.stand_in.names import names
 
-_ROOMS = (values, packages, parse, actions, processes, parameters, ros, nav2)
+_ROOMS = (values, packages, frontend, actions, processes, parameters, ros)
 # A name that two modules have for two things.
 _OTHERWISE = {("launch_ros.substitutions", "Parameter"): packages.ParameterSubstitution}
 _CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
