@@ -31,14 +31,8 @@ from multibot_rewrite.fleet.launch.starts import (
     launch_arguments,
 )
 from multibot_rewrite.fleet.outputs.relays import BRIDGE
-from multibot_rewrite.producers.launch.performed import (
-    END,
-    Action,
-    Launching,
-    performed,
-    share,
-)
-from multibot_rewrite.producers.launch.ros_arguments import ros2_run, ros_arguments
+from multibot_rewrite.producers.launch.performed import END, Action, Launching, performed, share
+from multibot_rewrite.producers.launch.spawners import ros2_run, ros_arguments
 from multibot_rewrite.spelling.start import (
     File,
     Led,

@@ -45,8 +45,12 @@ from multibot_rewrite.producers.launch.records import (
     ParameterText,
     UnreadArgument,
 )
-from multibot_rewrite.producers.launch.ros_arguments import params_text, ros2_run, ros_arguments
-from multibot_rewrite.producers.launch.spawners import controller_files
+from multibot_rewrite.producers.launch.spawners import (
+    controller_files,
+    params_text,
+    ros2_run,
+    ros_arguments,
+)
 from multibot_rewrite.producers.launch.unknown_modules import STOOD_FOR, UnknownError
 from multibot_rewrite.spelling.start import Process
 from multibot_rewrite.system.records import Place
