@@ -14,8 +14,7 @@ from multibot_rewrite.description.library import rewrite_all
 from multibot_rewrite.description.sources.read import Source
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.fleet.checks.described import wrong_in_descriptions
-from multibot_rewrite.fleet.checks.meeting import robots_meet
-from multibot_rewrite.fleet.checks.shared_names import shared_by_nothing
+from multibot_rewrite.fleet.checks.meeting import robots_meet, shared_by_nothing
 from multibot_rewrite.fleet.file.domains import TOGETHER, Apart
 from multibot_rewrite.fleet.launch.launched_robot import (
     given_with,

@@ -15,6 +15,7 @@ from multibot_rewrite.base.lazy import gc_paused
 from multibot_rewrite.description.sources.included_by import data_of_file
 from multibot_rewrite.fleet.checks.across_domains import not_across
 from multibot_rewrite.fleet.checks.lacking import unmoved
+from multibot_rewrite.fleet.checks.meeting import shared_by_nothing
 from multibot_rewrite.fleet.checks.robot_system import (
     as_written,
     beside,
@@ -23,7 +24,6 @@ from multibot_rewrite.fleet.checks.robot_system import (
     of_sources,
     with_controllers,
 )
-from multibot_rewrite.fleet.checks.shared_names import shared_by_nothing
 from multibot_rewrite.fleet.checks.written_files import of_files, written_findings
 from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.fleet import Fleet, planned
