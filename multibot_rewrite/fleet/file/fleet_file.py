@@ -10,8 +10,7 @@ from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import Naming, Policy, make_naming
 from multibot_rewrite.base.releases import chosen_release, why_told
 from multibot_rewrite.description.sources.release_said import SaidRelease, release_of_all
-from multibot_rewrite.fleet.file.cell_file import Cell, cell_of, with_cell
-from multibot_rewrite.fleet.file.domains import TOGETHER, Apart, apart_of
+from multibot_rewrite.fleet.file.domains import TOGETHER, Apart, Cell, apart_of, cell_of, with_cell
 from multibot_rewrite.fleet.file.fleet_data import (
     FleetData,
     FleetSource,

@@ -16,7 +16,7 @@ from multibot_rewrite.base.conventions import BY_HAND
 from multibot_rewrite.base.naming import TF_TOPICS, Naming
 from multibot_rewrite.base.rosnames import check_topic_name
 from multibot_rewrite.fleet.checks.lacking import CARTOGRAPHER
-from multibot_rewrite.fleet.file.cell_file import MOVE_GROUP
+from multibot_rewrite.fleet.file.domains import MOVE_GROUP
 from multibot_rewrite.fleet.file.fleet_file import BRINGUP
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.starts import SIMULATOR, RobotStarts

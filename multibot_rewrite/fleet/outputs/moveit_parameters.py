@@ -40,7 +40,7 @@ from multibot_rewrite.companions.rviz.read_config import every, fixed_frame, rea
 from multibot_rewrite.companions.rviz.rewrite import RvizText
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml, replaced, spliced
 from multibot_rewrite.description.rewriters.tree import builtin_tree
-from multibot_rewrite.fleet.file.cell_file import MOVE_GROUP, Cell
+from multibot_rewrite.fleet.file.domains import MOVE_GROUP, Cell
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import (
     FilesAndFindings,

@@ -27,7 +27,7 @@ from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.description.rewriters.tree import Tree, builtin_tree
 from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.description.sources.read import JOIN, is_xacro
-from multibot_rewrite.fleet.file.cell_file import Cell
+from multibot_rewrite.fleet.file.domains import Cell
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import Pose, RobotSpec
 
