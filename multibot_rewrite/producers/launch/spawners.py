@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The words behind a program's name -> what rcl makes of them; and the arguments of ``controller_manager
-spawner`` -> the controllers that it loads, and their parameters.
+"""The words behind a program's name -> what rcl makes of them; and the arguments of
+``controller_manager spawner`` -> the controllers that it loads, and their parameters.
 
 Source: ros2_control jazzy and humble, controller_manager/spawner.py (``--controller NAME ...`` has
 options of its own; the name of a manager is relative to the spawner's namespace, which it gets by

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a rewrite for the named robots rejects or warns about; files, devices, sensors and systems of the
-world that exist only once."""
+"""What a rewrite for the named robots rejects or warns about; files, devices, sensors and systems
+of the world that exist only once."""
 
 from __future__ import annotations
 
