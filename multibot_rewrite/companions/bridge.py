@@ -35,9 +35,9 @@ from multibot_rewrite.companions.bridge_entry import (
 from multibot_rewrite.companions.context import Context, FileTemplate, make_template
 from multibot_rewrite.companions.engine import splices_of, text_of as spelled_text
 from multibot_rewrite.companions.named_file import BRIDGE, Companion, NamedFile
+from multibot_rewrite.companions.names.node_topics import NOTHING, robot_topic
 from multibot_rewrite.companions.names.placeholders import without_robot
 from multibot_rewrite.companions.names.rename_map import is_declared, spell
-from multibot_rewrite.companions.names.robot_topics import NOTHING, robot_topic
 from multibot_rewrite.companions.rviz.read_config import text_of
 from multibot_rewrite.companions.sites import GZ_TOPIC, Site, site_at
 from multibot_rewrite.companions.yaml_text import (

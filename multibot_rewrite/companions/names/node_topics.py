@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Topics in parameters: what each becomes for a robot, checked by resolving it as the node does.
+"""Topics in parameters: what each becomes for a robot, checked by resolving it as the node does; and
+topics in files for one robot -> the absolute topic that each robot has instead.
 
 A name read from a parameter is remapped like any other. So the new value must resolve, with the
 robot's remap rules, to the robot's version of the name that the old value resolves to without rules.
@@ -11,16 +12,18 @@ from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from typing import NamedTuple
 
-from multibot_rewrite.base.naming import NAMESPACE
+from multibot_rewrite.base.naming import NAMESPACE, NOT_PLAIN
 from multibot_rewrite.base.rosnames import bind, check_name_in_code, expand, resolve_bound
 from multibot_rewrite.companions.context import NAMESPACE_SLOT, Context
 from multibot_rewrite.companions.names.by_kind import is_plain
-from multibot_rewrite.companions.names.rename_map import spell
+from multibot_rewrite.companions.names.rename_map import CompanionNames, spell
 from multibot_rewrite.companions.sites import FROM_NODE, FROM_PARENT, IN_FULL
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, is_apart
-from multibot_rewrite.spelling.of_runs import parsed, placed, target_of
+from multibot_rewrite.spelling.of_runs import asked_alone, parsed, placed, target_of
+from multibot_rewrite.spelling.records import Table
 from multibot_rewrite.spelling.table import run_of
+from multibot_rewrite.system.records import ACTION, TOPIC
 
 Facts = Mapping[str, NodeFacts]
 
@@ -122,3 +125,46 @@ def _ruled_text(
     # A rule also moves names that the node derives: <costmap>_updates, <image>/compressed.
     ruled = naming.topics != NAMESPACE and reach == FROM_NODE
     return TopicText(good[-1] if ruled else good[0])
+
+
+NOTHING: Mapping[str, str] = {}
+
+
+def is_topic(value: str) -> bool:
+    """Return whether it is a topic name: not empty, not private, without placeholders."""
+    if not value or value.startswith("~") or not NOT_PLAIN.isdisjoint(value):
+        return False
+    return check_name_in_code(value) is None
+
+
+def robot_topic(names: CompanionNames, value: str, known: Mapping[str, str] = NOTHING) -> str:
+    """Return the robot's absolute topic; ``value`` itself if it is shared or not a topic name.
+
+    ``known`` is ``fleet_topics`` of the robot, for topics that do not follow the general rule.
+    """
+    if not is_topic(value):
+        return value
+    full = f"/{value.lstrip('/')}"
+    if full in known:
+        return value if known[full] == full else known[full]
+    target = target_of(full, TOPIC, names.robot, names.naming)
+    if not target:
+        return value
+    return f"/{names.robot}/{target}" if names.naming.topics == NAMESPACE else target
+
+
+def fleet_topics(table: Table, facts: Iterable[NodeFacts], robot: str) -> dict[str, str]:
+    """Return by the topics of a single robot's nodes those of ``robot`` in a fleet's table."""
+    ours = {node.name for node in facts if not node.shared}
+    stack = {
+        node.full_name: node.node
+        for node in table.runs
+        if node.robot == robot and node.node in ours
+    }
+    found: dict[str, str] = {}
+    for run, end, name in table.ends:
+        if run.robot == robot and run.full_name in stack and end.kind in (TOPIC, ACTION):
+            above, _, node = stack[run.full_name].rpartition("/")
+            asked = end.remapped or asked_alone(run.fact, end)
+            found.setdefault(expand(asked, above, node), name)
+    return found

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import yaml
 
-from multibot_rewrite.companions.names.robot_topics import robot_topic
+from multibot_rewrite.companions.names.node_topics import robot_topic
 from multibot_rewrite.companions.rviz.read_config import (
     ABSOLUTE,
     DOCK,

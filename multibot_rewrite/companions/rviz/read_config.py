@@ -16,9 +16,9 @@ from multibot_rewrite.base.model import FOR_ROS_1, InputError
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.companions.engine import splices_of
+from multibot_rewrite.companions.names.node_topics import NOTHING, robot_topic
 from multibot_rewrite.companions.names.placeholders import is_robot, without_robot
 from multibot_rewrite.companions.names.rename_map import CompanionNames, spell
-from multibot_rewrite.companions.names.robot_topics import NOTHING, robot_topic
 from multibot_rewrite.companions.sites import Site, site_at
 from multibot_rewrite.companions.yaml_text import (
     Block,

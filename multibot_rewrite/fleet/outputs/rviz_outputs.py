@@ -17,7 +17,7 @@ from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.base.naming import LAYOUTS, PREFIX, TF_TOPICS, find_layout, make_naming
-from multibot_rewrite.companions.names.robot_topics import fleet_topics
+from multibot_rewrite.companions.names.node_topics import fleet_topics
 from multibot_rewrite.companions.rviz.display_groups import is_for_one, leaves, shown_in
 from multibot_rewrite.companions.rviz.read_config import (
     TF_PREFIX,

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
 from multibot_rewrite.base.naming import NAMESPACE
-from multibot_rewrite.companions.names.robot_topics import NOTHING, fleet_topics, robot_topic
+from multibot_rewrite.companions.names.node_topics import NOTHING, fleet_topics, robot_topic
 from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.fleet.file.robot_spec import Pose
 from multibot_rewrite.fleet.fleet_plan import FleetPlan

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.companions.names.robot_topics import robot_topic
+from multibot_rewrite.companions.names.node_topics import robot_topic
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import own_yaml
 from multibot_rewrite.fleet.robots.fitting.node_topics import CommandEnd, entry_of, relays_of

@@ -13,8 +13,8 @@ from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.conventions import SENT_FRAMES
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS
+from multibot_rewrite.companions.names.node_topics import fleet_topics, robot_topic
 from multibot_rewrite.companions.names.rename_map import KINDS, spell
-from multibot_rewrite.companions.names.robot_topics import fleet_topics, robot_topic
 from multibot_rewrite.companions.params.rcl_parameters import (
     exact_nodes,
     node_parameters,
