@@ -32,9 +32,8 @@ from multibot_rewrite.pages.page_sections import (
     summarize,
 )
 from multibot_rewrite.pages.scene import Scene
-from multibot_rewrite.pages.states import MISSING, OK, STATES, UNEXPECTED
+from multibot_rewrite.pages.states import MISSING, OK, STATES, UNEXPECTED, FrameTree
 from multibot_rewrite.pages.svg import MEANINGS, Ids, group_svg, safe, tree_svg
-from multibot_rewrite.pages.tf_tree_rows import FrameTree
 from multibot_rewrite.rules.check import RULES
 from multibot_rewrite.system.coverage import in_words
 from multibot_rewrite.system.records import QUIET, ZENOH

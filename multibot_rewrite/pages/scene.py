@@ -17,15 +17,16 @@ from multibot_rewrite.pages.states import (
     MISSING,
     OK,
     UNEXPECTED,
+    FrameTree,
     States,
     Targets,
     find_targets,
+    make_frame_trees,
     make_states,
     merged,
     robots_of,
     worst,
 )
-from multibot_rewrite.pages.tf_tree_rows import FrameTree, make_frame_trees
 from multibot_rewrite.rules.check import side_by_side
 from multibot_rewrite.rules.system.planned_ends import matches
 from multibot_rewrite.spelling.plan import robot_words

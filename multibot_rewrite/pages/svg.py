@@ -27,8 +27,8 @@ from multibot_rewrite.pages.states import (
     STATES,
     UNEXPECTED,
     FrameKey,
+    FrameTree,
 )
-from multibot_rewrite.pages.tf_tree_rows import FrameTree
 from multibot_rewrite.system.records import ACTION, PUBLISHES, SERVES, SERVICE
 
 # What each state means, for the legend and the tooltips.

@@ -41,6 +41,8 @@ from multibot_rewrite.pages.states import (
     MISSING,
     OK,
     UNEXPECTED,
+    FrameRow,
+    FrameTree,
     Targets,
     find_targets,
     make_states,
@@ -59,4 +61,3 @@ from multibot_rewrite.pages.svg import (
     tree_svg,
     visible,
 )
-from multibot_rewrite.pages.tf_tree_rows import FrameRow, FrameTree
