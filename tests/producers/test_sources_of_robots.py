@@ -17,13 +17,12 @@ from multibot_rewrite.knowledge.records import (
     SentTransform,
 )
 from multibot_rewrite.producers.addresses import held_by, of_hardware, of_parameters
-from multibot_rewrite.producers.ends import bridge_ends, edges_off
+from multibot_rewrite.producers.ends import bridge_ends, edges_off, sensor_frames, sensor_on
 from multibot_rewrite.producers.launch.beside_ends import prefix_of
 from multibot_rewrite.producers.launch.known_node import known_node
 from multibot_rewrite.producers.launch.records import LaunchNote
 from multibot_rewrite.producers.launch.snapshot import _caveats, _clocks, _measured, _Part, _refused
 from multibot_rewrite.producers.launch.spawners import params_text, ros2_run, ros_arguments
-from multibot_rewrite.producers.sensor_frames import sensor_frames, sensor_on
 from multibot_rewrite.spelling.records import Given, Run
 from multibot_rewrite.system.records import (
     COMPUTER,

@@ -41,6 +41,8 @@ from multibot_rewrite.producers.ends import (
     edges_off,
     either_way,
     run_alone,
+    sensor_frames,
+    sensor_on,
     virtual_lookups,
 )
 from multibot_rewrite.producers.evidence.hardware import Exported, control_system, exported
@@ -53,7 +55,6 @@ from multibot_rewrite.producers.evidence.semantics import (
     semantics,
 )
 from multibot_rewrite.producers.launch.spawners import active
-from multibot_rewrite.producers.sensor_frames import sensor_frames, sensor_on
 from multibot_rewrite.spelling.of_runs import ends_of, lookups_of, with_names
 from multibot_rewrite.spelling.plan import tf_topic
 from multibot_rewrite.spelling.records import Run

@@ -20,6 +20,7 @@ from multibot_rewrite.description.readback.xml import root_of
 from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
 from multibot_rewrite.knowledge.declared import is_known
 from multibot_rewrite.producers.addresses import of_hardware, of_parameters
+from multibot_rewrite.producers.ends import SensorFrame, sensor_on
 from multibot_rewrite.producers.launch.beside_ends import (
     TF_TYPE,
     Sent,
@@ -56,7 +57,6 @@ from multibot_rewrite.producers.launch.running import (
     bound_of,
     running_nodes,
 )
-from multibot_rewrite.producers.sensor_frames import SensorFrame, sensor_on
 from multibot_rewrite.producers.sources.expressions import or_read
 from multibot_rewrite.spelling.of_runs import each_once, ends_of, lookups_of, with_names
 from multibot_rewrite.spelling.records import Run
