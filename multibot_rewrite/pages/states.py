@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What each finding is about, and the states of endpoints, nodes and frames that follow from it; and the
-tf trees of a graph as rows: a frame, its depth, and what is wrong with it."""
+"""What each finding is about, and the states of endpoints, nodes and frames that follow from it; and
+the tf trees of a graph as rows: a frame, its depth, and what is wrong with it."""
 
 from __future__ import annotations
 
