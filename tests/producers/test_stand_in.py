@@ -20,7 +20,6 @@ from multibot_rewrite.producers.launch.stand_in import (
     frontend,
     packages,
     parameters,
-    parse,
     processes,
     ros,
     standing_in,
@@ -493,8 +492,8 @@ def test_every_substitution_of_launch_files_in_xml() -> None:
     of_several = {"command", "eval", "path-join", "string-join"}
     known = {**vars(packages), **vars(values)}
     classes = {it: known.get(f"{name}Substitution") or known[name] for it, name in words.items()}
-    made = {it: kind for it, kind in parse.known().items() if it not in of_several}
-    assert (made, parse.known().keys() - made.keys()) == (classes, of_several)
+    made = {it: kind for it, kind in frontend.known().items() if it not in of_several}
+    assert (made, frontend.known().keys() - made.keys()) == (classes, of_several)
     for word in ("arg", "find", "optenv"):
         with pytest.raises(ValueError, match=word):
             parse_substitution(f"$({word} a)")
