@@ -24,10 +24,9 @@ from multibot_rewrite.description.checks.numbers import numbers
 from multibot_rewrite.description.joining.kept import left_out, was
 from multibot_rewrite.description.joining.part import ReadPart
 from multibot_rewrite.description.readback.xml import plain, text_of
-from multibot_rewrite.description.steps.apply import cut
+from multibot_rewrite.description.steps.apply import Spans, cut
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.document import Document, read_document, value_slot
-from multibot_rewrite.description.steps.spans import Spans
 
 _FILES = "parameters"
 # What stands in a block for itself; anything else is a setting of the robot.

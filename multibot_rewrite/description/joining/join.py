@@ -45,10 +45,9 @@ from multibot_rewrite.description.joining.part import (
 )
 from multibot_rewrite.description.joining.second_reading import Mounted, prove
 from multibot_rewrite.description.rewriters.tree import Tree
-from multibot_rewrite.description.steps.apply import cut
+from multibot_rewrite.description.steps.apply import Spans, cut
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import Document, read_document, tag_end, value_slot
-from multibot_rewrite.description.steps.spans import Spans
 
 _MOUNT = """
   <joint name="{name}" type="fixed">

@@ -25,9 +25,8 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Edit, InputError
-from multibot_rewrite.description.steps.apply import cut
+from multibot_rewrite.description.steps.apply import Spans, cut
 from multibot_rewrite.description.steps.document import read_document, silenced
-from multibot_rewrite.description.steps.spans import Spans
 
 _BASE = lazy_compile(rb"  <!-- multibot base (\w+)(?: prefix=(\w+))? -->\n")
 # No comment holds two dashes.

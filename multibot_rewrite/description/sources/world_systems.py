@@ -16,10 +16,9 @@ from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.description.checks.hazards import LEFT, WORLD, system_key, world_systems
 from multibot_rewrite.description.checks.problem import Problem, to_findings
 from multibot_rewrite.description.rewriters.tree import Tree, library_and_class
-from multibot_rewrite.description.steps.apply import cut
+from multibot_rewrite.description.steps.apply import Spans, cut
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import Document, read_document
-from multibot_rewrite.description.steps.spans import Spans
 
 _OPEN, _CLOSE = b"<!-- left to the world ", b" -->"
 _ASIDE = re.compile(_OPEN + rb"(<plugin\b(?:[^-]|-(?!-))*?>)" + _CLOSE)

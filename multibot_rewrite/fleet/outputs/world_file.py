@@ -30,9 +30,8 @@ from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.description.sources.included_models import model_file
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.description.steps.apply import cut
+from multibot_rewrite.description.steps.apply import Spans, cut
 from multibot_rewrite.description.steps.document import Document, read_document, tag_end, text_slot
-from multibot_rewrite.description.steps.spans import Spans
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import FilesAndFindings, OutputFile
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot

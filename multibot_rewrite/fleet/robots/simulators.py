@@ -24,8 +24,7 @@ from multibot_rewrite.description.readback.nodes import PUBLISHES
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.description.sources.access import BOUNDED
 from multibot_rewrite.description.sources.own_names import filled
-from multibot_rewrite.description.steps.apply import cut
-from multibot_rewrite.description.steps.spans import Spans
+from multibot_rewrite.description.steps.apply import Spans, cut
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.file.simulator_switch import (
