@@ -15,8 +15,7 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions.behavior_tree.rewrite import named_tree, rewrite_behavior_tree
-from multibot_rewrite.companions.bridge import read_bridge, rewrite_bridge
-from multibot_rewrite.companions.bridge_entry import MODEL_SLOT
+from multibot_rewrite.companions.bridge import MODEL_SLOT, read_bridge, rewrite_bridge
 from multibot_rewrite.companions.context import Context, fill_template
 from multibot_rewrite.companions.lua import read_lua, rewrite_lua
 from multibot_rewrite.companions.moveit.file_kind import find_kind

@@ -15,14 +15,7 @@ from typing import NamedTuple, cast
 from lxml.etree import _Element
 
 from multibot_rewrite.base.releases import has_release
-from multibot_rewrite.companions.bridge_entry import (
-    BOTH,
-    FRAME,
-    GZ,
-    ROS,
-    SERVICE as SERVICE_ROW,
-    below,
-)
+from multibot_rewrite.companions.bridge import BOTH, FRAME, GZ, ROS, SERVICE as SERVICE_ROW, below
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs
 from multibot_rewrite.description.checks.links_and_joints import read_robot
 from multibot_rewrite.description.rewriters.text import text_at

@@ -6,8 +6,7 @@ from __future__ import annotations
 import pytest
 from made_params import L2, L4, setting
 
-from multibot_rewrite.companions.bridge import gz_topic
-from multibot_rewrite.companions.bridge_entry import MODEL_SLOT
+from multibot_rewrite.companions.bridge import MODEL_SLOT, gz_topic
 from multibot_rewrite.companions.context import NAMESPACE_SLOT as SPACE, TAG_SLOT as TAG
 
 CLOUD = "gz.msgs.PointCloudPacked"

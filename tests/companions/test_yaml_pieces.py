@@ -10,9 +10,7 @@ import yaml
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.companions import named_file
-from multibot_rewrite.companions.bridge_entry import (
-    faults,
-)
+from multibot_rewrite.companions.bridge import faults
 from multibot_rewrite.companions.context import (
     NAMESPACE_SLOT,
     TAG_SLOT,

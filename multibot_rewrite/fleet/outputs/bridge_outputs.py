@@ -11,8 +11,7 @@ import yaml
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, declare
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.companions.bridge import BridgeFile, rewrite_bridge
-from multibot_rewrite.companions.bridge_entry import BOTH, GZ, MODEL_SLOT, ROS
+from multibot_rewrite.companions.bridge import BOTH, GZ, MODEL_SLOT, ROS, BridgeFile, rewrite_bridge
 from multibot_rewrite.companions.context import FileTemplate, fill_template
 from multibot_rewrite.companions.rviz.read_config import text_of
 from multibot_rewrite.companions.yaml_text import blocks, cut_out, found_at, items, moved, read_yaml

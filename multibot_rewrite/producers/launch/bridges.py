@@ -24,7 +24,7 @@ from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.rosnames import expand
-from multibot_rewrite.companions.bridge_entry import BOTH, GZ, ROS, SERVICE as SERVICE_ROW
+from multibot_rewrite.companions.bridge import BOTH, GZ, ROS, SERVICE as SERVICE_ROW
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchNote

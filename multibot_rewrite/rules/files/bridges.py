@@ -13,7 +13,7 @@ import yaml
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding, rule
 from multibot_rewrite.base.nearest import SLIP, did_you_mean, nearest
-from multibot_rewrite.companions.bridge_entry import (
+from multibot_rewrite.companions.bridge import (
     BOTH,
     DIRECTIONS,
     GZ,
