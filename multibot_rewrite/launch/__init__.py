@@ -20,18 +20,16 @@ from multibot_rewrite.launch.actions import (
     spawn as spawn,
 )
 from multibot_rewrite.launch.context import (
-    RobotRef as RobotRef,
-    file_of as file_of,
-    fleet_of as fleet_of,
-    perform as perform,
-    robot_of as robot_of,
-)
-from multibot_rewrite.launch.substitutions import (
     FILE as FILE,
     WORDS as WORDS,
+    RobotRef as RobotRef,
     bridge_config as bridge_config,
     description as description,
+    file_of as file_of,
+    fleet_of as fleet_of,
     params_file as params_file,
+    perform as perform,
+    robot_of as robot_of,
     rviz_config as rviz_config,
     value as value,
 )

@@ -13,8 +13,15 @@ from typing import Any
 
 from multibot_rewrite.launch import actions
 from multibot_rewrite.launch.actions import FROM_THE_FLEET
-from multibot_rewrite.launch.context import HERE, SIM_TIME, Text
-from multibot_rewrite.launch.substitutions import FILE, WORDS, as_value, substitution_class
+from multibot_rewrite.launch.context import (
+    FILE,
+    HERE,
+    SIM_TIME,
+    WORDS,
+    Text,
+    as_value,
+    substitution_class,
+)
 from multibot_rewrite.producers.launch.door import missing, of_launch, of_launch_ros
 
 COMPONENT = "multibot_composable_node"
