@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What actions and substitutions ask while a launch runs: its fleets, robots and files; and substitutions
-about a robot, known then.
+"""What actions and substitutions ask while a launch runs: its fleets, robots and files; and
+substitutions about a robot, known then.
 
 A launch keeps each fleet and a folder for files that goes at its end. A robot or fleet that is not
 given is that of the enclosing group. It is among the locals of the context: launch keeps these for

@@ -27,7 +27,7 @@ from launched_programs import EXAMPLE, launched
 from paths import FIXTURES, ROOT
 
 from multibot_rewrite import Finding, InputError, UsageError, launch, load_fleet
-from multibot_rewrite.launch import context as launch_context, later, substitutions
+from multibot_rewrite.launch import context as launch_context, later
 from multibot_rewrite.producers.launch.stand_in import contents, standing_in
 
 REAL = not launch.missing()
@@ -126,7 +126,7 @@ def stand_ins(monkeypatch: pytest.MonkeyPatch) -> None:
 def frontend(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     """What XML can say, in launch or in the stand-in."""
     stand_ins(monkeypatch)
-    made_once = (substitutions.substitution_class, later._action, later._component)
+    made_once = (launch_context.substitution_class, later._action, later._component)
     for it in made_once:
         it.cache_clear()
     yield importlib.import_module("multibot_rewrite.launch.frontend")
@@ -805,7 +805,7 @@ def test_xml_for_a_container_with_components(frontend: Any, context: Any) -> Non
     assert rules == [("scan", "front"), ("a", "b")]
     robot, rate = second["parameters"]
     # A value that is one of ours has its type; any other is launch_ros's.
-    assert isinstance(robot["robot"], substitutions.substitution_class())
+    assert isinstance(robot["robot"], launch_context.substitution_class())
     assert isinstance(rate["rate"], _Untyped)
     assert inside[0].condition.evaluate(context) is False and inside[1].condition is None
 
@@ -881,9 +881,9 @@ def test_a_value_alone_has_its_type(fleet: str, context: Any) -> None:
         def __init__(self, value: Any, value_type: Any = None) -> None:
             self.value, self.value_type = value, value_type
 
-    assert substitutions.as_value(Value([pose])) is pose
+    assert launch_context.as_value(Value([pose])) is pose
     for other in (Value([pose, name]), Value([pose], str), Value(["text"]), Value("text"), 5):
-        assert substitutions.as_value(other) is other
+        assert launch_context.as_value(other) is other
 
 
 @pytest.mark.parametrize(
