@@ -22,8 +22,14 @@ from vendor_rows import (
 from vendor_systems import Vendors, started_by
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.rosnames import BoundNode, bind, check_topic_name, resolve_bound
-from multibot_rewrite.base.rosnames.rules import RemapRule, parse_remap
+from multibot_rewrite.base.rosnames import (
+    BoundNode,
+    RemapRule,
+    bind,
+    check_topic_name,
+    parse_remap,
+    resolve_bound,
+)
 from multibot_rewrite.fleet.build import Outputs
 from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.knowledge.records import Endpoint

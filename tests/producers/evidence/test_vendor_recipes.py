@@ -25,8 +25,7 @@ from vendor_sources import VARIABLE, WITHOUT, sources_folder
 from vendor_systems import missing, read_vendors
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.base.rosnames import bind
-from multibot_rewrite.base.rosnames.rules import parse_remap
+from multibot_rewrite.base.rosnames import bind, parse_remap
 from multibot_rewrite.launch import missing as without_launch
 
 RECIPES = read_recipes()
