@@ -275,6 +275,12 @@ CONTROLLED = DRIVER[:-1] + f", name='driver', parameters=[{PATH.format('config/c
 
 def test_only_files_that_a_node_reads_are_taken(package: Path) -> None:
     """The parameter files of nodes are in the build without a word in the fleet file."""
+    other = SHOWN.replace("rover.rviz", "a.rviz")
+    write(package / "launch", {"up": f"{PUBLISHER}; {GZ}; {SHOWN}; {other}; {SHOWN}"})
+    windows = fleet_of(package)["companions"]["rviz"]
+    assert sorted(windows) == ["rover/rviz/a.rviz", "rover/rviz/rover.rviz"]
+    text = (package.parent / "out/fleet.launch.py").read_text()
+    assert text.count("executable='rviz2'") == 2
     write(package / "launch", {"up": f"{PUBLISHER}; {GZ}; {SHOWN}; {BRIDGED}; {CONTROLLED}"})
     fleet = fleet_of(package)
     assert "stack" not in fleet
