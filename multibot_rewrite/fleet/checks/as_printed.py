@@ -50,7 +50,6 @@ from multibot_rewrite.spelling.start import (
     keywords,
     name_in,
     path_of,
-    values_in,
     with_rest,
 )
 from multibot_rewrite.system.records import SIM_TIME, Place
@@ -122,8 +121,11 @@ def _launches(starts: FleetStarts) -> list[Launching]:
     clock = str(not starts.use_sim_time).lower()
     off = {"use_sim_time": clock, "rviz": "false", "simulator": "false"}
     names = [it.name for it in starts.robots]
-    words = [*dict.fromkeys(word for it in starts.every for word in it.terms)]
-    others = {name: [*_others(name, it, words)] for name, it in starts.switches.items()}
+    values = starts.values
+    others = {
+        name: [one for one in values.get(name, ()) if one != it] or [str(it.lower() != "true")]
+        for name, it in starts.switches.items()
+    }
     off |= {name: its[0] for name, its in others.items()}
     more = range(1, max(map(len, others.values()), default=0))
     other = {"headless": "true", "world": "other.sdf"}
@@ -140,13 +142,6 @@ def _launches(starts: FleetStarts) -> list[Launching]:
     there = {name: _REST for name, it in pairs if ":" in (it[:1], it[-1:])}
     # The last one has none of it.
     return [*(it._replace(environment=there) for it in launches[:-1]), launches[-1]]
-
-
-def _others(name: str, value: str, words: Iterable[str]) -> Iterator[str]:
-    """Yield the other values of a launch argument that the words of conditions ask for."""
-    named = (one for it in words if name_in(it) == name for one in values_in(it))
-    found = [it for it in dict.fromkeys(named) if it != value]
-    yield from found or [str(value.lower() != "true")]
 
 
 class _Planned(NamedTuple):

@@ -12,7 +12,7 @@ from textwrap import wrap
 from multibot_rewrite.fleet.launch.each_robot import Function, functions
 from multibot_rewrite.fleet.launch.python_actions import OF_ALL, actions, comment, lines, value
 from multibot_rewrite.fleet.launch.starts import FleetStarts, RobotStarts, launch_arguments
-from multibot_rewrite.spelling.start import in_order, values_in
+from multibot_rewrite.spelling.start import in_order
 
 # What ament_flake8 allows, and robots of which each has its line to drive.
 WIDTH, _DRIVING = 99, 4
@@ -42,7 +42,7 @@ def _parts(it: FleetStarts) -> Iterator[Iterable[str]]:
         yield "", "", *_part("if_installed")
     if any(start.brought_up for start in it.every):
         yield "", "", *_part("brought_up")
-    if any(values_in(word) for start in it.every for word in start.terms):
+    if it.values:
         yield "", "", *_part("one_of")
     if any(led.followers for robot in it.robots for led in in_order(robot.starts)):
         yield "", "", *_part("then")

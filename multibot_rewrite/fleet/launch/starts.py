@@ -16,7 +16,6 @@ OWN_ARGUMENTS = ("robots", "use_sim_time", "rviz", "simulator", "headless", "wor
 # Those that switch something on.
 SIMULATOR, RVIZ = "simulator", "rviz"
 TOGETHER: Mapping[str, int] = {}
-_TURNS = "it turns something on or off"
 
 
 class RobotStarts(NamedTuple):
@@ -70,6 +69,13 @@ class FleetStarts(NamedTuple):
             yield from it.every
 
     @property
+    def values(self) -> Mapping[str, Sequence[str]]:
+        """The values of launch arguments that conditions name."""
+        words = dict.fromkeys(word for it in self.every for word in it.terms)
+        pairs = ((name_in(word), value) for word in words for value in values_in(word))
+        return lists_by_key(dict.fromkeys(pairs))
+
+    @property
     def nodes(self) -> frozenset[str]:
         """The full names of the planned nodes that are started."""
         shared = (it.full_name for it in self.shared if it.name)
@@ -92,12 +98,9 @@ def launch_arguments(it: FleetStarts) -> Iterator[tuple[str, str | File, str]]:
         yield SIMULATOR, "true", "whether to start the simulator and to spawn the robots in it"
         yield "headless", str(it.headless).lower(), "whether the simulator has no window"
         yield "world", it.world, "the world of the simulator"
-    terms = [*dict.fromkeys(word for one in it.every for word in one.terms)]
     for name, default in it.switches.items():
-        values = dict.fromkeys(
-            value for word in terms if name_in(word) == name for value in values_in(word)
-        )
-        does = f"what starts depends on {', '.join(values)}" if values else _TURNS
+        values = ", ".join(it.values.get(name, ()))
+        does = f"what starts depends on {values}" if values else "it turns something on or off"
         yield name, default, f"as in the launch files of the robots: {does}"
 
 
@@ -105,9 +108,7 @@ def with_switches(it: FleetStarts, others: Collection[str]) -> FleetStarts:
     """Return the fleet with launch arguments that turn off, or on, what launch files start with them:
     those of one value, by which these start nothing else as they do by ``others``. What waits for
     something that has a condition of ours has not those of that, too."""
-    every = dict.fromkeys(
-        (switch.name, switch.default) for one in it.every for switch in one.process.switches
-    )
+    every = dict.fromkeys(one[:2] for start in it.every for one in start.process.switches)
     values, taken = lists_by_key(every), {*OWN_ARGUMENTS, *others}
     own = {name: its[0] for name, its in values.items() if len(its) == 1 and name not in taken}
     robots = [one._replace(starts=_switched(one.starts, own)) for one in it.robots]

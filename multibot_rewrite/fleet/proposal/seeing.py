@@ -27,7 +27,7 @@ from multibot_rewrite.fleet.proposal.choosing import (
     processes_with,
 )
 from multibot_rewrite.fleet.proposal.companions import srdf_of
-from multibot_rewrite.fleet.proposal.launches import Bringup
+from multibot_rewrite.fleet.proposal.launches import Bringup, first_words
 from multibot_rewrite.fleet.proposal.looking import (
     NO_SIMULATOR,
     Looked,
@@ -40,9 +40,8 @@ from multibot_rewrite.fleet.proposal.looking import (
     with_semantic_arguments,
 )
 from multibot_rewrite.fleet.proposal.searching import Found, Undecided, search
-from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchOrder
+from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.producers.launch.source_packages import ROOTS
-from multibot_rewrite.producers.launch.spawners import is_spawner
 from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 
 # Descriptions of a folder that are looked at.
@@ -102,7 +101,11 @@ def see(wanted: Wanted) -> Seen:
             raise
         # Nothing of the launch file is dropped in silence.
         graphs = [it.graph for it in found.read]
-        texts = [_called(it) for one in graphs for it in one.nodes]
+        texts = [
+            " ".join((it.name or os.path.basename(it.executable), *first_words(it)))
+            for one in graphs
+            for it in one.nodes
+        ]
         unread = [it for one in graphs for it in one.notes if not it.parameters]
         own = {it.package for one in graphs for it in one.nodes}
         told = (it for it in unread if it.missing not in own)
@@ -110,12 +113,6 @@ def see(wanted: Wanted) -> Seen:
         listed = ", ".join(dict.fromkeys(texts))
         file = os.path.basename(found.named[0].file)
         raise UsageError(f"{error}; so nothing of {file} is in a fleet: {listed}") from None
-
-
-def _called(it: LaunchedNode) -> str:
-    """Return the name of a process, or else its program; of a spawner with what it loads."""
-    first = (word for word in it.arguments if is_spawner(it) and word[:1] not in "-/")
-    return " ".join((it.name or os.path.basename(it.executable), *first))
 
 
 def _seen(wanted: Wanted, found: Found) -> Seen:

@@ -50,17 +50,10 @@ def _switch(name: str, action: Any, watched: _Watched) -> Switch:
     """Return the values of a launch argument that an action starts with, while the others have theirs.
     Raises ValueError if it starts with all of them, or none."""
     known, default = watched.launch_configurations, str(watched.launch_configurations[name])
-    values = {
-        default,
-        _OTHER.get(default) or _NO_VALUE,
-        *([] if default in _OTHER else watched.words),
-    }
-
-    def starts(value: str) -> bool:
-        known[name] = value
-        return is_wanted(action, watched)
-
-    on = {it for it in values if starts(it)}
+    values = {default, *([_OTHER[default]] if default in _OTHER else (_NO_VALUE, *watched.words))}
+    on: set[str] = set()
+    for known[name] in values:
+        on |= {known[name]} if is_wanted(action, watched) else set()
     known[name] = default
     listed = sorted(values - on if _NO_VALUE in on else on)
     if not listed or on == values or not all(map(_WORD.fullmatch, listed)):

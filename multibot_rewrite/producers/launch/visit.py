@@ -113,11 +113,8 @@ def _is_kept_off(entity: Any, here: Visit, switch: Switch) -> bool:
     if not (value := value_for(switch)):
         return False
     apart = here._replace(nodes=[], notes=[], waiting=[], unread=[], includes=[], idle=[])
-    later = f"with {switch.name}:={value}"
-    switches = (*here.switches, switch)
-    apart = apart._replace(
-        numbers={**here.numbers}, off_by=switch.name, later=later, switches=switches
-    )
+    apart = apart._replace(numbers={**here.numbers}, switches=(*here.switches, switch))
+    apart = apart._replace(off_by=switch.name, later=f"with {switch.name}:={value}")
     context = here.context
     context._push_launch_configurations()
     context._push_environment()
@@ -241,15 +238,11 @@ def _loaded(entity: Any, seen: Visit) -> Iterable[Any] | None:
     return None
 
 
-class _Component(SimpleNamespace):
-    """A component to load, as an action."""
-
-
 def _components(descriptions: Iterable[Any] | None, container: str, seen: Visit) -> None:
     for it in descriptions or ():
-        condition = it.condition() if callable(getattr(it, "condition", None)) else it.condition
+        condition = it.condition() if callable(getattr(it, "condition", None)) else None
         names = {"node_package": it.package, "node_executable": it.node_plugin}
-        visit(_Component(condition=condition, of=it, container=container, **names), seen)
+        visit(SimpleNamespace(condition=condition, of=it, container=container, **names), seen)
 
 
 def _component(entity: Any, seen: Visit) -> None:
@@ -334,7 +327,7 @@ def _handlers() -> Mapping[str, Handler]:
         **dict.fromkeys(names().passed.split(), _pass),
         _INCLUDE: _include,
         "ComposableNodeContainer": _container,
-        "_Component": _component,
+        "SimpleNamespace": _component,
         "LoadComposableNodes": _loaded,
         "Node": _node,
         **dict.fromkeys(("ExecuteLocal", "ExecuteProcess"), _process),
