@@ -43,6 +43,33 @@ Parameters: TypeAlias = File | Mapping[str, Any]
 NOTHING: Mapping[str, str] = {}
 
 
+class Switch(NamedTuple):
+    """A launch argument that decides whether a process starts, with the value that it has, and the
+    ``word`` of a condition for those with which it does: ``name`` (true), ``!name`` (false),
+    ``name=a|b`` (one of these), ``name!=a|b`` (none of these)."""
+
+    name: str
+    default: str
+    word: str
+
+
+def name_in(word: str) -> str:
+    """Return the launch argument of a word of a condition."""
+    return word.strip("!").partition("=")[0].rstrip("!")
+
+
+def values_in(word: str) -> list[str]:
+    """Return the values of a word of a condition; none for one that is true or false."""
+    return word.partition("=")[2].split("|") if "=" in word else []
+
+
+def holds(word: str, value: str) -> bool:
+    """Return whether a word of a condition holds with a value of its launch argument."""
+    if values := values_in(word):
+        return (value in values) != (f"{name_in(word)}!=" in word)
+    return (value.lower() in ("true", "1")) == (word[0] != "!")
+
+
 class Process(NamedTuple):
     """How a process runs, besides what its node is given.
 
@@ -51,8 +78,7 @@ class Process(NamedTuple):
     ``delay`` seconds after the launch, or after the ``event`` (one of ``EVENTS``) of the process that
     is number ``after`` in its launch, -1 for none. ``is_include`` is true for a launch file of a
     package, with launch arguments as words; ``is_extra`` for what spawns something else than the robot
-    in its simulator. ``switches`` are the launch arguments that turn it off with another value, each
-    with the one with which it starts; ``off`` is that of them without which it does not start.
+    in its simulator. ``switches`` are the launch arguments that turn it off or on.
     """
 
     prefix: str = ""
@@ -65,8 +91,12 @@ class Process(NamedTuple):
     after: int = -1
     is_include: bool = False
     is_extra: bool = False
-    switches: tuple[tuple[str, str], ...] = ()
-    off: str = ""
+    switches: tuple[Switch, ...] = ()
+
+    @property
+    def off(self) -> str:
+        """The launch argument without whose other value it does not start; empty for none."""
+        return next((it.name for it in self.switches if not holds(it.word, it.default)), "")
 
 
 AS_USUAL = Process()
@@ -85,11 +115,12 @@ class Start(NamedTuple):
 
     ``components`` are loaded into it: each has its class as ``plugin`` and no ``executable``.
     ``brought_up`` is true if its node has a life cycle that nobody else configures and activates.
-    It starts if each launch argument of ``condition`` is true, or false after ``!``, and the package
-    ``needs`` is installed, where these are not empty. ``environment`` is what is set for it.
+    It starts if each word of ``condition`` holds (see ``Switch``), and the package ``needs`` is
+    installed, where these are not empty. ``environment`` is what is set for it.
     ``number`` is its place in the launch that it is from, -1 for none.
 
-    Without a package the ``executable`` is a command. A launch file of a package has its path in the
+    Without a package the ``executable`` is a command; with ``components`` and without both it loads
+    these into the container called ``name``. A launch file of a package has its path in the
     share folder for one, and names and values of launch arguments as words.
     """
 
@@ -120,6 +151,11 @@ class Start(NamedTuple):
         yield from (self, *self.components)
 
     @property
+    def terms(self) -> list[str]:
+        """The words of its condition."""
+        return self.condition.split()
+
+    @property
     def words(self) -> list[str]:
         """What follows its program on a command line; values of parameters are texts there."""
         rules = ros_arguments(self.namespace or "/", self.name, self.remappings)
@@ -142,7 +178,7 @@ class Led(NamedTuple):
     @property
     def always(self) -> list[Led]:
         """Return what starts without it where its condition does not hold."""
-        return [it for it in self.followers if self.start.condition != it.start.condition]
+        return [it for it in self.followers if not {*self.start.terms} <= {*it.start.terms}]
 
     def at(self, event: str) -> list[Led]:
         """Return what starts at an event."""
@@ -150,8 +186,8 @@ class Led(NamedTuple):
 
 
 def in_order(starts: Sequence[Start]) -> Iterator[Led]:
-    """Yield the processes with those that wait for them; one that waits for a missing one, or for
-    one under another condition, waits for nothing."""
+    """Yield the processes with those that wait for them; one that waits for a missing one, or needs
+    another package than it, waits for nothing."""
     leaders = {
         it.number: at
         for at, it in enumerate(starts)
@@ -160,17 +196,13 @@ def in_order(starts: Sequence[Start]) -> Iterator[Led]:
     below: dict[int, list[int]] = {}
     for at, it in enumerate(starts):
         leader = leaders.get(it.process.after, -1) if it.process.event in EVENTS else -1
-        alike = leader >= 0 and _switches(it) in (_switches(starts[leader]), ("", ""))
+        alike = leader >= 0 and it.needs in (starts[leader].needs, "")
         below.setdefault(leader if alike and leader != at else -1, []).append(at)
 
     def led(at: int) -> Led:
         return Led(starts[at], tuple(map(led, below.get(at, ()))))
 
     yield from map(led, below.get(-1, ()))
-
-
-def _switches(it: Start) -> tuple[str, str]:
-    return it.condition, it.needs
 
 
 def start_of(it: Started, program: Program, parameters: tuple[Parameters, ...] = ()) -> Start:
@@ -205,6 +237,9 @@ def keywords(it: Start) -> dict[str, Any]:
     """Return the keywords of launch_ros's Node, of ComposableNode for a component, of ExecuteProcess
     for a command."""
     how = {name: getattr(it.process, name) for name in HOW}
+    inner = [keywords(one) for one in it.components]
+    if inner and not it.package:
+        return {"composable_node_descriptions": inner, "target_container": it.name}
     if not it.package:
         cmd = [it.executable, *it.arguments]
         given = {"cmd": cmd, "additional_env": it.environment, **how}
@@ -218,7 +253,7 @@ def keywords(it: Start) -> dict[str, Any]:
         "parameters": list(it.parameters),
         "remappings": list(it.remappings),
         "arguments": list(it.arguments),
-        "composable_node_descriptions": [keywords(one) for one in it.components],
+        "composable_node_descriptions": inner,
         "additional_env": it.environment,
         **how,
     }

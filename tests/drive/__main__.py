@@ -24,6 +24,9 @@ def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python tests/drive", description=__doc__)
     parser.add_argument("folder", type=Path, help="what multibot build wrote")
     parser.add_argument("--release", help="the release of ROS, where the folder does not say it")
+    parser.add_argument(
+        "--sources", type=Path, nargs="*", default=[], help="folders of the vendor's packages"
+    )
     parser.add_argument("--json", action="store_true", help="print one line of JSON")
     return parser.parse_args()
 
@@ -33,9 +36,11 @@ def release_of(folder: Path) -> str:
     return str(json.loads((folder / "manifest.json").read_text())["distro"])
 
 
-def judged(folder: Path, release: str) -> tuple[int, dict[str, object]]:
+def judged(
+    folder: Path, release: str, sources: tuple[Path, ...] = ()
+) -> tuple[int, dict[str, object]]:
     """The exit code, and what is printed."""
-    found = fleet.read(folder.resolve(), release)
+    found = fleet.read(folder.resolve(), release, sources)
     robots, wrong = verdict.done(found), verdict.judged(found)
     unsure = any(word.startswith("unknown") for it in robots.values() for word in it.values())
     code = WRONG if wrong else UNKNOWN if unsure else FINE
@@ -54,7 +59,8 @@ def printed(found: dict[str, object]) -> str:
 def main() -> int:
     given = arguments()
     try:
-        code, found = judged(given.folder, given.release or release_of(given.folder))
+        release = given.release or release_of(given.folder)
+        code, found = judged(given.folder, release, tuple(given.sources))
     except Exception as error:  # A folder that the referee cannot read is said, whatever it is.
         print(f"{given.folder}: not judged: {type(error).__name__}: {error}", file=sys.stderr)
         return REFUSED

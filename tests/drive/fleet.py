@@ -72,6 +72,7 @@ class Fleet(NamedTuple):
     told: Mapping[str, str]
     faults: tuple[tuple[str, str, str], ...]
     unknown: tuple[tuple[str, str], ...]
+    whole: bool = False
 
 
 def launched(file: Path, robot: str = "") -> Mapping[str, Any]:
@@ -91,8 +92,9 @@ def run(child: Path, file: Path, *words: str) -> Mapping[str, Any]:
     return found
 
 
-def read(folder: Path, release: str) -> Fleet:
-    """The fleet of a built folder."""
+def read(folder: Path, release: str, sources: tuple[Path, ...] = ()) -> Fleet:
+    """The fleet of a built folder; with ``sources`` of the vendor's packages it is whole if nothing in
+    it is unknown."""
     file = folder / "fleet.launch.py"
     try:
         every = launched(file)
@@ -115,7 +117,7 @@ def read(folder: Path, release: str) -> Fleet:
         shared = [it for it in shared if "include" in it]
     starts = [("", it) for it in shared]
     starts += [(robot, it) for robot, each in own.items() for it in each if it not in shared]
-    return assembled(Reader(starts, release, folder), tuple(own), file)
+    return assembled(Reader(starts, release, folder, sources), tuple(own), file)
 
 
 def assembled(given: Reader, robots: tuple[str, ...], file: Path) -> Fleet:
@@ -156,6 +158,7 @@ def assembled(given: Reader, robots: tuple[str, ...], file: Path) -> Fleet:
         told(file, robots),
         (*((who, "starts", why) for who, why in faults), *broken),
         unknown,
+        bool(given.sources) and not unknown,
     )
 
 

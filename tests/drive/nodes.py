@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import gazebo
 import programs
+import vendors
 import yaml
 
 Start = dict[str, Any]
@@ -20,11 +21,12 @@ BEFORE_HANDED_ON = ("humble", "iron", "jazzy", "kilted")
 
 
 class Reader(NamedTuple):
-    """What is started, and for whom ("" for all robots)."""
+    """What is started, and for whom ("" for all robots); ``sources`` are folders of packages."""
 
     starts: list[tuple[str, Start]]
     release: str
     folder: Path
+    sources: tuple[Path, ...] = ()
 
     def of(self, *executables: str) -> Iterator[tuple[str, Start]]:
         return ((who, it) for who, it in self.starts if it.get("executable") in executables)
@@ -32,7 +34,8 @@ class Reader(NamedTuple):
 
 class Node(NamedTuple):
     """A node of a robot ("" for all of them) before its names are resolved; ``process`` are the
-    namespace and the rules of its process, if they are not its own."""
+    namespace and the rules of its process, if they are not its own, ``own`` is whether it is a
+    vendor's, which was read."""
 
     robot: str
     what: str
@@ -43,6 +46,7 @@ class Node(NamedTuple):
     ends: tuple[programs.Opened, ...]
     inside: str = ""
     process: tuple[str, tuple[tuple[str, str], ...]] | None = None
+    own: bool = False
 
     @property
     def fqn(self) -> str:
@@ -74,13 +78,22 @@ def nodes_of(given: Reader) -> Iterator[Node]:
         ends += tuple(programs.muxed(values)) if what == "twist_mux" else ()
         ends += tuple(programs.executed(values)) if what == "move_group" else ()
         process = containers.get(who) if it.get("component") else None
-        yield Node(who, what, name, space, plain, values, ends, process=process)
+        source = None if programs.is_known(what, given.release) else own_source(it, given)
+        if source:
+            read = vendors.opened(source, values)
+            ends, values = read.ends, {**values, **({"": read.frames} if read.frames else {})}
+        yield Node(who, what, name, space, plain, values, ends, process=process, own=bool(source))
         costmap = programs.COSTMAPS.get(what)
         if costmap:
             process = process or (space, plain)
             inner = process[1] if given.release in BEFORE_HANDED_ON else plain
             made = costmap_of(who, it, costmap, space, inner, given.release)
             yield made._replace(process=process)
+
+
+def own_source(start: Start, given: Reader) -> Path | None:
+    package = start.get("package", "")
+    return vendors.source_of(package, start["executable"], given.sources) if package else None
 
 
 def is_container(start: Start) -> bool:

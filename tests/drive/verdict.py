@@ -114,7 +114,7 @@ def heard(fleet: Fleet) -> Iterator[tuple[str, str, str]]:
     robots, plugins = {model: robot for robot, model in fleet.models.items()}, classic(fleet)
     for it in fleet.ends:
         what = plain.get(it.node, "")
-        driving = what in DRIVING or it.node in plugins
+        driving = what in DRIVING or it.node in plugins | ends_commands(fleet)
         heard = it.role == "subscribes" and it.type in COMMANDS and it.sure and driving
         posed = it.role == "subscribes" and it.type in POSED and (what in MOVING or driving)
         if heard or posed or (it.role == "serves" and it.type in GOALS and what in MOVING):
@@ -130,6 +130,12 @@ def heard(fleet: Fleet) -> Iterator[tuple[str, str, str]]:
                 yield robots[end.model], row.ros, row.type
 
 
+def ends_commands(fleet: Fleet) -> set[str]:
+    """Vendors' nodes that read commands and pass none on: they drive."""
+    own = {it.fqn for it in fleet.nodes if it.own}
+    return own - {it.node for it in fleet.ends if it.role == "publishes" and it.type in COMMANDS}
+
+
 def classic(fleet: Fleet) -> set[str]:
     return {it.fqn for it in fleet.nodes if it.what.endswith(".so")}
 
@@ -142,14 +148,14 @@ def reached(fleet: Fleet, topic: str, kind: str) -> set[str]:
 
 def carried(fleet: Fleet, topic: str, kind: str) -> set[tuple[str, str]]:
     """The topics and types on which a command is sent again by those that pass it on."""
-    plain = {it.fqn: it.what for it in fleet.nodes}
+    passing = {it.fqn for it in fleet.nodes if it.what in PASSING or it.own}
     topics, queue = {(topic, kind)}, [(topic, kind)]
     while queue:
         one = queue.pop()
         through = {
             it.node
             for it in fleet.ends
-            if it.role == "subscribes" and (it.name, it.type) == one and plain[it.node] in PASSING
+            if it.role == "subscribes" and (it.name, it.type) == one and it.node in passing
         }
         for it in fleet.ends:
             out = it.name, it.type
@@ -168,6 +174,9 @@ def drives(fleet: Fleet, robot: str) -> Iterator[Fault]:
         for end in fleet.gz
     )
     if not has_drive:
+        for it in senders(fleet, robot) if fleet.whole else ():
+            why = f"{it.node} sends {it.type} on {it.name}, which nothing reads that drives"
+            yield Fault(robot, "drives", why)
         return
     if not own:
         yield Fault(robot, "drives", "no topic of ROS reaches its drive")
@@ -195,7 +204,8 @@ def drives(fleet: Fleet, robot: str) -> Iterator[Fault]:
 
 def senders(fleet: Fleet, robot: str) -> list[End]:
     """The ends on which nodes of a robot send commands of their own, and goals."""
-    nodes = {it.fqn for it in fleet.nodes if it.robot == robot and it.what in SENDING}
+    every = (it for it in fleet.nodes if it.robot == robot)
+    nodes = {it.fqn for it in every if it.what in SENDING or it.own}
     kinds = {"publishes": COMMANDS, "calls": GOALS}
     return [it for it in fleet.ends if it.node in nodes and it.type in kinds.get(it.role, ())]
 
@@ -245,7 +255,7 @@ def sees(fleet: Fleet, robot: str) -> Iterator[Fault]:
             yield Fault(
                 robot, "sees", f"{it.node} reads {it.name}, which no node sends; it has {had}"
             )
-        elif not whose and it.type == JOINT_STATE and is_posed(fleet, robot):
+        elif not whose and (is_posed(fleet, robot) if it.type == JOINT_STATE else fleet.whole):
             yield Fault(robot, "sees", f"{it.node} reads {it.name}, which no node sends")
 
 

@@ -113,12 +113,18 @@ PUBLISHER = LAUNCH[LAUNCH.index("        Node(") : LAUNCH.index("        ekf('ek
             "arguments=['0', '0,0', '0', '0', '0', '0', 'base_link', 'cam'])",
             "0,0 is in the place of --y",
         ),
+        (
+            "Node(package='acme', executable='drive', name='laser_filter_node',"
+            "parameters=[str(ROBOT.with_name('f.yaml'))]),",
+            "laser_filter is nearly its name",
+        ),
     ],
 )
 def test_what_is_wrong_with_nodes_of_the_vendor_stops_no_build(
     more: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     folder(tmp_path, "both")
+    (tmp_path / "f.yaml").write_text("laser_filter: {ros__parameters: {a: 1}}\n")
     text = LAUNCH.partition("        ekf('ekf_local')")[0].replace(PUBLISHER, PUBLISHER + more)
     (tmp_path / "up.launch.py").write_text(f"{text}    ])\n")
     assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out")]) == 0

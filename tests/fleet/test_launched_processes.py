@@ -919,12 +919,17 @@ def test_what_a_condition_keeps_out_is_named_with_the_arguments_that_decide(
 SWITCHES = """
         *[DeclareLaunchArgument(it, default_value=value) for it, value in {
             'joy': 'true', 'mock': 'False', 'both': 'true', 'mode': 'a', 'sim': 'true',
-            'rviz': 'true', 'cam': 'false', 'two': 'False', 'log': 'false', 'part': 'true'}.items()],
+            'rviz': 'true', 'cam': 'false', 'two': 'False', 'log': 'false', 'part': 'true',
+            'twin': 'false'}.items()],
         here('stick', condition=IfCondition(joy)),
         here('driver', condition=UnlessCondition(LaunchConfiguration('mock'))),
         here('fake', condition=IfCondition(PythonExpression(["'", both, "' == 'false'"]))),
         here('real', condition=IfCondition(both)),
         here('other', condition=IfCondition(PythonExpression(["'", mode, "' == 'a'"]))),
+        here('another', condition=LaunchConfigurationEquals('mode', 'b')),
+        here('unless_b', condition=IfCondition(PythonExpression(["'", mode, "' != 'b'"]))),
+        here('twin', name='x', condition=UnlessCondition(LaunchConfiguration('twin'))),
+        here('other_twin', name='x', condition=IfCondition(LaunchConfiguration('twin'))),
         GroupAction([here('inner', condition=UnlessCondition(LaunchConfiguration('mock'))),
             TimerAction(period=2.0, actions=[here('late')])], condition=IfCondition(joy)),
         RegisterEventHandler(OnProcessExit(target_action=first, on_exit=[here('after')])),
@@ -934,6 +939,9 @@ SWITCHES = """
         ComposableNodeContainer(package='rclcpp_components', executable='component_container',
             name='box', namespace='', composable_node_descriptions=[ComposableNode(package='acme',
                 plugin='acme::P', name='p', condition=IfCondition(LaunchConfiguration('part')))]),
+        LoadComposableNodes(target_container='box', composable_node_descriptions=[
+            ComposableNode(package='acme', plugin='acme::Q', name='q',
+                condition=IfCondition(LaunchConfiguration('cam')))]),
         here('with_part', condition=IfCondition(LaunchConfiguration('part'))),
         here('instead', condition=UnlessCondition(LaunchConfiguration('part'))),
         GroupAction([ExecuteProcess(cmd=['record', 'a']), IncludeLaunchDescription([
@@ -944,46 +952,55 @@ SWITCHES = """
         here('logger', condition=IfCondition(LaunchConfiguration('log'))),
         RegisterEventHandler(OnProcessExit(target_action=first, on_exit=[here('logged')]),
             condition=IfCondition(LaunchConfiguration('log'))),
+        RegisterEventHandler(OnProcessExit(target_action=first, on_exit=[
+            here('waits', condition=IfCondition(joy))])),
 """
 # What is off by default.
-OFF = ["camera", "record", "IncludeLaunchDescription"]
+OFF = ["camera", "acme::Q", "record", "IncludeLaunchDescription", "logger", "logged", "fake"]
+OFF += ["another", "instead"]
 
 
 @pytest.mark.parametrize(
     ("given", "gone"),
     [
         ({}, OFF),
-        ({"cam": "true"}, OFF[1:]),
-        ({"two": "true", "log": "true"}, OFF[:1]),
-        ({"joy": "false"}, ["stick", "inner", "TimerAction", "late", *OFF]),
+        ({"cam": "true"}, OFF[2:]),
+        ({"two": "true", "log": "true"}, [*OFF[:2], *OFF[6:]]),
+        ({"joy": "false"}, ["stick", "inner", "TimerAction", "late", "waits", *OFF]),
         ({"mock": "true"}, ["driver", "inner", *OFF]),
-        ({"sim": "0"}, ["OnProcessExit of first", "after", "first", *OFF]),
-        ({"mode": "b", "both": "false", "rviz": "false", "part": "false"}, OFF),
+        ({"sim": "0"}, ["OnProcessExit of first", "after", "first", "waits", *OFF]),
+        ({"mode": "b", "rviz": "false"}, ["other", "unless_b", *OFF[:7], "instead"]),
+        ({"mode": "c"}, ["other", *OFF]),
+        ({"both": "false"}, ["real", *OFF[:6], *OFF[7:]]),
+        ({"part": "false", "twin": "true"}, ["with_part", "acme::P", *OFF[:-1]]),
     ],
 )
 def test_a_launch_argument_turns_off_or_on_what_its_condition_starts(
     given: dict[str, str], gone: list[str], tmp_path: Path
 ) -> None:
-    """One that does both, has more values than two, decides what waits for an event, or is one of every
-    build, does not: what it decides is decided in the fleet file."""
-    setup = """from launch.conditions import UnlessCondition
+    """One that is of every build, or chooses between two nodes of one name, does not: what it decides
+    is decided in the fleet file."""
+    setup = """from launch.conditions import LaunchConfigurationEquals, UnlessCondition
     from launch.substitutions import PythonExpression
     joy, both, mode = map(LaunchConfiguration, ('joy', 'both', 'mode'))
     first = here('first')"""
-    found = told(actions(tmp_path, SWITCHES, setup, given={"robots": "2", **given}))
+    done = actions(tmp_path, SWITCHES, setup, given={"robots": "2", **given})
+    loaded = (one for it in done for one in it.values.get("composable_node_descriptions", ()))
+    found = [*told(done), *(it["plugin"] for it in loaded)]
     every = ["stick", "driver", "real", "other", "inner", "TimerAction", "late", "first", "map"]
-    every += ["OnProcessExit of first", "after", "with_part", *OFF]
+    every += ["unless_b", "OnProcessExit of first", "after", "waits", "with_part", "acme::P", *OFF]
     left = [it for it in every if it not in gone]
     assert {it: found.count(it) for it in every} == {it: 2 * (it in left) for it in every}
     text = (tmp_path / "out/fleet.launch.py").read_text()
     declared = text.split("def generate_launch_description")[1]
+    kept = ("joy", "mock", "sim", "both", "mode", "cam", "two", "log", "part")
     own = {
         it: f"            '{it}',\n                default_value=" in declared
-        for it in ("joy", "mock", "sim", "both", "mode", "rviz", "cam", "two", "log", "part")
+        for it in (*kept, "rviz", "twin")
     }
-    kept = ("joy", "mock", "sim", "cam", "two")
     assert own == dict.fromkeys(own, False) | dict.fromkeys(kept, True)
     assert "'mock',\n                default_value='False'" in declared
+    assert "what starts depends on a, b" in declared
 
 
 def test_an_argument_with_two_values_turns_nothing_off(tmp_path: Path) -> None:

@@ -236,7 +236,9 @@ def main(words: Sequence[str]) -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
     parser.add_argument(
-        "--half", choices=("work", "kept", "fresh", "third", "try", "fourth", "six"), default="work"
+        "--half",
+        choices=("work", "kept", "fresh", "third", "try", "fourth", "fifth", "six"),
+        default="work",
     )
     parser.add_argument("--only", nargs="*", default=[""], help="parts of the names")
     parser.add_argument("--sources", type=Path, nargs="*", default=[])

@@ -55,6 +55,7 @@ SIMULATORS = {
     **dict.fromkeys(("gz", "ign", "gz_sim.launch.py", "ign_gazebo.launch.py"), "gz_sim"),
     **dict.fromkeys(("gazebo.launch.py", "gzserver.launch.py", "gazebo", "gzserver"), "classic"),
 }
+WINDOWS = {"gzclient.launch.py", "gzclient"}
 # One package under two names, of which Humble has both.
 RENAMED = {"ros_ign_gazebo": "ros_gz_sim", "ros_ign_bridge": "ros_gz_bridge"}
 # Static transforms for the poses in the fleet file.
@@ -88,6 +89,11 @@ def compare(
     free = [it for it in matches if owner(own[matches.index(it)], vendors)]
     for process in (it for it in bringup if owner(it, vendors) in others):
         matches.append(_as_first(_of_any(process, owner(process, vendors)), free))
+    # The fleet's launch file of Gazebo Classic opens its window, too.
+    classic = [it.words for it in fleet if os.path.basename(it.program) == "gazebo.launch.py"]
+    if any(("gui", "false") not in pairwise(words) for words in classic):
+        windows = [it for it in matches if os.path.basename(it.process.program) in WINDOWS]
+        matches = [it._replace(where="once") if it in windows else it for it in matches]
     # Bridges are merged: each is there if its topics are bridged.
     left = [it for it in left if it.program not in BRIDGES and it.name not in POSES]
     return Comparison(tuple(matches), tuple(left))

@@ -38,9 +38,11 @@ from multibot_rewrite.spelling.start import (
     Led,
     Start,
     Text,
+    holds,
     in_order,
     in_shares,
     keywords,
+    name_in,
     path_of,
     with_rest,
 )
@@ -58,7 +60,6 @@ _REST = "rest"
 # More of a value is not shown.
 _SHOWN = 100
 _NOTHING = object()
-_TRUE = ("true", "True", "1")
 # The programs of which each process has its line, unless it is a node of a stack.
 _TOLD = (
     ("tf2_ros", "static_transform_publisher"),
@@ -114,12 +115,19 @@ def _launches(starts: FleetStarts) -> list[Launching]:
     clock = str(not starts.use_sim_time).lower()
     off = {"use_sim_time": clock, "rviz": "false", "simulator": "false"}
     names = [it.name for it in starts.robots]
-    off |= {name: str(it.lower() != "true") for name, it in starts.switches.items()}
+    values = starts.values
+    others = {
+        name: [one for one in values.get(name, ()) if one != it] or [str(it.lower() != "true")]
+        for name, it in starts.switches.items()
+    }
+    off |= {name: its[0] for name, its in others.items()}
+    more = range(1, max(map(len, others.values()), default=0))
     other = {"headless": "true", "world": "other.sdf"}
     told = {name: it for name, it in other.items() if name in usual}
     launches = (
         Launching({}, frozenset({BRIDGE})),
         Launching({name: it for name, it in off.items() if name in usual}),
+        *(Launching({name: its[at % len(its)] for name, its in others.items()}) for at in more),
         *(Launching({"robots": ",".join(it), **told}) for it in (names[:2], names[2:][-2:]) if it),
         Launching({"robots": "1", "use_sim_time": "1"}),
     )
@@ -152,9 +160,8 @@ class _Planned(NamedTuple):
         yield from self.processes(self.starts.windows)
 
     def is_on(self, condition: str) -> bool:
-        """Return whether each launch argument of a condition is true, or false after ``!``."""
-        words = ((it.lstrip("!"), it[0] != "!") for it in condition.split())
-        return all((self.arguments.get(it, "") in _TRUE) == wanted for it, wanted in words)
+        """Return whether each word of a condition holds."""
+        return all(holds(it, self.arguments.get(name_in(it), "")) for it in condition.split())
 
     def chosen(self) -> list[RobotStarts]:
         """Return the robots that are launched."""
@@ -181,7 +188,8 @@ class _Planned(NamedTuple):
                 continue
             elif it.start.condition and not self.is_on(it.start.condition):
                 for one in it.always:
-                    yield from self.led(one, robot, time)
+                    if self.is_on(one.start.condition):
+                        yield from self.led(one, robot, time)
             else:
                 yield from self.led(it, robot, time)
 
@@ -194,7 +202,8 @@ class _Planned(NamedTuple):
             if several := it.at(word):
                 yield Action(kind, {"target_action": first.values})
                 for one in several:
-                    yield from self.led(one, robot, clock)
+                    if self.is_on(one.start.condition):
+                        yield from self.led(one, robot, clock)
                 yield Action(END, {})
         yield from (first, *more)
         if it.start.process.delay:
@@ -214,7 +223,7 @@ class _Planned(NamedTuple):
     def process(self, it: Start, robot: str, clock: bool) -> Iterator[Action]:
         """Yield a process; one that is brought up is configured, then activated."""
         if it.process.is_include or not it.package:
-            yield self.other(it, robot)
+            yield self.other(it, robot, clock)
             return
         time = {SIM_TIME: clock}
         own, *inner = (one._replace(parameters=(*one.parameters, time)) for one in it.every)
@@ -241,9 +250,15 @@ class _Planned(NamedTuple):
         own = {name: _with_shares(it) for name, it in own.items()}
         return {**there, **own, **domain}
 
-    def other(self, it: Start, robot: str) -> Action:
-        """Return a command, or the launch file of a package."""
+    def other(self, it: Start, robot: str, clock: bool) -> Action:
+        """Return a command, the launch file of a package, or what loads components."""
         environment = self.environment(robot)
+        if it.components:
+            time = {SIM_TIME: clock}
+            inner = (one._replace(parameters=(*one.parameters, time)) for one in it.components)
+            return Action(
+                "LoadComposableNodes", self.value(keywords(it._replace(components=(*inner,))))
+            )
         if not it.process.is_include:
             own = self.value(_given(it, environment))
             return Action("ExecuteProcess", {**own, "output": "screen", "environment": environment})

@@ -42,6 +42,8 @@ def _parts(it: FleetStarts) -> Iterator[Iterable[str]]:
         yield "", "", *_part("if_installed")
     if any(start.brought_up for start in it.every):
         yield "", "", *_part("brought_up")
+    if it.values:
+        yield "", "", *_part("one_of")
     if any(led.followers for robot in it.robots for led in in_order(robot.starts)):
         yield "", "", *_part("then")
     made = functions(it.robots)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 import time
+from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from functools import lru_cache
 
@@ -19,6 +20,7 @@ from multibot_rewrite.producers.evidence.nodes import RobotNodes, nodes_of, unde
 from multibot_rewrite.producers.launch.child import launch_graph
 from multibot_rewrite.producers.launch.known_node import with_sources
 from multibot_rewrite.producers.launch.of_robot import Launched, as_launched, with_launched
+from multibot_rewrite.producers.launch.programs import may_be_off
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder, joined
 from multibot_rewrite.producers.launch.several_robots import of_first_robot, with_extras
 from multibot_rewrite.spelling.records import Run
@@ -63,9 +65,15 @@ def launch_of(orders: Sequence[LaunchOrder], robot: str) -> LaunchGraph:
 
 
 def _with_off(graph: LaunchGraph, given: Collection[str]) -> LaunchGraph:
-    """Return launch files with what an argument turns on among their nodes, if it decides nothing else,
-    and is not ``given`` or one of every fleet."""
-    fixed = {name for it in graph.nodes for name, _ in it.process.switches}
+    """Return launch files with what an argument turns on among their nodes, if it decides nothing that
+    the fleet starts by itself, and is not ``given`` or one of every fleet."""
+    own = (it for it in graph.nodes if not may_be_off(it))
+    fixed = {switch.name for it in own for switch in it.process.switches}
+    # Of two of one name only one is planned.
+    called = Counter((it.namespace, it.name or it.executable) for it in (*graph.nodes, *graph.off))
+    fixed |= {
+        it.process.off for it in graph.off if called[it.namespace, it.name or it.executable] > 1
+    }
     fixed |= {name for it in graph.idle if not it.is_off for name, _ in it.asked}
     fixed.update(OWN_ARGUMENTS, given, (it.process.off for it in graph.off if graph.robots))
     off = tuple(it for it in graph.off if it.process.off not in fixed)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
 from typing import Any, NamedTuple
 
@@ -18,6 +18,8 @@ from multibot_rewrite.spelling.start import (
     Text,
     in_order,
     in_shares,
+    name_in,
+    values_in,
     with_rest,
 )
 
@@ -41,23 +43,27 @@ def actions(
 ) -> Iterator[str]:
     """Yield what is started: in a group what depends on one launch argument, and what needs one
     package, which says ``otherwise`` where that is not installed."""
-    space = " " * indent
-    ordered = in_order([*starts])
-    switches = groupby(ordered, lambda it: (it.start.condition, it.start.needs))
-    for (condition, needs), several in switches:
-        if condition:
-            every = [*several]
-            rest = [one for it in every for one in it.always]
-            for words, led in ((condition.split(), every), ([f"!{condition}"], rest)):
-                inner = _processes(led, indent + 8 * len(words), own) if led else ()
-                yield from _grouped(words if led else (), inner, indent)
-        elif needs:
+    space, ordered = " " * indent, groupby(in_order([*starts]), lambda it: it.start.needs)
+    for needs, several in ordered:
+        if needs:
             given = (f"{space}    {value(it)}," for it in (needs, otherwise))
-            inner = _processes(several, indent + 8, own)
+            inner = _conditional(several, (), indent + 8, own)
             yield from (f"{space}*if_installed(", *given, f"{space}    [", *inner)
             yield from (f"{space}    ],", f"{space}),")
         else:
-            yield from _processes(several, indent, own)
+            yield from _conditional(several, (), indent, own)
+
+
+def _conditional(
+    several: Iterable[Led], above: Collection[str], indent: int, own: OfRobot
+) -> Iterator[str]:
+    """Yield processes, in a group where they are under other conditions than ``above`` them."""
+    apart = groupby(several, lambda it: tuple(one for one in it.start.terms if one not in above))
+    for words, every in ((words, [*led]) for words, led in apart):
+        yield from _grouped(words, _processes(every, indent + 8 * len(words), own), indent)
+        if rest := [one for it in every for one in it.always]:
+            inner = _conditional(rest, words, indent + 8, own)
+            yield from _grouped([f"!{words[0]}"], inner, indent)
 
 
 def _grouped(words: Sequence[str], inner: Iterable[str], indent: int) -> Iterator[str]:
@@ -65,11 +71,13 @@ def _grouped(words: Sequence[str], inner: Iterable[str], indent: int) -> Iterato
     if not words:
         yield from inner
         return
-    space, name = " " * indent, words[0].lstrip("!")
+    space, name, values = " " * indent, name_in(words[0]), values_in(words[0])
     below = _grouped(words[1:], inner, indent + 8)
     yield from (f"{space}GroupAction(", f"{space}    [", *below, f"{space}    ],")
-    asked = f"{'If' if name == words[0] else 'Unless'}Condition(LaunchConfiguration({value(name)}))"
-    yield from (f"{space}    condition={asked},", f"{space}),")
+    of_values = f"one_of({value(name)}, {', '.join(map(value, values))})"
+    asked = of_values if values else f"LaunchConfiguration({value(name)})"
+    kind = "UnlessCondition" if "!" in words[0] else "IfCondition"
+    yield from (f"{space}    condition={kind}({asked}),", f"{space}),")
 
 
 def _processes(several: Iterable[Led], indent: int, own: OfRobot) -> Iterator[str]:
@@ -93,7 +101,7 @@ def _led(it: Led, indent: int, own: OfRobot) -> Iterator[str]:
     yield from (f"{space}*then(", *_process(it.start, indent + 4, own))
     for event in dict.fromkeys(EVENTS.values()):
         if several := it.at(event):
-            inner = _processes(several, indent + 8, own)
+            inner = _conditional(several, it.start.terms, indent + 8, own)
             yield from (f"{space}    {event}=[", *inner, f"{space}    ],")
     yield f"{space}),"
 
@@ -144,13 +152,16 @@ def _kind(it: Start) -> str:
     if it.plugin:
         return "ComposableNode"
     if not it.package:
-        return "ExecuteProcess"
+        return "LoadComposableNodes" if it.components else "ExecuteProcess"
     if it.components:
         return "ComposableNodeContainer"
     return "LifecycleNode" if it.brought_up else "Node"
 
 
 def _keywords(it: Start, own: OfRobot) -> Iterator[str]:
+    if it.components and not it.package:
+        yield f"target_container={value(it.name)},"
+        return
     if it.package:
         for name in ("package", "executable", "plugin", "namespace", "name"):
             if text := getattr(it, name):

@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.base.grouping import lists_by_key
-from multibot_rewrite.spelling.start import NOTHING, File, Process, Start, Text
+from multibot_rewrite.spelling.start import NOTHING, File, Start, Text, name_in, values_in
 
 # The simulators that it can start.
 CLASSIC, GZ = "classic", "gz"
@@ -69,6 +69,13 @@ class FleetStarts(NamedTuple):
             yield from it.every
 
     @property
+    def values(self) -> Mapping[str, Sequence[str]]:
+        """The values of launch arguments that conditions name."""
+        words = dict.fromkeys(word for it in self.every for word in it.terms)
+        pairs = ((name_in(word), value) for word in words for value in values_in(word))
+        return lists_by_key(dict.fromkeys(pairs))
+
+    @property
     def nodes(self) -> frozenset[str]:
         """The full names of the planned nodes that are started."""
         shared = (it.full_name for it in self.shared if it.name)
@@ -92,39 +99,45 @@ def launch_arguments(it: FleetStarts) -> Iterator[tuple[str, str | File, str]]:
         yield "headless", str(it.headless).lower(), "whether the simulator has no window"
         yield "world", it.world, "the world of the simulator"
     for name, default in it.switches.items():
-        yield name, default, "as in the launch files of the robots: it turns something on or off"
+        values = ", ".join(it.values.get(name, ()))
+        does = f"what starts depends on {values}" if values else "it turns something on or off"
+        yield name, default, f"as in the launch files of the robots: {does}"
 
 
 def with_switches(it: FleetStarts, others: Collection[str]) -> FleetStarts:
     """Return the fleet with launch arguments that turn off, or on, what launch files start with them:
     those of one value, by which these start nothing else as they do by ``others``. What waits for
-    something that has a condition of ours has no further one."""
-    values = lists_by_key(dict.fromkeys(pair for one in it.every for pair in _usual(one.process)))
-    inside = (part.process.switches for one in it.every for part in one.components)
-    taken = {*OWN_ARGUMENTS, *others, *(name for pairs in inside for name, _ in pairs)}
+    something that has a condition of ours has not those of that, too."""
+    every = dict.fromkeys(one[:2] for start in it.every for one in start.process.switches)
+    values, taken = lists_by_key(every), {*OWN_ARGUMENTS, *others}
     own = {name: its[0] for name, its in values.items() if len(its) == 1 and name not in taken}
     robots = [one._replace(starts=_switched(one.starts, own)) for one in it.robots]
     made = it._replace(shared=_switched(it.shared, own), robots=robots)
-    used = {word.lstrip("!") for one in made.every for word in one.condition.split()}
+    used = {name_in(word) for one in made.every for word in one.terms}
     return made._replace(switches={name: text for name, text in own.items() if name in used})
 
 
-def _usual(it: Process) -> Iterator[tuple[str, str]]:
-    """Yield the arguments that turn a process off or on, each with the value that it has."""
-    for name, text in it.switches:
-        yield name, str(text.lower() != "true").lower() if name == it.off else text
-
-
 def _switched(starts: Sequence[Start], own: Collection[str]) -> tuple[Start, ...]:
+    """Return processes under the launch arguments that decide about them; components under further ones
+    than their container are loaded apart from it."""
     numbered = {it.number: it for it in starts if it.number >= 0}
 
-    def terms(it: Start) -> str:
+    def with_condition(it: Start) -> Start:
         first: Start | None = it
         while first is not None and not first.condition:
             first = numbered.get(first.process.after)
-        named = [pair for pair in it.process.switches if pair[0] in own]
-        words = (name if value.lower() == "true" else f"!{name}" for name, value in named)
-        return it.condition if first else " ".join(words)
+        of_ours = first.process.switches if first else ()
+        named = (one for one in it.process.switches if one.name in own and one not in of_ours)
+        return it._replace(condition=it.condition or " ".join(one.word for one in named))
 
-    there = (it for it in starts if not it.process.off or it.process.off in own)
-    return tuple(it._replace(condition=terms(it)) for it in there)
+    def loaded(host: Start) -> Iterator[Start]:
+        parts = [*map(with_condition, filter(there, host.components))]
+        alike = lists_by_key((it.condition, it._replace(condition="")) for it in parts)
+        yield host._replace(components=tuple(alike.pop(host.condition, ())))
+        for condition, several in alike.items():
+            yield Start("", "", name=host.full_name, components=(*several,), condition=condition)
+
+    def there(it: Start) -> bool:
+        return not it.process.off or it.process.off in own
+
+    return tuple(part for it in filter(there, starts) for part in loaded(with_condition(it)))

@@ -270,7 +270,7 @@ def companions_launched(
         return path in found.meant or os.path.realpath(path) in words
 
     files = {kind: [*filter(is_read, getattr(found, kind))] for kind in _NAMED}
-    files["rviz"] = files["rviz"][:1]
+    files["rviz"] = [*{os.path.basename(it): it for it in reversed(files["rviz"])}.values()][::-1]
     lost = [it for it in graph.includes if not os.path.isabs(it.file)]
     handed = "\n".join(value for it in lost for _, value in it.arguments)
     params = [it for it in found.params if it in found.meant or os.path.realpath(it) in handed]

@@ -152,7 +152,7 @@ def _of_member(
         whys = tuple(f"{stack}: {reason}" for stack, reason in beside.stacks.items())
         yield "stack", (list(beside.stacks), whys)
     files: dict[str, Any] = {
-        kind: here(its[0]) if kind == "rviz" else [here(path) for path in its]
+        kind: here(its[0]) if kind == "rviz" and len(its) == 1 else [here(path) for path in its]
         for kind, its in beside.files.items()
     }
     whys = ("Files for one robot; the build writes one of each for every robot",)

@@ -138,11 +138,15 @@ def started(nodes: Iterable[LaunchedNode]) -> Iterator[Row]:
         known.add(text)
 
 
+def first_words(it: LaunchedNode) -> list[str]:
+    """Return the first argument of a program, of a spawner all that it loads."""
+    words = takewhile(lambda word: not word.startswith(("-", os.sep)), it.arguments)
+    return [*islice(words, None if is_spawner(it) else 1)]
+
+
 def said_of(it: LaunchedNode) -> str:
     """Return what a process is: its name, what runs it, its remap rules and given parameters."""
-    words = takewhile(lambda word: not word.startswith(("-", os.sep)), it.arguments)
-    first = [*islice(words, None if is_spawner(it) else 1)]
-    program = " ".join(filter(None, (it.package, it.executable, *first)))
+    program = " ".join(filter(None, (it.package, it.executable, *first_words(it))))
     who = f"{it.name} ({program})" if it.name else program
     rules = (f"{a}:={b}" for a, b in it.remappings if _is_moved(a, b))
     values = handed_on(it, it.name or it.executable).values

@@ -27,7 +27,7 @@ from multibot_rewrite.fleet.proposal.choosing import (
     processes_with,
 )
 from multibot_rewrite.fleet.proposal.companions import srdf_of
-from multibot_rewrite.fleet.proposal.launches import Bringup, said_of
+from multibot_rewrite.fleet.proposal.launches import Bringup, first_words
 from multibot_rewrite.fleet.proposal.looking import (
     NO_SIMULATOR,
     Looked,
@@ -101,11 +101,16 @@ def see(wanted: Wanted) -> Seen:
             raise
         # Nothing of the launch file is dropped in silence.
         graphs = [it.graph for it in found.read]
-        rows = [(said_of(it).partition(": ")[0], it.place) for one in graphs for it in one.nodes]
-        unread = (it for graph in graphs for it in graph.notes if not it.parameters)
-        rows += [(it.message.replace(f"; {ROOTS}", ""), it.place) for it in unread]
-        texts = (f"{text} ({os.path.basename(at.file)}:{at.line})" for text, at in rows)
-        listed = "; ".join(dict.fromkeys(texts))
+        texts = [
+            " ".join((it.name or os.path.basename(it.executable), *first_words(it)))
+            for one in graphs
+            for it in one.nodes
+        ]
+        unread = [it for one in graphs for it in one.notes if not it.parameters]
+        own = {it.package for one in graphs for it in one.nodes}
+        told = (it for it in unread if it.missing not in own)
+        texts += [it.message.replace(f"; {ROOTS}", "") for it in told]
+        listed = ", ".join(dict.fromkeys(texts))
         file = os.path.basename(found.named[0].file)
         raise UsageError(f"{error}; so nothing of {file} is in a fleet: {listed}") from None
 

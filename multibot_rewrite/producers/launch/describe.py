@@ -52,7 +52,7 @@ from multibot_rewrite.producers.launch.spawners import (
     ros_arguments,
 )
 from multibot_rewrite.producers.launch.unknown_modules import STOOD_FOR, UnknownError
-from multibot_rewrite.spelling.start import Process
+from multibot_rewrite.spelling.start import Process, Switch
 from multibot_rewrite.system.records import Place
 
 SIMULATOR, CLASSIC = "gzserver", "gazebo_ros"
@@ -70,9 +70,9 @@ class Visit(NamedTuple):
     """A visit: the context, what has been found, the files that descriptions name, what an event or a
     timer starts with its visit and the locals that it keeps, the place of what is visited, arguments
     without effect, included files, the environment before the launch, the number of each action that
-    starts a process, what conditions keep out, what of it is kept, whether conditions count, what
-    starts it if not the launch itself, after how many events and seconds, at which event of which
-    action, the launch arguments that turn it off, and the one that turns it on."""
+    starts a process with what turns it off, what conditions keep out, what of it is kept, whether
+    conditions count, what starts it if not the launch itself, after how many events and seconds, at
+    which event of which action, the launch arguments that turn it off, and the one that turns it on."""
 
     context: Any
     nodes: list[LaunchedNode]
@@ -83,7 +83,7 @@ class Visit(NamedTuple):
     unread: list[UnreadArgument]
     includes: list[LaunchInclude]
     before: Mapping[str, str]
-    numbers: dict[int, tuple[Any, int]]
+    numbers: dict[int, tuple[Any, int, tuple[Switch, ...]]]
     idle: list[IdleAction]
     off: list[LaunchedNode]
     every: bool = False
@@ -92,20 +92,20 @@ class Visit(NamedTuple):
     delay: float = 0.0
     event: str = ""
     target: Any = None
-    switches: tuple[tuple[str, str], ...] = ()
+    switches: tuple[Switch, ...] = ()
     off_by: str = ""
 
     @property
     def waits(self) -> Process:
         """What is waited for; what turns that off turns this off, too."""
-        after = self.numbers.get(id(self.target), (None, -1))[1]
-        switches = self.nodes[after].process.switches if after >= 0 else self.switches
-        made = Process(delay=self.delay, event=self.event, after=after, switches=switches)
-        return made._replace(off=self.off_by)
+        _, after, above = self.numbers.get(id(self.target), (None, -1, ()))
+        switches = tuple(dict.fromkeys((*above, *self.switches)))
+        return Process(delay=self.delay, event=self.event, after=after, switches=switches)
 
     def start(self, action: Any, it: LaunchedNode) -> None:
-        """Keep what an action starts."""
-        self.numbers[id(action)] = (action, len(self.nodes))
+        """Keep what an action starts; what is off has no number by which others may wait for it."""
+        number = -1 if self.off_by else len(self.nodes)
+        self.numbers[id(action)] = (action, number, it.process.switches)
         self.nodes.append(it)
 
     def note(self, message: str, parameters: bool = False, file: str = "") -> None:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Mapping
 from contextlib import suppress
 from typing import Any
@@ -11,6 +12,7 @@ from typing import Any
 from multibot_rewrite.producers.launch.describe import Visit, is_wanted, text
 from multibot_rewrite.producers.launch.includes import path_of
 from multibot_rewrite.producers.launch.records import IdleAction
+from multibot_rewrite.spelling.start import Switch, values_in
 
 
 def wants(action: Any, seen: Visit) -> bool:
@@ -25,38 +27,48 @@ def wants(action: Any, seen: Visit) -> bool:
     return False
 
 
-# The other value of a launch argument that is on or off.
+# The other value of a launch argument that is on or off, and a value that no condition names.
 _OTHER = {"true": "false", "false": "true", "True": "False", "False": "True"}
+_NO_VALUE = "no_value_of_it"
+# A value that is compared with, in the text of a condition.
+_WORD = re.compile(r"[\w./-]+")
 
 
-def turned_on_by(action: Any, seen: Visit) -> tuple[str, str]:
-    """Return the launch argument that is on or off and whose other value alone starts an action that
-    does not start, with that value; empty for another condition."""
+def switches_of(action: Any, seen: Visit) -> tuple[Switch, ...]:
+    """Return the launch arguments that decide a condition: of one that holds all, if each of them
+    alone turns it off; of another one the only one, if that turns it on. None otherwise."""
     watched = _Watched(seen.context)
-    known = watched.launch_configurations
     with suppress(Exception):
-        if not is_wanted(action, watched):
-            ((name, value),) = known.asked.items()
-            known[name] = _OTHER[value]
-            if is_wanted(action, watched):
-                return name, known[name]
-    return "", ""
-
-
-def switches_of(action: Any, seen: Visit) -> tuple[tuple[str, str], ...]:
-    """Return the launch arguments of a condition that holds, each with its value, if every one is on or
-    off and turns it off with the other value; else none."""
-    watched = _Watched(seen.context)
-    known = watched.launch_configurations
-    with suppress(Exception):
-        asked = tuple(known.asked.items()) if is_wanted(action, watched) else ()
-        for name, value in asked:
-            known[name] = _OTHER[value]
-            if is_wanted(action, watched):
-                return ()
-            known[name] = value
-        return asked
+        is_on = is_wanted(action, watched)
+        asked = {**watched.launch_configurations.asked}
+        found = tuple(_switch(name, action, watched) for name in asked)
+        return found if is_on or len(found) == 1 else ()
     return ()
+
+
+def _switch(name: str, action: Any, watched: _Watched) -> Switch:
+    """Return the values of a launch argument that an action starts with, while the others have theirs.
+    Raises ValueError if it starts with all of them, or none."""
+    known, default = watched.launch_configurations, str(watched.launch_configurations[name])
+    values = {default, *([_OTHER[default]] if default in _OTHER else (_NO_VALUE, *watched.words))}
+    on: set[str] = set()
+    for known[name] in values:
+        on |= {known[name]} if is_wanted(action, watched) else set()
+    known[name] = default
+    listed = sorted(values - on if _NO_VALUE in on else on)
+    if not listed or on == values or not all(map(_WORD.fullmatch, listed)):
+        raise ValueError(name)
+    if default in _OTHER:
+        return Switch(name, default, name if listed[0].lower() == "true" else f"!{name}")
+    return Switch(name, default, f"{name}{'!=' if _NO_VALUE in on else '='}{'|'.join(listed)}")
+
+
+def value_for(it: Switch) -> str:
+    """Return the value that turns on what is off; empty where there is not just one."""
+    if it.default in _OTHER:
+        return _OTHER[it.default]
+    values = values_in(it.word)
+    return values[0] if len(values) == 1 and "!" not in it.word else ""
 
 
 class _Asked(dict[str, Any]):
@@ -79,15 +91,19 @@ class _Asked(dict[str, Any]):
 
 
 class _Watched:
-    """A context of which it is known which launch configurations were asked for."""
+    """A context of which it is known which launch configurations were asked for, and the ``words`` in
+    the texts of what was performed."""
 
     def __init__(self, context: Any) -> None:
         self.context = context
         self.launch_configurations = _Asked(context.launch_configurations)
+        self.words: set[str] = set()
 
     def perform_substitution(self, substitution: Any) -> Any:
         """Return what a substitution is here."""
-        return substitution.perform(self)
+        made = substitution.perform(self)
+        self.words.update(_WORD.findall(str(made)))
+        return made
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self.context, name)

@@ -66,10 +66,10 @@ def passes(it: LaunchedNode) -> bool:
 
 
 def may_be_off(it: LaunchedNode) -> bool:
-    """May a launch argument of a fleet start it? Not what is in the process of another one, nor what
-    the fleet starts by itself: the robot's description and controllers, simulators and windows."""
+    """May a launch argument of a fleet start it? Not what the fleet starts by itself: the robot's
+    description and controllers, simulators and windows; nor what others are loaded into."""
     own = is_spawner(it) or it.executable in _OWN or it.package in programs().simulators
-    return not (own or it.container or it.executable.startswith("component_container"))
+    return not (own or it.executable.startswith("component_container"))
 
 
 def program_of(it: LaunchedNode) -> str:

@@ -232,15 +232,15 @@ def joined(graphs: Sequence[LaunchGraph]) -> LaunchGraph:
     listed = (name for name, it in LaunchGraph._field_defaults.items() if it == ())
     every = {name: tuple(one for it in graphs for one in getattr(it, name)) for name in listed}
     every["environment"] = tuple(dict.fromkeys(every["environment"]))
-    every["nodes"] = tuple(_joined_nodes(graphs))
+    every |= {it: tuple(_joined_nodes(graphs, it)) for it in ("nodes", "off")}
     return LaunchGraph(**every, stood_in=any(it.stood_in for it in graphs))
 
 
-def _joined_nodes(graphs: Sequence[LaunchGraph]) -> Iterator[LaunchedNode]:
+def _joined_nodes(graphs: Sequence[LaunchGraph], field: str) -> Iterator[LaunchedNode]:
     """Yield the nodes of all, with the numbers of those that they wait for among all."""
     first = 0
     for graph in graphs:
-        for it in graph.nodes:
+        for it in getattr(graph, field):
             after = it.process.after
             moved = it.process._replace(after=after + first) if after >= 0 else it.process
             yield it._replace(process=moved)

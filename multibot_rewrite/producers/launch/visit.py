@@ -25,7 +25,7 @@ from multibot_rewrite.producers.launch.describe import (
     text,
 )
 from multibot_rewrite.producers.launch.failures import failure, is_certain, is_unset, started_by
-from multibot_rewrite.producers.launch.idle import called, switches_of, turned_on_by, wants
+from multibot_rewrite.producers.launch.idle import called, switches_of, value_for, wants
 from multibot_rewrite.producers.launch.includes import (
     included,
     not_here,
@@ -38,6 +38,7 @@ from multibot_rewrite.producers.launch.programs import may_be_off
 from multibot_rewrite.producers.launch.records import IdleAction
 from multibot_rewrite.producers.launch.stand_in.names import names
 from multibot_rewrite.producers.launch.unknown_modules import is_unknown
+from multibot_rewrite.spelling.start import Switch, holds
 
 _ENDED = "groups and their launch configurations have ended by then"
 _INCLUDE = "IncludeLaunchDescription"
@@ -66,12 +67,14 @@ def visit_all(entity: Any, seen: Visit) -> None:
 def visit(entity: Any, seen: Visit) -> None:
     """Visit an entity and what is below it; what cannot be visited becomes a note."""
     file = seen.context.get_locals_as_dict().get("current_launch_file_path", seen.place.file)
-    switches = () if seen.every else switches_of(entity, seen)
-    switches = tuple(dict.fromkeys((*seen.switches, *switches)))
-    here = seen._replace(place=place_of(entity, file), switches=switches)
-    on = ("", "") if seen.every or seen.off_by or seen.event else turned_on_by(entity, here)
-    if on[0] and _is_kept_off(entity, here, on):
-        return
+    here = seen._replace(place=place_of(entity, file))
+    if not seen.every:
+        there = {it.word for it in seen.switches}
+        switches = tuple(it for it in switches_of(entity, seen) if it.word not in there)
+        is_off = any(not holds(it.word, it.default) for it in switches)
+        if is_off and not seen.off_by and _is_kept_off(entity, here, switches[0]):
+            return
+        here = here._replace(switches=(*seen.switches, *(() if is_off else switches)))
     # An include has the path of its file for what is below it; other actions may leave theirs.
     own = _is(entity, _INCLUDE)
     if not own and _is(entity, *_GIVING):
@@ -104,30 +107,37 @@ def visit(entity: Any, seen: Visit) -> None:
             seen.context._pop_locals()
 
 
-def _is_kept_off(entity: Any, here: Visit, on: tuple[str, str]) -> bool:
-    """Keep what an action would start with the value of an argument that turns it ``on``, if that is
-    known whole, and is nothing that a fleet starts by itself."""
+def _is_kept_off(entity: Any, here: Visit, switch: Switch) -> bool:
+    """Keep what an action would start with the value of an argument that turns it on, if that is known
+    whole, and is nothing that a fleet starts by itself."""
+    if not (value := value_for(switch)):
+        return False
     apart = here._replace(nodes=[], notes=[], waiting=[], unread=[], includes=[], idle=[])
-    apart = apart._replace(numbers={**here.numbers}, off_by=on[0], later=f"with {':='.join(on)}")
-    context, before = here.context, here.context.launch_configurations[on[0]]
+    apart = apart._replace(numbers={**here.numbers}, switches=(*here.switches, switch))
+    apart = apart._replace(off_by=switch.name, later=f"with {switch.name}:={value}")
+    context = here.context
     context._push_launch_configurations()
     context._push_environment()
     try:
-        context.launch_configurations.update([on])
-        visit(entity, apart)
+        context.launch_configurations[switch.name] = value
+        visit_all(entity, apart)
     except RecursionError:
         return False
     finally:
         context._pop_environment()
         context._pop_launch_configurations()
     packages = {it.package for it in apart.nodes}
-    whole = not apart.waiting and all(it.parameters or it.missing in packages for it in apart.notes)
-    if not (whole and apart.nodes and all(map(may_be_off, apart.nodes))):
+    whole = all(it.parameters or it.missing in packages for it in apart.notes)
+    # What waits for something that is off, too, would start before it.
+    waits = any(it.process.event and it.process.after < 0 for it in apart.nodes)
+    hosts = {f"{it.namespace.rstrip('/')}/{it.name}" for it in here.nodes}
+    inside = all(not it.container or it.container in hosts for it in apart.nodes)
+    if waits or not (whole and inside and apart.nodes and all(map(may_be_off, apart.nodes))):
         # Once they are known to be missing, their launch files are known by name.
         here.notes.extend(it._replace(parameters=True) for it in apart.notes if it.missing)
         return False
     here.off.extend(apart.nodes)
-    asked = ((on[0], before),)
+    asked = ((switch.name, switch.default),)
     here.idle.append(IdleAction(here.place, called(entity, context), asked, is_off=True))
     return True
 
@@ -232,10 +242,12 @@ def _components(descriptions: Iterable[Any] | None, container: str, seen: Visit)
     for it in descriptions or ():
         condition = it.condition() if callable(getattr(it, "condition", None)) else None
         names = {"node_package": it.package, "node_executable": it.node_plugin}
-        action = SimpleNamespace(condition=condition, **names)
-        if wants(action, seen):
-            here = seen._replace(switches=(*seen.switches, *switches_of(action, seen)))
-            seen.nodes.append(component(it, container, here))
+        visit(SimpleNamespace(condition=condition, of=it, container=container, **names), seen)
+
+
+def _component(entity: Any, seen: Visit) -> None:
+    if wants(entity, seen):
+        seen.nodes.append(component(entity.of, entity.container, seen))
 
 
 def _process(entity: Any, seen: Visit) -> Iterable[Any] | None:
@@ -315,6 +327,7 @@ def _handlers() -> Mapping[str, Handler]:
         **dict.fromkeys(names().passed.split(), _pass),
         _INCLUDE: _include,
         "ComposableNodeContainer": _container,
+        "SimpleNamespace": _component,
         "LoadComposableNodes": _loaded,
         "Node": _node,
         **dict.fromkeys(("ExecuteLocal", "ExecuteProcess"), _process),

@@ -157,7 +157,8 @@ def _of_no_node(launched: Launched) -> Iterator[Finding]:
                 what = f"{near} is nearly its name" if near else f"it has {shorten([*by_word], 3)}"
                 # The nodes of its sections may be started elsewhere.
                 level = ERROR if near else WARNING
-                yield at(of_no_node, place, message, f"write {names[0]}: {what}", level=level)
+                told = at(of_no_node, place, message, f"write {names[0]}: {what}", level=level)
+                yield told._replace(names=(*names,))
             for reader in names:
                 word = last_word(reader)
                 if section := meant_for(by_word.get(word, ()), reader, nodes.get(word, ())):

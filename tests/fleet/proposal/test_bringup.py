@@ -275,6 +275,12 @@ CONTROLLED = DRIVER[:-1] + f", name='driver', parameters=[{PATH.format('config/c
 
 def test_only_files_that_a_node_reads_are_taken(package: Path) -> None:
     """The parameter files of nodes are in the build without a word in the fleet file."""
+    other = SHOWN.replace("rover.rviz", "a.rviz")
+    write(package / "launch", {"up": f"{PUBLISHER}; {GZ}; {SHOWN}; {other}; {SHOWN}"})
+    windows = fleet_of(package)["companions"]["rviz"]
+    assert sorted(windows) == ["rover/rviz/a.rviz", "rover/rviz/rover.rviz"]
+    text = (package.parent / "out/fleet.launch.py").read_text()
+    assert text.count("executable='rviz2'") == 2
     write(package / "launch", {"up": f"{PUBLISHER}; {GZ}; {SHOWN}; {BRIDGED}; {CONTROLLED}"})
     fleet = fleet_of(package)
     assert "stack" not in fleet
@@ -578,7 +584,7 @@ def test_a_description_is_not_guessed_where_a_launch_file_loads_one_that_is_not_
     (file,) = write(robots / "rover/launch", {"up": f"{function}; {DRIVER}"})
     assert main(["init", str(robots), "--launch", file, "--yes", "-o", "-"]) == 2
     said = capsys.readouterr().err
-    assert len(said.splitlines()) == 1 and "up.launch.py is in a fleet: " in said
+    assert len(said.splitlines()) == 1 and "up.launch.py is in a fleet: driver, " in said
     assert "descriptions it loads is not known: package 'gone' is not installed here" in said
 
 
@@ -593,7 +599,7 @@ def test_its_own_description_that_cannot_be_read_is_one_line(robots: Path, capsy
 def test_what_a_launch_file_starts_is_named_where_its_description_cannot_be_read(
     robots: Path, capsys: Any
 ) -> None:
-    """In the one line: processes, each with its place, and what of it could not be read."""
+    """In the one line: processes, and what of it could not be read."""
     spawner = (
         "Node(package='controller_manager', executable='spawner', arguments=['left', 'right'])"
     )
@@ -603,9 +609,9 @@ def test_what_a_launch_file_starts_is_named_where_its_description_cannot_be_read
     assert main(["init", str(robots), "--yes", "--launch", file, "-o", str(robots / "f.yaml")]) == 2
     (said,) = capsys.readouterr().err.splitlines()
     for word in (
-        "acme driver (up.launch.py:2)",
-        "controller_manager spawner left right",
-        " hidden (up.launch.py:2)",
+        ": robot_state_publisher, driver, ",
+        "spawner left right, ",
+        " hidden",
     ):
         assert word in said
     assert not (robots / "f.yaml").exists()
