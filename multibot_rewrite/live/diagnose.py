@@ -3,14 +3,13 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.naming import LAYOUTS, Layout
-from multibot_rewrite.base.wording import SEVERAL, plural, shorten
+from multibot_rewrite.base.wording import SEVERAL, plural, shorten, unique
 from multibot_rewrite.producers.bags.recording import RECORDER, is_recorded
 from multibot_rewrite.rules.check import ABSENCE, in_domain, inconclusive_where_in_doubt, judge
 from multibot_rewrite.rules.folded import in_order
@@ -33,8 +32,8 @@ from multibot_rewrite.system.index import (
 from multibot_rewrite.system.records import PUBLISHES, SERVES, TOPIC, Robot, System, surely
 from multibot_rewrite.system.tf_copies import tree_topic
 
-# With more tf topics of one robot each they share a line.
-MOST_OWN = 3
+# So many tf topics are named.
+MOST_TOPICS = 3
 # Rules that hold robots against each other, which they are in whatever domain.
 HELD_AGAINST = frozenset((*BETWEEN_ROBOTS, less_than_another_robot.code))
 
@@ -144,38 +143,42 @@ def _sent_elsewhere(
     return it
 
 
-def survey(seen: Diagnosis) -> Iterator[str]:
-    """Yield the robots, the layout and the senders on each tf topic, in a few lines."""
+def survey(seen: Diagnosis) -> str:
+    """Return robots, layout and senders on tf topics in one line; empty if nothing is there."""
     names = [robot.name for robot in seen.robots]
     if not (names or seen.graph.nodes or is_recorded(seen.graph)):
-        return
+        return ""
     if not names:
         nodes = "a recording" if is_recorded(seen.graph) else plural(len(seen.graph.nodes), "node")
-        yield f"{nodes}, no name of a robot in them: one robot, or several that share all names"
-    else:
-        where = "by the ends of names"
-        if any(robot.namespace for robot in seen.robots):
-            where = "by their namespaces"
-        elif any(robot.before for robot in seen.robots):
-            where = "by what their frames have"
-        yield f"{plural(len(names), 'robot')} {where}: {shorten(names, SEVERAL)}"
-        yield f"layout: {_layout_line(seen)}"
-    # Topics of a robot, on which only nodes of that robot send.
-    robot = seen.whose.robot
-    own = [topic for topic, nodes_ in seen.tf if {robot(topic)} == {*map(robot, nodes_)} != {""}]
-    if len(own) > MOST_OWN:
-        yield f"tf on {shorten(own, MOST_OWN)}: each of the nodes of its robot"
-    for topic, nodes_ in seen.tf:
-        if nodes_ == (RECORDER,):
-            yield f"tf on {topic}"
-            continue
-        if topic in own and len(own) > MOST_OWN:
-            continue
-        by_robot = Counter(seen.whose.robot(node) or "no robot" for node in nodes_)
-        yield f"tf on {topic}: {plural(len(nodes_), 'node')} of {shorten(by_robot, SEVERAL)}"
+        robots = f"{nodes}, no name of a robot in them: one robot, or several that share all names"
+        return "; ".join((robots, *_tf_topics(seen)))
+    where = "by the ends of names"
+    if any(robot.namespace for robot in seen.robots):
+        where = "by their namespaces"
+    elif any(robot.before for robot in seen.robots):
+        where = "by what their frames have"
+    robots = f"{plural(len(names), 'robot')} {where}: {shorten(names, SEVERAL)}"
+    return "; ".join((robots, f"layout: {_layout(seen)}", *_tf_topics(seen)))
 
 
-def _layout_line(seen: Diagnosis) -> str:
+def _tf_topics(seen: Diagnosis) -> Iterator[str]:
+    """Yield the tf topics, with who sends on one that is not of a single robot."""
+    own, shared = [], []
+    for topic, nodes in seen.tf:
+        robots = unique(seen.whose.robot(node) or "no robot" for node in nodes)
+        if nodes == (RECORDER,) or robots == (seen.whose.robot(topic),):
+            own.append(topic)
+        else:
+            senders = f"{plural(len(nodes), 'node')} of {shorten(robots, SEVERAL)}"
+            shared.append(f"tf on {topic}: {senders}")
+    if own:
+        yield f"tf on {shorten(own, MOST_TOPICS)}"
+    yield from shared[:MOST_TOPICS]
+    if len(shared) > MOST_TOPICS:
+        yield f"{len(shared) - MOST_TOPICS} more tf topics that are not of one robot each"
+
+
+def _layout(seen: Diagnosis) -> str:
     if seen.layout:
         return f"looks like {seen.layout.name} ({seen.layout.short}: {seen.layout.about})"
     frames = any(robot.before or robot.behind for robot in seen.robots)
