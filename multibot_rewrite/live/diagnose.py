@@ -15,7 +15,7 @@ from multibot_rewrite.rules.check import ABSENCE, in_domain, inconclusive_where_
 from multibot_rewrite.rules.folded import in_order
 from multibot_rewrite.rules.system.commands import command_for_several_robots
 from multibot_rewrite.rules.system.differing import BETWEEN_ROBOTS
-from multibot_rewrite.rules.system.likes import less_than_another_robot
+from multibot_rewrite.rules.system.likes import driver_missing, less_than_another_robot
 from multibot_rewrite.system.coverage import Coverage, coverage
 from multibot_rewrite.system.domains import named, side_by_side, space_of, unnamed
 from multibot_rewrite.system.guess import GuessedRobot, guess_robots, whose_by_guess
@@ -86,18 +86,21 @@ def diagnose_domains(each: Mapping[int, Diagnosis]) -> Diagnosis:
     together = diagnose(side_by_side(views))
     spaces = {at: "" if it.robots else space_of(at) for at, it in each.items()}
     told = {
-        spaces[at] + name for at, one in each.items() for it in one.findings for name in it.names
+        spaces[at] + name
+        for at, one in each.items()
+        for it in one.findings
+        for name in it.names
+        if it.code != driver_missing.code
     }
-    compared = [
-        unnamed(it)
-        for it in together.findings
-        if it.code in HELD_AGAINST and told.isdisjoint(it.names)
-    ]
+    held = [it for it in together.findings if it.code in HELD_AGAINST and told.isdisjoint(it.names)]
+    compared = [*map(unnamed, held)]
+    missed = {name for it in held if it.code == driver_missing.code for name in it.names}
     every = [
         *(
             _sent_elsewhere(in_domain(it, at), together, each, at)
             for at, one in each.items()
             for it in one.findings
+            if it.code != driver_missing.code or missed.isdisjoint(spaces[at] + x for x in it.names)
         ),
         *(_sent_elsewhere(it, together, each) for it in compared),
     ]

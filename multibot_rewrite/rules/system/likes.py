@@ -16,7 +16,6 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.grouping import dicts_by_key, lists_by_key
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.system.tf_pieces import publishes_description
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Ends, Index, at_work, ends_of, nodes_of, once
 from multibot_rewrite.system.records import (
@@ -81,7 +80,7 @@ def _lost_descriptions(seen: Index) -> Iterator[Finding]:
     full: dict[Set[str], tuple[str, str]] = {}
     for other, its in made.items():
         for node in its.nodes if len(its.nodes) <= _ENOUGH else ():
-            if publishes_description(seen, its.nodes[node]):
+            if seen.publishes_description(its.nodes[node]):
                 full.setdefault(frozenset(its.nodes) - {node}, (node, other))
     for robot, own in made.items():
         counts = range(len(own.nodes), -1, -1) if 0 < len(own.nodes) < _ENOUGH else ()
@@ -145,7 +144,7 @@ def _lost_nodes(
     keys = [key for key in made[like].ends if key[0] in lost]
     own = _waiting(seen, robot, keys)
     theirs = sorted(made[like].nodes[it] for it in lost)
-    if not (own or len(likes) > 2 or any(publishes_description(seen, it) for it in theirs)):
+    if not (own or len(likes) > 2 or any(seen.publishes_description(it) for it in theirs)):
         return
     yield lacks_what_its_likes_have.finding(
         f"{robot} has no {shorten(sorted(it.strip('/') for it in lost), SEVERAL)}, as {like} has"
@@ -282,26 +281,32 @@ def _slow_transforms(seen: Index) -> Iterator[Finding]:
 
 
 def _silent(seen: Index) -> Iterator[Finding]:
-    """Report a running system's topic of which one robot sent a message, and another robot none
-    although it has sent others."""
+    """Report a running system's topic on which a robot sent no message, although it sent others, and
+    another robot did, or it is all that its nodes read of its scan, odometry and the like."""
     heard = {it.topic for it in seen.system.heard}
     if any(it.code == _NOT_ALL for it in seen.system.environment.caveats):
         return
     there_at_all = {seen.robot(it) for it in heard}
+    flows = {seen.robot(it.topic) for it in seen.system.heard if it.rate}
+    kinds = {(seen.robot(it.name), it.type) for it in seen.topics if it.name in heard}
     there: dict[tuple[str, str], dict[str, str]] = defaultdict(dict)
     for it in seen.topics if heard and seen.nodes and not seen.known.messages else ():
         robot = seen.robot(it.name)
-        if robot and words.kind_of_data(it.name, it.type) and at_work(it.publishers):
+        named = bool(robot) is bool(seen.robots)
+        if named and words.kind_of_data(it.name, it.type) and at_work(it.publishers):
             there[seen.plain(it.name), it.type][robot] = it.name
     for (_, type_), own in there.items():
         loud = next((name for name in own.values() if name in heard), "")
-        for robot, name in own.items() if loud else ():
-            if name not in heard and robot in there_at_all:
+        of_one = words.is_of_a_body(type_) and words.is_of_one_sensor(type_)
+        for robot, name in own.items():
+            read = at_work(seen.by_name[TOPIC, name].subscribers)
+            alone = of_one and read and robot in flows and (robot, type_) not in kinds
+            if name not in heard and robot in there_at_all and (loud or alone):
                 node = nodes_of(at_work(seen.by_name[TOPIC, name].publishers))[0]
-                message = f"publishes {name}, on which no message came; {loud} has some"
-                dead = words.is_of_a_body(type_) and at_work(seen.by_name[TOPIC, name].subscribers)
+                like = f"; {loud} has some" if loud else ""
                 yield less_than_another_robot.finding(
-                    message, "see its log", level=ERROR if dead else WARNING,
+                    f"publishes {name}, on which no message came{like}", "see its log",
+                    level=ERROR if words.is_of_a_body(type_) and read else WARNING,
                     robot=robot, node=node, names=(name,),
                 )  # fmt: skip
 
@@ -313,11 +318,10 @@ def driver_missing(seen: Index) -> Iterator[Finding]:
     lost: dict[tuple[str, str], list[Ends]] = defaultdict(list)
     actions = [it for it in seen.by_name.values() if it.kind == ACTION]
     for ends in (*seen.topics, *actions) if len(seen.robots) > 1 else ():
-        robot = seen.robot(ends.name)
-        role = _missed_side(seen, ends) if robot else ""
-        what = ends.kind, seen.plain(ends.name), ends.type, role
-        if role and (node := _first_to_do(seen).get(what)):
-            lost[robot, node].append(ends)
+        if node := done_elsewhere(seen, ends):
+            lost[seen.robot(ends.name), node].append(ends)
+    told = {it.name for missed in lost.values() for it in missed}
+    yield from (it for it in _never_sent(seen) if told.isdisjoint(it.names))
     for (robot, node), missed in lost.items():
         names, plain = tuple(it.name for it in missed), seen.plain(node)
         using = ((*it.subscribers, *it.publishers, *it.clients) for it in missed)
@@ -336,6 +340,42 @@ def driver_missing(seen: Index) -> Iterator[Finding]:
             message, hint, level=ERROR if seen.is_live else WARNING,
             robot=robot, node=there, names=names,
         )  # fmt: skip
+
+
+def _never_sent(seen: Index) -> Iterator[Finding]:
+    """Report a laser, an IMU or odometry of a running robot that sends none of its kind."""
+    body = [it for it in seen.topics if words.is_of_a_body(it.type)]
+    sent = {(seen.robot(it.name), it.type) for it in body if it.publishers}
+    for it in body if seen.is_observed and not seen.expected else ():
+        robot = seen.robot(it.name)
+        own = [end for end in at_work(it.subscribers) if end.sure == RUNS and not chooses(end.node)]
+        readers = [end for end in own if seen.robot(end.node) == robot]
+        if readers and words.is_of_one_sensor(it.type) and (robot, it.type) not in sent:
+            yield driver_missing.finding(
+                f"no node sends {it.name}, read by {shorten(nodes_of(readers), SEVERAL)}",
+                "start its driver; its log says why it ended", robot=robot, names=(it.name,),
+            )  # fmt: skip
+
+
+def done_elsewhere(seen: Index, ends: Ends) -> str:
+    """Return another robot's node that does what is missing at a robot's name; empty for none."""
+    robot = seen.robot(ends.name)
+    role = _missed_side(seen, ends) if robot else ""
+    node = _first_to_do(seen).get((ends.kind, seen.plain(ends.name), ends.type, role), "")
+    # Who only sends velocities may be idle: a link between such a sender and the drive is lost.
+    is_idle = role == PUBLISHES and words.moves(seen.plain(ends.name), ends.type)
+    return "" if is_idle and (has_likes_of(seen, robot, node) or not _obeys(seen, node)) else node
+
+
+def has_likes_of(seen: Index, robot: str, node: str) -> bool:
+    """Return whether a robot has the like of another robot's node, or it runs outside of robots."""
+    plain = seen.plain(node)
+    return plain in nodes_of_each(seen).get(robot, {}) or plain in seen.node
+
+
+def _obeys(seen: Index, node: str) -> bool:
+    own = (it for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES)
+    return any(words.moves(seen.plain(it.name), it.type) for it in own)
 
 
 @once
@@ -361,6 +401,7 @@ def _missed_side(seen: Index, ends: Ends) -> str:
         return ""
     if words.moves(seen.plain(ends.name), ends.type):
         sent = any(seen.robot(it.node) == own for it in at_work(ends.publishers))
-        return SUBSCRIBES if sent and not at_work(ends.subscribers) else ""
+        if ends.publishers:
+            return SUBSCRIBES if sent and not at_work(ends.subscribers) else ""
     read = any(seen.robot(it.node) == own and it.sure == RUNS for it in at_work(ends.subscribers))
     return PUBLISHES if read and not ends.publishers else ""

@@ -27,6 +27,7 @@ from multibot_rewrite.rules.system.instead import (
     listed_in_vain,
     sent_instead,
 )
+from multibot_rewrite.rules.system.likes import done_elsewhere, has_likes_of
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import (
     TF,
@@ -59,6 +60,7 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
     unheard = {name: it for name, it in published.items() if not at_work(it.subscribers)}
     for ends in unsent:
         by_kind: dict[str, list[End]] = {}
+        robot = seen.robot(ends.name)
         for end in _each_node(ends.subscribers):
             if is_viewer(end.node) or not _runs(end):
                 continue
@@ -66,6 +68,8 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
             offered = unheard if chooses(end.node) else published
             if near := published.get(_published_instead(seen, end, offered, unheard)):
                 yield _missed_topic(seen, end, near, ERROR)
+            elif (node := done_elsewhere(seen, ends)) and not has_likes_of(seen, robot, node):
+                continue
             elif other := sent_instead(seen, end):
                 by_kind.setdefault(other.name, []).append(end)
             elif mine := _of_robots(seen, end):
@@ -81,7 +85,9 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
             other = published[other_name]
             lone = other.type == first.type and not at_work(other.subscribers)
             sensor = words.is_of_one_sensor(first.type) and first.type != words.JOYSTICK
-            sure = seen.is_live and (words.is_of_a_body(first.type) or (lone and sensor))
+            drives = seen.is_observed and words.moves(seen.plain(first.name), first.type)
+            one = words.is_of_a_body(first.type) or (lone and (sensor or drives))
+            sure = seen.is_live and one
             yield _missed_topic(seen, first, other, ERROR if sure else WARNING, more)
 
 
@@ -252,6 +258,12 @@ def _missed_topic(
         message += f" as {last_word(other.type)}"
         cause = f"make both one type: set it in a parameter of one side, or convert {other.name}"
         remaps = ()
+    elif _are_stages(end, other):
+        cause = (
+            f"start what passes {other.name} on: twist_mux, velocity_smoother, collision_monitor;"
+        )
+        cause += " or give both sides one name if nothing is to be between them"
+        remaps = ()
     else:
         cause = (
             f"pass the rule {end.name}:={other.name}{each}, or write {other.name} in its parameters"
@@ -262,6 +274,12 @@ def _missed_topic(
         level=level, robot=robot, node=end.node, names=(end.name, other.name), remaps=remaps,
         **where([end]),
     )  # fmt: skip
+
+
+def _are_stages(end: End, other: Ends) -> bool:
+    """Return whether both are commands on their way to a drive, such as cmd_vel_nav and cmd_vel."""
+    one, two = (last_word(it).split("_")[:2] for it in (end.name, other.name))
+    return one == two and words.moves(end.name, end.type)
 
 
 @system_rule("MG304", "server-names-miss", ERROR, absence=True)
