@@ -49,7 +49,7 @@ def test_nodes_of_one_name(lines: list[str], found: list[str]) -> None:
         ("twist_mux cmd_vel_joyy", "x cmd_vel_joy", "error x cmd_vel_joy"),
         ("twist_mux cmd_vel_joyy", "x cmd_vel_joy, y cmd_vel_nav", "error x cmd_vel_joy"),
         ("twist_mux cmd_vel_nav", "x cmd_vel_joy", ""),
-        ("driver cmd_vel", "x velocity", "warning x velocity"),
+        ("driver cmd_vel", "x velocity", "error x velocity"),
         ("driver cmd_vel", "x velocity, y speed", ""),
         # It reads that already.
         ("driver cmd_vel", "driver velocity", ""),

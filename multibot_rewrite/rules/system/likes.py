@@ -210,8 +210,7 @@ ENOUGH = 10
 @system_rule("MG326", "less-than-another-robot", WARNING)
 def less_than_another_robot(seen: Index) -> Iterator[Finding]:
     """Report it compared with the robot that has the most messages on the topic."""
-    yield from _silent(seen)
-    yield from _slow(seen)
+    yield from _silent_or_slow(seen)
     yield from _slow_transforms(seen)
     # Name without the robot's -> robot -> name, of the topics whose messages were counted.
     counted = dicts_by_key(
@@ -230,32 +229,6 @@ def less_than_another_robot(seen: Index) -> Iterator[Finding]:
                 message = f"{name} came at {slow}, {best} at {usual}"
             if message:
                 yield less_than_another_robot.finding(message, robot=robot, names=(name,))
-
-
-def _slow(seen: Index) -> Iterator[Finding]:
-    """Report slow sensors of a running system, whose rates are known after a second."""
-    rates = {it.topic: it.rate for it in seen.system.heard if it.rate}
-    there: dict[tuple[str, str], dict[str, str]] = defaultdict(dict)
-    for it in seen.topics if rates else ():
-        robot = seen.robot(it.name)
-        if robot and it.name in rates and words.kind_of_data(it.name, it.type):
-            there[seen.plain(it.name), it.type][robot] = it.name
-    for (_, type_), own in there.items():
-        best = max(own.values(), key=lambda it: rates[it])
-        for robot, name in own.items():
-            if rates[name] * RATIO <= rates[best]:
-                node = nodes_of(at_work(seen.by_name[TOPIC, name].publishers))[0]
-                message = (
-                    f"publishes {name} at {rates[name]:.1f} Hz, {best} comes at {rates[best]:.1f}"
-                )
-                # So seldom a scan is as good as none.
-                read = bool(at_work(seen.by_name[TOPIC, name].subscribers))
-                dead = read and rates[name] < _SELDOM and words.is_of_a_body(type_)
-                yield less_than_another_robot.finding(
-                    f"{message} Hz", "see its log, and the processor time that it has",
-                    level=ERROR if dead else WARNING,
-                    robot=robot, node=node, names=(name,),
-                )  # fmt: skip
 
 
 def _slow_transforms(seen: Index) -> Iterator[Finding]:
@@ -280,35 +253,47 @@ def _slow_transforms(seen: Index) -> Iterator[Finding]:
                 )  # fmt: skip
 
 
-def _silent(seen: Index) -> Iterator[Finding]:
-    """Report a running system's topic on which a robot sent no message, although it sent others, and
-    another robot did, or it is all that its nodes read of its scan, odometry and the like."""
-    heard = {it.topic for it in seen.system.heard}
-    if any(it.code == _NOT_ALL for it in seen.system.environment.caveats):
-        return
-    there_at_all = {seen.robot(it) for it in heard}
-    flows = {seen.robot(it.topic) for it in seen.system.heard if it.rate}
-    kinds = {(seen.robot(it.name), it.type) for it in seen.topics if it.name in heard}
-    there: dict[tuple[str, str], dict[str, str]] = defaultdict(dict)
-    for it in seen.topics if heard and seen.nodes and not seen.known.messages else ():
-        robot = seen.robot(it.name)
-        named = bool(robot) is bool(seen.robots)
-        if named and words.kind_of_data(it.name, it.type) and at_work(it.publishers):
-            there[seen.plain(it.name), it.type][robot] = it.name
-    for (_, type_), own in there.items():
-        loud = next((name for name in own.values() if name in heard), "")
-        of_one = words.is_of_a_body(type_) and words.is_of_one_sensor(type_)
-        for robot, name in own.items():
-            read = at_work(seen.by_name[TOPIC, name].subscribers)
-            alone = of_one and read and robot in flows and (robot, type_) not in kinds
-            if name not in heard and robot in there_at_all and (loud or alone):
-                node = nodes_of(at_work(seen.by_name[TOPIC, name].publishers))[0]
-                like = f"; {loud} has some" if loud else ""
+def _silent_or_slow(seen: Index) -> Iterator[Finding]:
+    """Report sensors of a running system that are slower than another robot's, or send nothing while
+    the robot sends others: as another robot does, or all of their kind that the robot's nodes read."""
+    rates = dict(sorted((it.topic, it.rate) for it in seen.system.heard))
+    robots, flows = ({seen.robot(it) for it in rates if rates[it] >= least} for least in (0, 1e-9))
+    kinds = {(seen.robot(it.name), it.type) for it in seen.topics if it.name in rates}
+    cut_short = any(it.code == _NOT_ALL for it in seen.system.environment.caveats)
+    if cut_short or seen.known.messages:
+        robots = set()
+    for (_, type_), own in (_sensors(seen) if rates else {}).items():
+        best = max(own.values(), key=lambda it: rates.get(it.name, -1.0)).name
+        most = rates.get(best, -1.0)
+        for robot, it in own.items():
+            rate, read = rates.get(it.name), bool(at_work(it.subscribers))
+            dead = read and words.is_of_a_body(type_)
+            alone = dead and words.is_of_one_sensor(type_) and (robot, type_) not in kinds
+            said, hint = "", "see its log"
+            if rate and rate * RATIO <= most:
+                said = f" at {rate:.1f} Hz, {best} comes at {most:.1f} Hz"
+                hint += ", and the processor time that it has"
+                # So seldom a scan is as good as none.
+                dead = dead and rate < _SELDOM
+            elif rate is None and robot in robots and (most >= 0 or (alone and robot in flows)):
+                said = ", on which no message came" + (f"; {best} has some" if most >= 0 else "")
+            if said:
                 yield less_than_another_robot.finding(
-                    f"publishes {name}, on which no message came{like}", "see its log",
-                    level=ERROR if words.is_of_a_body(type_) and read else WARNING,
-                    robot=robot, node=node, names=(name,),
+                    f"publishes {it.name}{said}", hint, level=ERROR if dead else WARNING,
+                    robot=robot, node=nodes_of(at_work(it.publishers))[0], names=(it.name,),
                 )  # fmt: skip
+
+
+def _sensors(seen: Index) -> Mapping[tuple[str, str], Mapping[str, Ends]]:
+    """Return the topics of robots with sensor data, by name without the robot's, type and robot; those
+    without a robot where none has a name."""
+    return dicts_by_key(
+        ((seen.plain(it.name), it.type), robot, it)
+        for it in seen.topics
+        if bool(robot := seen.robot(it.name)) is bool(seen.robots)
+        and words.kind_of_data(it.name, it.type)
+        and at_work(it.publishers)
+    )
 
 
 @system_rule("MG322", "driver-missing", ERROR, absence=True, drawn="leak")

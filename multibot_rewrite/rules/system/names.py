@@ -278,8 +278,9 @@ def _missed_topic(
 
 def _are_stages(end: End, other: Ends) -> bool:
     """Return whether both are commands on their way to a drive, such as cmd_vel_nav and cmd_vel."""
-    one, two = (last_word(it).split("_")[:2] for it in (end.name, other.name))
-    return one == two and words.moves(end.name, end.type)
+    (space, _, one), (above, _, two) = (it.name.rpartition("/") for it in (end, other))
+    stem = one.split("_")[:2] == two.split("_")[:2]
+    return space == above and stem and one != two and words.moves(end.name, end.type)
 
 
 @system_rule("MG304", "server-names-miss", ERROR, absence=True)
