@@ -85,24 +85,22 @@ def diagnose_domains(each: Mapping[int, Diagnosis]) -> Diagnosis:
     views = {at: it.graph if it.robots else named(it.graph, at) for at, it in each.items()}
     together = diagnose(side_by_side(views))
     spaces = {at: "" if it.robots else space_of(at) for at, it in each.items()}
-    told = {
-        spaces[at] + name
+    alone = [
+        (at, it, {spaces[at] + name for name in it.names})
         for at, one in each.items()
         for it in one.findings
-        for name in it.names
-        if it.code != driver_missing.code
-    }
+    ]
+    lost = driver_missing.code
+    told = {name for _, it, names in alone if it.code != lost for name in names}
     held = [it for it in together.findings if it.code in HELD_AGAINST and told.isdisjoint(it.names)]
-    compared = [*map(unnamed, held)]
-    missed = {name for it in held if it.code == driver_missing.code for name in it.names}
+    missed = {name for it in held if it.code == lost for name in it.names}
     every = [
         *(
             _sent_elsewhere(in_domain(it, at), together, each, at)
-            for at, one in each.items()
-            for it in one.findings
-            if it.code != driver_missing.code or missed.isdisjoint(spaces[at] + x for x in it.names)
+            for at, it, names in alone
+            if it.code != lost or missed.isdisjoint(names)
         ),
-        *(_sent_elsewhere(it, together, each) for it in compared),
+        *(_sent_elsewhere(unnamed(it), together, each) for it in held),
     ]
     carried = [*_carried_across(each)]
     said = {(it.node, it.names) for it in carried}
@@ -153,15 +151,13 @@ def survey(seen: Diagnosis) -> str:
         return ""
     if not names:
         nodes = "a recording" if is_recorded(seen.graph) else plural(len(seen.graph.nodes), "node")
-        robots = f"{nodes}, no name of a robot in them: one robot, or several that share all names"
-        return "; ".join((robots, *_tf_topics(seen)))
-    where = "by the ends of names"
-    if any(robot.namespace for robot in seen.robots):
-        where = "by their namespaces"
-    elif any(robot.before for robot in seen.robots):
-        where = "by what their frames have"
-    robots = f"{plural(len(names), 'robot')} {where}: {shorten(names, SEVERAL)}"
-    return "; ".join((robots, f"layout: {_layout(seen)}", *_tf_topics(seen)))
+        said = f"{nodes}, no name of a robot in them: one robot, or several that share all names"
+    else:
+        before = "what their frames have" if any(it.before for it in seen.robots) else ""
+        where = "their namespaces" if any(it.namespace for it in seen.robots) else before
+        robots = f"{plural(len(names), 'robot')} by {where or 'the ends of names'}"
+        said = f"{robots}: {shorten(names, SEVERAL)}; layout: {_layout(seen)}"
+    return "; ".join((said, *_tf_topics(seen)))
 
 
 def _tf_topics(seen: Diagnosis) -> Iterator[str]:
@@ -172,8 +168,8 @@ def _tf_topics(seen: Diagnosis) -> Iterator[str]:
         if nodes == (RECORDER,) or robots == (seen.whose.robot(topic),):
             own.append(topic)
         else:
-            senders = f"{plural(len(nodes), 'node')} of {shorten(robots, SEVERAL)}"
-            shared.append(f"tf on {topic}: {senders}")
+            count = plural(len(nodes), "node")
+            shared.append(f"tf on {topic}: {count} of {shorten(robots, SEVERAL)}")
     if own:
         yield f"tf on {shorten(own, MOST_TOPICS)}"
     yield from shared[:MOST_TOPICS]
@@ -184,7 +180,6 @@ def _tf_topics(seen: Diagnosis) -> Iterator[str]:
 def _layout(seen: Diagnosis) -> str:
     if seen.layout:
         return f"looks like {seen.layout.name} ({seen.layout.short}: {seen.layout.about})"
-    frames = any(robot.before or robot.behind for robot in seen.robots)
-    if frames:
+    if any(robot.before or robot.behind for robot in seen.robots):
         return "frames have the robot's name, topics and nodes have not"
     return "none of those known: neither tf topics nor frames have the robot's name"

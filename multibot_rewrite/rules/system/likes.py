@@ -33,8 +33,6 @@ from multibot_rewrite.system.tool_nodes import is_viewer, last_word
 
 # Fewer nodes in common say nothing.
 _ENOUGH = 3
-
-
 _OTHER_SIDE = {PUBLISHES: SUBSCRIBES, SUBSCRIBES: PUBLISHES, SERVES: CALLS, CALLS: SERVES}
 # A number of a process or an address in a node's name.
 _RANDOM = re.compile(r"\d{4}")
@@ -235,10 +233,8 @@ def _slow_transforms(seen: Index) -> Iterator[Finding]:
     """Report slow odometry and localization, which never pause: joints and sensors may."""
     there: dict[tuple[str, str], dict[str, Edge]] = defaultdict(dict)
     for it in (edge for tree in seen.trees for edge in tree.edges if edge.rate):
-        robot, parent = (
-            seen.frame_robot(it.child) or seen.robot(it.topic),
-            seen.plain_frame(it.parent),
-        )
+        robot = seen.frame_robot(it.child) or seen.robot(it.topic)
+        parent = seen.plain_frame(it.parent)
         if robot and parent in SENT_FRAMES:
             there[parent, seen.plain_frame(it.child)][robot] = it
     for own in there.values():
@@ -259,8 +255,7 @@ def _silent_or_slow(seen: Index) -> Iterator[Finding]:
     rates = dict(sorted((it.topic, it.rate) for it in seen.system.heard))
     robots, flows = ({seen.robot(it) for it in rates if rates[it] >= least} for least in (0, 1e-9))
     kinds = {(seen.robot(it.name), it.type) for it in seen.topics if it.name in rates}
-    cut_short = any(it.code == _NOT_ALL for it in seen.system.environment.caveats)
-    if cut_short or seen.known.messages:
+    if seen.known.messages or any(it.code == _NOT_ALL for it in seen.system.environment.caveats):
         robots = set()
     for (_, type_), own in (_sensors(seen) if rates else {}).items():
         best = max(own.values(), key=lambda it: rates.get(it.name, -1.0)).name
@@ -333,11 +328,11 @@ def _never_sent(seen: Index) -> Iterator[Finding]:
     sent = {(seen.robot(it.name), it.type) for it in body if it.publishers}
     for it in body if seen.is_observed and not seen.expected else ():
         robot = seen.robot(it.name)
-        own = [end for end in at_work(it.subscribers) if end.sure == RUNS and not chooses(end.node)]
-        readers = [end for end in own if seen.robot(end.node) == robot]
-        if readers and words.is_of_one_sensor(it.type) and (robot, it.type) not in sent:
+        readers = [end for end in at_work(it.subscribers) if seen.robot(end.node) == robot]
+        nodes = nodes_of(end for end in readers if end.sure == RUNS and not chooses(end.node))
+        if nodes and words.is_of_one_sensor(it.type) and (robot, it.type) not in sent:
             yield driver_missing.finding(
-                f"no node sends {it.name}, read by {shorten(nodes_of(readers), SEVERAL)}",
+                f"no node sends {it.name}, read by {shorten(nodes, SEVERAL)}",
                 "start its driver; its log says why it ended", robot=robot, names=(it.name,),
             )  # fmt: skip
 
@@ -347,20 +342,18 @@ def done_elsewhere(seen: Index, ends: Ends) -> str:
     robot = seen.robot(ends.name)
     role = _missed_side(seen, ends) if robot else ""
     node = _first_to_do(seen).get((ends.kind, seen.plain(ends.name), ends.type, role), "")
+    if role != PUBLISHES or not words.moves(seen.plain(ends.name), ends.type):
+        return node
     # Who only sends velocities may be idle: a link between such a sender and the drive is lost.
-    is_idle = role == PUBLISHES and words.moves(seen.plain(ends.name), ends.type)
-    return "" if is_idle and (has_likes_of(seen, robot, node) or not _obeys(seen, node)) else node
+    read = (it for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES)
+    is_link = any(words.moves(seen.plain(it.name), it.type) for it in read)
+    return node if is_link and not has_likes_of(seen, robot, node) else ""
 
 
 def has_likes_of(seen: Index, robot: str, node: str) -> bool:
     """Return whether a robot has the like of another robot's node, or it runs outside of robots."""
     plain = seen.plain(node)
     return plain in nodes_of_each(seen).get(robot, {}) or plain in seen.node
-
-
-def _obeys(seen: Index, node: str) -> bool:
-    own = (it for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES)
-    return any(words.moves(seen.plain(it.name), it.type) for it in own)
 
 
 @once

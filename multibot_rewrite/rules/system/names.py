@@ -60,7 +60,8 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
     unheard = {name: it for name, it in published.items() if not at_work(it.subscribers)}
     for ends in unsent:
         by_kind: dict[str, list[End]] = {}
-        robot = seen.robot(ends.name)
+        there = done_elsewhere(seen, ends)
+        lost = there and not has_likes_of(seen, seen.robot(ends.name), there)
         for end in _each_node(ends.subscribers):
             if is_viewer(end.node) or not _runs(end):
                 continue
@@ -68,9 +69,7 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
             offered = unheard if chooses(end.node) else published
             if near := published.get(_published_instead(seen, end, offered, unheard)):
                 yield _missed_topic(seen, end, near, ERROR)
-            elif (node := done_elsewhere(seen, ends)) and not has_likes_of(seen, robot, node):
-                continue
-            elif other := sent_instead(seen, end):
+            elif other := None if lost else sent_instead(seen, end):
                 by_kind.setdefault(other.name, []).append(end)
             elif mine := _of_robots(seen, end):
                 yield _reads_no_robots(seen, end, mine)
@@ -86,8 +85,9 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
             lone = other.type == first.type and not at_work(other.subscribers)
             sensor = words.is_of_one_sensor(first.type) and first.type != words.JOYSTICK
             drives = seen.is_observed and words.moves(seen.plain(first.name), first.type)
-            one = words.is_of_a_body(first.type) or (lone and (sensor or drives))
-            sure = seen.is_live and one
+            sure = seen.is_live and (
+                words.is_of_a_body(first.type) or (lone and (sensor or drives))
+            )
             yield _missed_topic(seen, first, other, ERROR if sure else WARNING, more)
 
 
@@ -259,11 +259,8 @@ def _missed_topic(
         cause = f"make both one type: set it in a parameter of one side, or convert {other.name}"
         remaps = ()
     elif _are_stages(end, other):
-        cause = (
-            f"start what passes {other.name} on: twist_mux, velocity_smoother, collision_monitor;"
-        )
-        cause += " or give both sides one name if nothing is to be between them"
-        remaps = ()
+        between = "twist_mux, velocity_smoother or collision_monitor"
+        cause, remaps = f"start what passes {other.name} on ({between}), or give both one name", ()
     else:
         cause = (
             f"pass the rule {end.name}:={other.name}{each}, or write {other.name} in its parameters"

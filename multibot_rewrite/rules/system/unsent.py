@@ -44,8 +44,7 @@ _MISSES = (topic_names_miss, server_names_miss)
 def nothing_known_sends(seen: Index) -> Iterator[Finding]:
     """Report all names of a robot as one, without those that others have under another name."""
     left = [it for it in open_ends(seen) if not meant(seen, it)]
-    rules = [it for it in _MISSES if it.check] if left else ()
-    missed = {found.names[0] for it in rules if it.check for found in it.check(seen)}
+    missed = {found.names[0] for it in _MISSES if left and it.check for found in it.check(seen)}
     left = [it for it in left if it.name not in missed]
     by_robot = sets_by_key((seen.robot(it.node), it.name) for it in left)
     for robot, names in by_robot.items():
