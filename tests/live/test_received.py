@@ -161,6 +161,7 @@ def test_transforms_that_are_stamped_with_another_time() -> None:
     (machine,) = aged(2.0, clock=True)
     assert "not of /clock" in machine.message
     assert not aged(30.0, senders=("/rosbag2_player",))
+    assert not aged(30.0, senders=("/rosbag2_player_2",))
     # Of two of the robot the one that is no publisher of its description.
     (it,) = aged(30.0, senders=("/robot1/robot_state_publisher", "/robot1/ekf", "/robot2/ekf"))
     assert it.node == "/robot1/ekf"

@@ -157,6 +157,24 @@ def test_a_node_that_is_active_at_another_robot() -> None:
     ]
 
 
+def test_a_reader_in_a_namespace_where_nothing_runs() -> None:
+    """It is told where the robots send the same, and not where they only read it, too."""
+    reads = [f"/robot{it}/amcl subscribes /robot{it}/scan {SCAN}" for it in (1, 2)]
+    sends = [f"/robot{it}/lidar publishes /robot{it}/scan {SCAN}" for it in (1, 2)]
+    reader = f"/merger subscribes /rover/scan {SCAN}"
+    (it,) = found(*reads, *sends, reader)
+    assert (it.code, it.level, it.node) == ("MG303", "warning", "/merger")
+    assert "no node is in /rover, and robot2 has /robot2/scan" in it.message
+    assert {one.code for one in found(*reads, reader)} == {"MG322"}
+
+
+def test_the_first_of_two_managers_is_named() -> None:
+    change = "lifecycle_msgs/srv/ChangeState"
+    calls = [f"/robot1/m{it} calls /robot1/amcl/change_state {change}" for it in (1, 2)]
+    told = codes(*calls, f"/robot1/amcl serves /robot1/amcl/change_state {change}")
+    assert told == [("MG302", "error", "/robot1/m1")]
+
+
 def test_one_joystick_for_two_robots() -> None:
     lines = [
         f"/robot1/joy_node publishes /robot1/joy {JOY}",
