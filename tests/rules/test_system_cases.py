@@ -884,7 +884,13 @@ def has_no(robot: int, node: str) -> list[str]:
         ((*made_of(1, "planner"), *made_of(2, "planner", "lidar")), [NO_LIDAR]),
         # Each has one of its own, or few in common, and nobody waits.
         ((*made_of(1), *made_of(2, "odometer"), "/robot2/camera"), []),
-        ((*made_of(1, "lidar"), *made_of(2, "planner", "lidar", "odometer")), []),
+        (
+            (*made_of(1, "lidar"), *made_of(2, "planner", "lidar", "odometer")),
+            [
+                "robot1: no node sends /robot1/scan, read by /robot1/odometer;"
+                " start its driver; its log says why it ended"
+            ],
+        ),
         ((*made_of(1), *made_of(2, "lidar"), "/robot2/lidar"), [LACKS_SCAN]),
         (
             (*made_of(1), *made_of(2, "lidar"), f"/robot2/lidar publishes /robot2/x {TEXT}"),

@@ -290,11 +290,9 @@ def description_does_not_fit(seen: Index) -> Iterator[Finding]:
     for it in seen.system.descriptions:
         _, senders = sent_on(seen, it.topic)
         robot = seen.robot(it.topic) or only(robots_of(seen, senders))
-        if senders and (told := _description_fault(seen, it, robot)):
-            message, hint = told
-            yield description_does_not_fit.finding(
-                message, hint, robot=robot, node=senders[0], names=(it.topic,)
-            )
+        if senders and (why := _description_fault(seen, it, robot)):
+            node, names = senders[0], (it.topic,)
+            yield description_does_not_fit.finding(*why, robot=robot, node=node, names=names)
 
 
 def _description_fault(seen: Index, it: Description, robot: str) -> tuple[str, str] | None:
@@ -315,12 +313,11 @@ def _description_fault(seen: Index, it: Description, robot: str) -> tuple[str, s
 
 
 def _other_frames(seen: Index, it: Description, robot: str) -> tuple[str, str] | None:
-    """Return a fault if no link is a sent frame, with or without a prefix (frame_prefix)."""
+    """Return a fault if no link of several is a sent frame, with or without a frame_prefix."""
     trees = [one for one in trees_of(seen, robot) if one.edges]
     frames = {one for tree in trees for one in frames_in(tree.edges)}
     own = sorted(one for one in frames if seen.frame_robot(one) in ("", robot))
     is_of = any(f"/{one}".endswith(f"/{link}") for one in own for link in it.links)
-    # A description of one link fits anything.
     if len(it.links) < 2 or not own or is_of:
         return None
     links, sent = shorten(it.links, SEVERAL), shorten(own, SEVERAL)

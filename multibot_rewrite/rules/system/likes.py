@@ -257,7 +257,14 @@ def _silent_or_slow(seen: Index) -> Iterator[Finding]:
     kinds = {(seen.robot(it.name), it.type) for it in seen.topics if it.name in rates}
     if seen.known.messages or any(it.code == _NOT_ALL for it in seen.system.environment.caveats):
         robots = set()
-    for (_, type_), own in (_sensors(seen) if rates else {}).items():
+    # Those without a robot only where none has a name.
+    sensors = dicts_by_key(
+        ((seen.plain(it.name), it.type), robot, it)
+        for it in (seen.topics if rates else ())
+        if bool(robot := seen.robot(it.name)) is bool(seen.robots)
+        and (words.kind_of_data(it.name, it.type) and at_work(it.publishers))
+    )
+    for (_, type_), own in sensors.items():
         best = max(own.values(), key=lambda it: rates.get(it.name, -1.0)).name
         most = rates.get(best, -1.0)
         for robot, it in own.items():
@@ -279,18 +286,6 @@ def _silent_or_slow(seen: Index) -> Iterator[Finding]:
                 )  # fmt: skip
 
 
-def _sensors(seen: Index) -> Mapping[tuple[str, str], Mapping[str, Ends]]:
-    """Return the topics of robots with sensor data, by name without the robot's, type and robot; those
-    without a robot where none has a name."""
-    return dicts_by_key(
-        ((seen.plain(it.name), it.type), robot, it)
-        for it in seen.topics
-        if bool(robot := seen.robot(it.name)) is bool(seen.robots)
-        and words.kind_of_data(it.name, it.type)
-        and at_work(it.publishers)
-    )
-
-
 @system_rule("MG322", "driver-missing", ERROR, absence=True, drawn="leak")
 def driver_missing(seen: Index) -> Iterator[Finding]:
     """Report a missing driver by its readers, and another robot that has it: all that one node of
@@ -300,8 +295,7 @@ def driver_missing(seen: Index) -> Iterator[Finding]:
     for ends in (*seen.topics, *actions) if len(seen.robots) > 1 else ():
         if node := done_elsewhere(seen, ends):
             lost[seen.robot(ends.name), node].append(ends)
-    told = {it.name for missed in lost.values() for it in missed}
-    yield from (it for it in _never_sent(seen) if told.isdisjoint(it.names))
+    yield from _never_sent(seen)
     for (robot, node), missed in lost.items():
         names, plain = tuple(it.name for it in missed), seen.plain(node)
         using = ((*it.subscribers, *it.publishers, *it.clients) for it in missed)
@@ -324,13 +318,13 @@ def driver_missing(seen: Index) -> Iterator[Finding]:
 
 def _never_sent(seen: Index) -> Iterator[Finding]:
     """Report a laser, an IMU or odometry of a running robot that sends none of its kind."""
-    body = [it for it in seen.topics if words.is_of_a_body(it.type)]
+    body = [it for it in seen.topics if words.is_of_a_body(it.type) and it.type != words.JOINTS]
     sent = {(seen.robot(it.name), it.type) for it in body if it.publishers}
     for it in body if seen.is_observed and not seen.expected else ():
         robot = seen.robot(it.name)
         readers = [end for end in at_work(it.subscribers) if seen.robot(end.node) == robot]
         nodes = nodes_of(end for end in readers if end.sure == RUNS and not chooses(end.node))
-        if nodes and words.is_of_one_sensor(it.type) and (robot, it.type) not in sent:
+        if nodes and (robot, it.type) not in sent and not done_elsewhere(seen, it):
             yield driver_missing.finding(
                 f"no node sends {it.name}, read by {shorten(nodes, SEVERAL)}",
                 "start its driver; its log says why it ended", robot=robot, names=(it.name,),
@@ -377,9 +371,8 @@ def _missed_side(seen: Index, ends: Ends) -> str:
     kind, own = words.kind_of_data(ends.name, ends.type), seen.robot(ends.name)
     if not kind:
         return ""
-    if words.moves(seen.plain(ends.name), ends.type):
+    if ends.publishers and words.moves(seen.plain(ends.name), ends.type):
         sent = any(seen.robot(it.node) == own for it in at_work(ends.publishers))
-        if ends.publishers:
-            return SUBSCRIBES if sent and not at_work(ends.subscribers) else ""
+        return SUBSCRIBES if sent and not at_work(ends.subscribers) else ""
     read = any(seen.robot(it.node) == own and it.sure == RUNS for it in at_work(ends.subscribers))
     return PUBLISHES if read and not ends.publishers else ""

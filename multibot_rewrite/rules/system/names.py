@@ -84,10 +84,8 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
             other = published[other_name]
             lone = other.type == first.type and not at_work(other.subscribers)
             sensor = words.is_of_one_sensor(first.type) and first.type != words.JOYSTICK
-            drives = seen.is_observed and words.moves(seen.plain(first.name), first.type)
-            sure = seen.is_live and (
-                words.is_of_a_body(first.type) or (lone and (sensor or drives))
-            )
+            sensor |= seen.is_observed and words.moves(seen.plain(first.name), first.type)
+            sure = seen.is_live and (words.is_of_a_body(first.type) or (lone and sensor))
             yield _missed_topic(seen, first, other, ERROR if sure else WARNING, more)
 
 
