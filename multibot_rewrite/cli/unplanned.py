@@ -55,7 +55,7 @@ def _report_on_domains(options: argparse.Namespace, views: Mapping[int, System])
     _check_folders(options, views)
     each = {it: diagnose(live.with_states(live.at(options, it), views[it])) for it in sorted(views)}
     for domain, one in each.items():
-        note(options, f"domain {domain}: {next(survey(one))}")
+        note(options, f"domain {domain}: {survey(one)}")
     empty = [f"domain {at}: {it}" for at, one in each.items() for it in _nothing_seen(one)]
     return _report(options, diagnose_domains(each), empty, each)
 
@@ -90,7 +90,7 @@ def _folders(options: argparse.Namespace, domains: Collection[int]) -> list[str]
 
 def report_on(options: argparse.Namespace, seen: Diagnosis) -> int:
     """Say what is seen, report the findings, write what is asked for; the exit code."""
-    for line in survey(seen):
+    if line := survey(seen):
         note(options, line)
     return _report(options, seen, [*_nothing_seen(seen)], {0: seen})
 

@@ -3,20 +3,19 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.naming import LAYOUTS, Layout
-from multibot_rewrite.base.wording import SEVERAL, plural, shorten
+from multibot_rewrite.base.wording import SEVERAL, plural, shorten, unique
 from multibot_rewrite.producers.bags.recording import RECORDER, is_recorded
 from multibot_rewrite.rules.check import ABSENCE, in_domain, inconclusive_where_in_doubt, judge
 from multibot_rewrite.rules.folded import in_order
 from multibot_rewrite.rules.system.commands import command_for_several_robots
 from multibot_rewrite.rules.system.differing import BETWEEN_ROBOTS
-from multibot_rewrite.rules.system.likes import less_than_another_robot
+from multibot_rewrite.rules.system.likes import driver_missing, less_than_another_robot
 from multibot_rewrite.system.coverage import Coverage, coverage
 from multibot_rewrite.system.domains import named, side_by_side, space_of, unnamed
 from multibot_rewrite.system.guess import GuessedRobot, guess_robots, whose_by_guess
@@ -33,8 +32,8 @@ from multibot_rewrite.system.index import (
 from multibot_rewrite.system.records import PUBLISHES, SERVES, TOPIC, Robot, System, surely
 from multibot_rewrite.system.tf_copies import tree_topic
 
-# With more tf topics of one robot each they share a line.
-MOST_OWN = 3
+# So many tf topics are named.
+MOST_TOPICS = 3
 # Rules that hold robots against each other, which they are in whatever domain.
 HELD_AGAINST = frozenset((*BETWEEN_ROBOTS, less_than_another_robot.code))
 
@@ -86,21 +85,22 @@ def diagnose_domains(each: Mapping[int, Diagnosis]) -> Diagnosis:
     views = {at: it.graph if it.robots else named(it.graph, at) for at, it in each.items()}
     together = diagnose(side_by_side(views))
     spaces = {at: "" if it.robots else space_of(at) for at, it in each.items()}
-    told = {
-        spaces[at] + name for at, one in each.items() for it in one.findings for name in it.names
-    }
-    compared = [
-        unnamed(it)
-        for it in together.findings
-        if it.code in HELD_AGAINST and told.isdisjoint(it.names)
+    alone = [
+        (at, it, {spaces[at] + name for name in it.names})
+        for at, one in each.items()
+        for it in one.findings
     ]
+    lost = driver_missing.code
+    told = {name for _, it, names in alone if it.code != lost for name in names}
+    held = [it for it in together.findings if it.code in HELD_AGAINST and told.isdisjoint(it.names)]
+    missed = {name for it in held if it.code == lost for name in it.names}
     every = [
         *(
             _sent_elsewhere(in_domain(it, at), together, each, at)
-            for at, one in each.items()
-            for it in one.findings
+            for at, it, names in alone
+            if it.code != lost or missed.isdisjoint(names)
         ),
-        *(_sent_elsewhere(it, together, each) for it in compared),
+        *(_sent_elsewhere(unnamed(it), together, each) for it in held),
     ]
     carried = [*_carried_across(each)]
     said = {(it.node, it.names) for it in carried}
@@ -144,41 +144,42 @@ def _sent_elsewhere(
     return it
 
 
-def survey(seen: Diagnosis) -> Iterator[str]:
-    """Yield the robots, the layout and the senders on each tf topic, in a few lines."""
+def survey(seen: Diagnosis) -> str:
+    """Return robots, layout and senders on tf topics in one line; empty if nothing is there."""
     names = [robot.name for robot in seen.robots]
     if not (names or seen.graph.nodes or is_recorded(seen.graph)):
-        return
+        return ""
     if not names:
         nodes = "a recording" if is_recorded(seen.graph) else plural(len(seen.graph.nodes), "node")
-        yield f"{nodes}, no name of a robot in them: one robot, or several that share all names"
+        said = f"{nodes}, no name of a robot in them: one robot, or several that share all names"
     else:
-        where = "by the ends of names"
-        if any(robot.namespace for robot in seen.robots):
-            where = "by their namespaces"
-        elif any(robot.before for robot in seen.robots):
-            where = "by what their frames have"
-        yield f"{plural(len(names), 'robot')} {where}: {shorten(names, SEVERAL)}"
-        yield f"layout: {_layout_line(seen)}"
-    # Topics of a robot, on which only nodes of that robot send.
-    robot = seen.whose.robot
-    own = [topic for topic, nodes_ in seen.tf if {robot(topic)} == {*map(robot, nodes_)} != {""}]
-    if len(own) > MOST_OWN:
-        yield f"tf on {shorten(own, MOST_OWN)}: each of the nodes of its robot"
-    for topic, nodes_ in seen.tf:
-        if nodes_ == (RECORDER,):
-            yield f"tf on {topic}"
-            continue
-        if topic in own and len(own) > MOST_OWN:
-            continue
-        by_robot = Counter(seen.whose.robot(node) or "no robot" for node in nodes_)
-        yield f"tf on {topic}: {plural(len(nodes_), 'node')} of {shorten(by_robot, SEVERAL)}"
+        before = "what their frames have" if any(it.before for it in seen.robots) else ""
+        where = "their namespaces" if any(it.namespace for it in seen.robots) else before
+        robots = f"{plural(len(names), 'robot')} by {where or 'the ends of names'}"
+        said = f"{robots}: {shorten(names, SEVERAL)}; layout: {_layout(seen)}"
+    return "; ".join((said, *_tf_topics(seen)))
 
 
-def _layout_line(seen: Diagnosis) -> str:
+def _tf_topics(seen: Diagnosis) -> Iterator[str]:
+    """Yield the tf topics, with who sends on one that is not of a single robot."""
+    own, shared = [], []
+    for topic, nodes in seen.tf:
+        robots = unique(seen.whose.robot(node) or "no robot" for node in nodes)
+        if nodes == (RECORDER,) or robots == (seen.whose.robot(topic),):
+            own.append(topic)
+        else:
+            count = plural(len(nodes), "node")
+            shared.append(f"tf on {topic}: {count} of {shorten(robots, SEVERAL)}")
+    if own:
+        yield f"tf on {shorten(own, MOST_TOPICS)}"
+    yield from shared[:MOST_TOPICS]
+    if len(shared) > MOST_TOPICS:
+        yield f"{len(shared) - MOST_TOPICS} more tf topics that are not of one robot each"
+
+
+def _layout(seen: Diagnosis) -> str:
     if seen.layout:
         return f"looks like {seen.layout.name} ({seen.layout.short}: {seen.layout.about})"
-    frames = any(robot.before or robot.behind for robot in seen.robots)
-    if frames:
+    if any(robot.before or robot.behind for robot in seen.robots):
         return "frames have the robot's name, topics and nodes have not"
     return "none of those known: neither tf topics nor frames have the robot's name"

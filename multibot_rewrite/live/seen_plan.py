@@ -25,11 +25,10 @@ def seen_plan(seen: Diagnosis) -> System:
     names = {mine: it.name for mine, it in robots.items()}
     whose = {node: seen.whose.robot(node) for node in nodes}
     ends = (it for it in seen.graph.ends if it.node in whose and "/_" not in it.name)
-    own = (it for it in ends if not it.type.startswith(OF_EVERY_NODE))
     made = (
         End(it.kind, it.role, it.name, it.type, node=it.node, code_name=seen.whose.plain(it.name))
-        for it in own
-        if it.name not in SENT_BY_EVERY_NODE
+        for it in ends
+        if it.name not in SENT_BY_EVERY_NODE and not it.type.startswith(OF_EVERY_NODE)
     )
     topics = unique(end.name for end in seen.graph.ends if end.kind == "topic")
     # All is of the robot that has no name.

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from enum import IntEnum
 from typing import NamedTuple
 
-from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, NOTE, Finding
 from multibot_rewrite.rules.check import ABSENCE
 from multibot_rewrite.system.coverage import Coverage
 from multibot_rewrite.system.records import CHANGING, System, doubts
@@ -56,8 +56,8 @@ def verdict_words(
     """
     is_open = any(it.level != NOTE for it in gaps)
     words = _WORDS.get((verdict, planned)) or _WORDS[verdict, True]
-    if verdict == Verdict.PLANNED and any(it.level in (ERROR, WARNING) for it in findings):
-        words = "no error, see the warnings"
+    if verdict == Verdict.PLANNED and (levels := {it.level for it in findings}):
+        words = f"no error, see the {'notes' if levels == {NOTE} else 'warnings'}"
     elif verdict == Verdict.PLANNED and planned and not is_open:
         words = "as planned" if held.is_whole else "as planned as far as known"
     if is_open:

@@ -33,7 +33,7 @@ from multibot_rewrite.system.records import (
     surely,
 )
 from multibot_rewrite.system.tf_copies import copying_nodes, tree_topic
-from multibot_rewrite.system.words import is_tool, is_viewer
+from multibot_rewrite.system.words import is_tool, is_viewer, last_word
 
 # In the order of the fields of Ends.
 _PLACE = {role: at for at, role in enumerate((PUBLISHES, SUBSCRIBES, SERVES, CALLS))}
@@ -269,6 +269,12 @@ class Index(NamedTuple):
         return not any(it.place.file for it in self.system.nodes)
 
     @property
+    @once
+    def is_observed(self) -> bool:
+        """Return whether it was seen running, and is of no source that says what a node does."""
+        return self.is_live and not any(it.known for it in self.system.nodes)
+
+    @property
     def in_doubt(self) -> bool:
         """Return whether nodes may run that no source names, such as a driver."""
         return any(it.code == UNKNOWN_NODES for it in self.system.environment.caveats)
@@ -285,6 +291,10 @@ class Index(NamedTuple):
             # /amcl_bridge of a robot called bridge is none.
             return is_tool(self.plain(node))
         return node not in plan.robot_of and is_tool(node, plan.system.ignored_nodes)
+
+    def publishes_description(self, node: str) -> bool:
+        """Return whether the node is robot_state_publisher."""
+        return last_word(self.plain(node)).startswith("robot_state_publisher")
 
     @property
     @once

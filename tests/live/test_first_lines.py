@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What ``check`` without a plan says of a graph in its first lines: robots, layout, who sends tf."""
+"""What ``check`` without a plan says of a graph in its first line: robots, layout, who sends tf."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ TF = "tf2_msgs/msg/TFMessage"
 
 
 def said(graph: System) -> list[str]:
-    return [*survey(diagnose(graph))]
+    return survey(diagnose(graph)).split("; ")
 
 
 def sends(node: str, topic: str = "/tf") -> End:

@@ -27,7 +27,7 @@ from multibot_rewrite.producers.zenoh.cdr import read_joint_names, read_tf
 from multibot_rewrite.rules.check import judge
 from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.json import to_json
-from multibot_rewrite.system.records import PUBLISHES, TOPIC, End, Heard, Qos, System
+from multibot_rewrite.system.records import PUBLISHES, TOPIC, End, Heard, Place, Qos, System
 
 CLOCK, JOINTS, TF, ODOM, POSE = (
     "rosgraph_msgs/msg/Clock",
@@ -149,6 +149,18 @@ def aged(*ages: float, clock: bool = False, senders: tuple[str, ...] = ()) -> li
     return [it for it in judge(fresh(seen, edges=tuple(edges))) if it.code == "MG417"]
 
 
+def test_a_sender_of_transforms_that_a_file_starts_is_named_first() -> None:
+    seen = read_system(
+        "running: transform odom -> base_link on /robot1/tf by /robot1/wheel\n"
+        "running: transform map -> odom on /robot1/tf by /robot1/ekf\n"
+        "running: /robot1/planner looks up base_footprint"
+    )
+    placed = Place("a.launch.py", 7)
+    edges = (it._replace(place=placed) if it.child == "odom" else it for it in seen.system.edges)
+    (it,) = judge(fresh(seen, edges=tuple(edges)))
+    assert it.hint.startswith("/robot1/ekf sends map -> odom (a.launch.py:7)")
+
+
 def test_transforms_that_are_stamped_with_another_time() -> None:
     (it,) = aged(30.0)
     assert (it.level, it.node, it.robot) == ("error", "/robot1/drive", "robot1")
@@ -161,6 +173,7 @@ def test_transforms_that_are_stamped_with_another_time() -> None:
     (machine,) = aged(2.0, clock=True)
     assert "not of /clock" in machine.message
     assert not aged(30.0, senders=("/rosbag2_player",))
+    assert not aged(30.0, senders=("/rosbag2_player_2",))
     # Of two of the robot the one that is no publisher of its description.
     (it,) = aged(30.0, senders=("/robot1/robot_state_publisher", "/robot1/ekf", "/robot2/ekf"))
     assert it.node == "/robot1/ekf"

@@ -5,10 +5,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+import pytest
 from graph_cases import environment
 from small_fleet import half, healthy, moving, plan
 
-from multibot_rewrite.live.watching import Verdict, WatchState, final, with_found
+from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
+from multibot_rewrite.live.watching import Verdict, WatchState, final, verdict_words, with_found
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.system.coverage import Coverage
 from multibot_rewrite.system.records import Caveat, System
@@ -21,6 +23,19 @@ def watched(graphs: Iterable[System]) -> list[WatchState]:
     for graph in graphs:
         states.append(with_found(graph, HELD, check(plan(), graph), states[-1] if states else None))
     return states
+
+
+@pytest.mark.parametrize(
+    ("levels", "words"),
+    [
+        ((), "as planned"),
+        ((NOTE,), "no error, see the notes"),
+        ((NOTE, WARNING), "no error, see the warnings"),
+    ],
+)
+def test_nothing_is_as_planned_above_findings(levels: tuple[str, ...], words: str) -> None:
+    found = [Finding("MG108", it, "x") for it in levels]
+    assert verdict_words(Verdict.PLANNED, found, HELD) == words
 
 
 def test_a_fleet_that_comes_up_and_stays_is_as_planned() -> None:

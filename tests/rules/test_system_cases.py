@@ -49,7 +49,7 @@ def test_nodes_of_one_name(lines: list[str], found: list[str]) -> None:
         ("twist_mux cmd_vel_joyy", "x cmd_vel_joy", "error x cmd_vel_joy"),
         ("twist_mux cmd_vel_joyy", "x cmd_vel_joy, y cmd_vel_nav", "error x cmd_vel_joy"),
         ("twist_mux cmd_vel_nav", "x cmd_vel_joy", ""),
-        ("driver cmd_vel", "x velocity", "warning x velocity"),
+        ("driver cmd_vel", "x velocity", "error x velocity"),
         ("driver cmd_vel", "x velocity, y speed", ""),
         # It reads that already.
         ("driver cmd_vel", "driver velocity", ""),
@@ -884,7 +884,13 @@ def has_no(robot: int, node: str) -> list[str]:
         ((*made_of(1, "planner"), *made_of(2, "planner", "lidar")), [NO_LIDAR]),
         # Each has one of its own, or few in common, and nobody waits.
         ((*made_of(1), *made_of(2, "odometer"), "/robot2/camera"), []),
-        ((*made_of(1, "lidar"), *made_of(2, "planner", "lidar", "odometer")), []),
+        (
+            (*made_of(1, "lidar"), *made_of(2, "planner", "lidar", "odometer")),
+            [
+                "robot1: no node sends /robot1/scan, read by /robot1/odometer;"
+                " start its driver; its log says why it ended"
+            ],
+        ),
         ((*made_of(1), *made_of(2, "lidar"), "/robot2/lidar"), [LACKS_SCAN]),
         (
             (*made_of(1), *made_of(2, "lidar"), f"/robot2/lidar publishes /robot2/x {TEXT}"),

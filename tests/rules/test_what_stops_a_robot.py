@@ -71,6 +71,52 @@ def test_a_driver_under_another_name_is_why_it_is_missed() -> None:
     assert "MG322" not in {code for code, *_ in told}
 
 
+COMMANDS = [
+    f"/robot{it}/{node} {does} /robot{it}/{name} {TWIST}"
+    for it in (1, 2)
+    for node, does, name in (
+        ("base", "subscribes", "cmd_vel"),
+        ("collision_monitor", "publishes", "cmd_vel"),
+        ("collision_monitor", "subscribes", "cmd_vel_smoothed"),
+        ("velocity_smoother", "publishes", "cmd_vel_smoothed"),
+    )
+]
+
+
+def test_a_lost_link_between_commands_and_drive_is_not_bridged() -> None:
+    assert codes(*COMMANDS) == []
+    (it,) = found(*(it for it in COMMANDS if "/robot1/collision" not in it))
+    assert (it.code, it.level, it.robot, it.remaps) == ("MG322", "error", "robot1", ())
+    assert "robot1 has no collision_monitor, as robot2 has" in it.message
+    # Of a robot that has no like the hint says where to look.
+    (it,) = found(*(it for it in COMMANDS[:4] if "collision" not in it))
+    assert (it.code, it.level, it.node, it.remaps) == ("MG303", "error", "/robot1/base", ())
+    assert "start what passes /robot1/cmd_vel_smoothed on" in it.hint
+    # Who only sends may be idle.
+    idle = [it for it in COMMANDS if it.startswith(("/robot1/base", "/robot2/base"))]
+    assert codes(*idle, f"/robot2/teleop publishes /robot2/cmd_vel {TWIST}") == []
+
+
+@pytest.mark.parametrize("space", ["/robot1", ""])
+def test_a_dead_lidar_of_a_single_robot(space: str) -> None:
+    lines = [
+        f"{space}/amcl subscribes {space}/scan {SCAN}",
+        f"{space}/rviz2 subscribes {space}/back_scan {SCAN}",
+        f"{space}/base publishes {space}/odom {ODOM}",
+    ]
+    robot, name = space.strip("/"), f"{space}/scan"
+    (gone,) = found(*lines)
+    assert (gone.code, gone.level, gone.robot, gone.names) == ("MG322", "error", robot, (name,))
+    assert f"no node sends {name}, read by {space}/amcl" in gone.message
+    lines += [f"{space}/lidar publishes {name} {SCAN}"]
+    sent = [f"transform odom -> laser on {space}/tf", f"frame_id odom on {space}/odom at 10 Hz"]
+    (silent,) = found(*lines, *sent)
+    assert (silent.code, silent.level, silent.node) == ("MG326", "error", f"{space}/lidar")
+    assert codes(*lines, *sent, f"frame_id laser on {name}") == []
+    # Where nothing comes again and again nobody listened for long.
+    assert codes(*lines, sent[0], sent[1].removesuffix(" at 10 Hz")) == []
+
+
 @pytest.mark.parametrize("frame", ["/laser", "/robot1/laser"])
 def test_tf2_refuses_to_look_up_a_frame_with_a_slash_in_front(frame: str) -> None:
     lines = [
@@ -109,6 +155,24 @@ def test_a_node_that_is_active_at_another_robot() -> None:
         ("MG511", "warning", "/robot1/slam"),
         ("MG511", "warning", "/robot2/slam"),
     ]
+
+
+def test_a_reader_in_a_namespace_where_nothing_runs() -> None:
+    """It is told where the robots send the same, and not where they only read it, too."""
+    reads = [f"/robot{it}/amcl subscribes /robot{it}/scan {SCAN}" for it in (1, 2)]
+    sends = [f"/robot{it}/lidar publishes /robot{it}/scan {SCAN}" for it in (1, 2)]
+    reader = f"/merger subscribes /rover/scan {SCAN}"
+    (it,) = found(*reads, *sends, reader)
+    assert (it.code, it.level, it.node) == ("MG303", "warning", "/merger")
+    assert "no node is in /rover, and robot2 has /robot2/scan" in it.message
+    assert {one.code for one in found(*reads, reader)} == {"MG322"}
+
+
+def test_the_first_of_two_managers_is_named() -> None:
+    change = "lifecycle_msgs/srv/ChangeState"
+    calls = [f"/robot1/m{it} calls /robot1/amcl/change_state {change}" for it in (1, 2)]
+    told = codes(*calls, f"/robot1/amcl serves /robot1/amcl/change_state {change}")
+    assert told == [("MG302", "error", "/robot1/m1")]
 
 
 def test_one_joystick_for_two_robots() -> None:

@@ -17,7 +17,7 @@ Each line begins with ``planned:`` (it is in the plan), ``running:`` (it is in t
     enclave PATH of NODE                the enclave of SROS2 that a running node is in
     transform PARENT -> CHILD on TOPIC [at X Y Z] [by NODES] [twice]    a transform, who publishes
                                                      there, and whether several of them send it
-    frame_id FRAME on TOPIC [NUMBER s old]     the frame that a message on the topic names, and its age
+    frame_id FRAME on TOPIC [NUMBER s old] [at NUMBER Hz]    the frame of a message, its age and rate
     description on TOPIC: no links, or links NAMES; joints NAMES     what a latched description names
     joints NAME on TOPIC                the joint that a message on the topic names
     /clock runs, /clock goes back NUMBER s     the time on it
@@ -96,7 +96,7 @@ CAME = re.compile(r"(/\S+) came (\d+) times")
 JOINTS = re.compile(r"joints (\S+) on (/\S+)")
 DESCRIBED = re.compile(r"description on (/\S+): (?:no links|links ([^;]+)(?:; joints (.+))?)")
 CLOCK_TIME = re.compile(r"(/clock) (?:runs|goes back ([\d.]+) s)")
-FRAME_ID = re.compile(r"frame_id (\S+) on (/\S+)(?: ([\d.]+) s old)?")
+FRAME_ID = re.compile(r"frame_id (\S+) on (/\S+)(?: ([\d.]+) s old)?(?: at ([\d.]+) Hz)?")
 KEEPS = re.compile(r"(/\S+) keeps (\w+) (\w+)")
 ANSWERS = (STATE, SIM_TIME, CONTROLS, KEEPS, HAS, MACHINE)
 ROBOT = re.compile(r"robot\d+")
@@ -261,8 +261,8 @@ def _kind(role: str, type_: str) -> str:
 
 
 def _heard(lines: list[str]) -> Iterator[Heard]:
-    for frame, topic, age in _words(FRAME_ID, lines):
-        yield Heard(topic, frame, float(age or 0))
+    for frame, topic, age, rate in _words(FRAME_ID, lines):
+        yield Heard(topic, frame, float(age or 0), float(rate or 0))
     for joint, topic in _words(JOINTS, lines):
         yield Heard(topic, "", joints=(joint,))
     for topic, back in _words(CLOCK_TIME, lines):

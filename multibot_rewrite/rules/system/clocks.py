@@ -17,7 +17,6 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.wording import and_then, only, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule
 from multibot_rewrite.rules.system.causes import Cause, to_set
-from multibot_rewrite.rules.system.tf_pieces import publishes_description
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Index, at_work, nodes_of, once, robots_of, sent_on
 from multibot_rewrite.system.parameters import parameter_text
@@ -238,7 +237,7 @@ def _old_transforms(seen: Index, clock: bool) -> Iterator[Finding]:
         senders = unique(it for edge in edges for it in edge.publishers)
         own = [it for it in senders if robot in ("", seen.robot(it))] or [*senders]
         # A publisher of descriptions stamps as its joints are.
-        likely = [it for it in own if not publishes_description(seen, it)] or own
+        likely = [it for it in own if not seen.publishes_description(it)] or own
         yield stamp_of_another_time.finding(
             f"the stamps of {listed} on {topic} are {what}",
             **_other_clock(likely, what)._asdict(), robot=robot, node=only(likely),

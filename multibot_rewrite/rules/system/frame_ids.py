@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Dangers of ``header.frame_id``: messages in a frame of another robot, or in one that is in no tf."""
+"""Dangers of ``header.frame_id``: messages in a frame of another robot, or in one that is in no tf; and
+of latched descriptions: empty, of another robot, of other frames or joints."""
 
 from __future__ import annotations
 
@@ -14,13 +15,13 @@ from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import SEVERAL, only, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule, where
-from multibot_rewrite.system.index import Index, Tree, at_work, once, robots_of, sent_on
+from multibot_rewrite.system import words
+from multibot_rewrite.system.index import Index, Tree, at_work, nodes_of, once, robots_of, sent_on
 from multibot_rewrite.system.ownership import SEPARATORS
-from multibot_rewrite.system.records import NOWHERE, TOPIC, Edge, Place
+from multibot_rewrite.system.records import NOWHERE, TOPIC, Description, Edge, Place
 
 # What a robot measures is in its own frames. A pose, a path or a marker may be in another robot's.
-_ODOMETRY = "nav_msgs/msg/Odometry"
-_MEASURED = ("sensor_msgs/", _ODOMETRY, "stereo_msgs/", "radar_msgs/")
+_MEASURED = ("sensor_msgs/", words.ODOMETRY, "stereo_msgs/", "radar_msgs/")
 
 # Of no use without a frame.
 _PLACED = types_of("placed")
@@ -181,7 +182,7 @@ def _nameless(seen: Index) -> Iterator[Finding]:
     for it in seen.system.heard:
         type_, senders = sent_on(seen, it.topic)
         # Of odometry: its pose is known where all of the message was read.
-        field = "child_frame_id" if type_ == _ODOMETRY and it.pose and not it.child else ""
+        field = "child_frame_id" if type_ == words.ODOMETRY and it.pose and not it.child else ""
         field = "frame_id" if not it.frame and type_ in _PLACED else field
         if senders and field:
             yield frame_id_unknown.finding(
@@ -281,3 +282,63 @@ def frames_in(edges: Iterable[Edge]) -> set[str]:
 
 def _one_of(names: Sequence[str]) -> str:
     return only(names) or f"one of {shorten(names, SEVERAL)}"
+
+
+@system_rule("MG420", "description-does-not-fit", ERROR, absence=True)
+def description_does_not_fit(seen: Index) -> Iterator[Finding]:
+    """Report the first fault of a description."""
+    for it in seen.system.descriptions:
+        _, senders = sent_on(seen, it.topic)
+        robot = seen.robot(it.topic) or only(robots_of(seen, senders))
+        if senders and (why := _description_fault(seen, it, robot)):
+            node, names = senders[0], (it.topic,)
+            yield description_does_not_fit.finding(*why, robot=robot, node=node, names=names)
+
+
+def _description_fault(seen: Index, it: Description, robot: str) -> tuple[str, str] | None:
+    """Return what is wrong with a description and what to do; None for nothing."""
+    if not it.links:
+        ends = seen.by_name[TOPIC, it.topic]
+        readers = nodes_of(at_work(ends.subscribers))
+        wait = f"; {shorten(readers, SEVERAL)} has no model" if readers else ""
+        return (
+            f"{it.topic} is empty, or no URDF{wait}",
+            "see the command that makes it: xacro's log",
+        )
+    others = {seen.frame_robot(link) for link in it.links} - {""}
+    if robot and others and robot not in others:
+        message = f"{it.topic} has the links of {min(others)}: {shorten(it.links, SEVERAL)}"
+        return message, f"load the description of {robot}"
+    return _other_frames(seen, it, robot) or _other_joints(seen, it)
+
+
+def _other_frames(seen: Index, it: Description, robot: str) -> tuple[str, str] | None:
+    """Return a fault if no link of several is a sent frame, with or without a frame_prefix."""
+    trees = [one for one in trees_of(seen, robot) if one.edges]
+    frames = {one for tree in trees for one in frames_in(tree.edges)}
+    own = sorted(one for one in frames if seen.frame_robot(one) in ("", robot))
+    is_of = any(f"/{one}".endswith(f"/{link}") for one in own for link in it.links)
+    if len(it.links) < 2 or not own or is_of:
+        return None
+    links, sent = shorten(it.links, SEVERAL), shorten(own, SEVERAL)
+    message = f"no link of {it.topic} ({links}) is a frame that is sent ({sent})"
+    return message, "who sends tf has another description: load one in both"
+
+
+def _other_joints(seen: Index, it: Description) -> tuple[str, str] | None:
+    """Return what is wrong where no sender of joint states in its namespace has a joint of it. One with
+    joints of its own alone is healthy among others, so each of them has to be heard."""
+    space = it.topic.rpartition("/")[0]
+    heard = [one for one in seen.system.heard if one.joints]
+    for topic in unique(one.topic for one in heard):
+        type_, senders = sent_on(seen, topic)
+        said = [one.joints for one in heard if one.topic == topic]
+        fits = type_ == words.JOINTS and topic.rpartition("/")[0] == space and it.joints
+        if not fits or not senders or len(said) < len(senders):
+            continue
+        named = unique(name for joints in said for name in joints)
+        if {*named}.isdisjoint(it.joints):
+            own, who, sent = (shorten(names, SEVERAL) for names in (it.joints, senders, named))
+            message = f"{it.topic} has the joints {own}, and {who} sends {sent} on {topic}"
+            return message, f"give {who} the names that the description has"
+    return None

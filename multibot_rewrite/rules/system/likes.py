@@ -16,7 +16,6 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.grouping import dicts_by_key, lists_by_key
 from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.rules.declaration import system_rule
-from multibot_rewrite.rules.system.tf_pieces import publishes_description
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Ends, Index, at_work, ends_of, nodes_of, once
 from multibot_rewrite.system.records import (
@@ -34,8 +33,6 @@ from multibot_rewrite.system.words import is_viewer, last_word
 
 # Fewer nodes in common say nothing.
 _ENOUGH = 3
-
-
 _OTHER_SIDE = {PUBLISHES: SUBSCRIBES, SUBSCRIBES: PUBLISHES, SERVES: CALLS, CALLS: SERVES}
 # A number of a process or an address in a node's name.
 _RANDOM = re.compile(r"\d{4}")
@@ -81,7 +78,7 @@ def _lost_descriptions(seen: Index) -> Iterator[Finding]:
     full: dict[Set[str], tuple[str, str]] = {}
     for other, its in made.items():
         for node in its.nodes if len(its.nodes) <= _ENOUGH else ():
-            if publishes_description(seen, its.nodes[node]):
+            if seen.publishes_description(its.nodes[node]):
                 full.setdefault(frozenset(its.nodes) - {node}, (node, other))
     for robot, own in made.items():
         counts = range(len(own.nodes), -1, -1) if 0 < len(own.nodes) < _ENOUGH else ()
@@ -145,7 +142,7 @@ def _lost_nodes(
     keys = [key for key in made[like].ends if key[0] in lost]
     own = _waiting(seen, robot, keys)
     theirs = sorted(made[like].nodes[it] for it in lost)
-    if not (own or len(likes) > 2 or any(publishes_description(seen, it) for it in theirs)):
+    if not (own or len(likes) > 2 or any(seen.publishes_description(it) for it in theirs)):
         return
     yield lacks_what_its_likes_have.finding(
         f"{robot} has no {shorten(sorted(it.strip('/') for it in lost), SEVERAL)}, as {like} has"
@@ -211,8 +208,7 @@ ENOUGH = 10
 @system_rule("MG326", "less-than-another-robot", WARNING)
 def less_than_another_robot(seen: Index) -> Iterator[Finding]:
     """Report it compared with the robot that has the most messages on the topic."""
-    yield from _silent(seen)
-    yield from _slow(seen)
+    yield from _silent_or_slow(seen)
     yield from _slow_transforms(seen)
     # Name without the robot's -> robot -> name, of the topics whose messages were counted.
     counted = dicts_by_key(
@@ -233,40 +229,12 @@ def less_than_another_robot(seen: Index) -> Iterator[Finding]:
                 yield less_than_another_robot.finding(message, robot=robot, names=(name,))
 
 
-def _slow(seen: Index) -> Iterator[Finding]:
-    """Report slow sensors of a running system, whose rates are known after a second."""
-    rates = {it.topic: it.rate for it in seen.system.heard if it.rate}
-    there: dict[tuple[str, str], dict[str, str]] = defaultdict(dict)
-    for it in seen.topics if rates else ():
-        robot = seen.robot(it.name)
-        if robot and it.name in rates and words.kind_of_data(it.name, it.type):
-            there[seen.plain(it.name), it.type][robot] = it.name
-    for (_, type_), own in there.items():
-        best = max(own.values(), key=lambda it: rates[it])
-        for robot, name in own.items():
-            if rates[name] * RATIO <= rates[best]:
-                node = nodes_of(at_work(seen.by_name[TOPIC, name].publishers))[0]
-                message = (
-                    f"publishes {name} at {rates[name]:.1f} Hz, {best} comes at {rates[best]:.1f}"
-                )
-                # So seldom a scan is as good as none.
-                read = bool(at_work(seen.by_name[TOPIC, name].subscribers))
-                dead = read and rates[name] < _SELDOM and words.is_of_a_body(type_)
-                yield less_than_another_robot.finding(
-                    f"{message} Hz", "see its log, and the processor time that it has",
-                    level=ERROR if dead else WARNING,
-                    robot=robot, node=node, names=(name,),
-                )  # fmt: skip
-
-
 def _slow_transforms(seen: Index) -> Iterator[Finding]:
     """Report slow odometry and localization, which never pause: joints and sensors may."""
     there: dict[tuple[str, str], dict[str, Edge]] = defaultdict(dict)
     for it in (edge for tree in seen.trees for edge in tree.edges if edge.rate):
-        robot, parent = (
-            seen.frame_robot(it.child) or seen.robot(it.topic),
-            seen.plain_frame(it.parent),
-        )
+        robot = seen.frame_robot(it.child) or seen.robot(it.topic)
+        parent = seen.plain_frame(it.parent)
         if robot and parent in SENT_FRAMES:
             there[parent, seen.plain_frame(it.child)][robot] = it
     for own in there.values():
@@ -281,28 +249,40 @@ def _slow_transforms(seen: Index) -> Iterator[Finding]:
                 )  # fmt: skip
 
 
-def _silent(seen: Index) -> Iterator[Finding]:
-    """Report a running system's topic of which one robot sent a message, and another robot none
-    although it has sent others."""
-    heard = {it.topic for it in seen.system.heard}
-    if any(it.code == _NOT_ALL for it in seen.system.environment.caveats):
-        return
-    there_at_all = {seen.robot(it) for it in heard}
-    there: dict[tuple[str, str], dict[str, str]] = defaultdict(dict)
-    for it in seen.topics if heard and seen.nodes and not seen.known.messages else ():
-        robot = seen.robot(it.name)
-        if robot and words.kind_of_data(it.name, it.type) and at_work(it.publishers):
-            there[seen.plain(it.name), it.type][robot] = it.name
-    for (_, type_), own in there.items():
-        loud = next((name for name in own.values() if name in heard), "")
-        for robot, name in own.items() if loud else ():
-            if name not in heard and robot in there_at_all:
-                node = nodes_of(at_work(seen.by_name[TOPIC, name].publishers))[0]
-                message = f"publishes {name}, on which no message came; {loud} has some"
-                dead = words.is_of_a_body(type_) and at_work(seen.by_name[TOPIC, name].subscribers)
+def _silent_or_slow(seen: Index) -> Iterator[Finding]:
+    """Report sensors of a running system that are slower than another robot's, or send nothing while
+    the robot sends others: as another robot does, or all of their kind that the robot's nodes read."""
+    rates = dict(sorted((it.topic, it.rate) for it in seen.system.heard))
+    robots, flows = ({seen.robot(it) for it in rates if rates[it] >= least} for least in (0, 1e-9))
+    kinds = {(seen.robot(it.name), it.type) for it in seen.topics if it.name in rates}
+    if seen.known.messages or any(it.code == _NOT_ALL for it in seen.system.environment.caveats):
+        robots = set()
+    # Those without a robot only where none has a name.
+    sensors = dicts_by_key(
+        ((seen.plain(it.name), it.type), robot, it)
+        for it in (seen.topics if rates else ())
+        if bool(robot := seen.robot(it.name)) is bool(seen.robots)
+        and (words.kind_of_data(it.name, it.type) and at_work(it.publishers))
+    )
+    for (_, type_), own in sensors.items():
+        best = max(own.values(), key=lambda it: rates.get(it.name, -1.0)).name
+        most = rates.get(best, -1.0)
+        for robot, it in own.items():
+            rate, read = rates.get(it.name), bool(at_work(it.subscribers))
+            dead = read and words.is_of_a_body(type_)
+            alone = dead and words.is_of_one_sensor(type_) and (robot, type_) not in kinds
+            said, hint = "", "see its log"
+            if rate and rate * RATIO <= most:
+                said = f" at {rate:.1f} Hz, {best} comes at {most:.1f} Hz"
+                hint += ", and the processor time that it has"
+                # So seldom a scan is as good as none.
+                dead = dead and rate < _SELDOM
+            elif rate is None and robot in robots and (most >= 0 or (alone and robot in flows)):
+                said = ", on which no message came" + (f"; {best} has some" if most >= 0 else "")
+            if said:
                 yield less_than_another_robot.finding(
-                    message, "see its log", level=ERROR if dead else WARNING,
-                    robot=robot, node=node, names=(name,),
+                    f"publishes {it.name}{said}", hint, level=ERROR if dead else WARNING,
+                    robot=robot, node=nodes_of(at_work(it.publishers))[0], names=(it.name,),
                 )  # fmt: skip
 
 
@@ -313,11 +293,9 @@ def driver_missing(seen: Index) -> Iterator[Finding]:
     lost: dict[tuple[str, str], list[Ends]] = defaultdict(list)
     actions = [it for it in seen.by_name.values() if it.kind == ACTION]
     for ends in (*seen.topics, *actions) if len(seen.robots) > 1 else ():
-        robot = seen.robot(ends.name)
-        role = _missed_side(seen, ends) if robot else ""
-        what = ends.kind, seen.plain(ends.name), ends.type, role
-        if role and (node := _first_to_do(seen).get(what)):
-            lost[robot, node].append(ends)
+        if node := done_elsewhere(seen, ends):
+            lost[seen.robot(ends.name), node].append(ends)
+    yield from _never_sent(seen)
     for (robot, node), missed in lost.items():
         names, plain = tuple(it.name for it in missed), seen.plain(node)
         using = ((*it.subscribers, *it.publishers, *it.clients) for it in missed)
@@ -336,6 +314,40 @@ def driver_missing(seen: Index) -> Iterator[Finding]:
             message, hint, level=ERROR if seen.is_live else WARNING,
             robot=robot, node=there, names=names,
         )  # fmt: skip
+
+
+def _never_sent(seen: Index) -> Iterator[Finding]:
+    """Report a laser, an IMU or odometry of a running robot that sends none of its kind."""
+    body = [it for it in seen.topics if words.is_of_a_body(it.type) and it.type != words.JOINTS]
+    sent = {(seen.robot(it.name), it.type) for it in body if it.publishers}
+    for it in body if seen.is_observed and not seen.expected else ():
+        robot = seen.robot(it.name)
+        readers = [end for end in at_work(it.subscribers) if seen.robot(end.node) == robot]
+        nodes = nodes_of(end for end in readers if end.sure == RUNS and not chooses(end.node))
+        if nodes and (robot, it.type) not in sent and not done_elsewhere(seen, it):
+            yield driver_missing.finding(
+                f"no node sends {it.name}, read by {shorten(nodes, SEVERAL)}",
+                "start its driver; its log says why it ended", robot=robot, names=(it.name,),
+            )  # fmt: skip
+
+
+def done_elsewhere(seen: Index, ends: Ends) -> str:
+    """Return another robot's node that does what is missing at a robot's name; empty for none."""
+    robot = seen.robot(ends.name)
+    role = _missed_side(seen, ends) if robot else ""
+    node = _first_to_do(seen).get((ends.kind, seen.plain(ends.name), ends.type, role), "")
+    if role != PUBLISHES or not words.moves(seen.plain(ends.name), ends.type):
+        return node
+    # Who only sends velocities may be idle: a link between such a sender and the drive is lost.
+    read = (it for it in seen.by_node.get(node, ()) if it.role == SUBSCRIBES)
+    is_link = any(words.moves(seen.plain(it.name), it.type) for it in read)
+    return node if is_link and not has_likes_of(seen, robot, node) else ""
+
+
+def has_likes_of(seen: Index, robot: str, node: str) -> bool:
+    """Return whether a robot has the like of another robot's node, or it runs outside of robots."""
+    plain = seen.plain(node)
+    return plain in nodes_of_each(seen).get(robot, {}) or plain in seen.node
 
 
 @once
@@ -359,7 +371,7 @@ def _missed_side(seen: Index, ends: Ends) -> str:
     kind, own = words.kind_of_data(ends.name, ends.type), seen.robot(ends.name)
     if not kind:
         return ""
-    if words.moves(seen.plain(ends.name), ends.type):
+    if ends.publishers and words.moves(seen.plain(ends.name), ends.type):
         sent = any(seen.robot(it.node) == own for it in at_work(ends.publishers))
         return SUBSCRIBES if sent and not at_work(ends.subscribers) else ""
     read = any(seen.robot(it.node) == own and it.sure == RUNS for it in at_work(ends.subscribers))

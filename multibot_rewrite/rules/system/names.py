@@ -21,6 +21,7 @@ from multibot_rewrite.rules.system.instead import (
     listed_in_vain,
     sent_instead,
 )
+from multibot_rewrite.rules.system.likes import done_elsewhere, has_likes_of
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import (
     TF,
@@ -53,6 +54,8 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
     unheard = {name: it for name, it in published.items() if not at_work(it.subscribers)}
     for ends in unsent:
         by_kind: dict[str, list[End]] = {}
+        there = done_elsewhere(seen, ends)
+        lost = there and not has_likes_of(seen, seen.robot(ends.name), there)
         for end in _each_node(ends.subscribers):
             if is_viewer(end.node) or not _runs(end):
                 continue
@@ -60,7 +63,7 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
             offered = unheard if chooses(end.node) else published
             if near := published.get(_published_instead(seen, end, offered, unheard)):
                 yield _missed_topic(seen, end, near, ERROR)
-            elif other := sent_instead(seen, end):
+            elif other := None if lost else sent_instead(seen, end):
                 by_kind.setdefault(other.name, []).append(end)
             elif mine := _of_robots(seen, end):
                 yield _reads_no_robots(seen, end, mine)
@@ -75,6 +78,7 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
             other = published[other_name]
             lone = other.type == first.type and not at_work(other.subscribers)
             sensor = words.is_of_one_sensor(first.type) and first.type != words.JOYSTICK
+            sensor |= seen.is_observed and words.moves(seen.plain(first.name), first.type)
             sure = seen.is_live and (words.is_of_a_body(first.type) or (lone and sensor))
             yield _missed_topic(seen, first, other, ERROR if sure else WARNING, more)
 
@@ -246,6 +250,9 @@ def _missed_topic(
         message += f" as {last_word(other.type)}"
         cause = f"make both one type: set it in a parameter of one side, or convert {other.name}"
         remaps = ()
+    elif _are_stages(end, other):
+        between = "twist_mux, velocity_smoother or collision_monitor"
+        cause, remaps = f"start what passes {other.name} on ({between}), or give both one name", ()
     else:
         cause = (
             f"pass the rule {end.name}:={other.name}{each}, or write {other.name} in its parameters"
@@ -256,6 +263,13 @@ def _missed_topic(
         level=level, robot=robot, node=end.node, names=(end.name, other.name), remaps=remaps,
         **where([end]),
     )  # fmt: skip
+
+
+def _are_stages(end: End, other: Ends) -> bool:
+    """Return whether both are commands on their way to a drive, such as cmd_vel_nav and cmd_vel."""
+    (space, _, one), (above, _, two) = (it.name.rpartition("/") for it in (end, other))
+    stem = one.split("_")[:2] == two.split("_")[:2]
+    return space == above and stem and one != two and words.moves(end.name, end.type)
 
 
 @system_rule("MG304", "server-names-miss", ERROR, absence=True)

@@ -35,7 +35,6 @@ from multibot_rewrite.system.index import Index, Tree, robots_of
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import NOWHERE, OFF, Edge
 from multibot_rewrite.system.tf_copies import tree_topic
-from multibot_rewrite.system.words import last_word
 
 # So many pairs of frames of a robot are compared.
 _COMPARED = 20_000
@@ -239,12 +238,7 @@ def is_sure(seen: Index, found: Finding, moved: bool) -> bool:
 
 def is_of_description(seen: Index, edge: Edge) -> bool:
     """Return whether robot_state_publisher sends a transform."""
-    return any(publishes_description(seen, it) for it in edge.publishers)
-
-
-def publishes_description(seen: Index, node: str) -> bool:
-    """Return whether it is robot_state_publisher. Raises nothing."""
-    return last_word(seen.plain(node)).startswith("robot_state_publisher")
+    return any(seen.publishes_description(it) for it in edge.publishers)
 
 
 def _joined(pairs: Iterable[tuple[str, str]]) -> Callable[[str], str]:

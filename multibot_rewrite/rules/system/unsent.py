@@ -18,7 +18,7 @@ from multibot_rewrite.rules.system.frame_ids import frames_in, trees_of
 from multibot_rewrite.rules.system.instead import is_needed, meant
 from multibot_rewrite.rules.system.likes import nodes_of_each
 from multibot_rewrite.rules.system.names import server_names_miss, topic_names_miss
-from multibot_rewrite.rules.system.tf_pieces import is_of_description, publishes_description
+from multibot_rewrite.rules.system.tf_pieces import is_of_description
 from multibot_rewrite.rules.system.tf_trees import root_of
 from multibot_rewrite.system.index import TF, Index, ends_of, once
 from multibot_rewrite.system.records import (
@@ -44,8 +44,7 @@ _MISSES = (topic_names_miss, server_names_miss)
 def nothing_known_sends(seen: Index) -> Iterator[Finding]:
     """Report all names of a robot as one, without those that others have under another name."""
     left = [it for it in open_ends(seen) if not meant(seen, it)]
-    rules = [it for it in _MISSES if it.check] if left else ()
-    missed = {found.names[0] for it in rules if it.check for found in it.check(seen)}
+    missed = {found.names[0] for it in _MISSES if left and it.check for found in it.check(seen)}
     left = [it for it in left if it.name not in missed]
     by_robot = sets_by_key((seen.robot(it.node), it.name) for it in left)
     for robot, names in by_robot.items():
@@ -156,7 +155,7 @@ def _read(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     if sender is None:
         return _unknown(seen, it, edges)
     place = f" ({sender.place})" if sender.place != NOWHERE else ""
-    who = next((it for it in sender.publishers if not publishes_description(seen, it)), "a node")
+    who = next((it for it in sender.publishers if not seen.publishes_description(it)), "a node")
     sends = f"{who} sends {sender.parent} -> {sender.child}{place}"
     hint = f"{sends}; use a frame that is sent, or name the node that does"
     # A map often comes from a node that is started apart.
