@@ -9,7 +9,7 @@ import re
 from multibot_rewrite.base.editors import PLAN as PLAN_SCHEMA
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import facts_of_release, release_told
-from multibot_rewrite.cli import check_launch, fleet
+from multibot_rewrite.cli import fleet
 from multibot_rewrite.cli.output import deliver, goes_to_file, note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.tables import Grid, deliver_report
@@ -82,7 +82,7 @@ def _of_launch(options: argparse.Namespace) -> int:
     if given or options.form != PLAN:
         what = given[0] if given else "--form"
         raise UsageError(f"{options.input}: a launch file says what runs, leave out {what}")
-    orders = check_launch.orders_of(options, [options.input, *options.words])
+    orders = fleet.orders_of(options, [options.input, *options.words])
     if options.output:
         check_target(options.output, [it.file for it in orders])
         check_folder(options.output)

@@ -435,6 +435,15 @@ def test_an_old_jsonschema_is_one_line(
     assert not (tmp_path / "out").exists()
 
 
+def test_what_is_valid_needs_no_jsonschema(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It takes longer to import than a fleet to plan."""
+    monkeypatch.setitem(sys.modules, "jsonschema", ModuleType("jsonschema"))
+    fleets = [*(ROOT / "examples").rglob("fleet*.yaml")]
+    assert len(fleets) >= 8
+    for fleet in fleets:
+        assert read_fleet(str(fleet), "", {}).robots
+
+
 @pytest.mark.parametrize("part", [(), ("$defs", "robot"), ("$defs", "companions")])
 def test_every_key_of_the_schema_is_explained(part: tuple[str, ...]) -> None:
     found = schema()
