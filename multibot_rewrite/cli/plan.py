@@ -23,7 +23,7 @@ from multibot_rewrite.spelling.bridged_topics import as_yaml, bridged_topics
 from multibot_rewrite.spelling.enclaves import to_policy
 from multibot_rewrite.spelling.plan import to_yaml
 from multibot_rewrite.spelling.table_formats import FORMS, given_to, standing_by_robot
-from multibot_rewrite.system.coverage import Coverage, coverage, in_words
+from multibot_rewrite.system.coverage import Coverage, coverage
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.ownership import without_name
 from multibot_rewrite.system.records import System, doubts
@@ -66,7 +66,7 @@ def run(options: argparse.Namespace) -> int:
 def _note_coverage(options: argparse.Namespace, held: Coverage) -> None:
     """Say how much the plan holds, unless that is all."""
     if not held.is_whole:
-        note(options, in_words(held))
+        note(options, held.in_words)
 
 
 def _write(options: argparse.Namespace, plan: System) -> None:

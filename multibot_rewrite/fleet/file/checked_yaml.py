@@ -104,7 +104,7 @@ def _is_valid(data: Any, schema: Mapping[str, Any], named: Mapping[str, Any]) ->
         and (
             "oneOf" not in schema or sum(_is_valid(data, it, named) for it in schema["oneOf"]) == 1
         )
-        and all(_RULES[key](data, schema[key]) for key in schema.keys() - _OTHERS)
+        and all(rule(data, schema[key]) for key, rule in _RULES.items() if key in schema)
     )
 
 
@@ -116,10 +116,6 @@ def _is_of(data: Any, wanted: str | Sequence[str]) -> bool:
 _CLASSES: Mapping[str, tuple[type, ...]] = {
     **{"array": (list,), "object": (dict,), "string": (str,), "boolean": (bool,)},
     **{"number": (int, float), "integer": (int,)},
-}
-_OTHERS = {
-    *("$schema", "$id", "$defs", "$comment", "title", "description"),
-    *("$ref", "oneOf", "items", "properties", "additionalProperties"),  # followed by _is_valid
 }
 _RULES: Mapping[str, Callable[[Any, Any], bool]] = {
     "type": _is_of,
