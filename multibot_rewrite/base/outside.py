@@ -58,7 +58,7 @@ def outside(function: Callable[_P, _T]) -> Callable[_P, _T]:
         try:
             with _noting(None):  # what it asks in turn is in its answer
                 answer = function(*arguments, **named)
-        except Exception as error:
+        except Exception as error:  # whatever it is, the caller gets it
             _note(notes, question, _failed(error))
             raise
         _note(notes, question, digest(answer))

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import argparse
-import shlex
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from functools import partial
@@ -14,7 +13,7 @@ from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.base.releases import release_told
 from multibot_rewrite.cli import check, pictures, unplanned
-from multibot_rewrite.cli.fleet import own_nodes
+from multibot_rewrite.cli.fleet import orders_of, own_nodes
 from multibot_rewrite.cli.output import note
 from multibot_rewrite.cli.report import check_report, chosen
 from multibot_rewrite.cli.walk import check_target
@@ -26,7 +25,7 @@ from multibot_rewrite.producers.launch.findings import not_read
 from multibot_rewrite.producers.launch.includes import arguments_declared
 from multibot_rewrite.producers.launch.kept_paths import read_text
 from multibot_rewrite.producers.launch.launched import Launched
-from multibot_rewrite.producers.launch.records import LaunchOrder, orders_in_words
+from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.rules.check import check_view, side_by_side
 from multibot_rewrite.rules.launch.judge import as_one_of_several, as_sure, judge_launch, placed
 from multibot_rewrite.rules.launch.started import no_manager
@@ -61,12 +60,6 @@ def run(options: argparse.Namespace) -> int:
     seen = diagnose(made.system)
     every = (*found, *placed((as_sure(it, made, seen.whose) for it in seen.findings), made))
     return unplanned.report_on(whole, seen._replace(findings=every))
-
-
-def orders_of(options: argparse.Namespace, words: Sequence[str]) -> list[LaunchOrder]:
-    """Return the launch files in the words, with their arguments; raises UsageError."""
-    orders = orders_in_words(words, shlex.join(words), options.roots)
-    return [it._replace(trusted=options.trust) for it in orders]
 
 
 def _with_remedies(

@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Iterable
+import shlex
+from collections.abc import Iterable, Sequence
 
 from multibot_rewrite.base.config import configured_vocabulary
 from multibot_rewrite.base.file_kinds import DESCRIPTIONS, refuse_others
@@ -26,7 +27,7 @@ from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.fleet import Fleet, make_fleet
 from multibot_rewrite.knowledge.nodl.lookup import NO_DOCUMENTS, SUFFIXES
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.producers.launch.records import launch_order
+from multibot_rewrite.producers.launch.records import LaunchOrder, launch_order, orders_in_words
 
 # Options that name files to write.
 WRITTEN = ("output", "save_snapshot", "report")
@@ -136,3 +137,9 @@ def report_table(options: argparse.Namespace, made: Fleet) -> bool:
     found = chosen(options, (*made.table.problems, *made.gaps))
     about = About([options.input], made.words, made.table.release)
     return report_beside(options, found, about)
+
+
+def orders_of(options: argparse.Namespace, words: Sequence[str]) -> list[LaunchOrder]:
+    """Return the launch files in the words, with their arguments; raises UsageError."""
+    orders = orders_in_words(words, shlex.join(words), options.roots)
+    return [it._replace(trusted=options.trust) for it in orders]

@@ -9,7 +9,7 @@ import re
 from multibot_rewrite.base.editors import PLAN as PLAN_SCHEMA
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import facts_of_release, release_told
-from multibot_rewrite.cli import check_launch, fleet
+from multibot_rewrite.cli import fleet
 from multibot_rewrite.cli.output import deliver, goes_to_file, note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.tables import Grid, deliver_report
@@ -23,7 +23,7 @@ from multibot_rewrite.spelling.bridged_topics import as_yaml, bridged_topics
 from multibot_rewrite.spelling.enclaves import to_policy
 from multibot_rewrite.spelling.plan import to_yaml
 from multibot_rewrite.spelling.table_formats import FORMS, given_to, standing_by_robot
-from multibot_rewrite.system.coverage import Coverage, coverage, in_words
+from multibot_rewrite.system.coverage import Coverage, coverage
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.ownership import without_name
 from multibot_rewrite.system.records import System, doubts
@@ -66,7 +66,7 @@ def run(options: argparse.Namespace) -> int:
 def _note_coverage(options: argparse.Namespace, held: Coverage) -> None:
     """Say how much the plan holds, unless that is all."""
     if not held.is_whole:
-        note(options, in_words(held))
+        note(options, held.in_words)
 
 
 def _write(options: argparse.Namespace, plan: System) -> None:
@@ -82,7 +82,7 @@ def _of_launch(options: argparse.Namespace) -> int:
     if given or options.form != PLAN:
         what = given[0] if given else "--form"
         raise UsageError(f"{options.input}: a launch file says what runs, leave out {what}")
-    orders = check_launch.orders_of(options, [options.input, *options.words])
+    orders = fleet.orders_of(options, [options.input, *options.words])
     if options.output:
         check_target(options.output, [it.file for it in orders])
         check_folder(options.output)

@@ -8,7 +8,7 @@ import sys
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding, Rule
 from multibot_rewrite.base.findings.formats import NO_COVERAGE, Report, rendered
@@ -17,7 +17,9 @@ from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.wording import plural, shorten
 from multibot_rewrite.cli.output import deliver, is_coloured, print_bytes, prints_colour
-from multibot_rewrite.system.coverage import Coverage, as_value, in_words
+
+if TYPE_CHECKING:
+    from multibot_rewrite.system.coverage import Coverage
 
 TEXT = "text"
 FEW_NOTES = 3
@@ -46,7 +48,7 @@ def counted_findings(findings: Sequence[Finding]) -> str:
 
 def with_coverage(held: Coverage | None, text: str) -> str:
     """Return a verdict behind how much of the robots it is about."""
-    return "; ".join(filter(None, (in_words(held) if held else "", text)))
+    return "; ".join(filter(None, (held.in_words if held else "", text)))
 
 
 def by_themselves(robots: Iterable[str]) -> dict[str, str]:
@@ -151,6 +153,6 @@ def _text(
 
         rules = all_rules()
     made_by = f"{options.program} {options.command}".removesuffix(f" {options.program}")
-    held = as_value(about.coverage) if about.coverage else NO_COVERAGE
+    held = about.coverage.as_value() if about.coverage else NO_COVERAGE
     report = Report(made_by, about.files, rules, about.release, held)
     return rendered(options.format, shown, report, colour=colour)

@@ -142,7 +142,7 @@ def _stub_endpoint(end: Endpoint, name: str, types: Mapping[str, str]) -> Endpoi
     kind, role, own, type_, *_ = end
     # A topic without a role is nearly always a sensor's output.
     made = Endpoint(kind, role or PUBLISHES, own, type_ or types.get(name, ""))
-    return made._replace(helper=end.helper, by=end.by)
+    return made._replace(helper=end.helper, by=end.by, beside=end.beside)
 
 
 def split_over_processes(nodes: Iterable[Stub]) -> list[list[Stub]]:
@@ -222,7 +222,7 @@ def to_order(nodes: Iterable[Stub]) -> tuple[Any, ...]:
     return tuple(
         (
             *(run.code_name, run.arguments, run.process_namespace, run.process_rules),
-            [(*end[:4], end.helper, end.by) for end, _ in run.names],
+            [(*end[:4], end.helper, end.by, end.beside) for end, _ in run.names],
             edges,
         )
         for run, edges in nodes
@@ -232,7 +232,10 @@ def to_order(nodes: Iterable[Stub]) -> tuple[Any, ...]:
 def from_order(value: Sequence[Any]) -> Iterator[Stub]:
     """Read what JSON made of ``to_order``."""
     for name, words, space, rules, rows, edges in value:
-        ends = (Endpoint(*own)._replace(helper=helper, by=by) for *own, helper, by in rows)
+        ends = (
+            Endpoint(*own)._replace(helper=helper, by=by, beside=beside)
+            for *own, helper, by, beside in rows
+        )
         run = played(name, ends, arguments=words)
         sent = [edge_of(parent, child, static) for child, parent, _, static, *_ in edges]
         yield run._replace(process_namespace=space, process_rules=rules), sent

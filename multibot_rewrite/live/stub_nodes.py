@@ -23,6 +23,7 @@ from multibot_rewrite.live.rehearsal import TF, Stub, action_parts, from_order, 
 from multibot_rewrite.producers.ros import ros
 from multibot_rewrite.producers.ros.look import own_ends
 from multibot_rewrite.producers.ros.request import Send, run_worker
+from multibot_rewrite.spelling.of_runs import sibling
 from multibot_rewrite.spelling.ways import ros_arguments
 from multibot_rewrite.system.records import (
     ACTION,
@@ -83,6 +84,8 @@ def _create_node(stubs: _Stubs, stub: Stub, number: int) -> Iterator[Publish]:
             # Below the name of the node that makes the helper, as moveit_servo does
             # (src/utils/common.cpp:510): with ~ it would be below the helper's own.
             name = node.get_fully_qualified_name() + name[1:]
+        if endpoint.beside:
+            name = sibling(node.resolve_topic_name(endpoint.beside), name)
         own = endpoint._replace(name=name)
         yield from _create_endpoint(stubs, helpers.get(called, node), own, edges)
 

@@ -12,7 +12,6 @@ from multibot_rewrite.base.wording import SEVERAL, shorten
 from multibot_rewrite.pages.page_sections import LEVELS, PageSection, ids_in, ids_of, link_to
 from multibot_rewrite.pages.scene import FindingRow, Scene
 from multibot_rewrite.pages.svg import Ids, safe
-from multibot_rewrite.system.coverage import in_words
 
 
 class Sources(NamedTuple):
@@ -45,7 +44,7 @@ def finding_list(
     """Yield the findings in their order, as HTML."""
     yield '<section id="findings">\n<h2>Findings</h2>\n'
     if not scene.rows:
-        text = f"{in_words(scene.coverage)}; no findings: {scene.outcome.words}"
+        text = f"{scene.coverage.in_words}; no findings: {scene.outcome.words}"
         yield f'<p class="none">{safe(text)}</p>\n'
     order = {robot: at for at, robot in enumerate(scene.robots)}
     inside = {one.group.robot: (one.id, ids_in(one, ids)) for one in sections}

@@ -35,7 +35,6 @@ from multibot_rewrite.pages.scene import Scene
 from multibot_rewrite.pages.states import MISSING, OK, STATES, UNEXPECTED, FrameTree
 from multibot_rewrite.pages.svg import MEANINGS, Ids, group_svg, safe, tree_svg
 from multibot_rewrite.rules.check import RULES
-from multibot_rewrite.system.coverage import in_words
 from multibot_rewrite.system.records import QUIET, ZENOH
 
 # The CSS class of a verdict; a good one with findings is not drawn as good.
@@ -123,7 +122,7 @@ def _header(
     facts = (
         f"{told}{rows}" if told else "no findings",
         f"{plural(len(scene.robots), 'robot')}: {shorten(scene.robots, SEVERAL)}",
-        in_words(scene.coverage),
+        scene.coverage.in_words,
         f"{layout} {scene.layout}{f': {about}' if about else ''}",
     )
     yield f'<header class="{look}">\n<p>{safe(scene.outcome.by)}</p>\n'

@@ -48,16 +48,16 @@ def with_names(run: Run) -> Run:
 def asked_beside(end: Endpoint, bound: BoundNode) -> str:
     """Return the name that its node asks for: it is made of the one that another end has after all
     rules (image_transport camera_common.cpp getCameraInfoTopic)."""
-    return _sibling(resolve_bound(end.beside, end.kind, bound), end.name)
+    return sibling(resolve_bound(end.beside, end.kind, bound), end.name)
 
 
 def asked_alone(node: NodeFacts, end: Endpoint) -> str:
     """Return the name that a node of a robot alone asks for, under the rules of its node set."""
     others = (it.remapped for it in node.endpoints if it.name == end.beside and it.remapped)
-    return _sibling(next(others, end.beside), end.name) if end.beside else end.name
+    return sibling(next(others, end.beside), end.name) if end.beside else end.name
 
 
-def _sibling(other: str, name: str) -> str:
+def sibling(other: str, name: str) -> str:
     """Return a name with its last word next to another name."""
     return f"{other[: other.rfind('/') + 1]}{name.rpartition('/')[2]}"
 

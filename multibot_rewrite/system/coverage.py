@@ -72,6 +72,28 @@ class Coverage(NamedTuple):
         left = total.unknown or total.partly or self.unread or self.processes
         return not (left or total.silent or lost)
 
+    @property
+    def in_words(self) -> str:
+        """The coverage as ``2 robots, 15 nodes each: 12 known, 3 started as they are``."""
+        robots, total = [it for it in self.robots if it.robot], self.total
+        counts = sorted({it.nodes for it in robots if total.nodes})
+        shared = total.nodes - sum(it.nodes for it in robots)
+        head = [plural(len(robots), "robot")] if robots else []
+        if any(counts):
+            least = f"{counts[0]} to " if len(counts) > 1 else ""
+            head.append(f"{least}{plural(counts[-1], 'node')}{' each' * (len(robots) > 1)}")
+        if shared:
+            head.append(f"{shared} for all" if robots else plural(shared, "node"))
+        details = ", ".join(_details(self)) if total.nodes else ""
+        return f"{', '.join(head)}{': ' * bool(details)}{details}"
+
+    def as_value(self) -> Mapping[str, object]:
+        """Return the coverage as JSON has it; null for what is not said."""
+        rows = [{"robot": it.robot, **_row(self, it)} for it in self.robots]
+        more = {"unread": self.unread, "processes": self.processes}
+        total = {**_row(self, self.total), "incomplete": self.incomplete, **more}
+        return {**total, "robots": rows, "text": self.in_words}
+
 
 def coverage(system: System, graph: System | None = None) -> Coverage:
     """Return how much a system holds, and how much of it is in a graph that it is compared with."""
@@ -105,21 +127,6 @@ def _is_launched(system: System) -> bool:
     return not system.layout and any(it.place != NOWHERE for it in system.nodes)
 
 
-def in_words(held: Coverage) -> str:
-    """Return the coverage as ``2 robots, 15 nodes each: 12 known, 3 started as they are``."""
-    robots, total = [it for it in held.robots if it.robot], held.total
-    counts = sorted({it.nodes for it in robots if total.nodes})
-    shared = total.nodes - sum(it.nodes for it in robots)
-    head = [plural(len(robots), "robot")] if robots else []
-    if any(counts):
-        least = f"{counts[0]} to " if len(counts) > 1 else ""
-        head.append(f"{least}{plural(counts[-1], 'node')}{' each' * (len(robots) > 1)}")
-    if shared:
-        head.append(f"{shared} for all" if robots else plural(shared, "node"))
-    details = ", ".join(_details(held)) if total.nodes else ""
-    return f"{', '.join(head)}{': ' * bool(details)}{details}"
-
-
 def _details(held: Coverage) -> Iterator[str]:
     total = held.total
     if held.told and not total.unknown:
@@ -146,14 +153,6 @@ def _details(held: Coverage) -> Iterator[str]:
 
 def _in_part(shown: Covered) -> str:
     return f" ({shown.partly} in part)" if shown.partly else ""
-
-
-def as_value(held: Coverage) -> Mapping[str, object]:
-    """Return the coverage as JSON has it; null for what is not said."""
-    rows = [{"robot": it.robot, **_row(held, it)} for it in held.robots]
-    more = {"unread": held.unread, "processes": held.processes}
-    total = {**_row(held, held.total), "incomplete": held.incomplete, **more}
-    return {**total, "robots": rows, "text": in_words(held)}
 
 
 def _row(held: Coverage, row: Covered) -> Mapping[str, object]:

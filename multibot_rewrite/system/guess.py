@@ -18,6 +18,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import BODY_FRAMES, OF_A_ROBOT, USUAL_FRAMES
 from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.system.ownership import SEPARATORS, Whose
 from multibot_rewrite.system.records import TOPIC, Edge, System
 from multibot_rewrite.system.words import is_tool
@@ -25,11 +26,11 @@ from multibot_rewrite.system.words import is_tool
 # Topics that a whole robot has; a lidar alone has a scan, and a camera sends tf.
 _WHOLE = frozenset(("cmd_vel", "odom", "joint_states", "robot_description"))
 # Namespaces with topics like a robot's that are only a part of one; two_finger_arm is an arm.
-_PART = re.compile(
+_PART = lazy_compile(
     r"(?!.*(?:arm|bot)_?[0-9]*$).*(cam|costmap|lidar|laser|scan|sensor|imu|gps|realsense|zed|oakd?$|velodyne|ouster|sick|wheel|motor"
     r"|gripper|controller|manager|server|caster|steering|finger|torso).*"
 )
-_NUMBER = re.compile(r"\d+")
+_NUMBER = lazy_compile(r"\d+")
 
 
 class GuessedRobot(NamedTuple):

@@ -15,7 +15,7 @@ from graph_cases import as_planned
 from multibot_rewrite.cli import live
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.spelling.plan import read_plan
-from multibot_rewrite.system.coverage import coverage, in_words
+from multibot_rewrite.system.coverage import coverage
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import (
     PUBLISHES,
@@ -223,4 +223,4 @@ def planned(robots: Iterable[tuple[str, int, int]]) -> System:
     ],
 )
 def test_robots_that_differ_are_named(robots: list[tuple[str, int, int]], text: str) -> None:
-    assert in_words(coverage(planned(robots))) == text
+    assert coverage(planned(robots)).in_words == text

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A rehearsal gives each rule where it stands: what a release does not hand on is found missing."""
+"""A rehearsal gives each rule where it stands: what a release does not hand on is found missing. And
+rcl says of every node of every node set what it is called, with all of its ends."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache, partial
 from pathlib import Path
 from subprocess import CompletedProcess
 from typing import Any
@@ -14,6 +16,16 @@ import live_fleet
 import pytest
 from live_commands import PATIENTLY
 from paths import ROBOTS
+
+from multibot_rewrite.base.releases import RELEASES
+from multibot_rewrite.fleet.fleet import Fleet, expected, make_fleet
+from multibot_rewrite.knowledge.records import Endpoint
+from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.live.rehearsal import stub_nodes
+from multibot_rewrite.producers.ros import ros
+from multibot_rewrite.spelling.records import Run
+from multibot_rewrite.spelling.ways import ros_arguments
+from multibot_rewrite.system.records import ACTION, TOPIC
 
 pytestmark = pytest.mark.live
 
@@ -100,3 +112,71 @@ def test_what_it_does_not_hand_on_leaks(
     node, lines = f"/robot1/{LEAKING[case]}", done[case].stdout.splitlines()
     (line,) = (it for it in lines if it.startswith(f"{node}: error: MG405 {node} sends tf on /tf"))
     assert "by the plan it should publish topic /robot1/tf, but does not" in line
+
+
+# Those that every node has.
+OF_RCL = {"/rosout", "/parameter_events"}
+SEND_GOAL = "/_action/send_goal"
+OF_SIMULATORS = ("gz_ros2_control", "gazebo_ros2_control")
+
+
+@pytest.mark.parametrize("layout", ["tf-per-robot", "postfix"])
+@pytest.mark.parametrize("release", RELEASES)
+def test_rcl_calls_every_end_of_every_node_set_as_planned(
+    release: str, layout: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also those under a condition, which no rehearsal opens. What does not get its rules is what the
+    plan says of itself (MR105)."""
+    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF")
+    wrong, seen = [], 0
+    with ros.opened() as session:
+        node = cache(partial(_node, session))
+        for stack in built_in(release).stacks:
+            # The manager of these gets its rules at the plugin.
+            robot = ROBOTS / ("rover_gz.urdf" if stack in OF_SIMULATORS else "rover.urdf")
+            pair, policy = ["robot1", "robot2"], {"layout": layout}
+            fleet = make_fleet(str(robot), pair, [stack], policy, release=release)
+            not_taken = [str(it) for it in fleet.table.problems if it.code == "MR105"]
+            for run, end, name, own in _by_rcl(fleet, node):
+                seen += 1
+                said = any(f"{run.robot}: {run.node}:" in it for it in not_taken)
+                if own != name and not said:
+                    wrong.append((stack, run.full_name, end.name, name, own))
+            planned = {(it.node, it.kind, it.role, it.name) for it in expected(fleet).ends}
+            ends = {
+                (f"{run.full_name}{end.by}", end.kind, end.role, name)
+                for run, end, name in fleet.table.ends
+                if end.role and (end.by or not end.helper) and name not in OF_RCL
+            }
+            assert ends == planned, stack
+    assert not wrong
+    assert seen > 5_000
+
+
+def _node(session: ros.Session, name: str, arguments: tuple[str, ...]) -> Any:
+    return ros.add_node(session, name, arguments=arguments)
+
+
+def _by_rcl(fleet: Fleet, node: Any) -> Iterator[tuple[Run, Endpoint, str, str]]:
+    """Each end of the fleet's nodes with its planned name, and the one that rcl makes of what the
+    code asks for."""
+    stubs = {stub.full_name: stub for stub, _ in stub_nodes(fleet.table, fleet.edges)}
+    for run in fleet.table.runs:
+        stub = stubs[run.full_name]
+        own = node(stub.code_name, stub.arguments)
+        full = own.get_fully_qualified_name()
+        yield run, Endpoint("node", "", run.node), run.full_name, full
+        words = ros_arguments(stub.process_namespace or "/", "", stub.process_rules)
+        for end, name in run.names:
+            asker = node("helper", tuple(words)) if end.helper else own
+            asked = end.name
+            if end.by and asked.startswith("~/"):
+                asked = full + asked[1:]
+            if end.above:
+                asked = f"{full.rsplit('/', 2)[0]}/{asked.lstrip('/')}"
+            if end.beside:
+                image = asker.resolve_topic_name(end.beside)
+                asked = f"{image.rpartition('/')[0]}/{asked.rpartition('/')[2]}"
+            part = SEND_GOAL if end.kind == ACTION else ""
+            resolve = asker.resolve_topic_name if end.kind == TOPIC else asker.resolve_service_name
+            yield run, end, name, resolve(asked + part).removesuffix(part)

@@ -67,10 +67,8 @@ class Ros:
         self.rows.append(("node", name, *arguments))
         kinds = {"create_service": "serves", "create_client": "calls"}
         made = {key: self._row(name, kind) for key, kind in kinds.items()}
-        full = f"/ns/{name}"
-        return SimpleNamespace(
-            name=name, get_name=lambda: name, get_fully_qualified_name=lambda: full, **made
-        )
+        asked = {"get_name": lambda: name, "get_fully_qualified_name": lambda: f"/ns/{name}"}
+        return SimpleNamespace(name=name, resolve_topic_name="/ruled/{}".format, **asked, **made)
 
     def _row(self, node: str, kind: str) -> Any:
         return lambda type_, name, *_: self.rows.append((node, kind, name, type_))
@@ -189,6 +187,13 @@ def test_what_a_helper_node_has_is_its_own(monkeypatch: pytest.MonkeyPatch) -> N
     (private,) = [it for it in found if it[0] == "node"]
     assert str(private[1]).startswith("a_private_") and "*" not in str(private[1])
     assert found[-1] == (private[1], "subscribes", "/ns/a/scene", EMPTY)
+
+
+def test_a_camera_info_is_next_to_the_image_after_all_rules(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    info = Endpoint(TOPIC, PUBLISHES, "out/camera_info", EMPTY, beside="image_raw")
+    assert rows(monkeypatch, Ros(), stub(info))[-1][2] == "/ruled/camera_info"
 
 
 @pytest.mark.parametrize(

@@ -7,18 +7,17 @@ the robot's namespace. Any other placeholder stays.
 
 from __future__ import annotations
 
-import re
-
 from multibot_rewrite.base.conventions import PREFIX_WORDS, ROBOT_WORDS
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.naming import NOT_PLAIN
 
 _ROBOT = f"(?:{'|'.join(ROBOT_WORDS)})"
 _STANDS = rf"(?:<{_ROBOT}>|\$\((?:var|arg)\s+{_ROBOT}\)|\$\{{{_ROBOT}\}})"
 _PREFIX = f"(?:{'|'.join(PREFIX_WORDS)})"
-_PREFIX_ALONE = re.compile(rf"<{_PREFIX}>|\$\((?:var|arg)\s+{_PREFIX}\)|\$\{{{_PREFIX}\}}")
-_ALONE = re.compile(rf"/?{_STANDS}/?")
-_FIRST = re.compile(rf"/?{_STANDS}(?P<between>[/_]?)(?P<name>[^/].*)")
-_ANYWHERE = re.compile(_STANDS)
+_PREFIX_ALONE = lazy_compile(rf"<{_PREFIX}>|\$\((?:var|arg)\s+{_PREFIX}\)|\$\{{{_PREFIX}\}}")
+_ALONE = lazy_compile(rf"/?{_STANDS}/?")
+_FIRST = lazy_compile(rf"/?{_STANDS}(?P<between>[/_]?)(?P<name>[^/].*)")
+_ANYWHERE = lazy_compile(_STANDS)
 
 
 def is_robot(value: str) -> bool:

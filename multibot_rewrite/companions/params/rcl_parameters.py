@@ -14,6 +14,7 @@ from typing import Any
 
 import yaml
 
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.companions.params.sections import is_for, raw_sections, settings
 from multibot_rewrite.companions.yaml_text import YamlText, refused
 from multibot_rewrite.system.parameters import Scalar, Value
@@ -21,14 +22,14 @@ from multibot_rewrite.system.parameters import Scalar, Value
 # rcl compares these words, in these capitalisations only.
 _TRUE = frozenset(["Y", "y", "yes", "Yes", "YES", "true", "True", "TRUE", "on", "On", "ON"])
 _FALSE = frozenset(["N", "n", "no", "No", "NO", "false", "False", "FALSE", "off", "Off", "OFF"])
-_DOTTED = re.compile(r"[+-]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)")
+_DOTTED = lazy_compile(r"[+-]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)")
 # strtoll with base 0, and strtod: what they take whole.
-_INTEGER = re.compile(r"([+-]?)(?:(0[xX][0-9a-fA-F]+)|(0[0-7]*)|([1-9][0-9]*))")
-_FLOAT = re.compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
-_HEX_FLOAT = re.compile(
+_INTEGER = lazy_compile(r"([+-]?)(?:(0[xX][0-9a-fA-F]+)|(0[0-7]*)|([1-9][0-9]*))")
+_FLOAT = lazy_compile(r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_HEX_FLOAT = lazy_compile(
     r"[+-]?0[xX](?:[0-9a-fA-F]+(?:\.[0-9a-fA-F]*)?|\.[0-9a-fA-F]+)(?:[pP][+-]?[0-9]+)?"
 )
-_NO_NUMBER = re.compile(r"([+-]?(?:inf|infinity|nan))(?:\([A-Za-z0-9_]*\))?", re.IGNORECASE)
+_NO_NUMBER = lazy_compile(r"([+-]?(?:inf|infinity|nan))(?:\([A-Za-z0-9_]*\))?", re.IGNORECASE)
 _STRING = "tag:yaml.org,2002:str"
 _SMALLEST = 2.2250738585072014e-308
 # Characters that JSON allows unescaped, but YAML does not.

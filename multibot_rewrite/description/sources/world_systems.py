@@ -12,6 +12,7 @@ import re
 from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import NOTE, Finding
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.description.checks.hazards import LEFT, WORLD, system_key, world_systems
 from multibot_rewrite.description.checks.problem import Problem, to_findings
@@ -21,9 +22,9 @@ from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import Document, read_document
 
 _OPEN, _CLOSE = b"<!-- left to the world ", b" -->"
-_ASIDE = re.compile(_OPEN + rb"(<plugin\b(?:[^-]|-(?!-))*?>)" + _CLOSE)
-_TAGS = re.compile(rb"<plugin\b[^<]*")
-_SAID = re.compile(rb"""\b(filename|name)\s*=\s*(["'])(.*?)\2""", re.DOTALL)
+_ASIDE = lazy_compile(_OPEN + rb"(<plugin\b(?:[^-]|-(?!-))*?>)" + _CLOSE)
+_TAGS = lazy_compile(rb"<plugin\b[^<]*")
+_SAID = lazy_compile(rb"""\b(filename|name)\s*=\s*(["'])(.*?)\2""", re.DOTALL)
 # A comment cannot hold two dashes, as the begin of another one.
 _DASHES, _WRITTEN = b"--", b"-&#45;"
 Systems = tuple[tuple[str, str], ...]

@@ -388,7 +388,8 @@ def _who(it: Action) -> str:
 
 def _first(planned: Any, printed: Any, where: str = "") -> tuple[str, Any, Any] | None:
     """Return the first value that differs: where it is, as planned, as printed; None for none."""
-    if planned == printed and type(planned) is type(printed) and not _is_deep(planned):
+    # It differs for values of other types, which are equal.
+    if repr(planned) == repr(printed):
         return None
     if type(planned) is not type(printed) or not _is_deep(planned):
         return where, planned, printed

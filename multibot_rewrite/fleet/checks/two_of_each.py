@@ -146,10 +146,13 @@ def _without(made: Outputs, left: Sequence[RobotSpec]) -> Outputs:
 def _planned(plan: System, robots: Collection[str]) -> System:
     """Return the plan without some robots, and without what only they have."""
     names = {it.name for it in plan.nodes if it.robot in robots}
-    owner = whose_by_plan(plan).robot
     gone: dict[str, bool] = defaultdict(lambda: True)
     for it in plan.ends:
         gone[it.name] &= it.node in names
+    # A bridge may bring a topic that no planned node has an end of.
+    if others := {it.name for it in plan.topics} - gone.keys():
+        owner = whose_by_plan(plan).robot
+        gone |= {it: owner(it) in robots for it in others}
 
     def kept(records: Iterable[Any]) -> tuple[Any, ...]:
         return tuple(it for it in records if it.node not in names)
@@ -159,8 +162,7 @@ def _planned(plan: System, robots: Collection[str]) -> System:
         ends=kept(plan.ends),
         edges=tuple(it for it in plan.edges if not it.publishers or not names >= {*it.publishers}),
         robots=tuple(it for it in plan.robots if it.name not in robots),
-        # A bridge may bring a topic that no planned node has an end of.
-        topics=tuple(it for it in plan.topics if not gone.get(it.name, owner(it.name) in robots)),
+        topics=tuple(it for it in plan.topics if not gone[it.name]),
         parameters=kept(plan.parameters),
         controllers=tuple(it for it in plan.controllers if it.manager not in names),
         interfaces=kept(plan.interfaces),

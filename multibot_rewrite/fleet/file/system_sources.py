@@ -21,7 +21,6 @@ from multibot_rewrite.fleet.checks.closed_plan import closed_plan
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import expected, known_nodes, make_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
-from multibot_rewrite.fleet.launch.launch_file import LAUNCH
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.snapshot_file import read_snapshots
@@ -112,6 +111,8 @@ def launched_by(
 def system_of_folder(path: Path, *, distro: str = "") -> System:
     """Return what a folder of ``multibot build`` would start, read as ``system_of_launch`` reads
     its launch file, without its plan. Raises InputError for a folder without one."""
+    from multibot_rewrite.fleet.launch.launch_file import LAUNCH
+
     return system_of_launch(os.path.join(os.fspath(path), LAUNCH), distro=distro)
 
 

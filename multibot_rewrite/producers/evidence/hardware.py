@@ -24,6 +24,7 @@ from typing import NamedTuple
 from lxml.etree import _Element
 
 from multibot_rewrite.base.bounded import own_text
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.knowledge.conditions import Values, holds
 from multibot_rewrite.knowledge.node_entries import read_claims
 from multibot_rewrite.knowledge.records import MANAGER, Claim, NodeFacts
@@ -156,7 +157,7 @@ def control_system(
 
 
 TYPE, COMMAND = "type", "command"
-_PART = re.compile(
+_PART = lazy_compile(
     r"<(?P<names>[^<>=+]+)(?:\+(?P<after>[^<>=]*))?(?P<default>=[^<>]*)?>"
     r"|\[(?P<first>\d+)\.\.(?P<last>\d+)\]|\[(?P<words>[^\[\]]+)\]"
 )

@@ -40,7 +40,7 @@ _ASKED = lazy_compile(r"(?:getenv|environ\.get)\(\s*[\"'](\w+)[\"']\s*\)")
 _STARTED = lazy_compile(r"""\bexecutable\s*=\s*["']([\w./-]+)["']""")
 _SHOWN = 8
 _NEXT_TRIED = lazy_compile(r" - \w+Error: ")
-_OF_ROS_1 = re.compile(
+_OF_ROS_1 = lazy_compile(
     r"Unknown substitution: (?:arg|find|optenv)\b"
     r"|entity of the type: (?:env|machine|param|remap|rosparam|test)\b"
 )

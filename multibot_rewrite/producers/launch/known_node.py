@@ -15,7 +15,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
 from itertools import pairwise
 
-from multibot_rewrite.base.lazy import COMMENT
+from multibot_rewrite.base.lazy import COMMENT, lazy_compile
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.rosnames import (
     BoundNode,
@@ -31,15 +31,14 @@ from multibot_rewrite.knowledge.records import FrameParameter, NodeFacts, SentTr
 from multibot_rewrite.producers.launch.programs import passes, programs
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchOrder
 from multibot_rewrite.producers.launch.source_packages import packages_for
-from multibot_rewrite.producers.sources.facts import node_of_program
 from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.system.records import TOPIC
 
 Decide = Callable[[Condition], bool | None]
 _COMMENTS = {
-    ".xml": re.compile(COMMENT.decode()),
-    ".lua": re.compile(r"--[^\n]*"),
-    ".yaml": re.compile(r"(?m)(?:^|\s)#.*$"),
+    ".xml": lazy_compile(COMMENT.decode()),
+    ".lua": lazy_compile(r"--[^\n]*"),
+    ".yaml": lazy_compile(r"(?m)(?:^|\s)#.*$"),
 }
 
 
@@ -108,7 +107,7 @@ def _has(path: str, words: Sequence[str]) -> bool:
     return any(re.search(rf"(?<![\w/]){re.escape(it)}(?!\w)", plain) for it in words)
 
 
-_CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
+_CAMEL = lazy_compile(r"(?<=[a-z0-9])(?=[A-Z])")
 
 
 def own_name(it: LaunchedNode, facts: NodeFacts | None) -> str:
@@ -219,6 +218,8 @@ def with_sources(
     unknown = [program for program, it in wanted.items() if known_node(it, (), known) is None]
     if not unknown:
         return dict(known)
+    from multibot_rewrite.producers.sources.facts import node_of_program
+
     folders: dict[str, str] = {}
     for order in orders:
         folders = {**packages_for(order.file, order.roots), **folders}

@@ -80,7 +80,7 @@ def performed(path: str, launches: Sequence[Launching]) -> list[Performed]:
         keep_places()
         try:
             module = _loaded(path)
-        except (Exception, SystemExit) as error:
+        except (Exception, SystemExit) as error:  # a launch file may raise anything
             return [Performed((), failure(error)) for _ in launches]
         return [_performed(module, path, it, packages) for it in launches]
 
@@ -134,8 +134,7 @@ def _performed(module: Any, path: str, it: Launching, packages: _Packages) -> Pe
     try:
         description = module.generate_launch_description()
         return Performed(tuple(_Seen(context, path, []).below(description)))
-    except (Exception, SystemExit) as error:
-        # A launch file is a program: it may raise anything.
+    except (Exception, SystemExit) as error:  # as above
         return Performed((), failure(error))
 
 

@@ -58,9 +58,12 @@ def _maker(frame: FrameType | None) -> Place | None:
         if module in _READERS:
             return None
         if module.partition(".")[0] not in _MAKERS:
-            return Place(os.path.realpath(frame.f_code.co_filename), frame.f_lineno)
+            return Place(_real(frame.f_code.co_filename), frame.f_lineno)
         frame = frame.f_back
     return None
+
+
+_real = lru_cache(os.path.realpath)
 
 
 @lru_cache

@@ -104,7 +104,7 @@ def _tried(order: LaunchOrder, folder: str, missing: list[str]) -> LaunchGraph |
         graph = _visited(_described(order), order)
     except UnreadableError:
         raise
-    except (Exception, SystemExit) as error:
+    except (Exception, SystemExit) as error:  # a launch file may raise anything
         if missing and is_without(error):
             said = f"the package {missing[-1]!r} computes what it starts, and is not read here"
             return LaunchGraph(notes=(LaunchNote(Place(os.path.abspath(order.file), 1), said),))
@@ -150,7 +150,7 @@ def read_own(file: str, folder: str) -> LaunchGraph:
         keep_places()
         try:
             return with_real_paths(_visited(_described(order), order))  # type: ignore[no-any-return]
-        except (Exception, SystemExit) as error:
+        except (Exception, SystemExit) as error:  # as above
             raise UnreadableError(failure(error)) from error
         finally:
             tempfile.tempdir = before

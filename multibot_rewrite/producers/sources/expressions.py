@@ -8,12 +8,12 @@ function in ``TEXTS``.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from functools import cache
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.producers.sources.records import braced
 
@@ -30,11 +30,11 @@ SAME_TEXT = (
     *("resolve_topic_or_service_name", "expand_topic_or_service_name"),
 )
 LAST_TEXT = ("joinWithParentNamespace", "resolve_topic_name", "append")
-NAMES_PARAMETER = re.compile(r"(get|declare|add)\w*[pP]aram(eter)?(_if_not_declared|_or)?")
+NAMES_PARAMETER = lazy_compile(r"(get|declare|add)\w*[pP]aram(eter)?(_if_not_declared|_or)?")
 LONGEST_NAME = 80
-MESSAGE = re.compile(r"::(msg|srv|action)::")
-_SCOPE = re.compile(r"\b(?:\w+(?:<[^<>]*>)?::)+(?=\w)")
-_NODE = re.compile(
+MESSAGE = lazy_compile(r"::(msg|srv|action)::")
+_SCOPE = lazy_compile(r"\b(?:\w+(?:<[^<>]*>)?::)+(?=\w)")
+_NODE = lazy_compile(
     r"<(this|\w*[nN]ode\w*|nh_?|n_?|parent\w*|shared_from_this|\w*interface\w*|Node:.*)>"
 )
 

@@ -157,7 +157,7 @@ def _evaluator(xacro: Any) -> Callable[[str, Any], Any]:
     def expression(text: str, symbols: Any) -> Any:
         try:
             return xacro.safe_eval(evaluated(text, symbols), symbols)
-        except Exception as error:
+        except Exception as error:  # an expression of the file may raise anything
             suffix = f"\nwhen evaluating expression '{text}'"
             raise xacro.XacroException(exc=error, suffix=suffix) from error
 

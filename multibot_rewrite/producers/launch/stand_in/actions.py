@@ -219,7 +219,7 @@ class IncludeLaunchDescription(Action):
         """Return the arguments that it gives, if their names are known before the launch runs."""
         try:
             return [text_of(LaunchContext(), name) for name, _ in self.launch_arguments]
-        except Exception:
+        except Exception:  # as above, of a name
             return []
 
 
