@@ -3,8 +3,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 import yaml
@@ -76,8 +75,6 @@ def _lines(node: yaml.Node, file: str, path: Path) -> Iterator[tuple[Path, int]]
 
 def _errors(data: Any, schema: Mapping[str, Any]) -> list[Any]:
     """Return every error, with the deepest reason of each."""
-    if _is_valid(data, schema, schema.get("$defs", {})):
-        return []
     try:
         import jsonschema
         from jsonschema.exceptions import best_match
@@ -89,45 +86,6 @@ def _errors(data: Any, schema: Mapping[str, Any]) -> list[Any]:
         hint = "install it: pip install 'jsonschema>=3.2'"
         raise UsageError(f"{what}; {hint} ({error})") from None
     return [best_match([it]) for it in newest(schema).iter_errors(data)]
-
-
-def _is_valid(data: Any, schema: Mapping[str, Any], named: Mapping[str, Any]) -> bool:
-    """Return whether data surely follows a schema; ``named`` are those that it refers to. To import
-    jsonschema takes longer than to plan a fleet, so it is asked only what is wrong."""
-    known, others = schema.get("properties", {}), schema.get("additionalProperties", {})
-    keys = data.items() if isinstance(data, dict) else ()
-    below = [(value, known.get(key, others)) for key, value in keys]
-    below += [(it, schema.get("items", {})) for it in data] if isinstance(data, list) else []
-    below += [(data, named[schema["$ref"].rpartition("/")[2]])] if "$ref" in schema else []
-    return (
-        all(it is not False and _is_valid(value, it, named) for value, it in below)
-        and (
-            "oneOf" not in schema or sum(_is_valid(data, it, named) for it in schema["oneOf"]) == 1
-        )
-        and all(rule(data, schema[key]) for key, rule in _RULES.items() if key in schema)
-    )
-
-
-def _is_of(data: Any, wanted: str | Sequence[str]) -> bool:
-    names = [wanted] if isinstance(wanted, str) else wanted
-    return any(type(data) in _CLASSES[it] for it in names)
-
-
-_CLASSES: Mapping[str, tuple[type, ...]] = {
-    **{"array": (list,), "object": (dict,), "string": (str,), "boolean": (bool,)},
-    **{"number": (int, float), "integer": (int,)},
-}
-_RULES: Mapping[str, Callable[[Any, Any], bool]] = {
-    "type": _is_of,
-    "enum": lambda it, words: it in words,
-    "required": lambda it, keys: type(it) is not dict or it.keys() >= {*keys},
-    "pattern": lambda it, text: type(it) is not str or bool(re.search(text, it)),
-    "minLength": lambda it, least: type(it) is not str or len(it) >= least,
-    "minItems": lambda it, least: type(it) is not list or len(it) >= least,
-    "maxItems": lambda it, most: type(it) is not list or len(it) <= most,
-    "minimum": lambda it, least: type(it) not in (int, float) or it >= least,
-    "maximum": lambda it, most: type(it) not in (int, float) or it <= most,
-}
 
 
 def _faults(
