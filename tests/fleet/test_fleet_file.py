@@ -20,7 +20,7 @@ from paths import ROOT
 from multibot_rewrite.base import editors
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.file.checked_yaml import _RULES, TYPES, _in_words
+from multibot_rewrite.fleet.file.checked_yaml import TYPES, _in_words
 from multibot_rewrite.fleet.file.fleet_data import SCHEMA, check_files, schema, with_paths
 from multibot_rewrite.fleet.file.fleet_file import KINDS, FleetFile, read_fleet
 from multibot_rewrite.fleet.file.robot_spec import Pose, RobotSpec
@@ -433,30 +433,6 @@ def test_an_old_jsonschema_is_one_line(
     )
     assert (out, err.count("\n")) == ("", 1)
     assert not (tmp_path / "out").exists()
-
-
-def test_every_keyword_of_the_schema_is_asked_without_jsonschema() -> None:
-    words = {"$schema", "$id", "$defs", "$comment", "title", "description"}
-    followed = {"$ref", "oneOf", "items", "properties", "additionalProperties"}
-
-    def schemas(it: dict[str, Any]) -> Iterator[dict[str, Any]]:
-        yield it
-        below = [*it.get("oneOf", ()), it.get("items"), it.get("additionalProperties")]
-        below += [*it.get("properties", {}).values(), *it.get("$defs", {}).values()]
-        for one in below:
-            yield from schemas(one) if isinstance(one, dict) else ()
-
-    every = {keyword for it in schemas(schema()) for keyword in it}
-    assert {"minItems", "pattern"} <= every <= words | followed | _RULES.keys()
-
-
-def test_what_is_valid_needs_no_jsonschema(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It takes longer to import than a fleet to plan."""
-    monkeypatch.setitem(sys.modules, "jsonschema", ModuleType("jsonschema"))
-    fleets = [*(ROOT / "examples").rglob("fleet*.yaml")]
-    assert len(fleets) >= 8
-    for fleet in fleets:
-        assert read_fleet(str(fleet), "", {}).robots
 
 
 @pytest.mark.parametrize("part", [(), ("$defs", "robot"), ("$defs", "companions")])
