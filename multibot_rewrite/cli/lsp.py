@@ -22,9 +22,9 @@ from typing import Any
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.model import MultibotError, Unusable
 from multibot_rewrite.cli import answers
-from multibot_rewrite.cli.answers import Place
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.description.steps.apply import cut
+from multibot_rewrite.refactor.places import Place
 from multibot_rewrite.version import __version__
 
 try:
@@ -184,11 +184,10 @@ def _saved(_: lsp.DidSaveTextDocumentParams) -> None:
 @server.feature(lsp.TEXT_DOCUMENT_HOVER)
 async def _hover(params: lsp.HoverParams) -> lsp.Hover | None:
     document = server.workspace.get_text_document(params.text_document.uri)
-    word = document.word_at_position(params.position, _BEFORE, _AFTER).strip("/:?!")
-    here = [
-        it.code for it in server.found.get(document.uri, ()) if it.line == params.position.line + 1
-    ]
-    explained = await server.ask(answers.explain, document.uri, word, here)
+    word = document.word_at_position(params.position, _BEFORE, _AFTER).strip("/:?!-")
+    found, line = server.found.get(document.uri, ()), params.position.line + 1
+    words = [word, *(it.code for it in found if it.line == line)]
+    explained = await server.ask(answers.explain, document.uri, words)
     content = lsp.MarkupContent(lsp.MarkupKind.Markdown, f"```text\n{explained}\n```")
     return lsp.Hover(content) if explained else None
 
@@ -199,9 +198,8 @@ async def _actions(params: lsp.CodeActionParams) -> list[lsp.CodeAction]:
     document = server.workspace.get_text_document(uri)
     path, source = document.path, document.source.encode()
     # Only in the text that was linted, not in one that was typed since.
-    known = (
-        server.found.get(uri, ()) if uri in server.running and server.running[uri].done() else ()
-    )
+    is_linted = uri in server.running and server.running[uri].done()
+    known = server.found.get(uri, ()) if is_linted else ()
     fixable = [it for it in known if it.edits and it.file == path]
     made: list[tuple[str, str, bytes | None]] = [
         (f"Fix {it.code}: {it.message}", _FIX, b"".join(cut(source, sorted(it.edits))))

@@ -10,4 +10,4 @@ from multibot_rewrite.rules.settings import Settings
 _PLUGIN = b'<gazebo><plugin filename="libgazebo_ros_diff_drive.so" name="p"/></gazebo>'
 lint_data("warm.urdf", b'<robot name="warm"><link name="a"/>%b</robot>' % _PLUGIN, Settings())
 lint_data("warm.yaml", b"amcl:\n  ros__parameters:\n    base_frame_id: a\n", Settings())
-answers.explain(Namespace(vocabulary=[], distro=""), "-", "link", ())
+answers.explain(Namespace(vocabulary=[], distro=""), "-", ["link"])
