@@ -36,7 +36,7 @@ except ImportError as error:
     raise Unusable(f"{error}: editors need it: pip install 'multibot_rewrite[lsp]'") from None
 
 # Seconds: without a change before a file is linted, and after which an answer is given up.
-PAUSE, MOST = 0.05, 60.0
+PAUSE, MOST = 0.03, 60.0
 _FIX, _FIX_ALL = lsp.CodeActionKind.QuickFix, lsp.CodeActionKind.SourceFixAll
 _SEVERITIES = {ERROR: lsp.DiagnosticSeverity.Error, WARNING: lsp.DiagnosticSeverity.Warning}
 # A name, a tag with its bracket or an attribute with its value.
