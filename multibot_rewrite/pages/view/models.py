@@ -215,7 +215,8 @@ def _shapes(link: Any, named: Mapping[str, Colour], source: str) -> Iterator[Sha
         colour = _rgba(it.material) or (it.material and named.get(it.material.name)) or UNCOLOURED
         pose, own = _pose(it.origin), it.geometry
         if own.box:
-            yield Shape("box", _floats(own.box.size), pose, colour)
+            x, y, z = _floats(own.box.size)
+            yield Shape("box", (x, y, z), pose, colour)
         elif own.cylinder:
             size = _floats((own.cylinder.radius, own.cylinder.length))
             yield Shape("cylinder", size, pose, colour)

@@ -115,11 +115,12 @@ def test_a_fault_that_nobody_sees_is_none_of_the_picture() -> None:
     assert load(f'<link name="a">{broken}</link>').links == {"a": ()}
 
 
-@pytest.mark.parametrize("number", ["", "x", "nan", "1 2"])
-def test_a_urdf_that_yourdfpy_does_not_read_is_named(number: str) -> None:
-    sphere = f'<sphere radius="{number}"/>'
+@pytest.mark.parametrize(
+    "shape", [*(f'<sphere radius="{it}"/>' for it in ("", "x", "nan", "1 2")), '<box size="1 2"/>']
+)
+def test_a_urdf_that_yourdfpy_does_not_read_is_named(shape: str) -> None:
     with pytest.raises(InputError, match=r"/nowhere/r\.urdf: yourdfpy cannot read it: .*urdf-lint"):
-        shapes(sphere)
+        shapes(shape)
 
 
 @pytest.mark.more
