@@ -102,7 +102,7 @@ def bytes_if_read(path: str) -> bytes:
     """Return the bytes of a file, or none if it cannot be read."""
     try:
         return read_bytes(path)
-    except OSError:
+    except (OSError, ValueError):
         return b""
 
 
