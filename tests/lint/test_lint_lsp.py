@@ -183,6 +183,7 @@ def test_hover_is_inspect(
     for word, name in (
         ("gz-sim-diff-drive-system", "gz-sim-diff-drive-system"),
         ("<|joint", "joint"),
+        ("</|joint", "joint"),
         ("MB202", "MB202"),
     ):
         assert multibot(["inspect", name, "--distro", "jazzy"]) == 0
@@ -237,7 +238,62 @@ def test_a_link_is_found_from_each_of_its_places(
     for other in ("whole.urdf.xacro", "part.xacro"):
         (package / "urdf" / other).unlink(missing_ok=True)
     assert set(editor.references(package / name, text, word)) == PLACES
+    used = editor.references(package / name, text, word, every=False)
+    assert set(used) == PLACES - {("rover.urdf", 3, "base_link")}
     assert editor.definition(package / name, text, word) == [("rover.urdf", 3, "base_link")]
+
+
+def test_a_file_that_begins_with_a_mark_has_its_names_where_they_are(
+    editor: Editor, package: Path
+) -> None:
+    """A byte order mark is a character of the editor's text and none of YAML's."""
+    path, text = package / "config" / "marked.yaml", f"\ufeff{PARAMS}"
+    path.write_text(text)
+    found = editor.references(path, text, "frame: |base_link")
+    path.unlink()
+    assert ("marked.yaml", 4, "base_link") in found
+
+
+def test_a_file_without_a_description_in_its_package_is_of_those_around_it(
+    editor: Editor, tmp_path: Path
+) -> None:
+    for name, text in (("rover_description/r.urdf", URDF), ("rover_nav/nav2.yaml", PARAMS)):
+        folder = (tmp_path / name).parent
+        folder.mkdir()
+        (folder / "package.xml").write_text(MANIFEST.replace("rover_description", folder.name))
+        (tmp_path / name).write_text(text)
+    place = editor.definition(tmp_path / "rover_nav" / "nav2.yaml", PARAMS, "frame: |base_link")
+    assert place == [("r.urdf", 3, "base_link")]
+
+
+def test_levels_are_those_of_the_editor(editor: Editor, package: Path) -> None:
+    path = package / "urdf" / "levels.urdf"
+    text = URDF.replace('child link="wheel"', 'child link="whel"')
+    text = text.replace("<robot", '<robot xmlns:x="urn:x"')
+    shown = {it.code: it.severity for it in editor.open(path, text)}
+    assert (shown["MB202"], shown["MB142"]) == (1, 3)
+    editor.close(path)
+    fleet = FLEET.replace("layout: tf-per-robot", "layout: tf-per-robot\nstack: nav2")
+    found = editor.open(package / "fleet.yaml", fleet)
+    assert ("MG413", 2) in [(it.code, it.severity) for it in found]
+    assert {it.source for it in found} == {"urdf-lint"}
+    editor.close(package / "fleet.yaml")
+
+
+def test_a_file_is_one_under_each_of_its_names(editor: Editor, package: Path) -> None:
+    """The editor has the file open behind a link; another file includes it by its path."""
+    (package / "link").symlink_to("urdf")
+    part, whole = package / "link" / "parts.xacro", package / "urdf" / "all.urdf.xacro"
+    head = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+    part.write_text(head + '<link name="a"/>\n</robot>\n')
+    text = head + '<xacro:include filename="parts.xacro"/>\n<joint name="j" type="fixed">\n'
+    text += '<parent link="a"/><child link="b"/></joint>\n</robot>\n'
+    assert "MB202" in codes(editor.open(whole, text))
+    editor.open(part, head + '<link name="a"/>\n<link name="b" nam="b"/>\n</robot>\n')
+    assert "MB202" not in codes(editor.change(whole, text + "\n"))
+    assert 2 in {it.range.start.line for it in editor.shown[part.as_uri()]}
+    for it in (whole, part):
+        editor.close(it)
 
 
 def test_a_joint_of_an_srdf_is_that_of_the_urdf(editor: Editor, package: Path) -> None:

@@ -133,8 +133,11 @@ class Editor:
         params = lsp.DefinitionParams(*at(path, text, word))
         return self._places(self.run(self.client.text_document_definition_async(params)))
 
-    def references(self, path: Path, text: str, word: str) -> list[tuple[str, int, str]]:
-        params = lsp.ReferenceParams(lsp.ReferenceContext(True), *at(path, text, word))
+    def references(
+        self, path: Path, text: str, word: str, every: bool = True
+    ) -> list[tuple[str, int, str]]:
+        """The places of a name; without ``every`` none that declares it."""
+        params = lsp.ReferenceParams(lsp.ReferenceContext(every), *at(path, text, word))
         return self._places(self.run(self.client.text_document_references_async(params)))
 
     def _places(self, found: Any) -> list[tuple[str, int, str]]:
