@@ -272,6 +272,8 @@ def test_levels_are_those_of_the_editor(editor: Editor, package: Path) -> None:
     text = text.replace("<robot", '<robot xmlns:x="urn:x"')
     shown = {it.code: it.severity for it in editor.open(path, text)}
     assert (shown["MB202"], shown["MB142"]) == (1, 3)
+    (empty,) = editor.change(path, "")
+    assert (empty.code, empty.range.start.line, empty.range.start.character) == ("MB101", 0, 0)
     editor.close(path)
     fleet = FLEET.replace("layout: tf-per-robot", "layout: tf-per-robot\nstack: nav2")
     found = editor.open(package / "fleet.yaml", fleet)

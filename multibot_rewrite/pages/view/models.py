@@ -182,9 +182,9 @@ def load_urdf(root: _Element, source: str) -> Model:
         it.tag = "cylinder"
     for it in cast("list[Any]", drawn.xpath(f"link/visual[not({_SHAPES})]")):
         it.getparent().remove(it)
-    off = {"build_scene_graph": False, "load_meshes": False}
+    text = BytesIO(etree.tostring(drawn))
     try:
-        robot = yourdfpy.URDF.load(BytesIO(etree.tostring(drawn)), **off).robot
+        robot = yourdfpy.URDF.load(text, build_scene_graph=False).robot
         named = {it.name: _rgba(it) for it in robot.materials}
         links = {it.name: tuple(_shapes(it, named, source)) for it in robot.links}
         return Model(links, tuple(map(_joint, robot.joints)))

@@ -115,6 +115,13 @@ def test_a_fault_that_nobody_sees_is_none_of_the_picture() -> None:
     assert load(f'<link name="a">{broken}</link>').links == {"a": ()}
 
 
+def test_a_joint_without_its_link_and_a_mesh_that_is_not_there_are_read() -> None:
+    joint = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
+    link = '<link name="a"><visual><geometry><mesh filename="no.stl"/></geometry></visual></link>'
+    model = load(link + joint)
+    assert (model.links["a"][0].missing, model.joints[0].child) == ("no.stl is not found", "b")
+
+
 @pytest.mark.parametrize(
     "shape", [*(f'<sphere radius="{it}"/>' for it in ("", "x", "nan", "1 2")), '<box size="1 2"/>']
 )
