@@ -63,6 +63,8 @@ _PLAIN = ("urdf", "baseline", "fail_on", "trust")
 def run(options: argparse.Namespace) -> int:
     """Lint or fix; returns the exit code."""
     if options.lsp:  # a program of its own; pygls is an extra
+        if plain_words(options) or options.fix:
+            raise UsageError("--lsp lints what an editor opens: leave out PATH and --fix")
         return int(import_module("multibot_rewrite.cli.lsp").run(options))
     check_use(options)
     config = configured(".", options.config)
