@@ -3,6 +3,7 @@
 
     python .ci/release.py prepare 0.3.0     writes the version and its date wherever they are said
     python .ci/release.py notes v0.3.0      prints the release notes, in Markdown
+    python .ci/release.py hook v0.3.0       tags hook-v0.3.0: what pre-commit installs, and nothing else
 
 ``notes`` ends with 1 where a file says another version than the tag. catkin_prepare_release changes
 package.xml and a literal in setup.py alone: it cannot be used here.
@@ -24,13 +25,18 @@ LABEL = "Forthcoming"
 VERSION = r"\d+\.\d+\.\d+"
 # What has the version in it and is made anew: manual pages, and the badges of the README.
 MAKERS = ("share/make.py", "docs/site/badges.py")
+# What pre-commit installs the hook from; the rest of the repository is as much again, twice.
+HOOK = (
+    *(".pre-commit-hooks.yaml", "pyproject.toml", "setup.py", "setup.cfg", "MANIFEST.in"),
+    *("README.md", "LICENSE", "package.xml", "multibot_rewrite", "resource", "share"),
+)
 # Where the version is said.
 PLACES = {
     "pyproject.toml": rf'(?m)^(version = "){VERSION}(")$',
     "package.xml": rf"(<version>){VERSION}(</version>)",
     "CITATION.cff": rf"(?m)^(version: ){VERSION}()$",
     "multibot_rewrite/version.py": rf'(?m)^(__version__ = "){VERSION}(")$',
-    "docs/lint.md": rf"([@ `]v){VERSION}()",
+    "docs/lint.md": rf"([@ `-]v){VERSION}()",
 }
 
 
@@ -81,14 +87,31 @@ def notes(tag: str, root: Path) -> str:
     return re.sub(r"\n  +", " ", found.strip()).replace("``", "`")
 
 
+def hook(tag: str, root: Path) -> str:
+    """Tag what pre-commit installs of this revision, a commit without a parent; returns the tag."""
+
+    def git(*words: str, given: str = "") -> str:
+        who = ("-c", "user.name=release", "-c", "user.email=release@users.noreply.github.com")
+        command = ["git", "-C", str(root), *who, *words]
+        done = subprocess.run(command, input=given, capture_output=True, text=True, check=False)
+        if done.returncode:
+            raise ValueError(done.stderr.strip())
+        return done.stdout.strip()
+
+    tree = git("mktree", given=git("ls-tree", "HEAD", *HOOK) + "\n")
+    commit = git("commit-tree", tree, "-m", f"What pre-commit installs of {tag}")
+    git("tag", f"hook-{tag}", commit)
+    return f"hook-{tag}"
+
+
 def main(words: list[str]) -> int:
     """Do what the words say."""
-    if len(words) != 2 or words[0] not in ("prepare", "notes"):
+    if len(words) != 2 or words[0] not in ("prepare", "notes", "hook"):
         print(__doc__)
         return 2
     try:
-        if words[0] == "notes":
-            print(notes(words[1], ROOT))
+        if words[0] in ("notes", "hook"):
+            print((notes if words[0] == "notes" else hook)(words[1], ROOT))
             return 0
         if not find_spec("shtab"):
             raise ValueError("manual pages are made by shtab: pip install -e '.[test]'")

@@ -10,11 +10,12 @@ from __future__ import annotations
 import gc
 import os
 import pickle
+import resource
 import select
 import signal
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
-from typing import BinaryIO, Generic, NamedTuple, NoReturn, TypeVar
+from contextlib import contextmanager, suppress
+from typing import BinaryIO, Generic, NamedTuple, NoReturn, TypeVar, cast
 
 from multibot_rewrite.base.model import UsageError
 
@@ -52,25 +53,23 @@ class WorkerPool(Generic[_Item, _Made]):
         self.work, self.items, self.lost = work, items, lost
         self.workers: dict[int, _Worker] = {}
 
-    def start(self, count: int) -> None:
-        """Start workers; raises UsageError where the system does not let a single one start."""
-        for _ in range(count):
-            try:
-                worker = self._forked()
-            except OSError as error:
-                if self.workers:
-                    return
-                raise UsageError(f"no process can be started: {error.strerror}") from None
-            self.workers[worker.answers.fileno()] = worker
-
-    def _forked(self) -> _Worker:
+    def start(self) -> None:
+        """Start a worker; raises UsageError where the system lets none start and there is no other."""
         requests, answers = os.pipe(), os.pipe()
-        pid = os.fork()
+        try:
+            pid = os.fork()
+        except OSError as error:
+            for fd in (*requests, *answers):
+                os.close(fd)
+            if not self.workers:
+                raise UsageError(f"no process can be started: {error.strerror}") from None
+            return
         if pid == 0:
             self._serve(requests, answers)
         os.close(requests[0])
         os.close(answers[1])
-        return _Worker(pid, os.fdopen(requests[1], "wb", 0), os.fdopen(answers[0], "rb"))
+        one = _Worker(pid, os.fdopen(requests[1], "wb", 0), os.fdopen(answers[0], "rb"))
+        self.workers[answers[0]] = one
 
     def _serve(self, requests: tuple[int, int], answers: tuple[int, int]) -> NoReturn:
         """Answer requests until their pipe is closed, also if the parent died."""
@@ -101,53 +100,36 @@ class WorkerPool(Generic[_Item, _Made]):
         waiting = iter(range(len(self.items)))
         busy: dict[int, int] = {}
         done: dict[int, _Made] = {}
-        for fd in tuple(self.workers):
-            self._send(fd, waiting, busy)
         for number in range(len(self.items)):
             while number not in done:
+                for fd, item in zip(self.workers.keys() - busy.keys(), waiting, strict=False):
+                    busy[fd] = item
+                    with suppress(BrokenPipeError):  # it died while idle: its answers end as well
+                        pickle.dump(item, self.workers[fd].requests)
                 poll = select.poll()
                 for fd in busy:
                     poll.register(fd, select.POLLIN)
                 for fd, _ in poll.poll():
                     which = busy.pop(fd)
-                    done[which], free = self._answer(fd, which)
-                    self._send(free, waiting, busy)
+                    done[which] = self._answer(fd, which)
             yield done.pop(number)
 
-    def _send(self, fd: int, waiting: Iterator[int], busy: dict[int, int]) -> None:
-        number = next(waiting, None)
-        if number is None:
-            return
-        busy[fd] = number
+    def _answer(self, fd: int, number: int) -> _Made:
+        """Return a worker's result for an item; another worker takes the place of one that died."""
         try:
-            pickle.dump(number, self.workers[fd].requests)
-        except BrokenPipeError:
-            return  # it died while idle: its answers end as well
-
-    def _answer(self, fd: int, number: int) -> tuple[_Made, int]:
-        """Return a worker's result for an item, and the worker for the next one, which may be new."""
-        try:
-            made: _Made = pickle.load(self.workers[fd].answers)
+            return cast("_Made", pickle.load(self.workers[fd].answers))
         except (EOFError, pickle.UnpicklingError):
-            status = self._stop(fd)
-            self.start(1)
-            return self.lost(self.items[number], status), next(reversed(self.workers))
-        return made, fd
+            died_of = _ended(self.workers.pop(fd))
+            self.start()
+            return self.lost(self.items[number], died_of)
 
-    def _stop(self, fd: int) -> int:
-        """End a worker and wait for it; the signal that killed it."""
-        worker = self.workers.pop(fd)
-        worker.requests.close()
-        worker.answers.close()
-        _, status = os.waitpid(worker.pid, 0)
-        return os.WTERMSIG(status) if os.WIFSIGNALED(status) else 0
 
-    def stop(self) -> None:
-        """End all workers, whatever they are doing."""
-        for worker in self.workers.values():
-            os.kill(worker.pid, signal.SIGKILL)
-        for fd in tuple(self.workers):
-            self._stop(fd)
+def _ended(worker: _Worker) -> int:
+    """Wait for the end of a worker; return the signal that killed it."""
+    worker.requests.close()
+    worker.answers.close()
+    _, status = os.waitpid(worker.pid, 0)
+    return os.WTERMSIG(status) if os.WIFSIGNALED(status) else 0
 
 
 def processors() -> int:
@@ -172,17 +154,18 @@ def worker_pool(
     jobs: int,
 ) -> Iterator[WorkerPool[_Item, _Made]]:
     """Yield workers, for as long as the ``with`` block lasts."""
-    result = WorkerPool(work, items, lost)
+    pool = WorkerPool(work, items, lost)
     try:
-        result.start(min(jobs, len(items)))
-        yield result
+        for _ in range(min(jobs, len(items))):
+            pool.start()
+        yield pool
     finally:
-        result.stop()
+        for it in pool.workers.values():
+            os.kill(it.pid, signal.SIGKILL)
+            _ended(it)
 
 
 def _limit_memory() -> None:
-    import resource
-
     try:
         with open("/proc/self/statm") as file:
             now = int(file.read().split()[0]) * resource.getpagesize()
@@ -193,23 +176,17 @@ def _limit_memory() -> None:
 
 def limit_files(most: int) -> None:
     """Let this process make no file of more bytes: a write beyond raises OSError."""
-    import resource
-
     _limit(resource.RLIMIT_FSIZE, most)
 
 
 def limit_time(seconds: float) -> None:
     """Limit the CPU time of this process from now on; after it SIGXCPU ends the process."""
-    import resource
-
     used = resource.getrusage(resource.RUSAGE_SELF)
     _limit(resource.RLIMIT_CPU, int(used.ru_utime + used.ru_stime + seconds) + 1)
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
 def _limit(kind: int, most: int) -> None:
-    import resource
-
     _, hard = resource.getrlimit(kind)
     if hard == resource.RLIM_INFINITY or most < hard:
         resource.setrlimit(kind, (most, hard))

@@ -8,13 +8,14 @@ import re
 import signal
 
 from multibot_rewrite.base import model
+from multibot_rewrite.base.bounded import bytes_if_read
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Rule
 from multibot_rewrite.base.findings.selection import level_of
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.outside import unrepeatable
 from multibot_rewrite.description.sources.packages import is_for_ros_1, package_of
 from multibot_rewrite.description.sources.read import XACRO
-from multibot_rewrite.lint.files.named import descriptions_below, text_of_file
+from multibot_rewrite.lint.files.named import descriptions_below
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.rules.subject import Subject
 
@@ -73,7 +74,7 @@ def _is_made_beside(path: str, name: str) -> bool:
     called = re.escape(name).encode()
     made = re.compile(rb"<xacro:(?:macro|property|arg)\s[^<>]*name=[\"']%s[\"']" % called)
     others = (it for it in descriptions_below(folder) if it != os.path.abspath(path))
-    return any(made.search(text_of_file(it)) for it in others)
+    return any(made.search(bytes_if_read(it)) for it in others)
 
 
 def crash(rule: Rule, subject: Subject, error: Exception) -> Finding:

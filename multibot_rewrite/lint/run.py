@@ -49,10 +49,7 @@ def lint_files(
         for path, (its, asked) in zip(unknown, linted, strict=True):
             found[path] = its
             if cache:
-                from multibot_rewrite.lint.cache.cache import findings_written
-
-                key, written = _key(path, settings), findings_written(its)
-                cache.keep(_group(path), key, written, asked)
+                cache.keep(_group(path), _key(path, settings), its, asked)
     return _in_order(_once(it for path in paths for it in found[path] or ()), paths)
 
 

@@ -22,7 +22,7 @@ else:
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 # What only extras bring, and where it is imported: here, or in a child process.
-HERE = ("trimesh", "rosbags", "rosbags.rosbag2", "zenoh")
+HERE = ("yourdfpy", "rosbags", "rosbags.rosbag2", "zenoh")
 IN_CHILDREN = ("rclpy", "zenoh")
 FLEET = str(ROOT / "examples" / "namespace_and_prefix" / "fleet.yaml")
 PLAN = str(FIXTURES / "graphs" / "plan.yaml")
@@ -78,12 +78,12 @@ def test_every_extra_that_is_asked_for_is_there() -> None:
     asked = {
         it for path in files for it in re.findall(r"multibot_rewrite\[(\w+)\]", path.read_text())
     }
-    assert asked == {"ros", "zenoh", "bags", "view", "sources"}
+    assert asked == {"ros", "zenoh", "bags", "view", "sources", "lsp"}
     assert asked <= PROJECT["optional-dependencies"].keys()
 
 
 def test_the_exit_code_is_in_the_help() -> None:
-    words = {"ros": "rclpy", "zenoh": "zenoh", "bags": "rosbags", "view": "trimesh"}
+    words = {"ros": "rclpy", "zenoh": "zenoh", "bags": "rosbags", "view": "yourdfpy"}
     for (name, *_), extra in NEEDS:
         (said,) = re.findall(r"\b4 ([^;.]*)", str(COMMANDS[name].exit_codes))
         assert words[extra] in said, name
@@ -128,10 +128,11 @@ def test_what_pip_installs_is_small() -> None:
 
 @pytest.mark.more
 def test_the_view_brings_little() -> None:
-    """What reads meshes, without what trimesh can do besides."""
+    """What reads URDFs and meshes, as docs/compatibility.md has it without what else trimesh can do."""
     pytest.importorskip("trimesh", reason="no trimesh: pip install '.[view]'")
     seen: dict[str, Distribution] = {}
     for line in PROJECT["optional-dependencies"]["view"]:
         brought(re.findall(r"^[\w.-]+", line)[0], seen)
     assert "scipy" not in seen
+    del seen["lxml"]  # the package needs it itself
     assert 50_000_000 < sum(map(size, seen.values())) < LARGEST_VIEW

@@ -198,6 +198,8 @@ def clone(tmp_path_factory: pytest.TempPathFactory) -> Path:
     git(folder, "add", ".")
     git(folder, "commit", "-q", "-m", "the working tree")
     git(folder, "tag", REVISION)
+    made = run([sys.executable, ".ci/release.py", "hook", REVISION], folder)
+    assert made.stdout.strip() == f"hook-{REVISION}", made.stderr
     return folder
 
 
@@ -207,6 +209,15 @@ def venv(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("venv")
     subprocess.run([sys.executable, "-m", "venv", str(folder)], check=True)
     return folder
+
+
+@pytest.mark.more
+def test_pre_commit_downloads_little(clone: Path, tmp_path: Path) -> None:
+    """As pre-commit fetches a revision: with no history."""
+    git(tmp_path, "init", "-q")
+    git(tmp_path, "fetch", "-q", "--depth=1", clone.as_uri(), f"hook-{REVISION}")
+    (pack,) = (tmp_path / ".git" / "objects" / "pack").glob("*.pack")
+    assert 1_000_000 < pack.stat().st_size < 4_000_000
 
 
 @pytest.mark.deep

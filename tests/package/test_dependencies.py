@@ -44,7 +44,8 @@ MODULES = {
 # Modules that the package goes without, or that no key of rosdep is for.
 UNASKED = {
     *("tomli", "tomllib", "tree_sitter", "tree_sitter_cpp", "zenoh", "rosbags"),
-    *("trimesh", "numpy"),  # the extra view
+    *("yourdfpy", "trimesh", "numpy"),  # the extra view
+    *("lsprotocol", "pygls"),  # the extra lsp
 }
 # What the tests import before anything else.
 OF_TESTS = {"python3-hypothesis", "python3-numpy", "python3-pytest", "python3-setuptools"}

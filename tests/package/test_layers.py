@@ -45,6 +45,7 @@ HEAVY = (
     "launch",
     "launch_ros",
     "trimesh",
+    "yourdfpy",
     "xacro",
     "tree_sitter",
     "tree_sitter_cpp",

@@ -10,6 +10,7 @@ import json
 import math
 import re
 from collections.abc import Iterator, Mapping
+from functools import lru_cache
 from typing import Any
 
 import yaml
@@ -96,6 +97,7 @@ def _scalar(document: YamlText, node: yaml.ScalarNode) -> Scalar:
     return typed(node.value)
 
 
+@lru_cache(maxsize=2**14)
 def typed(text: str) -> Scalar:
     """Return the value that rcl reads from an unquoted scalar."""
     if text in _TRUE or text in _FALSE:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 import sys
 from _thread import get_ident  # threading is slow to import
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from importlib.util import find_spec
 from typing import Any, NamedTuple
@@ -22,6 +22,8 @@ from multibot_rewrite.version import __version__
 # Of one file, and of all files of the cache; the oldest ones go.
 MOST_BYTES, MOST_IN_ALL, MOST_FILES = 16 * 2**20, 256 * 2**20, 4096
 FOLDER = os.path.join("multibot_rewrite", "lint")
+# How bytes are texts, and the key of the map that holds one.
+_BYTES = "latin-1"
 
 
 class Entry(NamedTuple):
@@ -44,7 +46,7 @@ def read_shard(path: str) -> dict[str, Entry]:
             (Question(name, _tuples(args), _tuples(named)), it) for name, args, named, it in table
         ]
         return {
-            key: Entry(value, dict(asked[number] for number in numbers))
+            key: Entry(_tuples(value), dict(asked[number] for number in numbers))
             for key, (value, numbers) in entries.items()
         }
     except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
@@ -61,7 +63,9 @@ def shard_bytes(entries: Mapping[str, Entry]) -> bytes:
         for key, it in entries.items()
     }
     table = [(*question, answer) for question, answer in numbers]
-    body = json.dumps((table, written), separators=(",", ":")).encode()
+    body = json.dumps(
+        (table, written), separators=(",", ":"), default=lambda it: {_BYTES: it.decode(_BYTES)}
+    ).encode()
     return f"{digest(body)}\n".encode() + body
 
 
@@ -100,7 +104,9 @@ def bound(folder: str) -> None:
 
 
 def _tuples(value: Any) -> Any:
-    """Return lists of JSON as the tuples that they were."""
+    """Return lists of JSON as the tuples that they were, and maps as bytes."""
+    if isinstance(value, dict):
+        return value[_BYTES].encode(_BYTES)
     return tuple(map(_tuples, value)) if isinstance(value, list) else value
 
 
@@ -166,45 +172,19 @@ class Cache:
         return os.path.join(self.folder, f"{digest(f'{self.run} {group}'.encode())}.json")
 
 
-_EDITS = Finding._fields.index("edits")
-_ENCODING = "latin-1"
-
-
-def findings_written(findings: Iterable[Finding]) -> list[list[Any]]:
-    """Return findings as lists."""
-    return [list(it._replace(edits=tuple(map(_edit_written, it.edits)))) for it in findings]
-
-
-def _edit_written(it: Edit) -> Any:
-    after = None if it.after is None else it.after.decode(_ENCODING)
-    return [it.start, it.end, it.before.decode(_ENCODING), after]
-
-
 def findings_from(value: Any) -> list[Finding] | None:
     """Return the findings; None if none are kept, or it is something else."""
     try:
-        return None if value is None else [_finding(it) for it in value]
-    except (TypeError, ValueError, AttributeError):
+        rows = value if value is None else list(map(Finding._make, value))
+        return rows and [it._replace(edits=tuple(map(Edit._make, it.edits))) for it in rows]
+    except (TypeError, ValueError):
         return None
 
 
-def _finding(value: Any) -> Finding:
-    words = [tuple(it) if isinstance(it, list) else it for it in value]
-    words[_EDITS] = tuple(map(_edit, value[_EDITS]))
-    return Finding._make(words)
-
-
-def _edit(value: Any) -> Edit:
-    start, end, before, after = value
-    last = None if after is None else after.encode(_ENCODING)
-    return Edit(int(start), int(end), before.encode(_ENCODING), last)
-
-
-def among_written(settings: Settings, path: str = "") -> list[Any]:
+def among_written(settings: Settings, path: str = "") -> tuple[Any, ...]:
     """Return what the settings know of the other files; with a ``path`` only what counts for it."""
-    part = sorted(settings.included & {path} if path else settings.included)
-    known = settings.elsewhere
-    return [part, settings.urdfs, None if known is None else [known.names, known.any]]
+    part = settings.included & {path} if path else settings.included
+    return sorted(part), settings.urdfs, settings.elsewhere
 
 
 def among_from(value: Any, settings: Settings) -> Settings | None:
@@ -212,11 +192,11 @@ def among_from(value: Any, settings: Settings) -> Settings | None:
     from multibot_rewrite.description.sources.known_arguments import KnownArguments
 
     try:
-        part, urdfs, known = value
-        elsewhere = None if known is None else KnownArguments(tuple(known[0]), bool(known[1]))
+        part, urdfs, known = _tuples(value)
+        elsewhere = known and KnownArguments._make(known)
         pairs = tuple((name, path) for name, path in urdfs)
         return settings._replace(included=frozenset(part), urdfs=pairs, elsewhere=elsewhere)
-    except (TypeError, ValueError, LookupError):
+    except (TypeError, ValueError):
         return None
 
 

@@ -33,14 +33,8 @@ class Key(NamedTuple):
     message: str
 
 
-class Baseline(NamedTuple):
-    """How many findings of each kind are known."""
-
-    counts: Mapping[Key, int]
-
-
-def read_baseline(path: str) -> Baseline:
-    """Return the baseline in a file; raises UsageError for any other file."""
+def read_baseline(path: str) -> Counter[Key]:
+    """Return how many findings of each kind a baseline has; raises UsageError for another file."""
     try:
         content = load_json(read(path))
         if not isinstance(content, dict) or content.get(FORMAT) != VERSION:
@@ -58,7 +52,7 @@ def read_baseline(path: str) -> Baseline:
             if entry["count"] < 1:
                 raise ValueError(f"'count' of finding {number} is {entry['count']}")
             counts[Key(entry["code"], entry["file"], entry["message"])] += entry["count"]
-        return Baseline(counts)
+        return counts
     except ValueError as error:
         reason = " ".join(str(error).split())
         hint = f"write one with --write-baseline {path}"
@@ -67,14 +61,14 @@ def read_baseline(path: str) -> Baseline:
 
 def beyond(
     findings: Sequence[Finding],
-    baseline: Baseline,
+    baseline: Mapping[Key, int],
     path: str,
     linted: Collection[str] | None = None,
 ) -> tuple[list[Finding], int]:
     """Return the findings that the baseline at ``path`` lacks, and how many of its findings are
     gone. ``linted`` are the files that were checked, None for all: findings of an existing file
     that was not checked are not gone."""
-    left = Counter(baseline.counts)
+    left = Counter(baseline)
     new = []
     for finding in findings:
         key = _key(finding, path)

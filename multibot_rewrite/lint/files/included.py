@@ -7,12 +7,13 @@ import os
 from collections.abc import Iterator, Sequence
 from fnmatch import fnmatchcase
 
+from multibot_rewrite.base.bounded import bytes_if_read
 from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.lazy import lazy_compile, without_comments
 from multibot_rewrite.base.outside import is_file, real_path
 from multibot_rewrite.description.sources.known_arguments import known_arguments
 from multibot_rewrite.description.sources.packages import package_folder, package_of
-from multibot_rewrite.lint.files.named import descriptions_below, text_of_file
+from multibot_rewrite.lint.files.named import descriptions_below
 from multibot_rewrite.lint.files.pairing import named_urdfs
 from multibot_rewrite.rules.settings import Settings
 
@@ -55,7 +56,7 @@ def _includes_itself(real: str) -> bool:
 
 def _included_by(path: str) -> Iterator[str]:
     """Yield the files that a file includes, if only packages are to be filled in."""
-    for name in _INCLUDE.findall(without_comments(text_of_file(path))):
+    for name in _INCLUDE.findall(without_comments(bytes_if_read(path))):
         asked = name.decode("utf-8", "replace")
         text = _PACKAGE.sub(lambda it: package_folder(it[1], path, ()), asked)
         if "$" not in text:
@@ -77,7 +78,7 @@ def _is_read(path: str) -> bool:
 def _asked_for(path: str) -> Iterator[str]:
     """Yield the paths that a file includes, without what only xacro can fill in, and without itself."""
     own = real_path(path)
-    for found in _INCLUDE.findall(text_of_file(path)):
+    for found in _INCLUDE.findall(bytes_if_read(path)):
         name = found.decode("utf-8", "replace")
         # What is before the last substitution of a path is not known; one within a file's name stands
         # for a part of it.
@@ -98,5 +99,5 @@ def set_among(paths: Sequence[str], settings: Settings) -> Settings:
     if len(paths) == 1:
         return settings
     files = [it for it in paths if _is_read(it)] if settings.arguments else []
-    known = known_arguments(map(text_of_file, files)) if len(files) > 1 else None
+    known = known_arguments(map(bytes_if_read, files)) if len(files) > 1 else None
     return settings._replace(urdfs=named_urdfs(paths, settings.included), elsewhere=known)

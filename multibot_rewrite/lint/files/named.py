@@ -9,10 +9,8 @@ from itertools import islice
 
 from multibot_rewrite.base.bounded import read_start
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.outside import outside
 from multibot_rewrite.description.sources.packages import entries
-from multibot_rewrite.description.sources.read import read_file
 
 _NAME = lazy_compile(rb"<robot\b[^<>]*?\sname\s*=\s*[\"']([^\"'$<]+)[\"']")
 # What the name of an SRDF has in it.
@@ -56,11 +54,3 @@ def _files(folder: str, deep: int) -> Iterator[str]:
             inner.append(os.path.join(folder, name))
     for it in inner if deep else ():
         yield from _files(it, deep - 1)
-
-
-def text_of_file(path: str) -> bytes:
-    """Return the bytes of a file; empty if it cannot be read, which is reported when it is linted."""
-    try:
-        return read_file(path)
-    except InputError:
-        return b""

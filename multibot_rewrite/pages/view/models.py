@@ -1,31 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the view draws of a robot: links with shapes, joints, meshes, and how a URDF says them. The only
-import of trimesh.
+"""What the view draws of a robot: links with shapes, joints, meshes, and a URDF as yourdfpy reads it.
+The only import of yourdfpy and trimesh.
 
-Meshes are looked for as ROS does: package://, file://, and paths next to the description.
-
-Source of a URDF: urdfdom urdf_parser: a material without a colour is that of its name in the robot; an
-axis is x, a mimic's factor 1 where none is written. What is no number counts as missing: the lint
-reports it.
+Meshes are looked for as ROS does: package://, file://, and paths next to the description. A material
+without a colour is that of its name in the robot (urdfdom urdf_parser model.cpp).
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from copy import deepcopy
 from importlib import import_module
-from math import pi
-from typing import Any, NamedTuple
+from io import BytesIO
+from math import isfinite, pi
+from typing import Any, NamedTuple, cast
 
+from lxml import etree
 from lxml.etree import _Element
 
-from multibot_rewrite.base.model import Unusable
-from multibot_rewrite.description.checks.numbers import numbers, vector
-from multibot_rewrite.description.checks.poses import HERE, Pose, X, origin_of
+from multibot_rewrite.base.model import InputError, Unusable
+from multibot_rewrite.description.checks.poses import HERE, Pose
 from multibot_rewrite.description.sources.packages import package_folder
 
-INSTALL = "the view needs trimesh: pip install 'multibot_rewrite[view]'"
+INSTALL = "the view needs yourdfpy and trimesh: pip install 'multibot_rewrite[view]'"
 # Of larger meshes the bounding box is shown, or the page would not load.
 MOST_FACES = 200_000
 # A mesh file is read whole.
@@ -35,6 +34,9 @@ Colour = tuple[float, ...]
 UNCOLOURED: Colour = ()
 _LIBRARY_END = "THREE.GLTFLoader=GLTFLoader;})();"
 Matrix = Sequence[Sequence[float]]
+# What yourdfpy reads and nobody sees: a fault in it is none of the picture.
+_SHAPES = "geometry/box | geometry/cylinder | geometry/sphere | geometry/mesh"
+_NOT_DRAWN = ("inertial", "collision", "calibration", "safety_controller")
 
 
 class Shape(NamedTuple):
@@ -105,9 +107,10 @@ def find_mesh(name: str, source: str) -> str:
 
 
 def prepare_meshes() -> None:
-    """Load the reader once, for the workers that are forked from this process; raises Unusable."""
+    """Load the readers once, for the workers that are forked from this process; raises Unusable."""
     try:
         import_module("trimesh")
+        import_module("yourdfpy")
     except ImportError:
         raise Unusable(INSTALL) from None
 
@@ -168,75 +171,71 @@ def three() -> str:
 
 
 def load_urdf(root: _Element, source: str) -> Model:
-    """Return the model of a URDF; ``source`` is the file it was made from. Raises nothing."""
-    named = {it.get("name", ""): _rgba(it) for it in root.iterchildren("material")}
-    links = {
-        it.get("name", ""): tuple(_shapes(it, named, source)) for it in root.iterchildren("link")
-    }
-    return Model(links, tuple(map(_joint, root.iterchildren("joint"))))
+    """Return the model of a URDF as yourdfpy reads it; ``source`` is the file it was made from. Raises
+    InputError for one that yourdfpy does not read, Unusable without yourdfpy."""
+    prepare_meshes()
+    import yourdfpy
+
+    drawn = deepcopy(root)
+    etree.strip_elements(drawn, *_NOT_DRAWN, with_tail=False)
+    for it in drawn.iter("capsule"):
+        it.tag = "cylinder"
+    for it in cast("list[Any]", drawn.xpath(f"link/visual[not({_SHAPES})]")):
+        it.getparent().remove(it)
+    text = BytesIO(etree.tostring(drawn))
+    try:
+        robot = yourdfpy.URDF.load(text, build_scene_graph=False).robot
+        named = {it.name: _rgba(it) for it in robot.materials}
+        links = {it.name: tuple(_shapes(it, named, source)) for it in robot.links}
+        return Model(links, tuple(map(_joint, robot.joints)))
+    except Exception as error:  # it has none of its own for most of them
+        what = f"{source}: yourdfpy cannot read it: {str(error) or type(error).__name__}"
+        raise InputError(f"{what}; urdf-lint finds the line") from None
 
 
-def _rgba(material: _Element | None) -> Colour:
-    written = None if material is None else material.find("color")
-    found = None if written is None else numbers(written.get("rgba", ""))
-    return found if found and len(found) == 4 else UNCOLOURED
+def _floats(values: Iterable[float]) -> tuple[float, ...]:
+    """Return numbers that JSON has."""
+    found = tuple(round(float(it), 9) for it in values)
+    if not all(map(isfinite, found)):
+        raise ValueError(f"{found} is not finite")
+    return found
 
 
-def _pose(element: _Element) -> Matrix:
-    return matrix_of(origin_of(element) or HERE)
+def _rgba(material: Any) -> Colour:
+    found = material and material.color
+    return _floats(found.rgba) if found and len(found.rgba) == 4 else UNCOLOURED
 
 
-def _shapes(link: _Element, named: Mapping[str, Colour], source: str) -> Iterator[Shape]:
-    for visual in link.iterchildren("visual"):
-        material = visual.find("material")
-        name = "" if material is None else material.get("name", "")
-        colour = _rgba(material) or named.get(name, UNCOLOURED)
-        for it in visual.iterfind("geometry/*"):
-            yield from _shape(it, _pose(visual), colour, source)
+def _pose(origin: Any) -> Matrix:
+    return matrix_of(HERE) if origin is None else [*map(_floats, origin)]
 
 
-def _shape(it: _Element, pose: Matrix, colour: Colour, source: str) -> Iterator[Shape]:
-    size = vector(it.get("size", ""))
-    radius, long = (numbers(it.get(name, "")) for name in ("radius", "length"))
-    if it.tag == "box" and size:
-        yield Shape("box", size, pose, colour)
-    elif it.tag in ("cylinder", "capsule") and radius and long:
-        yield Shape("cylinder", (radius[0], long[0]), pose, colour)
-    elif it.tag == "sphere" and radius:
-        yield Shape("sphere", radius[:1], pose, colour)
-    elif it.tag == "mesh":
-        scale = vector(it.get("scale", "")) or (1.0, 1.0, 1.0)
-        yield mesh_shape(it.get("filename", ""), scale, pose, colour, source)
+def _shapes(link: Any, named: Mapping[str, Colour], source: str) -> Iterator[Shape]:
+    for it in link.visuals:
+        colour = _rgba(it.material) or (it.material and named.get(it.material.name)) or UNCOLOURED
+        pose, own = _pose(it.origin), it.geometry
+        if own.box:
+            x, y, z = _floats(own.box.size)
+            yield Shape("box", (x, y, z), pose, colour)
+        elif own.cylinder:
+            size = _floats((own.cylinder.radius, own.cylinder.length))
+            yield Shape("cylinder", size, pose, colour)
+        elif own.sphere:
+            yield Shape("sphere", _floats([own.sphere.radius]), pose, colour)
+        else:
+            scale: Any = 1.0 if own.mesh.scale is None else own.mesh.scale
+            size = _floats(scale if hasattr(scale, "__len__") else [scale] * 3)
+            yield mesh_shape(own.mesh.filename, size, pose, colour, source)
 
 
-def _joint(it: _Element) -> Joint:
-    parent, child = (_named(it, tag, "link") for tag in ("parent", "child"))
-    axis = it.find("axis")
-    kind, lower, upper = it.get("type", ""), 0.0, 0.0
+def _joint(it: Any) -> Joint:
+    kind, lower, upper = it.type or "", 0.0, 0.0
     if kind == "continuous":
         lower, upper = -round(pi, 4), round(pi, 4)
-    elif kind in ("revolute", "prismatic"):
-        lower, upper = (_number(it, "limit", key, 0.0) for key in ("lower", "upper"))
-    factor, offset = _number(it, "mimic", "multiplier", 1.0), _number(it, "mimic", "offset", 0.0)
-    leader = _named(it, "mimic", "joint")
-    return Joint(
-        it.get("name", ""),
-        kind,
-        parent,
-        child,
-        _pose(it),
-        X if axis is None else vector(axis.get("xyz", "")) or X,
-        lower,
-        upper,
-        (leader, factor, offset) if leader else None,
-    )
-
-
-def _named(joint: _Element, tag: str, key: str) -> str:
-    found = joint.find(tag)
-    return "" if found is None else found.get(key, "")
-
-
-def _number(joint: _Element, tag: str, key: str, default: float) -> float:
-    found = numbers(_named(joint, tag, key))
-    return found[0] if found else default
+    elif it.limit and kind in ("revolute", "prismatic"):
+        lower, upper = _floats((it.limit.lower or 0.0, it.limit.upper or 0.0))
+    leader = it.mimic and it.mimic.joint
+    factor, offset = _floats((it.mimic.multiplier, it.mimic.offset)) if leader else (1.0, 0.0)
+    mimic = (leader, factor, offset) if leader else None
+    pose, axis = _pose(it.origin), _floats(it.axis)
+    return Joint(it.name, kind, it.parent or "", it.child or "", pose, axis, lower, upper, mimic)

@@ -126,18 +126,6 @@ def _robot(it: ViewedRobot, numbers: Mapping[str, int], meshes: Meshes) -> Any:
             missing = mesh if isinstance(mesh, str) else shape.missing
             number = numbers.get(shape.mesh, -1)
             rows.append([shape.kind, shape.size, shape.pose, shape.colour, number, missing])
-    return {
-        "name": it.name,
-        "file": it.file,
-        "pose": it.pose,
-        "names": names,
-        "links": links,
-        "joints": [list(one) for one in it.model.joints],
-        "changes": [[at.line, at.kind, at.path, at.old, at.new, at.rule] for at in it.changes],
-        "plugins": it.plugins,
-        "bare": bare(it.model),
-        "topic": it.topic,
-        "prefix": it.prefix,
-        "heard": it.heard,
-        "transforms": it.transforms,
-    }
+    changes = [[at.line, at.kind, at.path, at.old, at.new, at.rule] for at in it.changes]
+    own = {"names": names, "links": links, "joints": it.model.joints, "changes": changes}
+    return {**it._asdict(), "model": None, **own, "bare": bare(it.model)}

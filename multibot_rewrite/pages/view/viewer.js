@@ -52,7 +52,8 @@ function labelOf(text, colour) {
   canvas.width = Math.ceil(pen.measureText(text).width) + 8;
   canvas.height = 40;
   pen.font = "32px monospace";
-  pen.fillStyle = colour;
+  Object.assign(pen, { fillStyle: colour, strokeStyle: css("--page"), lineWidth: 6, lineJoin: "round" });
+  pen.strokeText(text, 4, 30);
   pen.fillText(text, 4, 30);
   const look = new THREE.SpriteMaterial({ map: new THREE.CanvasTexture(canvas), depthTest: false, sizeAttenuation: false });
   const it = new THREE.Sprite(look);
@@ -152,7 +153,7 @@ const toggles = { frames: document.getElementById("frames"), labels: document.ge
 
 // The name of the link that was clicked is shown, the others where they are asked for.
 let picked = "";
-const isPicked = (label) => `${label.userData.robot.name} link ${label.userData.link}` === picked;
+const isPicked = ({ userData: { robot, link } }) => Boolean(robot) && `${robot.name} link ${link}` === picked;
 
 function show(name) {
   const chosen = views.get(name) || [];
@@ -163,6 +164,26 @@ function show(name) {
       for (const one of it.labels) one.visible = toggles.labels.checked || isPicked(one);
     }
   showHeard(chosen);
+}
+
+// Names beside each other, and none below the edge: one that would cover a nearer one is left out.
+function spread(chosen, width, height) {
+  scene.updateMatrixWorld();
+  camera.updateMatrixWorld();
+  const pixels = height / (2 * Math.tan((camera.fov * Math.PI) / 360)), taken = [];
+  const names = [...chosen.flatMap((it) => it.labels), ...ghosts.map((it) => it.label)].filter((it) => it.visible);
+  const placed = names.map((it) => ({ it, at: it.getWorldPosition(new THREE.Vector3()) }));
+  for (const one of placed) one.far = isPicked(one.it) ? 0 : one.at.distanceTo(camera.position);
+  for (const { it, at } of placed.sort((one, other) => one.far - other.far)) {
+    at.project(camera);
+    const x = ((at.x + 1) / 2) * width, y = ((1 - at.y) / 2) * height;
+    const wide = it.scale.x * pixels, high = it.scale.y * pixels, up = y > high ? high : 0;
+    const start = Math.min(x, Math.max(0, width - wide)), area = [start, y - up, start + wide, y - up + high];
+    it.center.set((x - start) / wide, up ? 0 : 1);
+    it.visible = at.z < 1 && taken.every((its) => area[0] > its[2] || its[0] > area[2] || area[1] > its[3] || its[1] > area[3]);
+    if (it.visible) taken.push(area);
+  }
+  return taken;
 }
 
 function draw() {
@@ -179,6 +200,7 @@ function draw() {
     renderer.setViewport(at * part, 0, part, height);
     renderer.setScissor(at * part, 0, part, height);
     show(name);
+    spread(views.get(name) || [], part, height);
     renderer.render(scene, camera);
   });
 }
@@ -336,6 +358,24 @@ renderer.domElement.addEventListener("click", (it) => {
   const seen = (one) => { for (let at = one; at; at = at.parent) if (!at.visible) return false; return true; };
   const hit = ray.intersectObjects(scene.children, true).find((one) => one.object.userData.link && seen(one.object));
   if (hit) describe(hit.object.userData.robot, hit.object.userData.link, "link");
+});
+
+// What a drag does, by keys.
+const KEYS = { ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, 0.1], ArrowDown: [0, -0.1] };
+const NEARER = { "+": 0.9, "=": 0.9, "-": 1 / 0.9 };
+Object.assign(renderer.domElement, { tabIndex: 0, role: "application", ariaLabel:
+  `${data.robots.map((it) => it.name).join(", ")} in 3D: arrow keys turn, + and - come nearer and go away, 0 fits all` });
+renderer.domElement.addEventListener("keydown", (it) => {
+  const [turn, rise] = KEYS[it.key] || [0, 0], from = camera.position.clone().sub(controls.target);
+  if (!(it.key in KEYS || it.key in NEARER || it.key === "0") || it.ctrlKey || it.metaKey || it.altKey) return;
+  it.preventDefault();
+  if (it.key === "0") return fit();
+  const side = from.clone().cross(camera.up).normalize();
+  from.applyAxisAngle(camera.up.clone().normalize(), turn).applyAxisAngle(side, rise).multiplyScalar(NEARER[it.key] || 1);
+  camera.position.copy(controls.target).add(from);
+  camera.lookAt(controls.target);
+  controls.update();
+  draw();
 });
 
 for (const it of [left, right]) it.addEventListener("change", () => { resize(); fit(); });

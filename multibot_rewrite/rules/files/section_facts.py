@@ -91,12 +91,12 @@ def _given_by(file: NamedFile, documents: Iterable[YamlText]) -> tuple[Run, ...]
 
 
 def _in_folder(file: NamedFile) -> Iterator[YamlText]:
-    folder = os.path.dirname(os.path.abspath(file.file))
-    for name in sorted(entries(folder)):
-        path = os.path.join(folder, name)
-        data = read_file(path) if is_beside(name) else b""
+    own = os.path.abspath(file.file)
+    folder = os.path.dirname(own)
+    for path in (os.path.join(folder, it) for it in sorted(entries(folder))):
+        data = read_file(path) if is_beside(path) else b""
         if kind_of(data) == PARAMS:
-            yield read_yaml(data, path)
+            yield file.document if file.document and path == own else read_yaml(data, path)
 
 
 ASKED = "asked"

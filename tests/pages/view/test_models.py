@@ -11,6 +11,7 @@ import pytest
 from lxml import etree
 from paths import ROBOTS, ROOT, fixture_text
 
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.pages.view import models
 from multibot_rewrite.pages.view.models import (
     MOST_BYTES,
@@ -46,6 +47,7 @@ def shapes(geometry: str, more: str = "") -> list[tuple[object, ...]]:
         ('<box size="1 2 3"/>', "box", (1, 2, 3)),
         ('<cylinder radius="0.5" length="2"/>', "cylinder", (0.5, 2)),
         ('<sphere radius="0.5"/>', "sphere", (0.5,)),
+        ('<capsule radius="0.5" length="2"/>', "cylinder", (0.5, 2)),
         ('<mesh filename="none.stl"/>', "box", (0.1, 0.1, 0.1)),
     ],
 )
@@ -106,6 +108,26 @@ def test_a_joint_follows_another(words: str, mimic: tuple[object, ...]) -> None:
     (joint,) = load(f'<link name="a"/><link name="b"/>{text}').joints
     assert (joint.mimic, joint.axis) == (mimic, (0, 1, 0))
     assert [row[3] for row in joint.pose] == [1, 2, 3, 1]
+
+
+def test_a_fault_that_nobody_sees_is_none_of_the_picture() -> None:
+    broken = "<inertial><mass/></inertial><collision><geometry/></collision><visual/>"
+    assert load(f'<link name="a">{broken}</link>').links == {"a": ()}
+
+
+def test_a_joint_without_its_link_and_a_mesh_that_is_not_there_are_read() -> None:
+    joint = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
+    link = '<link name="a"><visual><geometry><mesh filename="no.stl"/></geometry></visual></link>'
+    model = load(link + joint)
+    assert (model.links["a"][0].missing, model.joints[0].child) == ("no.stl is not found", "b")
+
+
+@pytest.mark.parametrize(
+    "shape", [*(f'<sphere radius="{it}"/>' for it in ("", "x", "nan", "1 2")), '<box size="1 2"/>']
+)
+def test_a_urdf_that_yourdfpy_does_not_read_is_named(shape: str) -> None:
+    with pytest.raises(InputError, match=r"/nowhere/r\.urdf: yourdfpy cannot read it: .*urdf-lint"):
+        shapes(shape)
 
 
 @pytest.mark.more

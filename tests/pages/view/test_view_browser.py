@@ -18,6 +18,7 @@ from multibot_rewrite.system.json import to_json
 pytest.importorskip("selenium", reason="no selenium: pip install '.[test]'")
 from selenium import webdriver
 from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.select import Select
 from selenium.webdriver.support.wait import WebDriverWait
 
@@ -64,10 +65,35 @@ def test_the_page_draws_and_tells(chromium: webdriver.Chrome, tmp_path: Path) ->
     about = chromium.find_element(By.ID, "about").text
     assert "base_link/robot1" in about
     assert "rover.urdf:" in about
+    # No two names of a view cover each other, and none is beyond its edge.
+    chromium.find_element(By.ID, "labels").click()
+    areas = """
+const size = [stage.clientWidth, stage.clientHeight], chosen = data.robots[0].built.slice(0, 1);
+show("robot1");
+return [chosen[0].labels.length, ...size, spread(chosen, ...size)]"""
+    count, width, height, taken = chromium.execute_script(areas)
+    assert 1 < len(taken) <= count
+    for number, (x, y, end, bottom) in enumerate(taken):
+        assert (min(x, y) >= 0, end <= width, bottom <= height) == (True, True, True)
+        for other in taken[:number]:
+            assert other[2] < x or end < other[0] or other[3] < y or bottom < other[1]
     Select(chromium.find_element(By.ID, "right")).select_by_visible_text(
         "robot1 before the rewrite"
     )
     assert chromium.execute_script(COLOURS) > 20
+    # The picture is for keys, too, and says which.
+    canvas = chromium.find_element(By.CSS_SELECTOR, "#stage canvas")
+    assert "arrow keys" in str(canvas.accessible_name)
+    place = "return [...camera.position.toArray(), camera.position.distanceTo(controls.target)]"
+    seen = [chromium.execute_script(place)]
+    for key in (Keys.ARROW_LEFT, Keys.ARROW_UP, "+"):
+        canvas.send_keys(key)
+        seen.append(chromium.execute_script(place))
+    *turned, near = (it[3] for it in seen)
+    assert turned == pytest.approx([near / 0.9] * 3)
+    assert len({tuple(it[:3]) for it in seen}) == 4
+    canvas.send_keys("0")
+    assert chromium.execute_script(place) == pytest.approx(seen[0])
     # A robot and what it was before stand at one place, so two views can be compared.
     built = "return data.robots[1].built.map((it) => it.root.position.y)"
     assert chromium.execute_script(built) == [1.5, 1.5]
