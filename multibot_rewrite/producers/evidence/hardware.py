@@ -48,6 +48,7 @@ from multibot_rewrite.system.records import (
 
 OWNERS = ("joint", "sensor", "gpio")
 _TABLE = "hardware.yaml"
+COMPONENT = "hardware_component"
 
 
 class Exported(NamedTuple):
@@ -102,6 +103,16 @@ def with_hardware(
             node = known[kind]._replace(name=name, known=kind, origin=origin, when=when)
             made.append(node._replace(of_hardware=True))
     return (*own, *made)
+
+
+def components(root: _Element, file: str, known: Mapping[str, NodeFacts]) -> Iterator[NodeFacts]:
+    """Yield the node of each hardware component of a description, called as its code calls it
+    (ros2_control hardware_component_interface.cpp); none in a release that makes none."""
+    entry = known.get(COMPONENT)
+    for system in root.iterfind("ros2_control[hardware]") if entry else ():
+        name = system.get("name", "").lower().replace("/", "_")
+        origin = Origin(place=_place(system, file))
+        yield entry._replace(name=name, known=COMPONENT, origin=origin, of_hardware=True)
 
 
 def _place(element: _Element, file: str) -> Place:
