@@ -7,10 +7,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from fleet_folder import planned_fleet
 
 from multibot_rewrite import load_fleet, rewrite
 from multibot_rewrite.base.findings.finding import ERROR
-from fleet_folder import built_fleet, planned_fleet
 
 ROBOT = """\
 <robot name="k" xmlns:xacro="http://www.ros.org/wiki/xacro">

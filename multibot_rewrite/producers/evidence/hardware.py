@@ -26,7 +26,7 @@ from lxml.etree import _Element
 from multibot_rewrite.base.bounded import own_text
 from multibot_rewrite.knowledge.conditions import Values, holds
 from multibot_rewrite.knowledge.node_entries import read_claims
-from multibot_rewrite.knowledge.records import MANAGER, Claim, NodeFacts
+from multibot_rewrite.knowledge.records import COMPONENT, MANAGER, Claim, NodeFacts
 from multibot_rewrite.knowledge.yaml_with_lines import (
     SOURCE_KEY,
     read_yaml_with_lines,
@@ -48,7 +48,6 @@ from multibot_rewrite.system.records import (
 
 OWNERS = ("joint", "sensor", "gpio")
 _TABLE = "hardware.yaml"
-COMPONENT = "hardware_component"
 
 
 class Exported(NamedTuple):
