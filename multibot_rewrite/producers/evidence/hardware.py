@@ -26,7 +26,7 @@ from lxml.etree import _Element
 from multibot_rewrite.base.bounded import own_text
 from multibot_rewrite.knowledge.conditions import Values, holds
 from multibot_rewrite.knowledge.node_entries import read_claims
-from multibot_rewrite.knowledge.records import COMPONENT, MANAGER, Claim, NodeFacts
+from multibot_rewrite.knowledge.records import MANAGER, Claim, NodeFacts
 from multibot_rewrite.knowledge.yaml_with_lines import (
     SOURCE_KEY,
     read_yaml_with_lines,
@@ -38,6 +38,7 @@ from multibot_rewrite.spelling.records import Given, Run
 from multibot_rewrite.system.records import (
     CLAIMS,
     EXPORTS,
+    HARDWARE_NODE,
     STATE,
     Controller,
     Interface,
@@ -107,11 +108,11 @@ def with_hardware(
 def components(root: _Element, file: str, known: Mapping[str, NodeFacts]) -> Iterator[NodeFacts]:
     """Yield the node of each hardware component of a description, called as its code calls it
     (ros2_control hardware_component_interface.cpp); none in a release that makes none."""
-    entry = known.get(COMPONENT)
+    entry = known.get(HARDWARE_NODE)
     for system in root.iterfind("ros2_control[hardware]") if entry else ():
         name = system.get("name", "").lower().replace("/", "_")
         origin = Origin(place=_place(system, file))
-        yield entry._replace(name=name, known=COMPONENT, origin=origin, of_hardware=True)
+        yield entry._replace(name=name, known=HARDWARE_NODE, origin=origin, of_hardware=True)
 
 
 def _place(element: _Element, file: str) -> Place:

@@ -26,6 +26,7 @@ from multibot_rewrite.description.steps.document import value_slot
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.facts.simulators import simulated
 from multibot_rewrite.rules.subject import Subject
+from multibot_rewrite.system.records import HARDWARE_NODE
 
 WORLD = "world"
 
@@ -226,10 +227,9 @@ def _hardware_without_node(subject: Subject) -> Iterator[Problem]:
         fault = check_node_name(name.replace("/", "_")) if name else None
         if fault is None or SUBSTITUTION in name or system in in_simulator:
             continue
-        from multibot_rewrite.knowledge.records import COMPONENT  # hardly any name is wrong
-        from multibot_rewrite.knowledge.stacks import built_in
+        from multibot_rewrite.knowledge.stacks import built_in  # hardly any name is wrong
 
-        if COMPONENT in built_in(subject.settings.distro).nodes:
+        if HARDWARE_NODE in built_in(subject.settings.distro).nodes:
             message = (
                 f"hardware {name!r} has a node of this name, which ROS refuses: {fault.reason}"
             )
