@@ -109,7 +109,9 @@ def components(root: _Element, file: str, known: Mapping[str, NodeFacts]) -> Ite
     """Yield the node of each hardware component of a description, called as its code calls it
     (ros2_control hardware_component_interface.cpp); none in a release that makes none."""
     entry = known.get(HARDWARE_NODE)
-    for system in root.iterfind("ros2_control[hardware]") if entry else ():
+    if entry is None:
+        return
+    for system in root.iterfind("ros2_control[hardware]"):
         name = system.get("name", "").lower().replace("/", "_")
         origin = Origin(place=_place(system, file))
         yield entry._replace(name=name, known=HARDWARE_NODE, origin=origin, of_hardware=True)

@@ -150,22 +150,23 @@ def read_own(file: str, folder: str) -> LaunchGraph:
     with standing_in():
         tempfile.tempdir = folder
         # Parameter files have substitutions as well.
-        FindPackageShare.find = _share  # type: ignore[method-assign]
+        FindPackageShare.find = _share  # type: ignore[method-assign, assignment]
         keep_places()
         try:
             return with_real_paths(_visited(_described(order), order))  # type: ignore[no-any-return]
         except (Exception, SystemExit) as error:
             raise UnreadableError(failure(error)) from error
         finally:
-            tempfile.tempdir, FindPackageShare.find = before, find  # type: ignore[method-assign]
+            tempfile.tempdir = before
+            FindPackageShare.find = find  # type: ignore[method-assign]
 
 
-def _share(_: FindPackageShare, package: str) -> str:
+def _share(_self: FindPackageShare, package_name: str) -> str:
     """Return the share folder of a package, which is empty for one that is not here."""
     try:
-        return get_package_share_directory(package)
+        return get_package_share_directory(package_name)
     except LookupError:
-        return os.path.join(tempfile.gettempdir(), NOT_INSTALLED, "share", package)
+        return os.path.join(tempfile.gettempdir(), NOT_INSTALLED, "share", package_name)
 
 
 def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:
