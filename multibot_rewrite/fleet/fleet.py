@@ -29,7 +29,7 @@ from multibot_rewrite.knowledge.nodl.lookup import NodeKnowledge, find_interface
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, user_stack
-from multibot_rewrite.producers.evidence.hardware import with_hardware
+from multibot_rewrite.producers.evidence.hardware import components, with_hardware
 from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.spelling.bridged_topics import AS_ROBOTS, Models, bridged_as, bridged_topics
 from multibot_rewrite.spelling.domain_bridge import with_bridges
@@ -198,7 +198,8 @@ def assemble(
 ) -> Fleet:
     """Return the fleet of robots with the same nodes of a release and the parameters ``given``."""
     inventories = {it.robot: it.inventory for it in members}
-    plugins = {it.robot: _plugins(it) for it in members}
+    known = built_in(release).nodes
+    plugins = {it.robot: [*_plugins(it), *_components(it, known)] for it in members}
     edges: dict[tuple[str, str], list[Edge]] = {}
     for it in members:
         own = [run.fact for run in plugins[it.robot]]
@@ -225,6 +226,14 @@ def _plugins(member: Member) -> list[Run]:
     lines = (line_of(source, "plugin", it.number) for it in member.reading.nodes)
     each = zip(runs, lines, strict=True)
     return [run._replace(place=Place(source.file, line)) for run, line in each]
+
+
+def _components(member: Member, known: Mapping[str, NodeFacts]) -> Iterator[Run]:
+    """Yield the nodes of a robot's hardware components, which the table puts beside their manager."""
+    source = member.source
+    written = components(member.inventory.document.root, source.file, known)
+    for it, before in zip(written, components(source.root, source.file, known), strict=True):
+        yield Run(member.robot, it.name, "/", it.name, (), it._replace(origin=before.origin))
 
 
 def merge(fleets: Sequence[Fleet]) -> Fleet:

@@ -16,7 +16,13 @@ from multibot_rewrite.base.rosnames import bind, expand
 from multibot_rewrite.description.readback.nodes import ReadNode
 from multibot_rewrite.description.readback.reading import Reading
 from multibot_rewrite.knowledge.controller_ways import controller_way
-from multibot_rewrite.knowledge.records import Endpoint, FrameParameter, NodeFacts, SentTransform
+from multibot_rewrite.knowledge.records import (
+    MANAGER,
+    Endpoint,
+    FrameParameter,
+    NodeFacts,
+    SentTransform,
+)
 from multibot_rewrite.spelling.of_runs import (
     asked_alone,
     asked_beside,
@@ -80,13 +86,28 @@ def build_table(
                 controllers = []
             problems += useless_rules(plugins.get(robot, ()), release, controllers)
             runs += copies
+            managers = [it for it in copies if it.fact.kind == MANAGER and not it.fact.plugin]
             for run in plugins.get(robot, ()):
+                if run.fact.of_hardware:
+                    runs += [_beside(it, run) for it in managers[:1]]
+                    continue
                 # What their controllers publish is the controllers' own, if a stack names those.
                 ends = run.fact.endpoints
                 kept = tuple(it for it in ends if not (is_named and is_stand_in(run, it)))
                 runs.append(with_names(run._replace(fact=run.fact._replace(endpoints=kept))))
         made = Table(naming.layout.name, tuple(runs), tuple(problems), release)
         return made._replace(problems=(*made.problems, *not_taken(made)))
+
+
+def _beside(manager: Run, component: Run) -> Run:
+    """Return the node of a hardware component where its controller manager makes it."""
+    fact = component.fact._replace(host=manager.node, when=component.fact.when or manager.fact.when)
+    home = manager.namespace
+    return with_names(
+        component._replace(
+            namespace=home, fact=fact, host_name=manager.name, place=fact.origin.place
+        )
+    )
 
 
 def joined(table: Table, other: Table) -> Table:

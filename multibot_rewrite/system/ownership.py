@@ -8,7 +8,7 @@ from functools import cache
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import SENT_FRAMES, USUAL_FRAMES
-from multibot_rewrite.system.records import System
+from multibot_rewrite.system.records import HARDWARE_NODE, System
 
 # What may separate a robot's name from the rest of a segment.
 SEPARATORS = "_-."
@@ -240,9 +240,12 @@ def _plain_words(plan: System, draft: NameOwnership, topics: Mapping[str, str]) 
         for w in plan.ends
         if likely
     }
-    once = {draft.without_robot(*it) for it in (*in_code, *nodes.items())}
+    # A hardware component and its node have one name, with the robot's.
+    parts = {(it.name, it.robot) for it in plan.nodes if it.known == HARDWARE_NODE}
+    once = {draft.without_robot(*it) for it in (*in_code, *(nodes.items() - parts))}
     # Of what is below a link of its robot, the link has the robot's name, too.
-    twice = {draft.without_robot(draft.without_robot(*it), it[1]) for it in topics.items()}
+    every = (*topics.items(), *parts)
+    twice = {draft.without_robot(draft.without_robot(*it), it[1]) for it in every}
     return _words(once | twice)
 
 

@@ -17,6 +17,8 @@ ROLES = (PUBLISHES, SUBSCRIBES, SERVES, CALLS)
 # Kinds and roles of an interface of ros2_control, or of MoveIt.
 COMMAND, STATE, JOINT = "command", "state", "joint"
 EXPORTS, CLAIMS = "exports", "claims"
+# What the node of a hardware component is known as.
+HARDWARE_NODE = "hardware_component"
 # Kinds of addresses.
 DEVICE, CALIBRATION, COMPUTER, OWN = "device", "calibration", "computer", "own"
 # Why an observation ended: all expected nodes are there, the graph no longer changes, the timeout

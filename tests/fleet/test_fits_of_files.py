@@ -224,3 +224,27 @@ def test_the_launch_replaces_the_share_folders_in_a_parameter_file(
     # 3: the package may not be installed here.
     assert main(check) in (0, 3)
     assert " error: " not in capsys.readouterr().out
+
+
+def test_a_topic_to_which_a_launched_node_appends_a_word_is_left_to_its_rule(
+    tmp_path: Path,
+) -> None:
+    """nav2_costmap_2d costmap_subscriber.cpp also subscribes to the topic with _updates behind it."""
+    (tmp_path / "nav2.yaml").write_text(
+        "behavior_server:\n  ros__parameters:\n    local_costmap_topic: local_costmap/costmap_raw\n"
+        "    tree: $(find-pkg-share not_here)/a\n"
+    )
+    (tmp_path / "up.launch.py").write_text(
+        "from launch import LaunchDescription\nfrom launch_ros.actions import Node\n"
+        "def generate_launch_description():\n    return LaunchDescription([Node(\n"
+        "        package='nav2_behaviors', executable='behavior_server', name='behavior_server',\n"
+        f"        parameters=['{tmp_path}/nav2.yaml'])])\n"
+    )
+    (tmp_path / "fleet.yaml").write_text(
+        f"distro: lyrical\nlayout: postfix\nsimulator: none\nlaunch: [up.launch.py]\n"
+        f"description: {ROVER}\ncompanions: {{params: [nav2.yaml]}}\n"
+        "robots: [{name: a}, {name: b}]\n"
+    )
+    main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out"), "-q"])
+    written = (tmp_path / "out" / "a" / "nav2.yaml").read_text()
+    assert "local_costmap_topic: local_costmap/costmap_raw\n" in written

@@ -7,6 +7,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from fleet_folder import planned_fleet
 
 from multibot_rewrite import load_fleet, rewrite
 from multibot_rewrite.base.findings.finding import ERROR
@@ -108,3 +109,27 @@ def test_the_remedy_for_one_device_names_the_argument_and_helps(
     robots = f"[{', '.join(own)}]"
     mended = load_fleet(fleet(tmp_path, declared=declared, port=port, robots=robots))
     assert "MB412" not in {it.code for it in mended.made.findings}
+
+
+@pytest.mark.parametrize(
+    ("layout", "release", "node"),
+    [
+        # hardware_component_interface.cpp:124: the name in small letters, beside the manager.
+        ("tf-per-robot", "lyrical", "/R1/arm_left"),
+        ("frames-per-robot", "lyrical", "/R1/r1_arm_left"),
+        ("postfix", "lyrical", "/r1_arm_left"),
+        # Humble's ros2_control has none.
+        ("tf-per-robot", "humble", ""),
+    ],
+)
+def test_each_hardware_component_has_a_node(
+    layout: str, release: str, node: str, tmp_path: Path
+) -> None:
+    path = Path(fleet(tmp_path, "mock_components/GenericSystem", robots="[{name: R1}, {name: r2}]"))
+    source = tmp_path / "k.urdf.xacro"
+    source.write_text(source.read_text().replace('name="s"', 'name="Arm/Left"'))
+    text = path.read_text().replace("frames-per-robot", layout).replace("kilted", release)
+    path.write_text(text)
+    table = planned_fleet(path).fleet.table
+    made = {it.full_name for it in table.runs if it.fact.of_hardware and it.robot == "R1"}
+    assert made == ({node} if node else set())

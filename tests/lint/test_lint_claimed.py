@@ -116,6 +116,21 @@ def test_a_file_that_an_argument_names_may_be_of_another_robot(
     assert [it.code for it in lint_file(str(path), settings)] == found
 
 
+@pytest.mark.parametrize(
+    ("command", "named", "found"),
+    # Of a robot that is not named nothing is certain.
+    [("effort", True, [("MB229", 6)]), ("position", True, []), ("effort", False, [])],
+)
+def test_a_file_of_controllers_of_the_robot_that_is_named(
+    command: str, named: bool, found: list[tuple[str, int]], tmp_path: Path
+) -> None:
+    lint(tmp_path, SYSTEM, "more/own.yaml", COMMAND=command)
+    urdf = str(tmp_path / "arm.urdf") if named else ""
+    settings = Settings(select=("MB229",), urdf=urdf)
+    found_in = lint_file(str(tmp_path / "more/own.yaml"), settings)
+    assert [(it.code, it.line) for it in found_in] == found
+
+
 @pytest.mark.slow
 def test_without_ros2_control_nothing_is_read(tmp_path: Path) -> None:
     assert lint(tmp_path, LOADS.format("controllers.yaml"), JOINT="other") == []

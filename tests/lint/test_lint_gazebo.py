@@ -722,6 +722,16 @@ RADIUS_IS = (
             " radians; 30 degrees are 0.5236",
         ),
         (
+            system(
+                "joint-position-controller",
+                "JointPositionController",
+                "<joint_name>j</joint_name><joint_index>3</joint_index>",
+            ),
+            "MB125 warning 3</joint_index>: joint_index '3' may be 2 at most"
+            " (JointPositionController.cc:582); write a number that its reader takes, in metres,"
+            " kilograms and radians",
+        ),
+        (
             classic("gazebo_ros_p3d", f"{P3D}<remapping>odom:=a</remapping><ros/>"),
             "MB112 warning <remapping>odom:=a</remapping>: gazebo_ros_p3d reads 'remapping' in"
             " <ros>, not outside of it; move it into <ros>",

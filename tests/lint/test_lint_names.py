@@ -144,6 +144,14 @@ def test_a_link_and_a_joint_of_one_name(body: str, expected: list[str]) -> None:
         # The parser strips what is around a name.
         (control('<joint name="j"><state_interface name=" position "/></joint>'), []),
         (control("<joint><state_interface/></joint>"), []),
+        # hardware_component_interface.cpp makes a node of this name, and '/' becomes '_'.
+        ('<ros2_control name="Arm-1"><hardware/></ros2_control>', ["MB312"]),
+        ('<ros2_control name="Arm/1 "><hardware/></ros2_control>', []),
+        (
+            '<ros2_control name="a-1"><hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin>'
+            "</hardware></ros2_control>",
+            [],
+        ),
     ],
 )
 def test_names_in_ros2_control(body: str, expected: list[str]) -> None:

@@ -14,7 +14,7 @@ from multibot_rewrite.rules.settings import Settings
 def linted(folder: Path, text: str) -> list[tuple[str, str, int, int]]:
     file = folder / "r.urdf"
     file.write_text(f'<robot name="r">\n{text}\n</robot>')
-    found = lint_file(str(file), Settings(select=("MB9",)))
+    found = lint_file(str(file), Settings(select=("MB9", "MB105")))
     return [(it.code, it.level, it.line, it.column) for it in found]
 
 
@@ -28,6 +28,7 @@ LINK = '<link name="gripper"/>\n'
         (LINK + '<x a="1" part="b gripper"/>', [("MB901", "warning", 3, 10)]),
         (LINK + "<x>gripper</x>", [("MB901", "warning", 3, 4)]),
         (LINK + "<x>grippers</x>", []),
+        (LINK + '<x parent="gripper"><origin/></x>', [("MB105", "warning", 3, 1)]),
         (LINK + "<!-- gripper -->", []),
         # Known to be a word of its own, or a reference that is renamed.
         (LINK + '<gazebo reference="gripper"/>', []),

@@ -413,6 +413,10 @@ def test_parameters_that_a_node_does_not_declare_or_not_so(text: str, tmp_path: 
 
 BEYOND = {
     DIFF + "wheel_radius: 0.0}": "diff: wheel_radius is 0.0, and has to be above 0.0",
+    # rcppmath rolling_mean_accumulator.hpp: the index modulo the size.
+    DIFF + "velocity_rolling_window_size: 0}": (
+        "diff: velocity_rolling_window_size is 0, and has to be above 0"
+    ),
     DIFF + "wheel_radius: 0.1}": "",
     DIFF + "pose_covariance_diagonal: [1.0, 2.0]}": (
         "diff: pose_covariance_diagonal is [1.0, 2.0], and has to be with a size above 5"

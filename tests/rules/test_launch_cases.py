@@ -693,3 +693,16 @@ def test_a_file_of_which_nothing_matches(
         "error" if "nearly" in it.hint else "warning" for it in found
     ]
     assert all(it.file == "/ws/own.yaml" for it in found)
+
+
+@pytest.mark.parametrize(
+    ("section", "told"),
+    # launch_ros to_parameters_list.py joins a section to a component as rclcpp does, since 0.19.10
+    # (Humble), 0.26.8 (Jazzy) and 0.28.2 (Kilted).
+    [("amcl", True), ("/*/other", True), ("/*/amcl", False), ("/r1/**", False), ("/*", True)],
+)
+def test_a_section_for_a_component(section: str, told: bool, known: Knowledge) -> None:
+    text = yaml.safe_dump({section: {"ros__parameters": {"a": 1}}})
+    own = {"namespace": "/r1", "container": "/box", "parameters": of_file(text)}
+    found = judged(known, "MB244", started("nav2_amcl", "nav2_amcl::AmclNode", "amcl", **own))
+    assert len(found) == told

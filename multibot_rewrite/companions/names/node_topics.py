@@ -68,7 +68,8 @@ def spell_topic(
         meant = expand(value, f"/{node.rpartition('/')[0]}" if reach == FROM_NODE else "/", "")
     text = _spelled(context, kind, meant, reach == IN_FULL)
     made_absolute = reach == IN_FULL and not value.startswith("/")
-    ruled = _ruled_node(facts.get(node), value, context) if node in context.nodes else None
+    is_started = node in context.nodes or facts is not built_in_facts(context.distro)
+    ruled = _ruled_node(facts.get(node), value, context) if is_started else None
     if not ruled:
         return TopicText(text, made_absolute=made_absolute)
     return _ruled_text(context, kind, (text, value), reach, ruled)._replace(

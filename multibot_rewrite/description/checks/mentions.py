@@ -110,7 +110,9 @@ def unclaimed_mentions(
 def _is_unread(element: etree._Element, attribute: str, vocabulary: Vocabulary) -> bool:
     """Return whether it is text that urdfdom does not read (model.cpp, link.cpp, joint.cpp), or is
     in a parameter that a plugin or hardware reads in no release, for ROS 1 or 2. Then all that it
-    reads is known."""
+    reads is known. Nothing reads the call of a macro that xacro has left."""
+    if any(map(is_macro_call, (element, *element.iterancestors()))):
+        return True
     parent = element.getparent()
     if not attribute and element.tag in NO_TEXT and parent is not None and parent.tag == "robot":
         return True
@@ -130,6 +132,14 @@ def _is_unread(element: etree._Element, attribute: str, vocabulary: Vocabulary) 
         known = list(filter(None, every))
         return bool(known) and not any(it.is_open or {name, "/*"} & {*it.rows} for it in known)
     return False
+
+
+def is_macro_call(element: etree._Element) -> bool:
+    """Return whether xacro has left it: an old call without ``xacro:``, of a macro with a parent and
+    an origin. No parser of a URDF reads an attribute ``parent`` there."""
+    above = element.getparent()
+    is_top = above is not None and above.tag == "robot"
+    return is_top and "parent" in element.attrib and element.find("origin") is not None
 
 
 def _is_meant(element: etree._Element, attribute: str, value: str) -> bool:

@@ -14,7 +14,7 @@ from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
-from multibot_rewrite.fleet.robots.robot_nodes import companion_nodes, stack_nodes
+from multibot_rewrite.fleet.robots.robot_nodes import companion_nodes, launched_nodes, stack_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 
 
@@ -39,7 +39,9 @@ def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
         facts = tuple(companion_nodes(evidence.nodes, stack_nodes(spec, plan.file)))
         declared, naming, _, own, words, given = robots[0].names
         context = make_context(declared, naming, facts, plan.file.distro, own, words, given)
-        yield RobotGroup(tuple(robots), facts, context._replace(frames=evidence.frames))
+        others = launched_nodes(evidence, facts)
+        every = (*facts, *others)
+        yield RobotGroup(tuple(robots), every, context._replace(frames=evidence.frames))
 
 
 def _key(spec: RobotSpec) -> object:

@@ -326,6 +326,16 @@ def companion_nodes(nodes: Sequence[NodeFacts], stack: Sequence[NodeFacts]) -> I
     yield from (bare.get(it.name, it)._replace(shared=it.shared) for it in mine)
 
 
+def launched_nodes(evidence: RobotEvidence, others: Iterable[NodeFacts]) -> Iterator[NodeFacts]:
+    """Yield the other nodes that surely run, with the ends that their files call as their code does:
+    their rules move these."""
+    found = {it.name for it in others}
+    for it in evidence.nodes:
+        if it.name not in found and it.kind in evidence.known and not it.when:
+            code = {end.name for end in evidence.known[it.kind].endpoints}
+            yield it._replace(endpoints=tuple(end for end in it.endpoints if end.name in code))
+
+
 MANAGERS = "nav2_lifecycle_manager"
 NOT_MANAGED = declare("MF803", "shared-node-not-managed", NOTE, formats=("fleet",))
 

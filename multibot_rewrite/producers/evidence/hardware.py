@@ -39,6 +39,7 @@ from multibot_rewrite.spelling.records import Given, Run
 from multibot_rewrite.system.records import (
     CLAIMS,
     EXPORTS,
+    HARDWARE_NODE,
     STATE,
     Controller,
     Interface,
@@ -103,6 +104,18 @@ def with_hardware(
             node = known[kind]._replace(name=name, known=kind, origin=origin, when=when)
             made.append(node._replace(of_hardware=True))
     return (*own, *made)
+
+
+def components(root: _Element, file: str, known: Mapping[str, NodeFacts]) -> Iterator[NodeFacts]:
+    """Yield the node of each hardware component of a description, called as its code calls it
+    (ros2_control hardware_component_interface.cpp); none in a release that makes none."""
+    entry = known.get(HARDWARE_NODE)
+    if entry is None:
+        return
+    for system in root.iterfind("ros2_control[hardware]"):
+        name = system.get("name", "").lower().replace("/", "_")
+        origin = Origin(place=_place(system, file))
+        yield entry._replace(name=name, known=HARDWARE_NODE, origin=origin, of_hardware=True)
 
 
 def _place(element: _Element, file: str) -> Place:

@@ -47,9 +47,12 @@ from multibot_rewrite.producers.launch.source_packages import (
     add_file,
     add_sources,
 )
-from multibot_rewrite.producers.launch.stand_in import contents, standing_in
+from multibot_rewrite.producers.launch.stand_in import standing_in
 from multibot_rewrite.producers.launch.stand_in.names import names
-from multibot_rewrite.producers.launch.stand_in.packages import FindPackageShare
+from multibot_rewrite.producers.launch.stand_in.packages import (
+    FindPackageShare,
+    get_package_share_directory,
+)
 from multibot_rewrite.producers.launch.unknown_modules import add_unknown, imported
 from multibot_rewrite.producers.launch.visit import ASKED, visit_all
 from multibot_rewrite.system.records import Place
@@ -143,10 +146,11 @@ def _lost(notes: Iterable[LaunchNote]) -> list[str]:
 def read_own(file: str, folder: str) -> LaunchGraph:
     """Return the graph of a launch file that ``build`` wrote, read by the stand-in in this process;
     ``folder`` is for temporary files. Raises as ``read_graph``."""
-    before, order = tempfile.tempdir, LaunchOrder(file)
-    name = "launch_ros.substitutions"
-    with standing_in(**{name: {**contents()[name], "FindPackageShare": _Share}}):
+    before, find, order = tempfile.tempdir, FindPackageShare.find, LaunchOrder(file)
+    with standing_in():
         tempfile.tempdir = folder
+        # Parameter files have substitutions as well.
+        FindPackageShare.find = _share  # type: ignore[method-assign, assignment]
         keep_places()
         try:
             return with_real_paths(_visited(_described(order), order))  # type: ignore[no-any-return]
@@ -154,17 +158,15 @@ def read_own(file: str, folder: str) -> LaunchGraph:
             raise UnreadableError(failure(error)) from error
         finally:
             tempfile.tempdir = before
+            FindPackageShare.find = find  # type: ignore[method-assign]
 
 
-class _Share(FindPackageShare):
-    """The share folder of a package, which is empty for one that is not here."""
-
-    def find(self, package_name: str) -> str:
-        """Return its path."""
-        try:
-            return super().find(package_name)
-        except LookupError:
-            return os.path.join(tempfile.gettempdir(), NOT_INSTALLED, "share", package_name)
+def _share(_self: FindPackageShare, package_name: str) -> str:
+    """Return the share folder of a package, which is empty for one that is not here."""
+    try:
+        return get_package_share_directory(package_name)
+    except LookupError:
+        return os.path.join(tempfile.gettempdir(), NOT_INSTALLED, "share", package_name)
 
 
 def _visited(description: Any, order: LaunchOrder) -> LaunchGraph:

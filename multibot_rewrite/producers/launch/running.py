@@ -28,7 +28,7 @@ from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import MANAGER, UNKNOWN, Endpoint, NodeFacts
 from multibot_rewrite.producers.evidence.filling import filled
-from multibot_rewrite.producers.evidence.hardware import with_hardware
+from multibot_rewrite.producers.evidence.hardware import components, with_hardware
 from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE, given_nodes, values_for
 from multibot_rewrite.producers.launch.describe import CLASSIC, SIMULATOR
 from multibot_rewrite.producers.launch.handed_on import document_of, has_sections
@@ -195,7 +195,8 @@ def _made_by_hardware(
         if root is None:
             continue
         bare = it._replace(values={}, arguments=(), texts=(), untold=(), rules=it.process_rules)
-        for one in with_hardware((it.fact,), root, it.place.file, known.nodes)[1:]:
+        made = with_hardware((it.fact,), root, it.place.file, known.nodes)[1:]
+        for one in (*made, *components(root, it.place.file, known.nodes)):
             yield bare._replace(node=one.name, name=one.name, fact=one)
 
 

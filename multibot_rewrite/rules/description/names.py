@@ -14,12 +14,19 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, SRDF, URDF, WARN
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Claim, Edit
 from multibot_rewrite.base.naming import FRAME_KINDS, NOT_PLAIN, is_keyword
-from multibot_rewrite.base.rosnames import check_topic_name, propose_token, split_remap
+from multibot_rewrite.base.rosnames import (
+    check_node_name,
+    check_topic_name,
+    propose_token,
+    split_remap,
+)
 from multibot_rewrite.companions.named_file import EVERY
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.steps.document import value_slot
 from multibot_rewrite.rules.facts.memo import memoized
+from multibot_rewrite.rules.facts.simulators import simulated
 from multibot_rewrite.rules.subject import Subject
+from multibot_rewrite.system.records import HARDWARE_NODE
 
 WORLD = "world"
 
@@ -209,6 +216,25 @@ def invalid_ros_name(subject: Subject) -> Iterator[Problem]:
             if fault := _name_fault(name, site.section):
                 message = f"{site.kinds[0]} {name!r} is not a valid ROS name: {fault}"
                 yield Problem(claim.element, message, claim.attribute)
+    yield from _hardware_without_node(subject)
+
+
+def _hardware_without_node(subject: Subject) -> Iterator[Problem]:
+    """Report hardware components after which no node can be called, where ros2_control makes one."""
+    in_simulator = {it for it, *_ in simulated(subject)}
+    for system in subject.elements.every("ros2_control"):
+        name = system.get("name", "").strip()
+        fault = check_node_name(name.replace("/", "_")) if name else None
+        if fault is None or SUBSTITUTION in name or system in in_simulator:
+            continue
+        from multibot_rewrite.knowledge.stacks import built_in  # hardly any name is wrong
+
+        if HARDWARE_NODE in built_in(subject.settings.distro).nodes:
+            message = (
+                f"hardware {name!r} has a node of this name, which ROS refuses: {fault.reason}"
+            )
+            hint = f"use {propose_token(name)!r}"
+            yield Problem(system, message, "name", hint)
 
 
 def _ros_names(claim: Claim) -> list[str]:

@@ -20,10 +20,13 @@ from multibot_rewrite.companions.moveit.file_kind import NAMES
 from multibot_rewrite.companions.named_file import MOVEIT, PARAMS, NamedFile
 from multibot_rewrite.companions.yaml_text import pairs
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
-from multibot_rewrite.producers.evidence.hardware import TYPE
+from multibot_rewrite.producers.evidence.hardware import TYPE, control_system, exported
 from multibot_rewrite.producers.evidence.semantics import JOINTS, controllers_of, listed, managers
 from multibot_rewrite.rules.declaration import remark, remark_at
+from multibot_rewrite.rules.description.references.controllers import missing_in
 from multibot_rewrite.rules.files.section_facts import beside, did_you_mean_at, is_in, shown
+from multibot_rewrite.rules.subject import Robots
+from multibot_rewrite.rules.system.states import said_of_missing
 from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import ACTION, SERVES, Place
 
@@ -96,6 +99,18 @@ def _lacks(node: yaml.Node, name: str, hint: str) -> Iterator[Finding]:
     # Launch files fill in placeholders.
     if not PLACEHOLDER.search(name):
         yield remark_at(node, f"MoveIt uses {name}, which no parameter file of the robot has", hint)
+
+
+def not_exported(file: NamedFile) -> Iterator[Finding]:
+    """Report interfaces that controllers of a file claim and the robot that is named has not."""
+    robots = file.memo.get(Robots) if file.is_certain else None
+    for robot in robots.subjects if robots else ():
+        exports = exported(robot.document.root, robot.document.file)
+        claimed = control_system(*beside(file), exports).interfaces
+        for it in missing_in(robot, claimed):
+            if is_in(file, it.claims[0].place):
+                place = it.claims[0].place._replace(column=1)
+                yield remark(place, *said_of_missing(it, not robot.origins))
 
 
 @rule("MB878", "section-of-no-controller", WARNING, formats=(PARAMS,))

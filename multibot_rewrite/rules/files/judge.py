@@ -16,6 +16,7 @@ from multibot_rewrite.rules.description import names as description_names, rewri
 from multibot_rewrite.rules.description.files import reading, values
 from multibot_rewrite.rules.description.multirobot import named_robots
 from multibot_rewrite.rules.files import (
+    controllers,
     declared,
     demands,
     names,
@@ -59,6 +60,7 @@ SHARED = (
     _of_files(values.unknown_word, plugin_names.unknown_classes),
     _of_files(clocks.clocks_mixed, rcl_rules.mixed_clocks, level=WARNING, formats=(PARAMS,)),
     _of_files(declaration.ONE_DEVICE, same_for_all.one_device, formats=(PARAMS,)),
+    _of_files(declaration.NOT_EXPORTED, controllers.not_exported, formats=(PARAMS,), options={}),
     _of_files(named_robots.prefix_only, same_for_all.prefix_only),
     _of_files(values.out_of_range, declared.out_of_bounds, demands.above_others, level=WARNING),
 )

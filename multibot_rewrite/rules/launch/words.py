@@ -22,7 +22,7 @@ from multibot_rewrite.base.lazy import IN_SUBSTITUTION, lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import SLIP, differ_in_numbers, nearest
 from multibot_rewrite.base.wording import shorten
-from multibot_rewrite.companions.params.sections import meant_for, raw_sections
+from multibot_rewrite.companions.params.sections import is_for, meant_for, raw_sections
 from multibot_rewrite.companions.yaml_text import line_of
 from multibot_rewrite.description.checks.numbers import number
 from multibot_rewrite.description.sources.packages import packages_below, sources_around
@@ -137,7 +137,7 @@ def _of_no_node(launched: Launched) -> Iterator[Finding]:
     # Of others only their code has the name.
     named = {it.full_name for it in launched.nodes if it.fact.is_known}
     readers: dict[tuple[str, str], list[str]] = defaultdict(list)
-    for node in (it for it in launched.graph.nodes if not it.container):
+    for node in launched.graph.nodes:
         names = started.get((node.place, f"{node.package}/{node.executable}"), ())
         named |= {*names} if node.name else set()
         for it in (one for one in node.parameters if one.file and names):
@@ -147,7 +147,9 @@ def _of_no_node(launched: Launched) -> Iterator[Finding]:
         with suppress(InputError):
             sections = raw_sections(document_of(file, text))
             by_word = lists_by_key((last_word(it.path), it) for it in sections)
-            lost = named.issuperset(names) and not any(it in nodes or "*" in it for it in by_word)
+            wild = [it.path for it in sections if "*" in it.path]
+            reaching = any(is_for(path, node) for path in wild for node in every)
+            lost = named.issuperset(names) and not (reaching or by_word.keys() & nodes.keys())
             if sections and lost:
                 place = Place(file, line_of(sections[0].keys[0]))
                 message = (

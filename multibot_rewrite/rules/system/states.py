@@ -267,6 +267,18 @@ def missing(known: Sequence[Interface]) -> Iterator[Missing]:
         yield Missing((first, *more), meant or next(beside, None), near)
 
 
+def said_of_missing(it: Missing, with_line: bool) -> tuple[str, str]:
+    """Return message and hint about what the controller of one robot claims."""
+    first, *more = it.claims
+    also = f" and {len(more)} more" if more else ""
+    line = f" (line {it.near.place.line})" if it.near and with_line else ""
+    named = f"name an interface that is there{line}, or add it"
+    message = (
+        f"{first.node} claims {first.kind} interface {first.name}{also}, which no <ros2_control>"
+    )
+    return f"{message} exports", f"did you mean {it.meant}{line}?" if it.meant else named
+
+
 def open_claims(known: Sequence[Interface]) -> list[Interface]:
     """Return the claims that nothing exports. A controller may claim interfaces of another one,
     which may have a sensor's name."""

@@ -72,6 +72,10 @@ def test_parts_of_words_files_and_addresses_are_no_names(value: str) -> None:
         ("<link name='wr'>wl</link>", False),
         ("<own><link name='wr'>wl</link></own>", True),
         ("<link name='wr' like='wl'/>", True),
+        # A call that xacro left: no parser of a URDF reads a parent of a child of <robot>.
+        ("<cam parent='wl'><origin/></cam>", False),
+        ("<own><cam parent='wl'><origin/></cam></own>", True),
+        ("<cam parent='wl'/>", True),
     ],
 )
 def test_text_of_a_link_is_read_by_nobody(element: str, warned: bool) -> None:

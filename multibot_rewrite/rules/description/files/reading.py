@@ -24,6 +24,7 @@ from multibot_rewrite.base.model import Edit
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.companions.named_file import EVERY
 from multibot_rewrite.description.checks.audit import leftover_xacro, loosely_written, worlds
+from multibot_rewrite.description.checks.mentions import is_macro_call
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.twice import already_rewritten
 from multibot_rewrite.rules.declaration import OF_TWO
@@ -44,8 +45,12 @@ package_not_found = declare("MB119", "not-expanded", NOTE)
 
 @rule("MB105", "placeholder-left", WARNING, formats=(URDF, *EVERY))
 def leftover(subject: Subject) -> Iterator[Problem]:
-    """Report the first ``${...}`` or ``$(...)`` that xacro left in a description."""
-    return leftover_xacro(subject.inventory)
+    """Report the first ``${...}`` or ``$(...)`` that xacro left in a description, and its macros."""
+    yield from leftover_xacro(subject.inventory)
+    for it in filter(is_macro_call, subject.document.root.iterchildren("*")):
+        message = f"<{it.tag}> is the call of a macro that xacro did not expand: nothing reads it"
+        hint = f"write <xacro:{it.tag}>, and include the file that has the macro"
+        yield Problem(it, message, None, hint)
 
 
 @rule("MB106", "already-rewritten", WARNING, options=OF_TWO)

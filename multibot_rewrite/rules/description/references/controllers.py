@@ -28,6 +28,7 @@ from multibot_rewrite.rules.facts.source_values import is_fixed, starts_of
 from multibot_rewrite.rules.subject import COMMAND, STATE, Subject, name_of
 
 if TYPE_CHECKING:
+    from multibot_rewrite.rules.system.states import Missing
     from multibot_rewrite.system.records import Interface
 
 _IN_PACKAGE = lazy_compile(r"(?:\$\(find(?:-pkg-share)?\s+([^)\s]+)\)|package://([^/]+))/(.+)")
@@ -37,20 +38,24 @@ _YAML = (".yaml", ".yml")
 def _not_exported(subject: Subject) -> Iterator[Problem]:
     for element, known in _claimed(subject):
         # Few descriptions need them.
-        from multibot_rewrite.rules.system.states import missing
-        from multibot_rewrite.system.records import EXPORTS
+        from multibot_rewrite.rules.system.states import said_of_missing
 
-        chosen = _chosen(subject) if any(missing(known)) else ()
-        rest = [it for it in known if it.role == EXPORTS or not _said(it).startswith(chosen)]
-        for it in missing(rest):
-            first, *more = it.claims
-            names = f"{_said(first)} and {len(more)} more" if more else _said(first)
+        for it in missing_in(subject, known):
             # Lines of an expanded xacro are in no file.
-            line = f" (line {it.near.place.line})" if it.near and not subject.origins else ""
-            near = f"did you mean {it.meant}{line}?" if it.meant else ""
-            message = f"{_at(first)}: {first.node} claims {names}, which no <ros2_control> exports"
-            hint = near or f"name an interface that is there{line}, or add it"
-            yield Problem(element, message, _place(element), hint)
+            message, hint = said_of_missing(it, not subject.origins)
+            yield Problem(element, f"{_at(it.claims[0])}: {message}", _place(element), hint)
+
+
+def missing_in(subject: Subject, known: tuple[Interface, ...]) -> Iterator[Missing]:
+    """Yield what controllers claim and the description does not export."""
+    from multibot_rewrite.rules.system.states import missing
+    from multibot_rewrite.system.records import EXPORTS
+
+    chosen = _chosen(subject) if any(missing(known)) else ()
+    said = "{0.kind} interface {0.name}".format
+    yield from missing(
+        [it for it in known if it.role == EXPORTS or not said(it).startswith(chosen)]
+    )
 
 
 def _claimed_twice(subject: Subject) -> Iterator[Problem]:
@@ -162,10 +167,6 @@ def _chosen(subject: Subject) -> tuple[str, ...]:
         for it, start in starts_of(subject, interfaces).items()
         if not is_fixed(subject, start, "name")
     )
-
-
-def _said(it: Interface) -> str:
-    return f"{it.kind} interface {it.name}"
 
 
 def _at(it: Interface) -> str:
