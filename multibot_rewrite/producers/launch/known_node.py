@@ -24,6 +24,7 @@ from multibot_rewrite.base.rosnames import (
     propose_token,
     resolve_bound,
 )
+from multibot_rewrite.companions.lua import lua_values
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.knowledge.conditions import ALSO, HEARD, PROGRAM, Condition, settled, words_in
 from multibot_rewrite.knowledge.programs import runs
@@ -35,10 +36,11 @@ from multibot_rewrite.producers.sources.facts import node_of_program
 from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.system.records import TOPIC
 
+# Name the folder and the file of Cartographer's options (node_main.cpp).
+LUA_FLAGS = ("-configuration_directory", "-configuration_basename")
 Decide = Callable[[Condition], bool | None]
 _COMMENTS = {
     ".xml": re.compile(COMMENT.decode()),
-    ".lua": re.compile(r"--[^\n]*"),
     ".yaml": re.compile(r"(?m)(?:^|\s)#.*$"),
 }
 
@@ -68,13 +70,17 @@ def as_named(node: NodeFacts, words: Sequence[str], values: Mapping[str, Given])
         if it.how != "names":
             return None
         given = {**{name: one.value for name, one in values.items()}, **options}
-        # FOLDER/FILE asks two parameters or options for a path.
-        parts = (name.split("/") for name in it.parameter.split(ALSO))
-        words = [[str(given.get(name) or "") for name in names] for names in parts]
-        paths = (os.path.join(*own) for own in words if all(own))
+        paths = (str(given.get(name) or "") for name in it.parameter.split(ALSO))
         return any(_has(path, it.values) for path in paths) or None
 
     return _as_decided(node, decide)
+
+
+def with_options(words: Sequence[str], values: Mapping[str, Given]) -> Mapping[str, Given]:
+    """Return the values with those of the Lua file that is in the arguments."""
+    options = dict(pairwise(words))
+    path = os.path.join(*(options.get(it, "") for it in LUA_FLAGS))
+    return {**values, **lua_values(read_file(path), path)} if os.path.isfile(path) else values
 
 
 def as_heard(node: NodeFacts, heard: Collection[str], bound: BoundNode) -> NodeFacts:
