@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 import yaml
-from paths import ROBOTS
+from paths import ROBOTS, ROOT
 from small_robots import PACKAGE, robot
 
 from multibot_rewrite.base.model import InputError
@@ -82,6 +82,34 @@ def test_a_file_is_of_the_robot_in_whose_folder_it_is(tmp_path: Path) -> None:
     made = fleet_of(tmp_path, *paths, "-n", "1")
     own = {it["name"]: it["companions"]["params"] for it in made["robots"]}
     assert own == {f"{it}1": [f"../{it}_description/config/own.yaml"] for it in ("left", "right")}
+
+
+EKF = "ekf_filter_node: {{ros__parameters: {{base_link_frame: {}}}}}\n"
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "owners"),
+    [
+        # The rover alone has a wheel and a scan.
+        ("nav2.yaml", "controller_server: {ros__parameters: {odom_topic: odom}}\n", {"rover1"}),
+        ("amcl.yaml", "amcl: {ros__parameters: {scan_topic: scan}}\n", {"rover1"}),
+        ("rows.yaml", "- ros_topic_name: scan\n  gz_topic_name: scan\n", {"rover1"}),
+        ("ekf.yaml", EKF.format("lidar_link"), {"rover1"}),
+        ("ekf.yaml", EKF.format("upper_link"), {"arm1"}),
+        ("ekf.yaml", EKF.format("base_link"), {"arm1", "rover1"}),
+    ],
+)
+def test_a_file_is_of_the_robot_that_it_fits(
+    file: str, text: str, owners: set[str], tmp_path: Path
+) -> None:
+    for path in ("two_arms_moveit/arm.urdf", "launch_tutorial/rover.urdf"):
+        files(tmp_path, **{path.rpartition("/")[2]: (ROOT / "examples" / path).read_text()})
+    files(tmp_path, **{file: text})
+    out, paths = tmp_path / "f.yaml", [str(tmp_path / it) for it in ("arm.urdf", "rover.urdf")]
+    main(["init", *paths, "-n", "1", "--yes", "-o", str(out)])
+    made = yaml.safe_load(out.read_text())
+    robots = made.pop("robots")
+    assert {it["name"] for it in robots if file in str({**made, **it})} == owners
 
 
 def test_kinematics_are_of_the_robot_that_has_the_groups(tmp_path: Path) -> None:
