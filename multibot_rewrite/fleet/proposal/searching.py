@@ -34,7 +34,11 @@ from multibot_rewrite.description.sources.included_by import (
     includers,
     parts_among,
 )
-from multibot_rewrite.description.sources.packages import MANIFEST as PACKAGE, package_of
+from multibot_rewrite.description.sources.packages import (
+    MANIFEST as PACKAGE,
+    package_of,
+    packages_below,
+)
 from multibot_rewrite.description.sources.release_said import MANIFEST
 from multibot_rewrite.fleet.outputs.output_file import PLAN
 from multibot_rewrite.fleet.proposal.launches import Reading, order_text, read_any, read_named
@@ -105,7 +109,13 @@ def search(paths: Sequence[str], launch: Sequence[LaunchOrder] = ()) -> Found:
         if not os.path.exists(path):
             link = os.path.islink(path)
             what = "it is a link to nothing" if link else "there is no such file or folder"
-            raise UsageError(f"{path or repr(path)}: {what}; give a description or a folder")
+            below = packages_below((os.curdir,)).get(path, ())
+            hint = (
+                f"did you mean {os.path.relpath(below[0])}?"
+                if below
+                else "give a description or a folder"
+            )
+            raise UsageError(f"{path or repr(path)}: {what}; {hint}")
         if not _can_be_named(path):
             raise UsageError(f"{path}: its name is no UTF-8, as that in a YAML file is; rename it")
     named = [*dict.fromkeys(os.path.normpath(it) for it in paths if not os.path.isdir(it))]

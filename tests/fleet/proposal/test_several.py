@@ -112,6 +112,17 @@ def test_a_file_is_of_the_robot_that_it_fits(
     assert {it["name"] for it in robots if file in str({**made, **it})} == owners
 
 
+@pytest.mark.parametrize("value", ["''", "office.yaml", None])
+def test_a_robot_of_nav2_without_a_map_is_asked_for_one(value: str | None, tmp_path: Path) -> None:
+    text = "amcl: {ros__parameters: {}}\ncontroller_server: {ros__parameters: {}}\n"
+    text += f"map_server:\n  ros__parameters:\n    yaml_filename: {value}\n" if value else ""
+    rover = (ROOT / "examples" / "launch_tutorial" / "rover.urdf").read_text()
+    files(tmp_path, **{"rover.urdf": rover, "nav2.yaml": text})
+    main(["init", str(tmp_path / "rover.urdf"), "--yes", "-o", str(tmp_path / "f.yaml")])
+    asked = "# Nav2 waits for a map: write its yaml_filename" in (tmp_path / "f.yaml").read_text()
+    assert asked is (value != "office.yaml")
+
+
 def test_kinematics_are_of_the_robot_that_has_the_groups(tmp_path: Path) -> None:
     group = '<robot name="{0}"><group name="{0}_group"><link name="{0}_base"/></group></robot>'
     files(tmp_path, **{"rover.srdf": group.format("rover")})
