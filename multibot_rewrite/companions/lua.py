@@ -7,9 +7,8 @@ topics are fixed relative names that remap rules move. Comments and other string
 
 from __future__ import annotations
 
-import json
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
@@ -42,22 +41,6 @@ _TOKEN = lazy_compile(
     re.VERBOSE | re.DOTALL,
 )
 _BOOLS = {"true": True, "false": False}
-_BEGIN = """\
-include "map_builder.lua"
-include "trajectory_builder.lua"
-
-options = {
-  map_builder = MAP_BUILDER,
-  trajectory_builder = TRAJECTORY_BUILDER,
-"""
-_END = """\
-}
-
-MAP_BUILDER.use_trajectory_builder_2d = true
-TRAJECTORY_BUILDER_2D.use_imu_data = false
-
-return options
-"""
 _SILENT = frozenset({"space", "comment"})
 
 
@@ -110,12 +93,6 @@ def lua_values(data: bytes, file: str) -> dict[str, Given]:
     the last one. Raises as ``rewrite_lua``."""
     options = _options([*tokens_of(_decoded(data, file), file)])
     return {name: Given(_value(it), Place(file, it.line)) for name, _, it in options if it}
-
-
-def lua_options(values: Mapping[str, Value]) -> str:
-    """Return a file for a robot in the plane, whose options have these values."""
-    lines = (f"  {name} = {json.dumps(value)},\n" for name, value in values.items())
-    return f"{_BEGIN}{''.join(lines)}{_END}"
 
 
 def _decoded(data: bytes, file: str) -> str:

@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
-from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.bounded import load_yaml, own_text
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.base.nearest import meant_name
@@ -20,7 +21,7 @@ from multibot_rewrite.companions.context import (
     make_template,
 )
 from multibot_rewrite.companions.formats import made_for_any
-from multibot_rewrite.companions.lua import lua_options, rewrite_lua
+from multibot_rewrite.companions.lua import rewrite_lua
 from multibot_rewrite.companions.named_file import LUA, MOVEIT, PARAMS, TREE, Companion
 from multibot_rewrite.companions.names.node_topics import facts_by_name
 from multibot_rewrite.companions.params.rewrite import rewrite_params, rewrite_values
@@ -206,8 +207,9 @@ def _own_options(plan: FleetPlan, group: RobotGroup) -> Iterator[OutputFile]:
     """Yield for each robot without a Lua file that runs Cartographer its options."""
     for node in plan.evidence_of(group.robots[0]).nodes:
         if node.kind == CARTOGRAPHER and node.usual:
-            frames = {it.parameter: it.default for it in node.frames}
-            text = lua_options({**frames, **dict(node.usual)}).encode()
+            values = (*((it.parameter, it.default) for it in node.frames), *node.usual)
+            lines = "\n  ".join(f"{name} = {json.dumps(value)}," for name, value in values)
+            text = own_text(__file__, OPTIONS).replace("-- OPTIONS", lines).encode()
             made = rewrite_lua(text, OPTIONS, group.context)
             for robot in group.robots:
                 own = fill_template(made.template, robot.spec.namespace, robot.spec.tag)
