@@ -109,7 +109,7 @@ def search(paths: Sequence[str], launch: Sequence[LaunchOrder] = ()) -> Found:
         if not os.path.exists(path):
             link = os.path.islink(path)
             what = "it is a link to nothing" if link else "there is no such file or folder"
-            below = packages_below((os.curdir,)).get(path, ())
+            packages = packages_below((os.curdir,)).get(path, ())
             hint = (
                 f"did you mean {os.path.relpath(below[0])}?"
                 if below
