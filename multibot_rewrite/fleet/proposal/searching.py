@@ -109,12 +109,8 @@ def search(paths: Sequence[str], launch: Sequence[LaunchOrder] = ()) -> Found:
         if not os.path.exists(path):
             link = os.path.islink(path)
             what = "it is a link to nothing" if link else "there is no such file or folder"
-            packages = packages_below((os.curdir,)).get(path, ())
-            hint = (
-                f"did you mean {os.path.relpath(below[0])}?"
-                if below
-                else "give a description or a folder"
-            )
+            inside = [*map(os.path.relpath, packages_below((os.getcwd(),)).get(path, ()))]
+            hint = f"did you mean {inside[0]}?" if inside else "give a description or a folder"
             raise UsageError(f"{path or repr(path)}: {what}; {hint}")
         if not _can_be_named(path):
             raise UsageError(f"{path}: its name is no UTF-8, as that in a YAML file is; rename it")
