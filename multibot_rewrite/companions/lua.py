@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from contextlib import suppress
 from typing import NamedTuple
 
 from multibot_rewrite.base.lazy import lazy_compile
@@ -19,7 +18,6 @@ from multibot_rewrite.companions.engine import with_slots
 from multibot_rewrite.companions.named_file import LUA, Companion, NamedFile
 from multibot_rewrite.companions.sites import AS_IS, Site, Slot
 from multibot_rewrite.spelling.records import Given
-from multibot_rewrite.system.parameters import Value
 from multibot_rewrite.system.records import Place
 
 FRAMES = frozenset({"map_frame", "tracking_frame", "published_frame", "odom_frame"})
@@ -40,7 +38,6 @@ _TOKEN = lazy_compile(
     |(?P<mark>\.{2,3}|[=~<>]=|.)""",
     re.VERBOSE | re.DOTALL,
 )
-_BOOLS = {"true": True, "false": False}
 _SILENT = frozenset({"space", "comment"})
 
 
@@ -92,7 +89,7 @@ def lua_values(data: bytes, file: str) -> dict[str, Given]:
     """Return the options that a file sets to a plain value, by their last names; of several values
     the last one. Raises as ``rewrite_lua``."""
     options = _options([*tokens_of(_decoded(data, file), file)])
-    return {name: Given(_value(it), Place(file, it.line)) for name, _, it in options if it}
+    return {name: Given(_plain(it), Place(file, it.line)) for name, _, it in options if it}
 
 
 def _decoded(data: bytes, file: str) -> str:
@@ -109,17 +106,8 @@ def _options(tokens: Sequence[Token]) -> Iterator[tuple[str, Token, Token | None
         if name and behind < len(tokens):
             value = tokens[behind]
             simple = "\\" not in value.text and _ends(tokens, behind + 1)
-            plain = value.kind in ("string", "number") or value.text in _BOOLS
+            plain = value.kind in ("string", "number") or value.text in ("true", "false")
             yield name, token, value if simple and plain else None
-
-
-def _value(token: Token) -> Value:
-    if token.kind != "number":
-        return _BOOLS.get(token.text, token.text[1:-1])
-    for kind in (int, float):
-        with suppress(ValueError):
-            return kind(token.text)
-    return token.text
 
 
 def tokens_of(text: str, file: str) -> Iterator[Token]:

@@ -27,7 +27,6 @@ from multibot_rewrite.producers.launch.programs import once_for_all
 MOST, MOST_UNREAD = 10, 3
 _MAP = re.compile(rb"""^\s*yaml_filename:\s*["']?[^\s"'#]""", re.MULTILINE)
 _NO_MAP = "Nav2 waits for a map: write its yaml_filename for map_server into a parameter file"
-_ON_MAPS = frozenset(("nav2", "localization"))
 
 
 def text_of(it: Proposal, file: str) -> str:
@@ -157,7 +156,7 @@ def _of_member(
         whys = tuple(f"{stack}: {reason}" for stack, reason in beside.stacks.items())
         texts = (data_of_file(it) for it in beside.files.get("params", ()))
         maps = any(_MAP.search(it) for it in texts)
-        lacks = not maps and not _ON_MAPS.isdisjoint(beside.stacks)
+        lacks = not maps and bool({"nav2", "localization"} & beside.stacks.keys())
         yield "stack", (list(beside.stacks), (*whys, *[_NO_MAP] * lacks))
     files: dict[str, Any] = {
         kind: here(its[0]) if kind == "rviz" else [here(path) for path in its]

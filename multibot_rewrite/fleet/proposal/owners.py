@@ -42,6 +42,7 @@ _WORD = re.compile(r"[\w.-]+")
 # that the robot has not.
 _MORE = 2
 _OF_ROBOT = ("frame", "link", "joint")
+_DRIVING = ("nav2_", "slam_toolbox")
 
 
 class _Words(NamedTuple):
@@ -78,25 +79,21 @@ def _owners(file: str, robots: Sequence[Looked], known: KnownNodes) -> list[Look
 
 
 def _lacked(robot: Looked, file: str, known: KnownNodes) -> set[str]:
-    """Return what a file of parameters or of a bridge names and the robot has not: frames, links,
-    joints, topics of sensors; for Nav2 a wheel."""
+    """Return what a file of parameters or of a bridge names and the robot has not; for nodes that drive
+    their packages, if no wheel turns."""
     root = robot.root if robot.root is not None else etree.Element("robot")
-    words = {*_WORD.findall(etree.tostring(root, encoding="unicode").replace("/", " "))}
-    own = own_names(robot) | {*SENT_FRAMES}
     try:
         document = read_yaml(data_of_file(file), file)
         topics = {it.inside for it in bridge_rows(document)}
         nodes = () if topics else given_nodes([document], known)
     except InputError:
         return set()
-    lacked = {it for it in topics if last_word(it) not in words}
-    for kind, name in _named(nodes, known):
-        has = name in own if kind in _OF_ROBOT else last_word(name) in words
-        lacked |= set() if has else {name}
+    text = etree.tostring(root, encoding="unicode")
+    lacked = fitting(robot, file, nodes, known, ()).strange
+    lacked |= {it for it in topics if last_word(it) not in text}
     packages = {known.nodes[it.fact.known].package for it in nodes if it.fact.known in known.nodes}
-    types = {it.get("type") for it in root.iter("joint")}
-    turns = "continuous" in types or root.tag == "sdf"
-    return lacked | {it for it in packages if it.startswith("nav2_") and not turns}
+    turns = root.tag == "sdf" or root.find("joint[@type='continuous']") is not None
+    return {*lacked, *(it for it in packages if it.startswith(_DRIVING) and not turns)}
 
 
 def _is_called_like(file: str, robot: Looked) -> bool:
