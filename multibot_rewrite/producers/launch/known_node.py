@@ -80,7 +80,9 @@ def with_options(words: Sequence[str], values: Mapping[str, Given]) -> Mapping[s
     """Return the values with those of the Lua file that is in the arguments."""
     options = dict(pairwise(words))
     path = os.path.join(*(options.get(it, "") for it in LUA_FLAGS))
-    return {**values, **lua_values(read_file(path), path)} if os.path.isfile(path) else values
+    with suppress(InputError):
+        return {**values, **lua_values(read_file(path), path)} if path else values
+    return values
 
 
 def as_heard(node: NodeFacts, heard: Collection[str], bound: BoundNode) -> NodeFacts:
