@@ -156,10 +156,8 @@ def survey(seen: Diagnosis) -> Iterator[str]:
         where = "by the ends of names"
         if any(robot.namespace for robot in seen.robots):
             where = "by their namespaces"
-        elif any(robot.only_frames for robot in seen.robots):
-            where = "by what their frames have"
         elif any(robot.before for robot in seen.robots):
-            where = "by the beginnings of names"
+            where = "by what their frames have"
         yield f"{plural(len(names), 'robot')} {where}: {shorten(names, SEVERAL)}"
         yield f"layout: {_layout_line(seen)}"
     # Topics of a robot, on which only nodes of that robot send.

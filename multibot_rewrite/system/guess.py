@@ -4,7 +4,7 @@
 A namespace is a robot's where nodes are in it, and topics that a body has: commands, joints, odometry,
 a description, tf. Two or more namespaces with nodes of the same names are robots where these nodes have
 such a topic, wherever that is: in each namespace, or one for all. Without namespaces a robot is a word
-at an end of such topics (``cmd_vel/robot1``) and nodes, or one that several trees of frames have
+at the end of such topics (``cmd_vel/robot1``), or one that several trees of frames have
 (``robot1/base_link``).
 """
 
@@ -65,7 +65,7 @@ def guess_robots(graph: System) -> tuple[GuessedRobot, ...]:
     lived_in = [node.name for node in graph.nodes if not is_tool(node.name)]
     namespaces = [it for it in _namespaces(graph, lived_in) if not _is_a_part(it, parts)]
     frames = {it for edge in graph.edges for it in (edge.child, edge.parent)}
-    words = [] if namespaces else _words_of_topics(graph)
+    words = [] if namespaces else _last_words(graph)
     if not (namespaces or words):
         namespaces = sorted(_alike(graph, lived_in, numbered=True))
     if namespaces:
@@ -149,23 +149,19 @@ def _numbered_alike(spaces: Collection[str], nodes: Iterable[str]) -> Iterator[s
             space = space.rpartition("/")[0]
 
 
-def _words_of_topics(graph: System) -> list[str]:
-    """Return words behind topics of a body, ``robot1`` of ``/cmd_vel/robot1`` and ``/odom/robot1``;
-    where there are none, several before such topics. Nodes have them as well."""
-    behind: dict[str, set[str]] = defaultdict(set)
-    before: dict[str, set[str]] = defaultdict(set)
-    for end in (it for it in graph.ends if it.kind == TOPIC):
-        *above, one, last = ("", *end.name.split("/"))
-        if one in OF_A_ROBOT and last not in OF_A_ROBOT:
-            behind[last].add(one)
-        if last in OF_A_ROBOT and len(above) > 1 and not any(above) and _may_be_a_robot(one, ()):
-            before[one].add(last)
-    names = [node.name for node in graph.nodes]
-    several = [it for it, topics in behind.items() if len(topics) > 1]
-    found = [it for it in several if any(name.endswith(f"_{it}") for name in names)]
-    several = [it for it, topics in before.items() if len(topics) > 1]
-    first = [it for it in several if any(name.startswith(f"/{it}_") for name in names)]
-    return sorted(found or (first if first[1:] else ()))
+def _last_words(graph: System) -> list[str]:
+    """Return words behind topics of a body: ``robot1`` of ``/cmd_vel/robot1`` and ``/odom/robot1``."""
+    found: dict[str, set[str]] = defaultdict(set)
+    for end in graph.ends:
+        *_, before, last = ("", *end.name.split("/"))
+        if end.kind == TOPIC and before in OF_A_ROBOT and last not in OF_A_ROBOT:
+            found[last].add(before)
+    nodes = [node.name for node in graph.nodes]
+    return sorted(
+        word
+        for word, topics in found.items()
+        if len(topics) > 1 and any(node.endswith(f"_{word}") for node in nodes)
+    )
 
 
 def _above(frames: Iterable[str], parents: Mapping[str, Set[str]]) -> Set[str]:
@@ -231,7 +227,7 @@ def whose_by_guess(robots: Iterable[GuessedRobot]) -> Whose:
     """Return whose each name is, by how the robots show."""
     known = tuple(robots)
     there = [it for it in known if not it.only_frames]
-    by_word = {it.namespace or f"/{it.name}": it for it in there}
+    by_word = {it.namespace or it.name: it for it in there}
     by_word |= {it.name: it for it in there}
     of_name = cache(lambda name: _whose(name, by_word))
     by_way: dict[tuple[str, str], int] = {}
@@ -287,6 +283,4 @@ def _plain(name: str, robot: GuessedRobot | None) -> str:
     if robot.namespace and name.startswith(f"{robot.namespace}/"):
         return name.removeprefix(robot.namespace)
     bare = name.removesuffix(f"/{robot.name}").removesuffix(f"_{robot.name}")
-    if bare.startswith(f"/{robot.name}/"):
-        return bare.removeprefix(f"/{robot.name}")
     return bare.replace(f"/{robot.name}_", "/", 1) or name

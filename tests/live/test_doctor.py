@@ -120,9 +120,8 @@ IN_FRAMES = "layout: frames have the robot's name, topics and nodes have not"
     [
         ([GuessedRobot("a", "/a"), GuessedRobot("b", "")],
          ["2 robots by their namespaces: a, b", NO_LAYOUT]),
-        ([GuessedRobot("a", "", "a/", only_frames=True), GuessedRobot("b", "", "", "_b", True)],
+        ([GuessedRobot("a", "", before="a/"), GuessedRobot("b", "", behind="_b")],
          ["2 robots by what their frames have: a, b", IN_FRAMES]),
-        ([GuessedRobot("a", "", "a_")], ["1 robot by the beginnings of names: a", IN_FRAMES]),
         ([GuessedRobot("a", "", behind="_a")],
          ["1 robot by the ends of names: a", IN_FRAMES]),
         ([], []),

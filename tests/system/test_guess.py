@@ -7,7 +7,6 @@ import pytest
 from graph_calls import GuessedRobot, guess_robots
 
 from multibot_rewrite.system.environment import setting_caveats
-from multibot_rewrite.system.guess import whose_by_guess
 from multibot_rewrite.system.records import (
     PUBLISHES,
     SUBSCRIBES,
@@ -73,10 +72,6 @@ def graph(nodes: str, topics: str, frames: str = "") -> System:
         # Inside another one it is none; outside it is, though their names begin alike.
         ("/a/x /a/b/x", "/a/tf /a/b/tf", ["a"]),
         ("/a/x /ab/x", "/a/tf /ab/tf", ["a", "ab"]),
-        # Before topics of a body and nodes in the root: several, since one may be a part.
-        ("/a_x /b_x", "/a/tf /a/odom /b/tf /b/odom", ["a", "b"]),
-        ("/a_x", "/a/tf /a/odom", []),
-        ("/a_x /cam_x", "/a/tf /a/odom /cam/tf /cam/scan", []),
         # Whole where the last words are alike.
         ("/x/a/n /y/a/n /b/n", "/x/a/tf /y/a/tf /b/tf", ["b", "x/a", "y/a"]),
         # Numbered, with two nodes of the same names, whatever they have.
@@ -97,16 +92,6 @@ def graph(nodes: str, topics: str, frames: str = "") -> System:
 )
 def test_robots_show_by_their_topics(nodes: str, topics: str, robots: list[str]) -> None:
     assert [it.name for it in guess_robots(graph(nodes, topics))] == robots
-
-
-def test_what_a_robot_has_by_its_front_is_its_own() -> None:
-    """As layout postfix with affix prefix calls nodes, topics and frames."""
-    seen = graph(
-        "/a_x /b_x", "/a/tf /a/odom /b/tf /b/odom", "a_odom>a_base_link b_odom>b_base_link"
-    )
-    whose = whose_by_guess(guess_robots(seen))
-    assert [*map(whose.robot, ("/a/odom", "/a_x", "/b/tf", "/x"))] == ["a", "a", "b", ""]
-    assert [*map(whose.plain, ("/a/odom", "/a_x"))] == ["/odom", "/x"]
 
 
 @pytest.mark.parametrize(
