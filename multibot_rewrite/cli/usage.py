@@ -76,8 +76,8 @@ def check_order(program: str, first: str, words: Sequence[str]) -> None:
     """Raise UsageError where a file is named behind what is none."""
     file = next(filter(os.path.isfile, words), "")
     if file and not os.path.exists(first):
-        rest = shlex.join([first, *(it for it in words if it != file)])
-        raise UsageError(f"the file comes first: {program} {shlex.quote(file)} {rest}")
+        right = shlex.join([file, first, *(it for it in words if it != file)])
+        raise UsageError(f"the file comes first: {program} {right}")
 
 
 def asked_number(options: argparse.Namespace) -> int:

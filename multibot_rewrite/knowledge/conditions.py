@@ -175,8 +175,8 @@ def _is_so(it: Condition, value_of: Values) -> bool | None:
         return simulated == (it.values == ("simulated",)) if isinstance(simulated, bool) else None
     if it.parameter == "option":
         name, _, first = it.values[0].partition(" = ")
-        value = value_of(name)
-        return None if value is None else word_of(value) in (first, *it.values[1:])
+        asked = (first, *it.values[1:])
+        return None if (value := value_of(name)) is None else word_of(value) in asked
     # What a file does not pass, whoever starts the node may.
     passed = any(value_of(name) not in (None, "", False) for name in it.values)
     return {"given": True, "missing": False}.get(it.parameter) if passed else None

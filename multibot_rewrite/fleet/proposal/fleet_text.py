@@ -154,8 +154,7 @@ def _of_member(
         yield "srdf", (here(beside.srdf), ("The planning groups of MoveIt",))
     if beside.stacks:
         whys = tuple(f"{stack}: {reason}" for stack, reason in beside.stacks.items())
-        texts = (data_of_file(it) for it in beside.files.get("params", ()))
-        maps = any(_MAP.search(it) for it in texts)
+        maps = any(_MAP.search(data_of_file(it)) for it in beside.files.get("params", ()))
         lacks = not maps and bool({"nav2", "localization"} & beside.stacks.keys())
         yield "stack", (list(beside.stacks), (*whys, *[_NO_MAP] * lacks))
     files: dict[str, Any] = {

@@ -42,7 +42,6 @@ _WORD = re.compile(r"[\w.-]+")
 # that the robot has not.
 _MORE = 2
 _OF_ROBOT = ("frame", "link", "joint")
-_DRIVING = ("nav2_", "slam_toolbox")
 
 
 class _Words(NamedTuple):
@@ -93,7 +92,8 @@ def _lacked(robot: Looked, file: str, known: KnownNodes) -> set[str]:
     lacked |= {it for it in topics if last_word(it) not in text}
     packages = {known.nodes[it.fact.known].package for it in nodes if it.fact.known in known.nodes}
     turns = root.tag == "sdf" or root.find("joint[@type='continuous']") is not None
-    return {*lacked, *(it for it in packages if it.startswith(_DRIVING) and not turns)}
+    drives = ("nav2_", "slam_toolbox")
+    return {*lacked, *(it for it in packages if it.startswith(drives) and not turns)}
 
 
 def _is_called_like(file: str, robot: Looked) -> bool:

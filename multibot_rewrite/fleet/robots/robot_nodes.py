@@ -129,7 +129,6 @@ def robot_nodes(
     Raises InputError for a parameter file that cannot be read."""
     parameters = load_known_nodes(file.nodes, file.distro)
     read = given_nodes(params_of(spec).values(), parameters)
-    # The options of Cartographer are no parameters.
     read = [*(it for it in read if it.name != CARTOGRAPHER), *_of_lua(spec)]
     own = tuple(without_robot(it, spec.words) for it in read)
     known = _known(own, file)

@@ -36,8 +36,7 @@ from multibot_rewrite.producers.sources.facts import node_of_program
 from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.system.records import TOPIC
 
-# Name the folder and the file of Cartographer's options (node_main.cpp).
-LUA_FLAGS = ("-configuration_directory", "-configuration_basename")
+LUA_FLAGS = ("-configuration_directory", "-configuration_basename")  # node_main.cpp
 Decide = Callable[[Condition], bool | None]
 _COMMENTS = {
     ".xml": re.compile(COMMENT.decode()),
@@ -81,7 +80,7 @@ def with_options(words: Sequence[str], values: Mapping[str, Given]) -> Mapping[s
     options = dict(pairwise(words))
     path = os.path.join(*(options.get(it, "") for it in LUA_FLAGS))
     with suppress(InputError):
-        return {**values, **lua_values(read_file(path), path)} if path else values
+        values = {**values, **lua_values(read_file(path), path)} if path else values
     return values
 
 
