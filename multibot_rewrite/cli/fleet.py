@@ -16,6 +16,7 @@ from multibot_rewrite.cli.output import note
 from multibot_rewrite.cli.report import About, check_report, chosen, report_beside
 from multibot_rewrite.cli.usage import (
     asked_number,
+    check_order,
     check_xacro,
     given_options,
     policy,
@@ -40,8 +41,9 @@ _OF_FLEET_FILE = (
 OF_FLEET_FILE = {"words": "ROBOT", **{it: f"--{it}" for it in _OF_FLEET_FILE}}
 
 
-def check_use(options: argparse.Namespace, printed: bool) -> None:
+def check_use(options: argparse.Namespace, command: str, printed: bool) -> None:
     """Raise UsageError for a target that cannot be written; ``printed``: the result is printed."""
+    check_order(f"multibot {command}", options.input, options.words)
     check_report(options, printed)
     if options.output:
         check_target(options.output, [options.input])

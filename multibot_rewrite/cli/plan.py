@@ -43,7 +43,7 @@ def run(options: argparse.Namespace) -> int:
     """Make the plan and write what is asked for of it; returns the exit code."""
     if any(map(_LAUNCH.fullmatch, [options.input, *options.words[:1]])):
         return _of_launch(options)
-    fleet.check_use(options, printed=not goes_to_file(options))
+    fleet.check_use(options, "plan", printed=not goes_to_file(options))
     # A robot that is called nothing; a layout, or rules, are for one with a name.
     unnamed = not options.input.endswith(fleet.FLEET_FILES) and not robots(options)
     named = given_options(options, {"layout": "--layout"}) or options.form != PLAN

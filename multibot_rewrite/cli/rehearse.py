@@ -39,7 +39,7 @@ ONE = -1
 
 def run(options: argparse.Namespace) -> int:
     """Start the stubs, look, compare, sum up; returns the exit code."""
-    fleet.check_use(options, printed=False)
+    fleet.check_use(options, "rehearse", printed=False)
     pictures.check(options)
     if options.save_snapshot:
         check_target(options.save_snapshot, [options.input], "--save-snapshot")

@@ -25,7 +25,7 @@ from multibot_rewrite.cli.output import (
     write_files,
 )
 from multibot_rewrite.cli.report import About, by_themselves, check_report, chosen, report_beside
-from multibot_rewrite.cli.usage import policy, xacro_args
+from multibot_rewrite.cli.usage import check_order, policy, xacro_args
 from multibot_rewrite.cli.walk import check_link, check_target
 from multibot_rewrite.description.sources.included_by import data_of_file
 from multibot_rewrite.description.sources.read import is_xacro
@@ -44,9 +44,7 @@ def check_use(options: argparse.Namespace, names: list[str]) -> None:
         undo = " --undo" * options.undo
         example = f"urdf-postfix {options.input} robot1{undo}"
         raise UsageError(f"no robot name given; for example: {example}")
-    file = next((it for it in names if os.path.isfile(it)), "")
-    if file and not os.path.exists(options.input):
-        raise UsageError(f"the file comes first: urdf-postfix {file} {options.input}")
+    check_order("urdf-postfix", options.input, names)
     _check_together(options)
     inputs = (options.input, options.urdf or "", options.xacro or "")
     if xacro_args(options) and not any(is_xacro(path) for path in inputs):

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import argparse
+import os
+import shlex
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -68,6 +70,14 @@ def robots(options: argparse.Namespace) -> list[str]:
     if named:
         raise UsageError(f"--count {count} and {named[0]}: give a number of robots, or their names")
     return list(numbered_names(asked_number(options)))
+
+
+def check_order(program: str, first: str, words: Sequence[str]) -> None:
+    """Raise UsageError where a file is named behind what is none."""
+    file = next(filter(os.path.isfile, words), "")
+    if file and not os.path.exists(first):
+        right = shlex.join([file, first, *(it for it in words if it != file)])
+        raise UsageError(f"the file comes first: {program} {right}")
 
 
 def asked_number(options: argparse.Namespace) -> int:

@@ -33,7 +33,7 @@ from multibot_rewrite.system.records import System
 
 def run(options: argparse.Namespace) -> int:
     """Rewrite, load, write the page; returns the exit code."""
-    check_use(options, printed=not goes_to_file(options))
+    check_use(options, "view", printed=not goes_to_file(options))
     plan = _plan(options)
     check_target(options.output, [*input_files(plan.file), *options.snapshot])
     scene = scene_of(plan, _graph(options))

@@ -17,6 +17,8 @@ from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.engine import with_slots
 from multibot_rewrite.companions.named_file import LUA, Companion, NamedFile
 from multibot_rewrite.companions.sites import AS_IS, Site, Slot
+from multibot_rewrite.spelling.records import Given
+from multibot_rewrite.system.records import Place
 
 FRAMES = frozenset({"map_frame", "tracking_frame", "published_frame", "odom_frame"})
 # Cartographer's own files, which set no frames (cartographer/configuration_files).
@@ -49,13 +51,6 @@ class Token(NamedTuple):
     column: int
 
 
-class LuaOption(NamedTuple):
-    """An assignment to one of the frames; ``value`` is None if it is not a plain string."""
-
-    name: Token
-    value: Token | None
-
-
 def rewrite_lua(data: bytes, file: str, context: Context) -> Companion:
     """Return a Lua file with slots for a robot.
 
@@ -67,22 +62,15 @@ def rewrite_lua(data: bytes, file: str, context: Context) -> Companion:
 
 def read_lua(data: bytes, file: str, context: Context) -> NamedFile:
     """Return the names of a file; raises as ``rewrite_lua``."""
-    try:
-        text = data.decode()
-    except UnicodeDecodeError:
-        raise InputError(f"{file}: it is not UTF-8; save it as UTF-8") from None
+    text = _decoded(data, file)
     tokens = list(tokens_of(text, file))
-    options = []
-    for at, token in enumerate(tokens):
-        name, behind = _assigned(tokens, at)
-        if name in FRAMES and behind < len(tokens):
-            value = tokens[behind]
-            simple = value.kind == "string" and "\\" not in value.text
-            simple = simple and _ends(tokens, behind + 1)
-            options.append(LuaOption(token, value if simple else None))
-    values = {it.value.at: (it.name.text, it.value) for it in options if it.value}
+    values, computed = {}, []
+    for _, key, value in (it for it in _options(tokens) if it[0] in FRAMES):
+        if value and value.kind == "string":
+            values[value.at] = key.text, value
+        else:
+            computed.append(_site("", key, key.text))
     names = tuple(_site("frame", it, key) for key, it in values.values())
-    computed = tuple(_site("", it.name, it.name.text) for it in options if it.value is None)
     strings = (it for it in tokens if it.kind in ("string", "long") and it.at not in values)
     others = tuple(_site("", it) for it in strings)
     called = (at for at, it in enumerate(tokens) if it.text == "include")
@@ -93,8 +81,33 @@ def read_lua(data: bytes, file: str, context: Context) -> NamedFile:
         if it and it.kind in ("string", "long") and _plain(it) not in OWN_FILES
     )
     return NamedFile(
-        LUA, file, text, context, {}, names, others, included=included, computed=computed
+        LUA, file, text, context, {}, names, others, included=included, computed=tuple(computed)
     )
+
+
+def lua_values(data: bytes, file: str) -> dict[str, Given]:
+    """Return the options that a file sets to a plain value, by their last names; of several values
+    the last one. Raises as ``rewrite_lua``."""
+    options = _options([*tokens_of(_decoded(data, file), file)])
+    return {name: Given(_plain(it), Place(file, it.line)) for name, _, it in options if it}
+
+
+def _decoded(data: bytes, file: str) -> str:
+    try:
+        return data.decode()
+    except UnicodeDecodeError:
+        raise InputError(f"{file}: it is not UTF-8; save it as UTF-8") from None
+
+
+def _options(tokens: Sequence[Token]) -> Iterator[tuple[str, Token, Token | None]]:
+    """Yield the names that are assigned to, where, and the value; None for no plain one."""
+    for at, token in enumerate(tokens):
+        name, behind = _assigned(tokens, at)
+        if name and behind < len(tokens):
+            value = tokens[behind]
+            simple = "\\" not in value.text and _ends(tokens, behind + 1)
+            plain = value.kind in ("string", "number") or value.text in ("true", "false")
+            yield name, token, value if simple and plain else None
 
 
 def tokens_of(text: str, file: str) -> Iterator[Token]:

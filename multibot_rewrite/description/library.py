@@ -18,7 +18,7 @@ from multibot_rewrite.base.naming import DEFAULT_LAYOUT, leaves, make_naming
 from multibot_rewrite.base.releases import release_told
 from multibot_rewrite.base.rosnames import check_robot_name, check_robot_names
 from multibot_rewrite.description import pipeline
-from multibot_rewrite.description.checks.meeting import not_verified
+from multibot_rewrite.description.checks.meeting import not_verified, said_of
 from multibot_rewrite.description.checks.problem import to_findings
 from multibot_rewrite.description.readback.meeting import OPENED
 from multibot_rewrite.description.rewriters.vocabulary.grammar import split_opens
@@ -230,7 +230,7 @@ def rewrite_job(job: Job, robots: Sequence[str], again: bool = False) -> Iterato
         document = template.inventory.document
         found = unread_arguments(document.root, job.read.unread, job.read.arguments)
         unread = to_findings(document, found, WARNING, of_file=True)
-    findings = (*unread, *left, *template.findings)
+    findings = (*unread, *left, *said_of(next(iter(robots), ""), template.findings))
     texts = pipeline.render(template, robots, again)
     # Nothing here holds a text while the next one is made: it may take the same memory.
     return (Rewrite(robot, next(texts), findings, prepared) for robot in robots)

@@ -152,13 +152,8 @@ def _is_true(it: Condition, value_of: Values) -> bool | None:
     # at hand here.
     if "<" in it.parameter or it.parameter.startswith("-") or it.how == "names":
         return None
-    if it.how == ":" and it.parameter == "run":
-        simulated = value_of("use_sim_time")
-        return simulated == (it.values == ("simulated",)) if isinstance(simulated, bool) else None
     if it.how == ":":
-        # What a file does not pass, whoever starts the node may.
-        passed = any(value_of(name) not in (None, "", False) for name in it.values)
-        return {"given": True, "missing": False}.get(it.parameter) if passed else None
+        return _is_so(it, value_of)
     given = [value_of(name) for name in it.parameter.split(ALSO)]
     if it.how in ("set", "unset"):
         return any(one not in (None, "", []) for one in given) == (it.how == "set")
@@ -171,6 +166,20 @@ def _is_true(it: Condition, value_of: Values) -> bool | None:
         lists = (one for one in texts if isinstance(one, list))
         return any(wanted & _spellings(one) for its in lists for one in its) == (it.how == "has")
     return any(wanted & _spellings(one) for one in given) == (it.how == "=")
+
+
+def _is_so(it: Condition, value_of: Values) -> bool | None:
+    """Return whether a term holds that is about no parameter; None if the values do not tell."""
+    if it.parameter == "run":
+        simulated = value_of("use_sim_time")
+        return simulated == (it.values == ("simulated",)) if isinstance(simulated, bool) else None
+    if it.parameter == "option":
+        name, _, first = it.values[0].partition(" = ")
+        asked = (first, *it.values[1:])
+        return None if (value := value_of(name)) is None else word_of(value) in asked
+    # What a file does not pass, whoever starts the node may.
+    passed = any(value_of(name) not in (None, "", False) for name in it.values)
+    return {"given": True, "missing": False}.get(it.parameter) if passed else None
 
 
 def _spellings(given: object) -> set[str]:

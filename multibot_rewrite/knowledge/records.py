@@ -8,6 +8,7 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.system.records import NO_ORIGIN, Origin
 
 MANAGER, MOVE_GROUP, TWIST_MUX = "controller_manager", "move_group", "twist_mux"
+CARTOGRAPHER = "cartographer_node"
 # Topics that image_transport's plugins derive from a base name.
 TRANSPORTS = ("compressed", "compressedDepth", "theora", "zstd")
 

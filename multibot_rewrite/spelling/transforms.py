@@ -128,7 +128,8 @@ def sent_by(node: NodeFacts, root: str) -> Iterator[Edge]:
     given = {frame.parameter for frame in node.frames if frame.given}
     static = _is_static(node)
     for parent, child, _, fixed in (it for it in node.sends if holds(it.condition, values.get)):
-        base = root and not fixed and "odom" not in child and child not in given
+        odometry = "odom" in f"{child} {values[child]}"
+        base = root and not (fixed or odometry or child in given)
         edge = edge_of(values[parent], root if base else values[child], static or fixed)
         # A frame that only a file sets; a frame below itself, which tf2 refuses (buffer_core.cpp).
         if edge.parent not in ("", edge.child) and "<" not in edge.child:

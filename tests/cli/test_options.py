@@ -196,7 +196,12 @@ def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str
         ("urdf-postfix a b --keep /scan", "use --shared FRAME,/TOPIC"),
         ("urdf-postfix a b --exclude /scan", "use --shared FRAME,/TOPIC"),
         ("urdf-lint a --severity error", "use --fail-on LEVEL"),
-        ("multibot rviz f.yaml", "companions: {rviz: FILE} in the fleet file"),
+        (
+            "multibot rviz f.yaml",
+            "use multibot build FLEET, which writes fleet.rviz for all robots",
+        ),
+        (f"multibot plan r1 r2 {ROVER}", f"the file comes first: multibot plan {ROVER} r1 r2"),
+        (f"multibot rehearse r1 {ROVER}", f"first: multibot rehearse {ROVER} r1"),
         ("urdf-lint a --list-rules", "use multibot inspect MB;"),
         ("urdf-lint a --rules", "use multibot inspect MB;"),
         ("urdf-lint a --disable MB211", "use --ignore CODES"),

@@ -184,14 +184,14 @@ def strangers(given: Reader, nodes: list[Node]) -> Iterator[tuple[str, str]]:
 
 
 def missing_files(given: Reader) -> Iterator[tuple[str, str]]:
-    """Files that a start names and that are not there."""
+    """Files and folders that a start names and that are not there."""
     for who, it in given.starts:
         values = [value for each in it.get("parameters", ()) for value in each.values()]
         for word in (*values, *it.get("arguments", ())):
             if (
                 isinstance(word, str)
                 and word.startswith(str(given.folder))
-                and not Path(word).is_file()
+                and not Path(word).exists()
             ):
                 yield who, f"{it['executable']} is given {word}, which is not there"
 

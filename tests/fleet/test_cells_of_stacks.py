@@ -69,7 +69,6 @@ def test_the_built_folder_agrees_with_its_plan(cell: Cell, tmp_path: Path) -> No
     [
         Cell("gz", "moveit", "lyrical", "both", "gazebo"),
         Cell("gz", "ros2_control", "humble", "both", "none"),
-        Cell("gz", "cartographer", "jazzy", "frames-per-robot", "gazebo"),
         Cell("gz", "controllers", "humble", "tf-per-robot", "gazebo"),
         Cell("arm", "gz_ros2_control", "humble", "tf-per-robot", "gazebo"),
         Cell("controlled", "controllers", "humble", "tf-per-robot", "none"),

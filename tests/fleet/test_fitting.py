@@ -99,6 +99,34 @@ def test_cartographer_gets_its_options(tmp_path: Path) -> None:
     assert (out / "robot1" / "carto.lua").is_file()
 
 
+@pytest.mark.parametrize(
+    ("options", "sent"),
+    [
+        ("", {"map": "odom"}),
+        ("provide_odom_frame = false, published_frame = 'odom'", {"map": "odom"}),
+        (
+            "provide_odom_frame = true, published_frame = 'base_link'",
+            {"map": "odom", "odom": "base_link"},
+        ),
+    ],
+)
+def test_cartographer_sends_what_its_options_say(
+    options: str, sent: dict[str, str], tmp_path: Path
+) -> None:
+    """node.cc PublishLocalTrajectoryData. A robot without a file gets one (trajectory_options.cc: no
+    option has a default) that leaves odom to the drive and reads what is there."""
+    (tmp_path / "own.lua").write_text(f"options = {{{options}}}\nreturn options\n")
+    given = "\nsimulator: none\ncompanions: {lua: own.lua}" if options else ""
+    out = built(tmp_path, f"distro: jazzy\nstack: cartographer{given}")
+    plan = read_plan((out / "plan.yaml").read_bytes(), "plan.yaml")
+    (node,) = (it for it in own(plan, "robot1") if it.endswith("cartographer_node"))
+    assert {it.parent: it.child for it in plan.edges if node in it.publishers} == sent
+    if not options:
+        text = (out / "robot1" / "cartographer.lua").read_text()
+        assert "use_odometry = true" in text and "num_laser_scans = 1" in text
+        assert 'tracking_frame = "base_link"' in text
+
+
 def sent_on(out: Path, topic: str) -> list[str]:
     """Who sends on a topic as the written plan has it, by the last word of its name."""
     plan = read_plan((out / "plan.yaml").read_bytes(), "plan.yaml")

@@ -51,6 +51,8 @@ def test_numbered_robots_go_on(here: Path) -> None:
     assert list(four) == ["r1", "r2", "r3", "r4"]
     assert four["r4"] == (2.5, 6.0)
     assert list(poses(two, Choice(number=1))) == ["r1"]
+    kinds = [{"name": it} for it in ("arm2", "r1", "arm1")]
+    assert list(poses(kinds, Choice(number=5))) == ["arm2", "r1", "arm1", "arm3", "arm4"]
 
 
 @pytest.mark.parametrize(
@@ -78,7 +80,11 @@ def test_a_wrong_text_is_one_line(here: Path, text: str, said: str) -> None:
     [
         ([{"name": "a"}], Choice(number=2), "does not say what more robots are called"),
         ([{"name": "a1"}], Choice(number=2), "write count: 2 into one of its robots"),
-        ([{"name": "a1"}, {"name": "b2"}], Choice(number=3), "or call them robot1 and robot2"),
+        (
+            [{"name": "a1"}, {"name": "b"}],
+            Choice(number=3),
+            "or end the name of the last one with a",
+        ),
         ([{"name": "a1"}, {"name": "a2"}], Choice(number=20_000), "from 1 to"),
         ([PATTERN], Choice(number=-1), "from 1 to"),
         ([{"name": "a", "step": {"x": 1}}], Choice(), "step is of a robot with count"),

@@ -78,6 +78,7 @@ def test_a_node_has_what_its_options_ask_for(known: Knowledge) -> None:
         ("options = {\n  use_odometry = false,\n}", False),
         ("options = {\n  -- use_odometry = true,\n}", False),
         ("options = { never_use_odometry = true }", False),
+        ('options = { use_odometry = true, "', False),
     ],
 )
 def test_a_node_has_what_its_file_asks_for(

@@ -103,8 +103,6 @@ def refused(cell: Cell) -> set[str]:
     wrong = set()
     if cell.stack == "moveit" and cell.robot != "arm":
         wrong.add("MF857")  # no SRDF
-    if cell.stack == "cartographer":
-        wrong.add("MF857")  # no Lua file
     if cell.stack == "ros2_control" and not hardware:
         wrong.add("MF857")  # no <ros2_control>
     controlled = cell.stack in ("ros2_control", *OF_MANAGERS)
@@ -145,8 +143,6 @@ def pair_faults(one: str, other: str, release: str, folder: Path) -> list[str]:
     for stack in (one, other):
         known = known | refused(cell._replace(stack=stack))
         known = known | WITHOUT_CAMERA.get((cell.robot, stack), set())
-    # It waits for its file: which transforms it sends is not known before.
-    known = known | {"MG408"} if "cartographer" in (one, other) else known
     return [str(it) for it in findings(cell, folder) if it.code not in known]
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
+from typing import TypeVar
 
 from lxml.etree import _Element
 
@@ -37,8 +38,6 @@ OWN = (
     f"else {ALONE}"
 )
 BY_HAND = "write it for each robot by hand, as by an argument of a xacro"
-# Stands for the name of a robot in a hint.
-ROBOT = "ROBOT"
 
 
 def shared_by_all(
@@ -52,6 +51,16 @@ def shared_by_all(
     """
     robot = _unused(document)
     return shared_with(document, fill(pieces, robot), robot, naming, vocabulary)
+
+
+Said = TypeVar("Said", Problem, Finding)
+
+
+def said_of(robot: str, found: Iterable[Said]) -> Iterator[Said]:
+    """Yield what is found of any robot with the name of this one."""
+    for it in found:
+        message, hint = it.message.replace(TWIN, robot), it.hint.replace(TWIN, robot)
+        yield it._replace(message=message, hint=hint)
 
 
 def _unused(document: Document) -> str:
@@ -139,7 +148,7 @@ def _changed(
             hint = "write the topic and the left side of its rule the same way"
             yield Problem(plugin, message, None, hint, (), LOST_RULE)
     for it, other in meeting.parted(before, reading):
-        one, two = (name.name.replace(robot, ROBOT) for name in (it, other))
+        one, two = (name.name.replace(robot, TWIN) for name in (it, other))
         message = (
             f"{it.path} is {one!r} after the rewrite and {other.path} is {two!r}: "
             "they were the same topic"
@@ -150,7 +159,7 @@ def _changed(
             hint = f"{left} stays as it is: {BY_HAND}"
         yield Problem(it.element_in(document.root), message, None, hint, (), PARTED)
     for it, *pair in meeting.undescribed(before, reading):
-        image, asked, info = (name.replace(robot, ROBOT) for name in (it.name, *pair))
+        image, asked, info = (name.replace(robot, TWIN) for name in (it.name, *pair))
         message = f"image_transport and RViz look for {asked!r} next to {image!r}: it is {info!r}"
         hint = f'start what shows it with --ros-args -r "{asked}:={info}", or {BESIDE}'
         yield Problem(it.element_in(document.root), message, None, hint, (), ELSEWHERE)
@@ -173,10 +182,10 @@ def _of_controllers(
         f"{ALL} have {', '.join(shared)} of their controllers, which take no rules of this plugin "
         f"on {release}"
     )
-    # What each robot calls it; ROBOT stands for its name.
+    # What each robot calls it; TWIN stands for its name.
     own = [it.strip("/") for it in shared]
     if naming.topics != NAMESPACE:
-        own = [spelled(naming, ROBOT, "topic", it) for it in shared]
+        own = [spelled(naming, TWIN, "topic", it) for it in shared]
     rules = " ".join(f"-r {name}:={to}" for name, to in zip(shared, own, strict=True))
     hint = (
         f'start each controller with its spawner and --controller-ros-args "{rules}"; multibot plan'

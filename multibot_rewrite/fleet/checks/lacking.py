@@ -4,8 +4,7 @@ for ever, because no camera of its description sends it; a robot of which all is
 not drive: nothing reads its commands, or nothing sends what it senses.
 
 Sources: moveit2 jazzy moveit_ros/planning/rdf_loader/src/rdf_loader.cpp (no robot_description_semantic,
-no model), ros2_control jazzy hardware_interface/src/component_parser.cpp ("no ros2_control tag"),
-cartographer_ros ros2 src/node_main.cpp (CHECK of both flags).
+no model), ros2_control jazzy hardware_interface/src/component_parser.cpp ("no ros2_control tag").
 """
 
 from __future__ import annotations
@@ -31,7 +30,7 @@ from multibot_rewrite.rules.system.instead import is_needed
 from multibot_rewrite.system.records import PUBLISHES, RUNS, SUBSCRIBES, End, System
 from multibot_rewrite.system.words import moves
 
-CARTOGRAPHER, MAP_SERVER, MAP = "cartographer_node", "map_server", "yaml_filename"
+MAP_SERVER, MAP = "map_server", "yaml_filename"
 _MAP = f"write its {MAP} into a parameter file (companions: {{params: FILE}}), or use nav2_slam"
 LACKING = declare("MF857", "node-without-its-file", ERROR, formats=("fleet",))
 NO_CAMERA = declare("MF861", "node-without-its-camera", WARNING, formats=("fleet",))
@@ -55,11 +54,6 @@ NEEDS: Mapping[str, Need] = {
     MOVE_GROUP: Need(lambda it: bool(it.spec.srdf), "no SRDF", "name it: `srdf: FILE`"),
     MANAGER: Need(
         _has_hardware, "a description without <ros2_control>", "take a description that has one"
-    ),
-    CARTOGRAPHER: Need(
-        lambda it: bool(it.spec.companions.get("lua")),
-        "no Lua file of Cartographer",
-        "name it: `companions: {lua: FILE}`",
     ),
 }
 

@@ -104,13 +104,12 @@ def _continued(read: FleetData, count: int) -> Iterator[_Row]:
 
 
 def _numbered(read: FleetData, count: int) -> tuple[str, int]:
-    """Return the name of all robots without their numbers, and the last number; raises UsageError."""
+    """Return the last robot's name without its number, and the last number; raises UsageError."""
     given = read.data["robots"]
     found = [_NUMBERED.fullmatch(robot[NAME]) for robot in given]
-    names = [(it[1], int(it[2])) for it in found if it]
-    if len({stem for stem, _ in names}) == 1 and len(names) == len(given) and len(given) >= 2:
-        return names[-1]
-    hint = f"write count: {count} into one of its robots, or call them robot1 and robot2"
+    if found[1:] and (last := found[-1]):
+        return last[1], max(int(it[2]) for it in found if it and it[1] == last[1])
+    hint = f"write count: {count} into one of its robots, or end the name of the last one with a number"
     raise UsageError(f"count {count}: {read.file} does not say what more robots are called; {hint}")
 
 

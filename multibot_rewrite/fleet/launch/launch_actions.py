@@ -15,7 +15,6 @@ from typing import Any, NamedTuple, TypeAlias
 from multibot_rewrite.base.conventions import BY_HAND
 from multibot_rewrite.base.naming import TF_TOPICS, Naming
 from multibot_rewrite.base.rosnames import check_topic_name
-from multibot_rewrite.fleet.checks.lacking import CARTOGRAPHER
 from multibot_rewrite.fleet.file.domains import MOVE_GROUP
 from multibot_rewrite.fleet.file.fleet_file import BRINGUP
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
@@ -23,6 +22,7 @@ from multibot_rewrite.fleet.launch.starts import SIMULATOR, RobotStarts
 from multibot_rewrite.fleet.outputs import moveit_parameters, spawn
 from multibot_rewrite.fleet.outputs.moveit_parameters import parameters_path
 from multibot_rewrite.fleet.outputs.output_file import (
+    OPTIONS,
     described_path,
     expanded_name,
     gz_bridge_path,
@@ -46,7 +46,7 @@ from multibot_rewrite.knowledge.programs import (
     program_of,
     started_as,
 )
-from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
+from multibot_rewrite.knowledge.records import CARTOGRAPHER, MANAGER, NodeFacts
 from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE
 from multibot_rewrite.producers.launch.bridges import services_in
@@ -57,7 +57,7 @@ from multibot_rewrite.producers.launch.handed_on import (
     for_robot,
     handed_on,
 )
-from multibot_rewrite.producers.launch.known_node import STATIC, with_frames
+from multibot_rewrite.producers.launch.known_node import LUA_FLAGS, STATIC, with_frames
 from multibot_rewrite.producers.launch.records import LaunchedNode
 from multibot_rewrite.spelling.domain_bridge import bridge_name, bridge_path
 from multibot_rewrite.spelling.of_runs import placed, target_of
@@ -227,9 +227,9 @@ def _started(given: _Given, name: str) -> Start:
     if placing is not None and spawn.is_of_vendor(placing) and made.number == placing.number:
         words = tuple(spawn.placed_at(words, given.robot.spec.pose))
     lua = given.robot.spec.companions.get("lua", ())
-    if facts.kind == CARTOGRAPHER and lua:
-        folder, _, file = path_for(given.robot, lua[0]).rpartition("/")
-        words = (*words, "-configuration_directory", File(folder), "-configuration_basename", file)
+    if facts.kind == CARTOGRAPHER and (lua or facts.usual):
+        folder, file = os.path.split(path_for(given.robot, *lua[:1] or (OPTIONS,)))
+        words = (*words, LUA_FLAGS[0], File(folder), LUA_FLAGS[1], file)
     return made._replace(
         arguments=tuple(words),
         components=tuple(
@@ -394,7 +394,7 @@ def _parameters(given: _Given, name: str) -> tuple[Parameters, ...]:
     known, made = facts.kind, File(path_for(robot, moveit_parameters.FILE))
     later = files if is_launched and known in _OF_MOVEIT and made.path in given.files else []
     found: list[Parameters] = [] if later else [*files]
-    if facts.usual:
+    if facts.usual and known != CARTOGRAPHER:
         found.append(dict(facts.usual))
     values = given.values.get((robot.spec.name, name))
     if values and known != STATIC:

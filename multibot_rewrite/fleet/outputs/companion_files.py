@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
-from multibot_rewrite.base.bounded import load_yaml
+from multibot_rewrite.base.bounded import load_yaml, own_text
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.base.nearest import meant_name
@@ -20,6 +21,7 @@ from multibot_rewrite.companions.context import (
     make_template,
 )
 from multibot_rewrite.companions.formats import made_for_any
+from multibot_rewrite.companions.lua import rewrite_lua
 from multibot_rewrite.companions.named_file import LUA, MOVEIT, PARAMS, TREE, Companion
 from multibot_rewrite.companions.names.node_topics import facts_by_name
 from multibot_rewrite.companions.params.rewrite import rewrite_params, rewrite_values
@@ -33,6 +35,7 @@ from multibot_rewrite.fleet.file.fleet_file import BRINGUP
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import (
     DEFAULTS,
+    OPTIONS,
     FilesAndFindings,
     OutputFile,
     params_of,
@@ -43,6 +46,7 @@ from multibot_rewrite.fleet.robots.rewritten_robots import OWN_PORTS
 from multibot_rewrite.fleet.robots.robot_groups import RobotGroup, group_robots
 from multibot_rewrite.knowledge.node_entries import PORT, RUN_TIME
 from multibot_rewrite.knowledge.parameters import KnownNodes, load_known_nodes
+from multibot_rewrite.knowledge.records import CARTOGRAPHER
 from multibot_rewrite.producers.evidence.nodes import children_of
 from multibot_rewrite.producers.launch.handed_on import HandedOn
 from multibot_rewrite.producers.launch.known_node import STATIC
@@ -60,6 +64,8 @@ def companion_files(plan: FleetPlan) -> FilesAndFindings:
         for group in groups:
             for path in group.companions.get(key, ()):
                 yield from _files(plan, group, key, path)
+    for group in groups:
+        yield from _own_options(plan, group)
     yield from launched_values(plan).findings
     if plan.file.params_style != BRINGUP:
         for group in groups:
@@ -195,6 +201,19 @@ def _own_defaults(plan: FleetPlan, group: RobotGroup) -> Iterator[OutputFile]:
     for robot in group.robots if text else ():
         made = fill_template(template, robot.spec.namespace, robot.spec.tag)
         yield OutputFile(path_for(robot, DEFAULTS), made.encode())
+
+
+def _own_options(plan: FleetPlan, group: RobotGroup) -> Iterator[OutputFile]:
+    """Yield for each robot without a Lua file that runs Cartographer its options."""
+    for node in plan.evidence_of(group.robots[0]).nodes:
+        if node.kind == CARTOGRAPHER and node.usual:
+            values = (*((it.parameter, it.default) for it in node.frames), *node.usual)
+            lines = "\n  ".join(f"{name} = {json.dumps(value)}," for name, value in values)
+            text = own_text(__file__, OPTIONS).replace("-- OPTIONS", lines).encode()
+            made = rewrite_lua(text, OPTIONS, group.context)
+            for robot in group.robots:
+                own = fill_template(made.template, robot.spec.namespace, robot.spec.tag)
+                yield OutputFile(path_for(robot, OPTIONS), own.encode())
 
 
 def _params(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:

@@ -21,6 +21,8 @@ from multibot_rewrite.producers.ends import BRIDGE_FILE
 PLAN = "plan.yaml"
 # The parameter file of a robot that has none, with what its nodes need.
 DEFAULTS = "params.yaml"
+# The options of Cartographer of a robot that has none.
+OPTIONS = "cartographer.lua"
 
 
 class OutputFile(NamedTuple):

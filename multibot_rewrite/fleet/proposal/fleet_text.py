@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shlex
 from collections.abc import Iterable, Iterator
 from math import inf
@@ -11,6 +12,7 @@ from typing import Any
 
 from multibot_rewrite.base.naming import LAYOUTS
 from multibot_rewrite.base.wording import one_line, shorten
+from multibot_rewrite.description.sources.included_by import data_of_file
 from multibot_rewrite.description.sources.own_names import ROBOT
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.fleet.file.fleet_data import fleet_yaml
@@ -23,6 +25,8 @@ from multibot_rewrite.producers.launch.programs import once_for_all
 
 # Files not taken that are named, and launch files beside the robot's that cannot be read.
 MOST, MOST_UNREAD = 10, 3
+_MAP = re.compile(rb"""^\s*yaml_filename:\s*["']?[^\s"'#]""", re.MULTILINE)
+_NO_MAP = "Nav2 waits for a map: write its yaml_filename for map_server into a parameter file"
 
 
 def text_of(it: Proposal, file: str) -> str:
@@ -150,7 +154,9 @@ def _of_member(
         yield "srdf", (here(beside.srdf), ("The planning groups of MoveIt",))
     if beside.stacks:
         whys = tuple(f"{stack}: {reason}" for stack, reason in beside.stacks.items())
-        yield "stack", (list(beside.stacks), whys)
+        maps = any(_MAP.search(data_of_file(it)) for it in beside.files.get("params", ()))
+        lacks = not maps and bool({"nav2", "localization"} & beside.stacks.keys())
+        yield "stack", (list(beside.stacks), (*whys, *[_NO_MAP] * lacks))
     files: dict[str, Any] = {
         kind: here(its[0]) if kind == "rviz" and len(its) == 1 else [here(path) for path in its]
         for kind, its in beside.files.items()

@@ -9,6 +9,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import lru_cache
+from itertools import compress
 from typing import NamedTuple
 
 from lxml import etree
@@ -16,14 +17,18 @@ from lxml import etree
 from multibot_rewrite.base.conventions import SENT_FRAMES
 from multibot_rewrite.base.lazy import FILLED_IN
 from multibot_rewrite.base.model import InputError
+from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.description.sources.access import BOUNDED
 from multibot_rewrite.description.sources.expand import expand
 from multibot_rewrite.description.sources.included_by import data_of_file
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.fleet.proposal.looking import ANY, Looked, filled_for_any
 from multibot_rewrite.fleet.proposal.searching import Found, Undecided, home_of, text_of
-from multibot_rewrite.knowledge.parameters import KnownNodes, is_called
+from multibot_rewrite.knowledge.parameters import KnownNodes, is_called, load_known_nodes
+from multibot_rewrite.producers.ends import bridge_rows
+from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.spelling.records import Run
+from multibot_rewrite.system.words import last_word
 
 # Descriptions whose names are looked at.
 MOST = 60
@@ -53,16 +58,42 @@ def of_others(robot: Looked, found: Found) -> dict[str, str]:
     return {**near, **dict(_naming_others(robot, found, rest))}
 
 
-def of_other_robots(robot: Looked, robots: Iterable[Looked], found: Found) -> set[str]:
-    """Return the files that are of another one of the robots of a fleet: they are in its folders, or in
-    folders of both and called like it alone."""
-    return {file for file in _companions(found) if robot not in _owners(file, robots)}
+def of_other_robots(robots: Sequence[Looked], found: Found, release: str) -> list[set[str]]:
+    """Return for each robot of a fleet the files that are of another one: they are in its folders, or
+    in folders of both and called like it alone, or it alone has what they name."""
+    known = load_known_nodes("", release)
+    owners = {file: _owners(file, robots, known) for file in _companions(found)}
+    return [{file for file, its in owners.items() if robot not in its} for robot in robots]
 
 
-def _owners(file: str, robots: Iterable[Looked]) -> list[Looked]:
+def _owners(file: str, robots: Sequence[Looked], known: KnownNodes) -> list[Looked]:
     near = {it: _near(os.path.dirname(it.path), file) for it in robots}
     nearest = [it for it in robots if near[it] == max(near.values())]
-    return [it for it in nearest if _is_called_like(file, it)] or nearest
+    likely = [it for it in nearest if _is_called_like(file, it)] or nearest
+    if not likely[1:] or not file.endswith((".yaml", ".yml")):
+        return likely
+    lacked = [_lacked(it, file, known) for it in likely]
+    fits = (not any(less < names for less in lacked) for names in lacked)
+    return [*compress(likely, fits)]
+
+
+def _lacked(robot: Looked, file: str, known: KnownNodes) -> set[str]:
+    """Return what a file of parameters or of a bridge names and the robot has not; for nodes that drive
+    their packages, if no wheel turns."""
+    root = robot.root if robot.root is not None else etree.Element("robot")
+    try:
+        document = read_yaml(data_of_file(file), file)
+        topics = {it.inside for it in bridge_rows(document)}
+        nodes = () if topics else given_nodes([document], known)
+    except InputError:
+        return set()
+    text = etree.tostring(root, encoding="unicode")
+    lacked = fitting(robot, file, nodes, known, ()).strange
+    lacked |= {it for it in topics if last_word(it) not in text}
+    packages = {known.nodes[it.fact.known].package for it in nodes if it.fact.known in known.nodes}
+    turns = root.tag == "sdf" or root.find("joint[@type='continuous']") is not None
+    drives = ("nav2_", "slam_toolbox")
+    return {*lacked, *(it for it in packages if it.startswith(drives) and not turns)}
 
 
 def _is_called_like(file: str, robot: Looked) -> bool:

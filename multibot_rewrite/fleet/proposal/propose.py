@@ -217,7 +217,7 @@ def propose(
         names = [wanted.names]
     release = release_of(robots, found, wanted)
     kept = without(found, refused)
-    shared_out = [without(kept, of_other_robots(it, robots, kept)) for it in robots]
+    shared_out = [without(kept, its) for its in of_other_robots(robots, kept, release.value)]
     members = [
         _member(it, _companions(it, own, release.value, wanted), called, Reach(trust=wanted.trust))
         for it, own, called in zip(robots, shared_out, names, strict=True)

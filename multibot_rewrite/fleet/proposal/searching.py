@@ -34,7 +34,11 @@ from multibot_rewrite.description.sources.included_by import (
     includers,
     parts_among,
 )
-from multibot_rewrite.description.sources.packages import package_of
+from multibot_rewrite.description.sources.packages import (
+    MANIFEST as PACKAGE,
+    package_of,
+    packages_below,
+)
 from multibot_rewrite.description.sources.release_said import MANIFEST
 from multibot_rewrite.fleet.outputs.output_file import PLAN
 from multibot_rewrite.fleet.proposal.launches import Reading, order_text, read_any, read_named
@@ -105,7 +109,9 @@ def search(paths: Sequence[str], launch: Sequence[LaunchOrder] = ()) -> Found:
         if not os.path.exists(path):
             link = os.path.islink(path)
             what = "it is a link to nothing" if link else "there is no such file or folder"
-            raise UsageError(f"{path or repr(path)}: {what}; give a description or a folder")
+            inside = [*map(os.path.relpath, packages_below((os.getcwd(),)).get(path, ()))]
+            hint = f"did you mean {inside[0]}?" if inside else "give a description or a folder"
+            raise UsageError(f"{path or repr(path)}: {what}; {hint}")
         if not _can_be_named(path):
             raise UsageError(f"{path}: its name is no UTF-8, as that in a YAML file is; rename it")
     named = [*dict.fromkeys(os.path.normpath(it) for it in paths if not os.path.isdir(it))]
@@ -117,7 +123,8 @@ def search(paths: Sequence[str], launch: Sequence[LaunchOrder] = ()) -> Found:
         refuse_others(data_of_file(path), path, *DESCRIPTIONS)
     apart = (it for it in files if not any(is_below(it, folder) for folder in folders))
     homes = dict.fromkeys((*folders, *map(home_of, apart)))
-    every = dict.fromkeys((*(path for home in homes for path in _files(home)), *meant))
+    below = (path for home in homes for path in _files(home, home in folders))
+    every = dict.fromkeys((*below, *meant))
     told = _sorted(every, [*map(read_named, launch)])
     kinds = lists_by_key((kind, path) for path, kind in told)
     kinds["every"] = kinds.get("descriptions", [])
@@ -186,12 +193,15 @@ def is_below(path: str, folder: str) -> bool:
     return os.path.abspath(path).startswith(above)
 
 
-def _files(folder: str) -> Iterator[str]:
+def _files(folder: str, with_packages: bool) -> Iterator[str]:
+    """Yield the files below a folder that may be a robot's; those of packages in it are of other
+    robots, unless the folder was named."""
     seen = 0
     ends = tuple(known_names()["ends"])
     for above, folders, names in os.walk(folder):
         # What a build has written is made of the robots that are meant.
-        if above != folder and {MANIFEST, PLAN} <= {*names}:
+        is_package = PACKAGE in names and not with_packages
+        if above != folder and (is_package or {MANIFEST, PLAN} <= {*names}):
             folders[:] = []
             continue
         folders[:] = (it for it in source_folders(above, folders) if it not in TESTS)

@@ -12,6 +12,7 @@ from multibot_rewrite.base.findings.finding import NOTE, Finding, declare
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.companions.context import NO_FRAMES, Frames
+from multibot_rewrite.companions.lua import lua_values
 from multibot_rewrite.description.readback.nodes import wheels_in
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.description.sources.own_names import ROBOT
@@ -25,7 +26,7 @@ from multibot_rewrite.fleet.launch.launched_robot import (
     nodes_with,
     under_plugins,
 )
-from multibot_rewrite.fleet.outputs.output_file import params_of
+from multibot_rewrite.fleet.outputs.output_file import params_of, text_of
 from multibot_rewrite.fleet.robots.fitting.fitted import (
     brings_transforms,
     changed_frames,
@@ -50,7 +51,7 @@ from multibot_rewrite.knowledge.parameters import (
     is_called,
     load_known_nodes,
 )
-from multibot_rewrite.knowledge.records import MANAGER, MOVE_GROUP, NodeFacts
+from multibot_rewrite.knowledge.records import CARTOGRAPHER, MANAGER, MOVE_GROUP, UNKNOWN, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, load_stack
 from multibot_rewrite.producers.ends import BRIDGE_NODE
 from multibot_rewrite.producers.evidence.hardware import with_hardware
@@ -84,7 +85,9 @@ _HANDED_ON = ("handed_on", "environment", "placing", "idle", "qos")
 
 def node_sources(spec: RobotSpec) -> NodeSources:
     """Return a key; robots with equal keys run the same nodes."""
-    files = tuple(spec.companions.get(it, ()) for it in ("params", "bridge", "rviz", "moveit"))
+    files = tuple(
+        spec.companions.get(it, ()) for it in ("params", "bridge", "rviz", "moveit", "lua")
+    )
     return spec.stacks, files, spec.launch, spec.srdf, spec.simulator, spec.sources
 
 
@@ -128,6 +131,7 @@ def robot_nodes(
     Raises InputError for a parameter file that cannot be read."""
     parameters = load_known_nodes(file.nodes, file.distro)
     read = given_nodes(params_of(spec).values(), parameters)
+    read = [*(it for it in read if it.name != CARTOGRAPHER), *_of_lua(spec)]
     own = tuple(without_robot(it, spec.words) for it in read)
     known = _known(own, file)
     stack = tuple(it for it in stack_nodes(spec, file) if _is_needed(it, spec, member))
@@ -176,6 +180,13 @@ def robot_nodes(
         is_placed=placing or is_led_elsewhere(member, spec),
     )
     return _with_launch(evidence, spec, launched, file)
+
+
+def _of_lua(spec: RobotSpec) -> Iterator[Run]:
+    """Yield what the Lua file of a robot sets for its Cartographer."""
+    for path in spec.companions.get("lua", ()):
+        run = Run("", CARTOGRAPHER, "", CARTOGRAPHER, (), UNKNOWN._replace(known=CARTOGRAPHER))
+        yield run._replace(values=lua_values(text_of(spec, path), path), place=Place(path, 1))
 
 
 def _for_its_wheels(

@@ -24,6 +24,7 @@ from multibot_rewrite.base.rosnames import (
     propose_token,
     resolve_bound,
 )
+from multibot_rewrite.companions.lua import lua_values
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.knowledge.conditions import ALSO, HEARD, PROGRAM, Condition, settled, words_in
 from multibot_rewrite.knowledge.programs import runs
@@ -34,10 +35,10 @@ from multibot_rewrite.producers.launch.source_packages import packages_for
 from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.system.records import TOPIC
 
+LUA_FLAGS = ("-configuration_directory", "-configuration_basename")  # node_main.cpp
 Decide = Callable[[Condition], bool | None]
 _COMMENTS = {
     ".xml": lazy_compile(COMMENT.decode()),
-    ".lua": lazy_compile(r"--[^\n]*"),
     ".yaml": lazy_compile(r"(?m)(?:^|\s)#.*$"),
 }
 
@@ -67,13 +68,19 @@ def as_named(node: NodeFacts, words: Sequence[str], values: Mapping[str, Given])
         if it.how != "names":
             return None
         given = {**{name: one.value for name, one in values.items()}, **options}
-        # FOLDER/FILE asks two parameters or options for a path.
-        parts = (name.split("/") for name in it.parameter.split(ALSO))
-        words = [[str(given.get(name) or "") for name in names] for names in parts]
-        paths = (os.path.join(*own) for own in words if all(own))
+        paths = (str(given.get(name) or "") for name in it.parameter.split(ALSO))
         return any(_has(path, it.values) for path in paths) or None
 
     return _as_decided(node, decide)
+
+
+def with_options(words: Sequence[str], values: Mapping[str, Given]) -> Mapping[str, Given]:
+    """Return the values with those of the Lua file that is in the arguments."""
+    options = dict(pairwise(words))
+    path = os.path.join(*(options.get(it, "") for it in LUA_FLAGS))
+    with suppress(InputError):
+        values = {**values, **lua_values(read_file(path), path)} if path else values
+    return values
 
 
 def as_heard(node: NodeFacts, heard: Collection[str], bound: BoundNode) -> NodeFacts:

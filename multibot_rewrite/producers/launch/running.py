@@ -38,6 +38,7 @@ from multibot_rewrite.producers.launch.known_node import (
     guessed_name,
     known_node,
     own_name,
+    with_options,
     with_static_transform,
 )
 from multibot_rewrite.producers.launch.models import (
@@ -254,7 +255,7 @@ def _started(
             process=it.container or process,
             process_namespace=(container or it).namespace,
             process_rules=home,
-            values=values_for(full, documents),
+            values=with_options(it.arguments, values_for(full, documents)),
             texts=tuple(text.text for text in it.parameters if not has_sections(text)),
             untold=tuple(text.untold for text in it.parameters if text.untold),
             program=f"{it.package}/{it.executable}",

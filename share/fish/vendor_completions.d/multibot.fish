@@ -9,7 +9,7 @@ complete -c multibot -n '__fish_seen_subcommand_from adopt' -l in-place -d 'writ
 complete -c multibot -n '__fish_seen_subcommand_from adopt' -s q -l quiet -d 'print errors and warnings only: no notes, no summary'
 complete -c multibot -n '__fish_seen_subcommand_from adopt' -s v -l verbose -d 'list the findings of each robot, the files written and the time taken'
 complete -c multibot -n '__fish_seen_subcommand_from adopt' -l color -r -f -a 'auto always never' -d 'auto (default: on a terminal, unless NO_COLOR is set), always or never'
-complete -c multibot -n __fish_use_subcommand -f -a build -d 'Write all files that the robots of a fleet file need.'
+complete -c multibot -n __fish_use_subcommand -f -a build -d 'Write the files of a fleet: descriptions, launch, RViz and more.'
 complete -c multibot -n '__fish_seen_subcommand_from build' -s n -l count -r -d 'number of robots: the first ones of the file, or more like the last one'
 complete -c multibot -n '__fish_seen_subcommand_from build' -l distro -r -f -a 'humble jazzy kilted lyrical rolling' -d 'the ROS 2 release that the robots run: humble, jazzy, kilted, lyrical, rolling'
 complete -c multibot -n '__fish_seen_subcommand_from build' -l trust -d 'run xacro and launch files without the sandbox'

@@ -35,6 +35,11 @@ def test_a_camera_keeps_its_info_beside_its_image(
     assert codes(CAMERA.format(topic), **options) == found
 
 
+def test_what_is_found_of_any_robot_is_said_with_the_name_of_the_first() -> None:
+    (said,) = rewrite(CAMERA.format("/cam/image"), "left", distro="jazzy").findings
+    assert "/cam/image/left" in said.message and "/cam/camera_info/left" in said.hint
+
+
 @pytest.mark.parametrize(
     ("name", "class_", "parameters"),
     [

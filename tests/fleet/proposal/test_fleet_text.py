@@ -79,6 +79,7 @@ srdf: r.srdf
 
 # nav2: p.yaml has parameters of amcl
 # moveit: there is r.srdf
+# Nav2 waits for a map: write its yaml_filename for map_server into a parameter file
 stack: [nav2, moveit]
 
 # Files for one robot; the build writes one of each for every robot

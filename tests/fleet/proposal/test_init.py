@@ -278,7 +278,8 @@ def test_names_of_the_robots_are_given(tmp_path: Path, capsys: Any) -> None:
     ("words", "says"),
     [
         (["{there}"], "is there already; name another with -o"),
-        (["nowhere", "-o", "-"], "there is no such file or folder"),
+        (["nowhere", "-o", "-"], "there is no such file or folder; give a description or a folder"),
+        (["kap", "-o", "-"], "there is no such file or folder; did you mean src/kap?"),
         (["{folder}/empty", "-o", "-"], "/empty: no description of a robot is there"),
         (["{folder}/notes.yaml", "-o", "-"], "/notes.yaml: no description of a robot is there"),
         (["{folder}/bad.urdf", "-o", "-"], "bad.urdf"),
@@ -291,8 +292,13 @@ def test_names_of_the_robots_are_given(tmp_path: Path, capsys: Any) -> None:
         (["--layout", "L9"], "--layout"),
     ],
 )
-def test_mistakes_are_one_line(words: list[str], says: str, tmp_path: Path, capsys: Any) -> None:
+def test_mistakes_are_one_line(
+    words: list[str], says: str, tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
     (tmp_path / "empty").mkdir()
+    (tmp_path / "src" / "kap").mkdir(parents=True)
+    (tmp_path / "src" / "kap" / "package.xml").write_text("<package><name>kap</name></package>")
+    monkeypatch.chdir(tmp_path)
     (tmp_path / "notes.yaml").write_text("a: 1\n")
     (tmp_path / "bad.urdf").write_text("<robot")
     (tmp_path / "part.xacro").write_text(TOOL)

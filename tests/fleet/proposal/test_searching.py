@@ -50,6 +50,17 @@ KINDS = [
 ]  # fmt: skip
 
 
+def test_a_description_in_no_package_has_no_files_of_packages(tmp_path: Path) -> None:
+    """A folder that is named has them."""
+    for name in ("r.urdf", "p.yaml", "other/v.rviz", "other/launch/a.launch.py"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(ROBOT if name == "r.urdf" else PARAMS)
+    (tmp_path / "other" / "package.xml").write_text("<package><name>other</name></package>")
+    own, every = search([str(tmp_path / "r.urdf")]), search([str(tmp_path)])
+    assert (own.rviz, own.launch, own.params) == ((), (), (str(tmp_path / "p.yaml"),))
+    assert every.rviz and every.launch and every.params == own.params
+
+
 @pytest.mark.parametrize(("name", "text", "kind"), KINDS, ids=[f"{a}-{c}" for a, _, c in KINDS])
 def test_a_file_is_for_one_thing(name: str, text: str, kind: str, tmp_path: Path) -> None:
     (tmp_path / name).parent.mkdir(exist_ok=True)
@@ -122,7 +133,7 @@ def test_a_named_file_and_its_folder_have_one_answer(
     # Each is alone in its folder: no other file includes it.
     alone: list[str] = []
     monkeypatch.setattr(searching, "home_of", os.path.dirname)
-    monkeypatch.setattr(searching, "_files", lambda _: alone)
+    monkeypatch.setattr(searching, "_files", lambda *_: alone)
     paths = [str(it) for it in sorted(home.rglob("*")) if it.name.endswith(ENDS)]
     for path in paths[:: max(1, len(paths) // 300)]:
         alone[:] = [path]

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 import yaml
-from paths import ROBOTS
+from paths import ROBOTS, ROOT
 from small_robots import PACKAGE, robot
 
 from multibot_rewrite.base.model import InputError
@@ -82,6 +82,45 @@ def test_a_file_is_of_the_robot_in_whose_folder_it_is(tmp_path: Path) -> None:
     made = fleet_of(tmp_path, *paths, "-n", "1")
     own = {it["name"]: it["companions"]["params"] for it in made["robots"]}
     assert own == {f"{it}1": [f"../{it}_description/config/own.yaml"] for it in ("left", "right")}
+
+
+EKF = "ekf_filter_node: {{ros__parameters: {{base_link_frame: {}}}}}\n"
+
+
+@pytest.mark.parametrize(
+    ("file", "text", "owners"),
+    [
+        # The rover alone has a wheel and a scan.
+        ("nav2.yaml", "controller_server: {ros__parameters: {odom_topic: odom}}\n", {"rover1"}),
+        ("amcl.yaml", "amcl: {ros__parameters: {scan_topic: scan}}\n", {"rover1"}),
+        ("rows.yaml", "- ros_topic_name: scan\n  gz_topic_name: scan\n", {"rover1"}),
+        ("ekf.yaml", EKF.format("lidar_link"), {"rover1"}),
+        ("ekf.yaml", EKF.format("upper_link"), {"arm1"}),
+        ("ekf.yaml", EKF.format("base_link"), {"arm1", "rover1"}),
+    ],
+)
+def test_a_file_is_of_the_robot_that_it_fits(
+    file: str, text: str, owners: set[str], tmp_path: Path
+) -> None:
+    for path in ("two_arms_moveit/arm.urdf", "launch_tutorial/rover.urdf"):
+        files(tmp_path, **{path.rpartition("/")[2]: (ROOT / "examples" / path).read_text()})
+    files(tmp_path, **{file: text})
+    out, paths = tmp_path / "f.yaml", [str(tmp_path / it) for it in ("arm.urdf", "rover.urdf")]
+    main(["init", *paths, "-n", "1", "--yes", "-o", str(out)])
+    made = yaml.safe_load(out.read_text())
+    robots = made.pop("robots")
+    assert {it["name"] for it in robots if file in str({**made, **it})} == owners
+
+
+@pytest.mark.parametrize("value", ["''", "office.yaml", None])
+def test_a_robot_of_nav2_without_a_map_is_asked_for_one(value: str | None, tmp_path: Path) -> None:
+    text = "amcl: {ros__parameters: {}}\ncontroller_server: {ros__parameters: {}}\n"
+    text += f"map_server:\n  ros__parameters:\n    yaml_filename: {value}\n" if value else ""
+    rover = (ROOT / "examples" / "launch_tutorial" / "rover.urdf").read_text()
+    files(tmp_path, **{"rover.urdf": rover, "nav2.yaml": text})
+    main(["init", str(tmp_path / "rover.urdf"), "--yes", "-o", str(tmp_path / "f.yaml")])
+    asked = "# Nav2 waits for a map: write its yaml_filename" in (tmp_path / "f.yaml").read_text()
+    assert asked is (value != "office.yaml")
 
 
 def test_kinematics_are_of_the_robot_that_has_the_groups(tmp_path: Path) -> None:

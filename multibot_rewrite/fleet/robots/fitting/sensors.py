@@ -80,11 +80,13 @@ def sent_as(nodes: Iterable[NodeFacts], kind: str) -> Collection[str]:
 
 
 def by_sensor(node: NodeFacts, offered: Mapping[str, Sequence[str]]) -> NodeFacts:
-    """Return the node with the parameters by which it uses a sensor that its robot has one of."""
-    chosen = next((it for type_, it in node.by_sensor if len(offered.get(type_, ())) == 1), None)
-    if chosen is None:
+    """Return the node with the parameters by which it uses the sensors that its robot has one of; the
+    first in its entry count."""
+    chosen = [it for type_, it in node.by_sensor if len(offered.get(type_, ())) == 1]
+    usual = dict((*node.usual, *(one for it in reversed(chosen) for one in it)))
+    if not (node.by_sensor and usual):
         return node
-    changed = node._replace(usual=(*node.usual, *chosen))
+    changed = node._replace(usual=(*usual.items(),))
     value_of = lookup(changed, usual_values(changed))
     ends = (
         it._replace(when="" if holds(it.when, value_of) else it.when)

@@ -28,7 +28,7 @@ def _shared(subject: Subject) -> tuple[Problem, ...]:
     if not subject.settings.robots:
         return ()
     # Without robots a lint loads none of it.
-    from multibot_rewrite.description.checks.meeting import shared_by_all
+    from multibot_rewrite.description.checks.meeting import said_of, shared_by_all
     from multibot_rewrite.description.steps.apply import cut
     from multibot_rewrite.description.steps.collect import collect
     from multibot_rewrite.description.steps.plan import make_plan
@@ -41,7 +41,8 @@ def _shared(subject: Subject) -> tuple[Problem, ...]:
     if any(it.level == ERROR for it in plan.findings):
         return ()
     pieces = cut(document.source, plan.edits)
-    return tuple(shared_by_all(document, pieces, naming, subject.tree.vocabulary))
+    found = shared_by_all(document, pieces, naming, subject.tree.vocabulary)
+    return tuple(said_of(subject.settings.robots[0], found))
 
 
 def _of_code(code: str, subject: Subject) -> Iterator[Problem]:
