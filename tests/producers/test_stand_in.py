@@ -507,11 +507,11 @@ def test_every_action_of_launch_is_visited() -> None:
     named = {*visit._handlers()}
     assert names - named == {"LifecycleNode", "OpaqueCoroutine", "ROSTimer", "RosTimer"}
     others = {"LaunchDescription", "ForEach", "ForLoop", "ReplaceEnvironmentVariables"}
-    others |= {"Log", "LogInterface"}
+    others |= {"Log", "LogInterface", "LoadedComponent"}
     assert named - names == others
     starts = {
         "IncludeLaunchDescription", "ComposableNodeContainer", "LoadComposableNodes", "Node",
-        "ExecuteLocal", "ExecuteProcess", "RegisterEventHandler", "TimerAction",
+        "ExecuteLocal", "ExecuteProcess", "RegisterEventHandler", "TimerAction", "LoadedComponent",
     }  # fmt: skip
     passed = {
         "SetUseSimTime", "Log", "LogInfo", "LogInterface", "EmitEvent", "Shutdown", "SetROSLogDir",

@@ -12,8 +12,8 @@ from contextlib import suppress
 from functools import cache
 from inspect import getsource
 from linecache import getline
-from types import FunctionType, MethodType, SimpleNamespace
-from typing import Any
+from types import FunctionType, MethodType
+from typing import Any, NamedTuple
 
 from multibot_rewrite.producers.launch.describe import (
     Visit,
@@ -238,11 +238,20 @@ def _loaded(entity: Any, seen: Visit) -> Iterable[Any] | None:
     return None
 
 
+class LoadedComponent(NamedTuple):
+    """A component ``of`` a description, which is visited as the actions are."""
+
+    condition: Any
+    node_package: Any
+    node_executable: Any
+    of: Any
+    container: str
+
+
 def _components(descriptions: Iterable[Any] | None, container: str, seen: Visit) -> None:
     for it in descriptions or ():
         condition = it.condition() if callable(getattr(it, "condition", None)) else None
-        names = {"node_package": it.package, "node_executable": it.node_plugin}
-        visit(SimpleNamespace(condition=condition, of=it, container=container, **names), seen)
+        visit(LoadedComponent(condition, it.package, it.node_plugin, it, container), seen)
 
 
 def _component(entity: Any, seen: Visit) -> None:
@@ -327,7 +336,7 @@ def _handlers() -> Mapping[str, Handler]:
         **dict.fromkeys(names().passed.split(), _pass),
         _INCLUDE: _include,
         "ComposableNodeContainer": _container,
-        "SimpleNamespace": _component,
+        "LoadedComponent": _component,
         "LoadComposableNodes": _loaded,
         "Node": _node,
         **dict.fromkeys(("ExecuteLocal", "ExecuteProcess"), _process),
