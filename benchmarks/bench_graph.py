@@ -33,9 +33,9 @@ from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.knowledge.node_library import stack_of
 from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.planning.plan import to_yaml
+from multibot_rewrite.planning.table import build_table
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan import to_yaml
-from multibot_rewrite.spelling.table import build_table
 from multibot_rewrite.system.json import from_json, from_yaml, to_json
 from multibot_rewrite.system.records import (
     PUBLISHES,

@@ -22,10 +22,10 @@ from pairs import HOW, MACHINE, Row, paired, seconds, table
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.companions.context import Context, fill_template, make_context
-from multibot_rewrite.companions.params.rewrite import rewrite_params
-from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.knowledge.stacks import load_stack
+from multibot_rewrite.related_files.context import Context, fill_template, make_context
+from multibot_rewrite.related_files.params.rewrite import rewrite_params
+from multibot_rewrite.related_files.yaml_text import read_yaml
 
 ROOT = Path(__file__).parent.parent
 NAV2 = "nav2_params/ros-navigation+navigation2/nav2_bringup__params__nav2_params.yaml"
@@ -44,8 +44,8 @@ def context(layout: str, affix: str) -> Context:
 
 def first(data: bytes, setting: Context) -> str:
     """Return a file for its first robot."""
-    companion = rewrite_params(read_yaml(data, "nav2_params.yaml"), setting)
-    return fill_template(companion.template, "robot1", "robot1")
+    related_file = rewrite_params(read_yaml(data, "nav2_params.yaml"), setting)
+    return fill_template(related_file.template, "robot1", "robot1")
 
 
 def load_and_dump(data: bytes) -> str:

@@ -12,14 +12,13 @@ if TYPE_CHECKING:
     from multibot_rewrite.base.findings.finding import Finding, RewriteRefused
     from multibot_rewrite.base.model import (
         Change,
+        DefinitionsError,
         InputError,
         MultibotError,
         ProofError,
         Unusable,
         UsageError,
-        VocabularyError,
     )
-    from multibot_rewrite.companions.join import Joined, join, split
     from multibot_rewrite.description.joining.part import Part
     from multibot_rewrite.description.library import Rewrite, explain, rewrite, rewrite_all, strip
     from multibot_rewrite.fleet.file.system_sources import (
@@ -38,20 +37,53 @@ if TYPE_CHECKING:
     from multibot_rewrite.fleet.scripts import LoadedFleet, load_fleet
     from multibot_rewrite.refactor.adopt import Adopted, adopt
     from multibot_rewrite.refactor.rename import Renaming, rename_symbol
+    from multibot_rewrite.related_files.join import Joined, join, split
     from multibot_rewrite.system.records import System
 
 __all__ = [
-    "Adopted", "Change", "Finding", "InputError", "Joined", "LoadedFleet", "LoadedRobot",
-    "MultibotError", "Part", "ProofError", "Renaming", "Rewrite", "RewriteRefused", "RewrittenFile",
-    "System", "Unusable", "UsageError", "VocabularyError", "adopt", "compare", "explain", "join",
-    "judge", "load_fleet", "rename_symbol", "rewrite", "rewrite_all", "rewrite_file",
-    "rewrite_files", "split", "strip", "system_of_bag", "system_of_description", "system_of_files",
-    "system_of_fleet", "system_of_folder", "system_of_graph", "system_of_launch",
+    "Adopted",
+    "Change",
+    "DefinitionsError",
+    "Finding",
+    "InputError",
+    "Joined",
+    "LoadedFleet",
+    "LoadedRobot",
+    "MultibotError",
+    "Part",
+    "ProofError",
+    "Renaming",
+    "Rewrite",
+    "RewriteRefused",
+    "RewrittenFile",
+    "System",
+    "Unusable",
+    "UsageError",
+    "adopt",
+    "compare",
+    "explain",
+    "join",
+    "judge",
+    "load_fleet",
+    "rename_symbol",
+    "rewrite",
+    "rewrite_all",
+    "rewrite_file",
+    "rewrite_files",
+    "split",
+    "strip",
+    "system_of_bag",
+    "system_of_description",
+    "system_of_files",
+    "system_of_fleet",
+    "system_of_folder",
+    "system_of_graph",
+    "system_of_launch",
 ]  # fmt: skip
 _SOURCES = ("bag", "description", "files", "fleet", "folder", "graph", "launch")
 _HOMES = {
     "base.findings.finding": ("Finding", "RewriteRefused"),
-    "companions.join": ("Joined", "join", "split"),
+    "related_files.join": ("Joined", "join", "split"),
     "description.joining.part": ("Part",),
     "description.library": ("Rewrite", "explain", "rewrite", "rewrite_all", "strip"),
     "fleet.file.system_sources": ("compare", "judge", *(f"system_of_{it}" for it in _SOURCES)),

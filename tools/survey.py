@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``python -m tools.survey PATH...``: how much of a set of descriptions the vocabulary knows.
+"""``python -m tools.survey PATH...``: how much of a set of descriptions the plugin definitions knows.
 
 Every .urdf and .sdf there is read. Printed are plugins and hardware classes that no section describes,
 how many values of each kind are claimed, and links and joints in values that no line reads.
@@ -22,7 +22,7 @@ from multibot_rewrite.cli.walk import find_files
 from multibot_rewrite.description.checks.mentions import MENTIONED, unclaimed_mentions
 from multibot_rewrite.description.reports.explain import tag_path
 from multibot_rewrite.description.reports.suggest import Loaded, loaded_by
-from multibot_rewrite.description.rewriters.spelling import ResolvedName
+from multibot_rewrite.description.rewriters.renaming import ResolvedName
 from multibot_rewrite.description.rewriters.tree import Tree, builtin_tree
 from multibot_rewrite.description.sources.read import read_whole
 from multibot_rewrite.description.steps.collect import Inventory, collect

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``python -m tools.unclaimed LIST PATH...``: links and joints in values that no vocabulary line reads.
+"""``python -m tools.unclaimed LIST PATH...``: links and joints in values that no definition reads.
 
 LIST says which of them need no line: ``tag path TAB reason``. Printed is the rest, and what explains
 nothing any more: exit code 1 where there is either, 2 for wrong use.

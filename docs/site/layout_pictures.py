@@ -16,7 +16,7 @@ from lxml import etree
 
 from multibot_rewrite import load_fleet
 from multibot_rewrite.base.naming import LAYOUTS
-from multibot_rewrite.spelling.plan import read_plan
+from multibot_rewrite.planning.plan import read_plan
 from multibot_rewrite.system import records
 
 ROOT = Path(__file__).parents[2]

@@ -2,7 +2,7 @@
 """What ``[tool.multibot-rewrite]`` of a project's pyproject.toml says. Only the commands read it.
 
 [tool.multibot-rewrite]
-vocabulary = ["vocabulary/acme.vocab"]
+definitions = ["definitions/acme.vocab"]
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import UsageError
 
 TABLE = "multibot-rewrite"
-KEYS = ("vocabulary",)
+KEYS = ("definitions",)
 # Parsing costs more than the rest of a start: most projects hold neither spelling of the table.
 MARKS = (b"multibot-rewrite", b"tool.multibot_rewrite")
 _PARTS = 1000
@@ -26,7 +26,7 @@ _PARSERS = ("tomllib", "tomli", "toml")
 _PLACE = lazy_compile(r" \((?:at )?line (\d+),? column (\d+)(?!\d)[^()]*\)$")
 
 
-def configured_vocabulary(near: str) -> tuple[str, ...]:
+def configured_definitions(near: str) -> tuple[str, ...]:
     """Return the files of plugin definitions that the nearest pyproject.toml above ``near`` lists.
 
     ``near`` is the input file, a folder, or ``-`` for standard input: then the working directory
@@ -40,8 +40,8 @@ def configured_vocabulary(near: str) -> tuple[str, ...]:
     if not any(mark in data for mark in MARKS):
         return ()
     table = _table(project, data)
-    where = f"{project}: [tool.{TABLE}] vocabulary"
-    return listed_files(where, os.path.dirname(project), table.get("vocabulary", []))
+    where = f"{project}: [tool.{TABLE}] definitions"
+    return listed_files(where, os.path.dirname(project), table.get("definitions", []))
 
 
 def folders_above(near: str) -> Iterator[str]:

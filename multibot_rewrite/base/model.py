@@ -73,7 +73,7 @@ class Edit(NamedTuple):
 
 
 class Change(NamedTuple):
-    """One renamed or inserted value, as listed by ``--form changes``."""
+    """One renamed or inserted value, as listed by ``--output-kind changes``."""
 
     line: int
     column: int
@@ -111,7 +111,7 @@ class InputError(MultibotError):
         self.cause, self.name = cause, name
 
 
-class VocabularyError(MultibotError):
+class DefinitionsError(MultibotError):
     """A definition file is wrong; the message names file and line."""
 
 

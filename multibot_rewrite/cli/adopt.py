@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import argparse
 
-from multibot_rewrite.base.config import configured_vocabulary
+from multibot_rewrite.base.config import configured_definitions
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import deliver_changed, note, note_unread, verified_words
 from multibot_rewrite.cli.process import DONE
@@ -18,7 +18,7 @@ def run(options: argparse.Namespace) -> int:
     made = adopt(
         options.folder,
         xacro_args=arguments_alone(options),
-        vocabulary=(*configured_vocabulary(options.folder), *options.vocabulary),
+        definitions=(*configured_definitions(options.folder), *options.definitions),
         trust=options.trust,
         distro=options.distro or "",
     )

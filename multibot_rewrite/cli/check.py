@@ -22,10 +22,10 @@ from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.cli.watch import follow
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.live.watching import Outcome, Verdict, final, final_words, verdict_words
+from multibot_rewrite.planning.plan import is_fleet, read_plan, robot_words
 from multibot_rewrite.producers.bags.recording import as_snapshot, counted
 from multibot_rewrite.rules.check import check, check_domains
 from multibot_rewrite.rules.system.unsent import nothing_known_sends
-from multibot_rewrite.spelling.plan import is_fleet, read_plan, robot_words
 from multibot_rewrite.system.coverage import Coverage, coverage
 from multibot_rewrite.system.domains import by_domain, side_by_side
 from multibot_rewrite.system.records import System, answering, doubts

@@ -8,7 +8,7 @@ import os
 import shlex
 from collections.abc import Iterable, Sequence
 
-from multibot_rewrite.base.config import configured_vocabulary
+from multibot_rewrite.base.config import configured_definitions
 from multibot_rewrite.base.file_kinds import DESCRIPTIONS, refuse_others
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import release_doubt
@@ -36,7 +36,7 @@ FLEET_FILES = (".yaml", ".yml")
 # What a fleet file says itself, and how the option is written.
 _OF_FLEET_FILE = (
     *("robots", "stack", "nodes", "layout", "affix", "topics", "separator", "shared"),
-    *("vocabulary", "launch", "roots"),
+    *("definitions", "launch", "roots"),
 )
 OF_FLEET_FILE = {"words": "ROBOT", **{it: f"--{it}" for it in _OF_FLEET_FILE}}
 
@@ -111,7 +111,7 @@ def _from_words(options: argparse.Namespace) -> Fleet:
         policy(options),
         nodes=nodes,
         nodl=nodl,
-        vocabulary=[*configured_vocabulary(options.input), *options.vocabulary],
+        definitions=[*configured_definitions(options.input), *options.definitions],
         xacro_args=xacro_args(options),
         trust=options.trust,
         launch=[

@@ -144,7 +144,7 @@ def _check_arguments(made: Proposal, wanted: Wanted) -> None:
     """Raise UsageError for a value that no xacro of the fleet takes; an SRDF may be one that does."""
     taken = {name for it in made.members for name, _ in it.looked.arguments}
     left = [f"{name}:={value}" for name, value in wanted.arguments.items() if name not in taken]
-    if left and not any(it.companions.srdf.endswith(".xacro") for it in made.members):
+    if left and not any(it.related_files.srdf.endswith(".xacro") for it in made.members):
         files = ", ".join(it.looked.path for it in made.members)
         raise UsageError(f"{left[0]}: no argument of {files} has this name")
 
@@ -292,7 +292,7 @@ def _with_arguments(robot: Looked, wanted: Wanted, found: Found) -> Looked:
 
 def _left_out(made: Proposal) -> list[str]:
     """Return the related files that the user does not want."""
-    paths = list(dict.fromkeys(path for it in made.members for path in it.companions.paths))
+    paths = list(dict.fromkeys(path for it in made.members for path in it.related_files.paths))
     if not paths:
         return []
     for at, path in enumerate(paths, 1):

@@ -9,7 +9,7 @@ import re
 import shlex
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.base.config import configured_vocabulary
+from multibot_rewrite.base.config import configured_definitions
 from multibot_rewrite.base.findings.codes import (
     examples,
     explained,
@@ -29,20 +29,20 @@ from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.tables import JSON, Grid, deliver_report, json_bytes
 from multibot_rewrite.cli.usage import check_xacro, plain_words, xacro_args
 from multibot_rewrite.cli.walk import check_target
-from multibot_rewrite.description.reports.suggest import suggest, vocabulary_text
+from multibot_rewrite.description.reports.suggest import definitions_text, suggest
 from multibot_rewrite.description.reports.xacro_arguments import (
     XacroArguments,
     as_json as arguments_json,
     find_arguments,
 )
 from multibot_rewrite.description.rewriters.lookup import block_of, facts, look_up, near_names
-from multibot_rewrite.description.rewriters.tree import builtin_tree
-from multibot_rewrite.description.rewriters.vocabulary import (
+from multibot_rewrite.description.rewriters.plugin_definitions import (
     TYPES,
-    Vocabulary,
-    VocabularySection,
-    load_vocabulary,
+    Definitions,
+    PluginDefinition,
+    load_definitions,
 )
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.description.sources.read import is_xacro, read_whole
@@ -81,21 +81,21 @@ def _is_path(word: str) -> bool:
 
 def show(options: argparse.Namespace, name: str | None) -> int:
     """List all sections, or show those of a name; returns the exit code."""
-    files = (*configured_vocabulary("-"), *options.vocabulary)
+    files = (*configured_definitions("-"), *options.definitions)
     if options.output:
         check_target(options.output, files)
     builtin_tree(files, release_here(options.distro))
     # Without a release the rows of all are shown, each with its own.
-    vocabulary = load_vocabulary(files, options.distro or "")
+    definitions = load_definitions(files, options.distro or "")
     if name is None:
-        sections = vocabulary.sections(*TYPES)
-        if options.form == JSON:
+        sections = definitions.sections(*TYPES)
+        if options.output_kind == JSON:
             known = [as_json(it) for it in sections]
             deliver(options, json_bytes({"sections": known, "rules": rules_json()}))
         else:
             deliver_report(options, (*_list(sections), "", rule_grid()))
         return DONE
-    found = look_up(vocabulary, name, TYPES)
+    found = look_up(definitions, name, TYPES)
     if not found and is_name(name):
         return explain(options, [name])
     node = None if found else every_release().nodes.get(name)
@@ -103,10 +103,10 @@ def show(options: argparse.Namespace, name: str | None) -> int:
         return node_source.run_known(options, node)
     bases = {base: it.classes[name] for base, it in plugin_bases().items() if name in it.classes}
     if not (found or bases):
-        raise _unknown(vocabulary, name, TYPES)
+        raise _unknown(definitions, name, TYPES)
     if not found:
         deliver_report(options, _class(name, bases))
-    elif options.form == JSON:
+    elif options.output_kind == JSON:
         deliver(options, json_bytes({"sections": [as_json(it) for it in found]}))
     else:
         deliver_report(options, details(found))
@@ -122,20 +122,20 @@ def _class(name: str, bases: Mapping[str, str]) -> Iterator[str | Grid]:
         yield Grid(("parameter", "type", "releases", "source"), rows)
 
 
-def _unknown(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> UsageError:
-    others = [it for type_ in types for it in vocabulary.releases_elsewhere(type_, name)]
+def _unknown(definitions: Definitions, name: str, types: Sequence[str]) -> UsageError:
+    others = [it for type_ in types for it in definitions.releases_elsewhere(type_, name)]
     if others:
-        where = f"is not in {vocabulary.release}, only in {', '.join(dict.fromkeys(others))}"
+        where = f"is not in {definitions.release}, only in {', '.join(dict.fromkeys(others))}"
         return UsageError(f"{name!r} {where}; name one of them with --distro")
     classes = (it for base in plugin_bases().values() for it in base.classes)
     other = nearest(name, (*every_release().nodes, *classes))
-    near = near_names(vocabulary, name, types) or [other or near_name(name, rules())]
+    near = near_names(definitions, name, types) or [other or near_name(name, rules())]
     hint = f"the nearest known: {', '.join(near)}" if any(near) else "multibot inspect lists all"
     what = "plugin, node, class, element, sensor type, rule or file"
     return UsageError(f"{name!r} is not known: no {what} has this name; {hint}")
 
 
-def _list(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
+def _list(sections: Sequence[PluginDefinition]) -> Iterator[str | Grid]:
     """Yield a table with one line a section."""
     rows = [
         (it.type, it.names[0], it.ros, shorten(it.names[1:], 1), str(len(it.sites)), it.source)
@@ -144,7 +144,7 @@ def _list(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
     yield Grid(("type", "name", "ROS", "also called", "rows", "source"), rows)
 
 
-def details(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
+def details(sections: Sequence[PluginDefinition]) -> Iterator[str | Grid]:
     """Yield everything known, a block of lines a section."""
     for number, section in enumerate(sections):
         yield from [""] * (number > 0)
@@ -155,7 +155,7 @@ def details(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
             yield Grid(("path", "role", "kinds", "form", "default", "note", "from"), rows)
 
 
-def _row(site: SiteRow, section: VocabularySection) -> tuple[str, ...]:
+def _row(site: SiteRow, section: PluginDefinition) -> tuple[str, ...]:
     not_inserted = " (not inserted)" if site.default and not section.inserts else ""
     block = block_of(site)
     shared = f" [block {block}]" if block else ""
@@ -172,8 +172,8 @@ def _row(site: SiteRow, section: VocabularySection) -> tuple[str, ...]:
     )
 
 
-def as_json(section: VocabularySection) -> dict[str, object]:
-    """Return a section as ``--form json`` writes it; docs/node sets.md describes it."""
+def as_json(section: PluginDefinition) -> dict[str, object]:
+    """Return a section as ``--output-kind json`` writes it; docs/stacks.md describes it."""
     return {
         "type": section.type,
         "names": section.names,
@@ -191,7 +191,7 @@ def as_json(section: VocabularySection) -> dict[str, object]:
     }
 
 
-def _row_json(site: SiteRow, section: VocabularySection) -> dict[str, object]:
+def _row_json(site: SiteRow, section: PluginDefinition) -> dict[str, object]:
     return {
         "path": site.path,
         "role": site.role,
@@ -211,18 +211,18 @@ def _row_json(site: SiteRow, section: VocabularySection) -> dict[str, object]:
 def draft(options: argparse.Namespace) -> int:
     """Write plugin definitions for what a description loads and nothing knows; returns the exit
     code."""
-    if plain_words(options) or options.form == JSON:
-        raise UsageError("--suggest goes with --vocabulary only: leave out NAME and --form")
+    if plain_words(options) or options.output_kind == JSON:
+        raise UsageError("--suggest goes with --definitions only: leave out NAME and --output-kind")
     check_xacro(options, [options.suggest])
     if options.output:
-        check_target(options.output, [options.suggest, *options.vocabulary])
+        check_target(options.output, [options.suggest, *options.definitions])
     read = read_whole(options.suggest, filled(xacro_args(options)), options.trust)
     if options.output:
         check_target(options.output, read.read)
-    files = (*configured_vocabulary(options.suggest), *options.vocabulary)
+    files = (*configured_definitions(options.suggest), *options.definitions)
     tree = builtin_tree(files, release_here(options.distro))
     sections = suggest(collect(read_document(read.data, read.file), tree))
-    text = vocabulary_text(sections, options.suggest)
+    text = definitions_text(sections, options.suggest)
     deliver(options, text.encode("utf-8", "backslashreplace"))
     if not sections:
         note(
@@ -256,7 +256,7 @@ def explain(options: argparse.Namespace, words: Sequence[str]) -> int:
         if not asked:
             raise UsageError(no_rule(word, known))
         found |= {it.code: it for it in asked}
-    if options.form == JSON:
+    if options.output_kind == JSON:
         deliver(options, json_bytes({"rules": rules_json(found.values())}))
     elif len(found) > MOST_EXPLAINED:
         deliver_report(options, (rule_grid(found.values()),))
@@ -273,7 +273,7 @@ def rule_grid(found: Iterable[Rule] | None = None) -> Grid:
 
 
 def rules_json(found: Iterable[Rule] | None = None) -> list[dict[str, object]]:
-    """Return rules (by default all) as ``--form json`` writes them; docs/node sets.md describes it."""
+    """Return rules (by default all) as ``--output-kind json`` writes them (docs/stacks.md)."""
     fields = ("code", "name", "level", "what", "why", "fix")
     return [
         {**{name: getattr(it, name) for name in fields}, "examples": dict(examples(it))}
@@ -292,15 +292,15 @@ def try_arguments(options: argparse.Namespace, words: Sequence[str]) -> int:
     """Try the arguments of a xacro file and arguments_report; returns the exit code."""
     path = _only_xacro(options, words)
     if options.output:
-        check_target(options.output, [path, *options.vocabulary])
+        check_target(options.output, [path, *options.definitions])
     tree = builtin_tree(
-        (*configured_vocabulary(path), *options.vocabulary), release_here(options.distro)
+        (*configured_definitions(path), *options.definitions), release_here(options.distro)
     )
     reach = Reach(trust=options.trust)
     found = find_arguments(path, filled(xacro_args(options)), tree, reach=reach)
     if options.output:
         check_target(options.output, found.read)
-    if options.form == JSON:
+    if options.output_kind == JSON:
         deliver(options, json_bytes({"xacro": arguments_json(found)}))
     else:
         deliver_report(options, arguments_report(found))

@@ -7,16 +7,16 @@ import argparse
 import os
 from collections.abc import Sequence
 
-from multibot_rewrite.base.config import configured_vocabulary
+from multibot_rewrite.base.config import configured_definitions
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli.output import deliver, goes_to_file, note, write_files
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.walk import check_link, check_target
-from multibot_rewrite.companions.join import Joined, join, split
 from multibot_rewrite.description.joining.from_file import listed_in
 from multibot_rewrite.description.joining.part import ZERO, Part, files_of
 from multibot_rewrite.description.sources.read import JOIN
+from multibot_rewrite.related_files.join import Joined, join, split
 
 # Options that are written for each part.
 _OF_PARTS = ("at", "pose", "prefix")
@@ -24,7 +24,7 @@ _OF_PARTS = ("at", "pose", "prefix")
 
 def run(options: argparse.Namespace) -> int:
     """Write the joined description, or its parts; returns the exit code."""
-    options.vocabulary = [*configured_vocabulary(options.words[0]), *options.vocabulary]
+    options.definitions = [*configured_definitions(options.words[0]), *options.definitions]
     return (_split if options.undo else _join)(options)
 
 
@@ -39,7 +39,7 @@ def _join(options: argparse.Namespace) -> int:
         parts, samples = tuple(_parts(options)), 0
     made = join(
         parts,
-        vocabulary=options.vocabulary,
+        definitions=options.definitions,
         trust=options.trust,
         distro=options.distro or "",
         samples=samples,
@@ -85,7 +85,7 @@ def _split(options: argparse.Namespace) -> int:
         raise UsageError(f"--{given} is for joining, it cannot go with --undo")
     if not goes_to_file(options):
         raise UsageError("several files are made: name a folder for them with -o parts/")
-    made = split(options.words[0], vocabulary=options.vocabulary, distro=options.distro or "")
+    made = split(options.words[0], definitions=options.definitions, distro=options.distro or "")
     items = [(os.path.join(options.output, f"{name}.urdf"), data) for name, data in made.items()]
     _write(options, items, options.words)
     note(options, f"{options.output}: {', '.join(os.path.basename(path) for path, _ in items)}")

@@ -45,7 +45,7 @@ def run(options: argparse.Namespace, path: str) -> int:
         rows += dict.fromkeys(_of_robot(robots[0], whose, file, options.trust))
     if not rows:
         raise UsageError(f"{path}: no robot has a launch file; multibot plan {path} has its nodes")
-    if options.form == JSON:
+    if options.output_kind == JSON:
         deliver(options, json_bytes({"processes": [it._asdict() for it in rows]}))
     else:
         shown = [(*it[:3], ", ".join(it.files), it.why) for it in rows]
@@ -60,7 +60,7 @@ def _of_robot(robot: RobotSpec, whose: str, file: FleetFile, trust: bool) -> Ite
         shared = not names.isdisjoint(file.shared_nodes)
         why = "shared_nodes names it" if shared else once_for_all(it)
         why = why if names.isdisjoint(file.own_nodes) else ""
-        config = next(iter(robot.companions.get("rviz", ())), "") if RVIZ in names else ""
+        config = next(iter(robot.related_files.get("rviz", ())), "") if RVIZ in names else ""
         apart = why_for_each(config, make_naming(**file.policy).layout.name) if config else ""
         files = (os.path.relpath(one.source) for one in it.parameters if one.source)
         place = f"{os.path.relpath(it.place.file)}:{it.place.line}"

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.formats.plain import counts, in_words
 from multibot_rewrite.base.findings.selection import fails
-from multibot_rewrite.base.model import UsageError, VocabularyError
+from multibot_rewrite.base.model import DefinitionsError, UsageError
 from multibot_rewrite.base.releases import (
     ROS_2,
     facts_of_release,
@@ -34,7 +34,6 @@ from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.cli.report import NO_RULES, TEXT, About, by_themselves, report_first
 from multibot_rewrite.cli.usage import check_xacro, plain_words, policy, xacro_args
 from multibot_rewrite.cli.walk import check_folder, check_target, find_files, standard_input
-from multibot_rewrite.companions.named_file import SUFFIXES as BESIDE, is_linted
 from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.description.sources.release_said import release_of_all
 from multibot_rewrite.lint.config.configured import (
@@ -44,6 +43,7 @@ from multibot_rewrite.lint.config.configured import (
     with_options,
 )
 from multibot_rewrite.lint.run import among, lint_files
+from multibot_rewrite.related_files.named_file import SUFFIXES as BESIDE, is_linted
 from multibot_rewrite.rules.settings import Settings
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ STDIN = "-"
 # What says by what it loads which release it is for.
 _TELLING = (".urdf", ".xacro", ".sdf", "_planning.yaml")
 CRASHED = "MB001"
-_LISTS = ("select", "ignore", "robots", "roots", "target", "vocabulary")
+_LISTS = ("select", "ignore", "robots", "roots", "target", "definitions")
 _PLAIN = ("urdf", "baseline", "fail_on", "trust")
 
 
@@ -256,7 +256,7 @@ def cached(options: argparse.Namespace, settings: Settings) -> Iterator[Cache | 
 
     try:
         cache = Cache(cache_folder(), identity(settings))
-    except (OSError, ValueError, VocabularyError):  # reported where it is read
+    except (OSError, ValueError, DefinitionsError):  # reported where it is read
         cache = None
     yield cache
     if cache:

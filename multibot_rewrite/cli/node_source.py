@@ -41,7 +41,7 @@ def run(options: argparse.Namespace, word: str) -> int:
         raise UsageError(
             f"{word}: package {name!r} has no program {program!r} whose source is here; {hint}"
         )
-    if options.form == JSON:
+    if options.output_kind == JSON:
         deliver(options, json_bytes({"nodes": [_as_json(found)]}))
     else:
         deliver_report(options, _details(found, folder))
@@ -62,7 +62,7 @@ def run_known(options: argparse.Namespace, facts: NodeFacts) -> int:
     known = every_release().parameters.get(facts.name.rpartition("/")[2], NodeParameters("", ""))
     params = (it for it in known.forms if any(has_release(it.releases, one) for one in releases))
     found = NodeSource(facts._replace(endpoints=tuple(ends)), tuple(params), (), facts.source)
-    if options.form == JSON:
+    if options.output_kind == JSON:
         versions = {it: of_package[it]._asdict() for it in releases if it in of_package}
         deliver(options, json_bytes({"nodes": [{**_as_json(found), "versions": versions}]}))
     else:

@@ -22,7 +22,7 @@ MANY = 20
 STANDARD = "-"
 # Options and arguments that name files to read.
 READ = (
-    *("input", "plan", "fleet", "snapshot", "urdf", "xacro", "vocabulary", "nodes"),
+    *("input", "plan", "fleet", "snapshot", "urdf", "xacro", "definitions", "nodes"),
     *("suggest", "config", "baseline"),
 )
 # What makes a file that such an option names.

@@ -19,10 +19,10 @@ from multibot_rewrite.fleet.file.system_sources import launched_by
 from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER, Fleet, expected, possible
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.live.seen_plan import NAMELESS, seen_plan
-from multibot_rewrite.spelling.bridged_topics import as_yaml, bridged_topics
-from multibot_rewrite.spelling.enclaves import to_policy
-from multibot_rewrite.spelling.plan import to_yaml
-from multibot_rewrite.spelling.table_formats import FORMS, given_to, standing_by_robot
+from multibot_rewrite.planning.bridged_topics import as_yaml, bridged_topics
+from multibot_rewrite.planning.enclaves import to_policy
+from multibot_rewrite.planning.plan import to_yaml
+from multibot_rewrite.planning.table_formats import FORMS, given_to, standing_by_robot
 from multibot_rewrite.system.coverage import Coverage, coverage
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.ownership import without_name
@@ -46,17 +46,17 @@ def run(options: argparse.Namespace) -> int:
     fleet.check_use(options, "plan", printed=not goes_to_file(options))
     # A robot that is called nothing; a layout, or rules, are for one with a name.
     unnamed = not options.input.endswith(fleet.FLEET_FILES) and not robots(options)
-    named = given_options(options, {"layout": "--layout"}) or options.form != PLAN
+    named = given_options(options, {"layout": "--layout"}) or options.output_kind != PLAN
     alone = unnamed and not named
     if alone:
         options.words, options.layout = [ALONE], LAYOUT_ALONE
     made = fleet.build(options)
     failed = fleet.report_table(options, made)
-    if options.form == PLAN:
+    if options.output_kind == PLAN:
         plan = expected(made)
         _write(options, without_name(plan) if alone else plan)
         _note_coverage(options, coverage(plan))
-    elif options.form == POLICY:
+    elif options.output_kind == POLICY:
         deliver(options, to_policy(expected(made), possible(made)).encode())
     else:
         deliver_rules(options, made)
@@ -79,8 +79,8 @@ def _write(options: argparse.Namespace, plan: System) -> None:
 def _of_launch(options: argparse.Namespace) -> int:
     """Write the plan of what a launch file starts; returns the exit code."""
     given = given_options(options, NOT_OF_LAUNCH)
-    if given or options.form != PLAN:
-        what = given[0] if given else "--form"
+    if given or options.output_kind != PLAN:
+        what = given[0] if given else "--output-kind"
         raise UsageError(f"{options.input}: a launch file says what runs, leave out {what}")
     orders = fleet.orders_of(options, [options.input, *options.words])
     if options.output:
@@ -104,7 +104,7 @@ def deliver_rules(options: argparse.Namespace, made: Fleet) -> None:
     if nothing:
         hint = f"name a node set of its nodes, or leave out {NO_STATE_PUBLISHER}"
         note(options, f"no node of {', '.join(nothing)} is known, so no rule is for it; {hint}")
-    if options.form == TABLE:
+    if options.output_kind == TABLE:
         rows = [
             (robot, it.node.node, it.node.full_name, text, given_to(it))
             for robot, given in standing_by_robot(made.table)
@@ -114,10 +114,10 @@ def deliver_rules(options: argparse.Namespace, made: Fleet) -> None:
         head = f"layout {made.table.layout}{facts_of_release(made.table.release)}"
         grid = Grid(("robot", "node", "runs as", "rule", "given to"), rows)
         deliver_report(options, (head, grid))
-    elif options.form == BRIDGE:
+    elif options.output_kind == BRIDGE:
         deliver(options, _bridge(options, made).encode())
     else:
-        deliver(options, FORMS[options.form](made.table).encode())
+        deliver(options, FORMS[options.output_kind](made.table).encode())
 
 
 def _bridge(options: argparse.Namespace, made: Fleet) -> str:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from itertools import chain
 from typing import Any
 
-from multibot_rewrite.base.config import configured_vocabulary
+from multibot_rewrite.base.config import configured_definitions
 from multibot_rewrite.base.findings.finding import RewriteRefused
 from multibot_rewrite.base.naming import FRAME_KINDS, SEPARATORS, TOPIC_KINDS
 from multibot_rewrite.base.releases import facts_of_release, release_doubt, why_here
@@ -49,11 +49,13 @@ def run(options: argparse.Namespace) -> int:
 
         return why.run(options)
     target = None if options.output == STANDARD else options.output
-    options.output = target if options.form == CHANGES else below(target, options.input or "")
+    options.output = (
+        target if options.output_kind == CHANGES else below(target, options.input or "")
+    )
     options.silent = serves_a_program(options)
     names = robots(options)
     check_use(options, names)
-    options.vocabulary = [*configured_vocabulary(options.input), *options.vocabulary]
+    options.definitions = [*configured_definitions(options.input), *options.definitions]
     source: Source = standard_input() if options.input == "-" else options.input
     if _is_beside(source):
         from multibot_rewrite.cli import rewrite_file  # a description needs none of it
@@ -66,7 +68,7 @@ def _is_beside(source: Source) -> bool:
     """Return ``is_beside``; a source named as a description is not asked."""
     if isinstance(source, str) and source.endswith((".urdf", ".sdf", ".xacro")):
         return False
-    from multibot_rewrite.companions.named_file import is_beside
+    from multibot_rewrite.related_files.named_file import is_beside
 
     return is_beside(source)
 
@@ -119,10 +121,10 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
     found = (finding for it in (first, *others) for finding in it.findings)
     if is_stopped(options, found, names, first.distro):
         return STOPPED
-    if options.form == CHANGES:
+    if options.output_kind == CHANGES:
         own = {it.robot: it for it in others}
         every = [own.get(robot, first._replace(robot=robot)) for robot in names]
-        # Every change for every robot, as ``--form changes`` writes it.
+        # Every change for every robot, as ``--output-kind changes`` writes it.
         import json
 
         table = {

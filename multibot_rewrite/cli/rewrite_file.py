@@ -21,9 +21,9 @@ from multibot_rewrite.cli.rewrite_use import (
     tell,
 )
 from multibot_rewrite.cli.usage import rewriting
-from multibot_rewrite.companions.named_file import BRIDGE, LUA, MOVEIT, PARAMS, RVIZ, TREE
 from multibot_rewrite.description.sources.read import Source, read_whole
 from multibot_rewrite.fleet.one_file import RewrittenFile, rewrite_files
+from multibot_rewrite.related_files.named_file import BRIDGE, LUA, MOVEIT, PARAMS, RVIZ, TREE
 
 WORDS = {
     PARAMS: "a parameter file",
@@ -37,8 +37,8 @@ WORDS = {
 
 def run(options: argparse.Namespace, source: Source, names: list[str]) -> int:
     """Rewrite it for each robot; returns the exit code."""
-    if options.undo or options.form == CHANGES:
-        what = "--undo" if options.undo else "--form changes"
+    if options.undo or options.output_kind == CHANGES:
+        what = "--undo" if options.undo else "--output-kind changes"
         raise UsageError(f"{what} is for descriptions, {input_name(options)} is none")
     before = read_whole(source, {}, options.trust)
 

@@ -52,7 +52,7 @@ def check_use(options: argparse.Namespace, names: list[str]) -> None:
     if len(names) > 1 and (options.undo or options.in_place):
         raise UsageError("--undo and --in-place take one robot at a time")
     check_report(options, printed=not (options.output or options.in_place))
-    is_one = options.form == CHANGES
+    is_one = options.output_kind == CHANGES
     known = "" if is_one else PLACEHOLDER
     unknown = [it for it in re.findall(r"\{[^{}]*\}", options.output or "") if it != known]
     if unknown:
@@ -77,9 +77,9 @@ def _check_together(options: argparse.Namespace) -> None:
     if options.xacro and not options.undo:
         raise UsageError("--xacro goes with --undo; to rewrite a xacro, name it as the INPUT")
     others = (it for it in ("undo", "in_place", "diff") if getattr(options, it))
-    if options.form == CHANGES and (other := next(others, "")):
+    if options.output_kind == CHANGES and (other := next(others, "")):
         raise UsageError(
-            f"--form changes lists what a rewrite changes: leave out --{other.replace('_', '-')}"
+            f"--output-kind changes lists what a rewrite changes: leave out --{other.replace('_', '-')}"
         )
     if options.in_place and (options.input == "-" or is_xacro(options.input)):
         raise UsageError("--in-place needs a URDF file, not standard input or xacro")
@@ -90,7 +90,7 @@ def _check_targets(options: argparse.Namespace, targets: list[str]) -> None:
     for path in targets:
         if os.path.isfile(path) and _same_file(path, options.input):
             raise UsageError(f"{path} is the input file; choose another name, or --in-place")
-        for option in ("urdf", "xacro", "vocabulary"):
+        for option in ("urdf", "xacro", "definitions"):
             given = getattr(options, option) or ()
             for it in [given] if isinstance(given, str) else given:
                 if os.path.isfile(path) and _same_file(path, it):

@@ -62,10 +62,12 @@ def run(options: argparse.Namespace) -> int:
     snapshot = live.with_states(options, live.graph(options, request))
     if describes:
         return write_nodes(options, snapshot)
-    if options.output is None and options.form is None:
+    if options.output is None and options.output_kind is None:
         deliver_report(options, report(snapshot))
     else:
-        deliver(options, to_yaml(snapshot) if options.form == "rosgraph" else to_json(snapshot))
+        deliver(
+            options, to_yaml(snapshot) if options.output_kind == "rosgraph" else to_json(snapshot)
+        )
         note(options, _headline(snapshot))
     for caveat in snapshot.environment.caveats:
         _remark(options, caveat)
@@ -155,11 +157,11 @@ NODES, NODL = "nodes", "nodl"
 
 def is_asked(options: argparse.Namespace) -> bool:
     """Return whether nodes are to be described, not a snapshot written. Raises UsageError."""
-    if options.form in (NODES, NODL) or is_nodl(options):
+    if options.output_kind in (NODES, NODL) or is_nodl(options):
         return True
     given = [f"--{it}" for it in ("node", "namespace", "stack", "distro") if getattr(options, it)]
     if given:
-        raise UsageError(f"{given[0]} is for a description of nodes: add --form {NODES}")
+        raise UsageError(f"{given[0]} is for a description of nodes: add --output-kind {NODES}")
     return False
 
 
@@ -191,12 +193,12 @@ def write_nodes(options: argparse.Namespace, graph: System) -> int:
 
 
 def is_nodl(options: argparse.Namespace) -> bool:
-    """Return whether the result is NoDL, by --form or by the name of the file. Raises UsageError."""
+    """Return whether the result is NoDL, by its kind or by the name of the file. Raises UsageError."""
     named = (options.output or "").endswith(SUFFIXES)
-    if named and options.form not in (None, NODL):
-        form = f"--form {options.form}"
+    if named and options.output_kind not in (None, NODL):
+        form = f"--output-kind {options.output_kind}"
         raise UsageError(f"{options.output} is the name of a NoDL file; leave out {form}")
-    return named or options.form == NODL
+    return named or options.output_kind == NODL
 
 
 def _write_nodl(options: argparse.Namespace, found: Sequence[NodlFile]) -> Iterator[str]:

@@ -41,7 +41,7 @@ def rewriting(options: argparse.Namespace) -> dict[str, Any]:
         **policy(options),
         "urdf": options.urdf,
         "xacro_args": xacro_args(options),
-        "vocabulary": options.vocabulary,
+        "definitions": options.definitions,
         "trust": options.trust,
         "distro": options.distro or "",
     }

@@ -24,10 +24,10 @@ from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.pages.page import Framed
 from multibot_rewrite.pages.view.page import Meshes, bare, meshes_of, title_of, to_frame, to_html
 from multibot_rewrite.pages.view.scene import ShownScene, ViewedRobot, moved, scene_of
+from multibot_rewrite.planning.plan import is_fleet
 from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot
 from multibot_rewrite.producers.snapshot_file import read_snapshots
-from multibot_rewrite.spelling.plan import is_fleet
 from multibot_rewrite.system.records import System
 
 

@@ -6,14 +6,14 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 
-from multibot_rewrite.base.config import configured_vocabulary
+from multibot_rewrite.base.config import configured_definitions
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.tables import deliver_report
 from multibot_rewrite.cli.usage import rewriting, robots
-from multibot_rewrite.companions.named_file import is_beside
 from multibot_rewrite.description.library import explain
 from multibot_rewrite.description.reports.explain import Explanation
+from multibot_rewrite.related_files.named_file import is_beside
 
 
 def run(options: argparse.Namespace) -> int:
@@ -24,7 +24,7 @@ def run(options: argparse.Namespace) -> int:
     # The file is in the option: what stands first is a robot or a xacro argument.
     options.words[:0] = [options.input] if options.input else []
     robot = next(iter(robots(options)), "robot1")
-    options.vocabulary = [*configured_vocabulary(path), *options.vocabulary]
+    options.definitions = [*configured_definitions(path), *options.definitions]
     found = explain(path, line, robot, **rewriting(options))
     if not found:
         raise UsageError(f"{options.why}: no value starts on this line")

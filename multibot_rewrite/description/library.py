@@ -21,7 +21,7 @@ from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.checks.meeting import not_verified, said_of
 from multibot_rewrite.description.checks.problem import to_findings
 from multibot_rewrite.description.readback.meeting import OPENED
-from multibot_rewrite.description.rewriters.vocabulary.grammar import split_opens
+from multibot_rewrite.description.rewriters.plugin_definitions.grammar import split_opens
 from multibot_rewrite.description.sources.job import Job, read_job, read_jobs
 from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.description.sources.read import Source, is_xacro
@@ -127,7 +127,7 @@ def rewrite(
     groups: str = "keep",
     urdf: Source | None = None,
     xacro_args: Mapping[str, str] | None = None,
-    vocabulary: Iterable[str] = (),
+    definitions: Iterable[str] = (),
     again: bool = False,
     file: str = "",
     trust: bool = False,
@@ -143,11 +143,11 @@ def rewrite(
         parameters=[{"robot_description": rewrite("rover.urdf", "robot1").text}]
 
     Raises InputError (cannot be read), UsageError (a wrong argument or robot name), RewriteRefused
-    (the content does not allow it; ``.findings``), VocabularyError, ProofError.
+    (the content does not allow it; ``.findings``), DefinitionsError, ProofError.
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
-    given = (urdf, xacro_args, vocabulary, file, [robot], trust)
+    given = (urdf, xacro_args, definitions, file, [robot], trust)
     aside = leaves(world_systems, [robot])
     job = read_job(source, naming, *given, release=release_told(distro), aside=aside)
     return next(rewrite_job(job, [robot], again))
@@ -167,7 +167,7 @@ def rewrite_all(
     groups: str = "keep",
     urdf: Source | None = None,
     xacro_args: Mapping[str, str] | None = None,
-    vocabulary: Iterable[str] = (),
+    definitions: Iterable[str] = (),
     again: bool = False,
     file: str = "",
     trust: bool = False,
@@ -182,7 +182,7 @@ def rewrite_all(
     what becomes of an SRDF's groups and end effectors; ``urdf`` is the description an SRDF belongs
     to; ``xacro_args`` are the arguments of a xacro, ``{robot}`` in them is the robot's name: what
     they name after the robot stays as it is, and each robot is an expansion of its own;
-    ``vocabulary`` are definition files in addition to the built-in one; ``again`` allows a second
+    ``definitions`` are definition files in addition to the built-in one; ``again`` allows a second
     rewrite; ``file`` is the name used in messages; ``trust`` lets xacro files do anything: without
     it they only compute, and read what is near them (SECURITY.md); ``distro`` is the ROS 2 release
     that the robots run (default: ROS_DISTRO, else what is sourced, else what the description loads,
@@ -191,7 +191,7 @@ def rewrite_all(
     a note says what to load). Raises as ``rewrite`` does, before the first result."""
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     names = check_robot_names(robots)
-    given = (urdf, xacro_args, vocabulary, file, trust, release_told(distro))
+    given = (urdf, xacro_args, definitions, file, trust, release_told(distro))
     jobs = read_jobs(names, source, naming, *given, leaves(world_systems, names))
     return _with_own_ports(rewrite_jobs(jobs, again))
 
@@ -267,7 +267,7 @@ def explain(
     groups: str = "keep",
     urdf: Source | None = None,
     xacro_args: Mapping[str, str] | None = None,
-    vocabulary: Iterable[str] = (),
+    definitions: Iterable[str] = (),
     file: str = "",
     trust: bool = False,
     distro: str = "",
@@ -277,7 +277,7 @@ def explain(
     Of a xacro it is about the values that something on this line makes, and from which pieces: an
     element, the call of a macro, a property. Of a file that others include, it is what the line makes
     in one of them. The options are those of ``rewrite_all``. A description that a rewrite refuses is
-    explained all the same. Raises InputError, UsageError and VocabularyError as ``rewrite`` does.
+    explained all the same. Raises InputError, UsageError and DefinitionsError as ``rewrite`` does.
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
@@ -285,7 +285,7 @@ def explain(
     # A rewrite does not need it.
     from multibot_rewrite.description.reports.explain import explain_line, explain_source
 
-    given = (naming, urdf, xacro_args, vocabulary, file, [robot], trust)
+    given = (naming, urdf, xacro_args, definitions, file, [robot], trust)
 
     def explaining(whole: Source) -> tuple[Document, OnLine]:
         job = read_job(whole, *given, release=release)
@@ -315,7 +315,7 @@ def strip(
     urdf: Source | None = None,
     xacro: Source | None = None,
     xacro_args: Mapping[str, str] | None = None,
-    vocabulary: Iterable[str] = (),
+    definitions: Iterable[str] = (),
     file: str = "",
     trust: bool = False,
     distro: str = "",
@@ -333,10 +333,10 @@ def strip(
     if xacro is not None:
         made, beside = (xacro, None) if urdf is None else (source, xacro)
         of = read_job(
-            made, naming, beside, xacro_args, vocabulary, "", [robot], trust, release=release
+            made, naming, beside, xacro_args, definitions, "", [robot], trust, release=release
         )
         naming, before = of.naming, b"" if beside else of.data
-    job = read_job(source, naming, urdf, None, vocabulary, file, (), trust, release=release)
+    job = read_job(source, naming, urdf, None, definitions, file, (), trust, release=release)
     beside_urdf = job.urdf_declarations
     made = pipeline.strip(job.data, job.file, robot, naming, job.tree, beside_urdf, before)
     return put_back(made, job.file, job.tree)

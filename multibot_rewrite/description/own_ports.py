@@ -34,9 +34,9 @@ from multibot_rewrite.description.readback.meeting import (
 from multibot_rewrite.description.readback.parameters import holds
 from multibot_rewrite.description.readback.reading import read
 from multibot_rewrite.description.readback.xml import elements_at
+from multibot_rewrite.description.rewriters.plugin_definitions import grammar
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.rewriters.tree import Tree
-from multibot_rewrite.description.rewriters.vocabulary import grammar
 from multibot_rewrite.description.steps.apply import Template, cut
 from multibot_rewrite.description.steps.collect import Inventory, collect
 from multibot_rewrite.description.steps.document import (
@@ -229,12 +229,12 @@ def judged_together(
 ) -> tuple[list[bytes], list[Finding]]:
     """Return the texts of these robots with numbers of their own, and the findings: each number, and
     names that two robots share all the same."""
-    document, vocabulary = template.inventory.document, template.tree.vocabulary
+    document, definitions = template.inventory.document, template.tree.definitions
     file = document.file
     again = {it: collect(read_document(texts[it], file), template.tree) for it in texts}
     made = numbered({it: (texts[it], [*ports_of(again[it])]) for it in texts})
     names = {
-        robot: [it for it in read(text, file, vocabulary).names if code_of(it) == OPENED]
+        robot: [it for it in read(text, file, definitions).names if code_of(it) == OPENED]
         for robot, text in zip(texts, made.texts, strict=True)
     }
     root = document.root

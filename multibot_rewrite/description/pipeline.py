@@ -16,7 +16,7 @@ from multibot_rewrite.description.checks.mentions import MENTIONED, find_mention
 from multibot_rewrite.description.checks.problem import Problem, to_findings
 from multibot_rewrite.description.checks.twice import already_rewritten
 from multibot_rewrite.description.rewriters.forms import Declared
-from multibot_rewrite.description.rewriters.spelling import stripped_names
+from multibot_rewrite.description.rewriters.renaming import stripped_names
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.own_names import OF_ALL, OwnSource
 from multibot_rewrite.description.steps.apply import Template, cut, fill
@@ -59,7 +59,7 @@ def prepare(
         found = (
             _shared_with_twin(inventory, own.twin, naming, tree)
             if own.twin
-            else shared_by_all(inventory.document, pieces, naming, tree.vocabulary)
+            else shared_by_all(inventory.document, pieces, naming, tree.definitions)
         )
         findings += to_findings(inventory.document, found, WARNING)
     return Template(inventory, plan, pieces, findings, naming, tree, urdf_declarations)
@@ -74,7 +74,7 @@ def _shared_with_twin(
     read = collect(read_document(twin, document.file), tree, layout=naming.read_as)
     edits = make_plan(read, naming).edits
     text = fill(cut(twin, edits), TWIN)
-    return shared_with(document, text, TWIN, naming, tree.vocabulary)
+    return shared_with(document, text, TWIN, naming, tree.definitions)
 
 
 def check_urdf(inventory: Inventory, urdf_declarations: Declared) -> None:
@@ -103,7 +103,7 @@ def render(prepared: Template, robots: Sequence[str], again: bool = False) -> It
     whole = list(checks.meeting(inventory, renames, pairs))
     # What robots whose names overlap would share in the running system.
     for robot, other, _ in () if whole or inventory.format == SRDF else pairs:
-        whole += shared_by_both(document, pieces, (robot, other), naming, tree.vocabulary)
+        whole += shared_by_both(document, pieces, (robot, other), naming, tree.definitions)
     at_start = to_findings(document, whole, ERROR, of_file=True)
     _stop_on_errors([*to_findings(document, at_values, ERROR), *at_start])
     for robot in robots[:1]:

@@ -17,7 +17,6 @@ from multibot_rewrite.base.bounded import load_json
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.lazy import gc_paused
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.companions.yaml_text import quoted
 from multibot_rewrite.description.sources.read import is_xacro, read_file
 from multibot_rewrite.description.sources.release_said import BUILD, MANIFEST
 from multibot_rewrite.fleet.checks.across_domains import one_launch_each
@@ -31,7 +30,6 @@ from multibot_rewrite.fleet.launch.launch_file import fleet_starts, launch_file
 from multibot_rewrite.fleet.launch.starts import FleetStarts
 from multibot_rewrite.fleet.outputs.bridge_outputs import bridge_outputs
 from multibot_rewrite.fleet.outputs.commands_file import commands_file
-from multibot_rewrite.fleet.outputs.companion_files import companion_files
 from multibot_rewrite.fleet.outputs.controller_files import with_own_controllers
 from multibot_rewrite.fleet.outputs.moveit_parameters import cell_outputs, moveit_parameters
 from multibot_rewrite.fleet.outputs.output_file import (
@@ -43,6 +41,7 @@ from multibot_rewrite.fleet.outputs.output_file import (
     path_for,
 )
 from multibot_rewrite.fleet.outputs.params_style import check_style, in_style
+from multibot_rewrite.fleet.outputs.related_files import related_files
 from multibot_rewrite.fleet.outputs.rviz_outputs import (
     RVIZ,
     opened_of,
@@ -60,12 +59,13 @@ from multibot_rewrite.fleet.outputs.zenoh_configuration import (
 )
 from multibot_rewrite.fleet.robots.robot_groups import said_once, split_per_robot
 from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
-from multibot_rewrite.spelling.domain_bridge import bridge_files
-from multibot_rewrite.spelling.enclaves import to_policy
-from multibot_rewrite.spelling.plan import to_yaml
-from multibot_rewrite.spelling.records import Table
-from multibot_rewrite.spelling.shown import to_layout
-from multibot_rewrite.spelling.table_formats import standing_by_robot
+from multibot_rewrite.planning.domain_bridge import bridge_files
+from multibot_rewrite.planning.enclaves import to_policy
+from multibot_rewrite.planning.plan import to_yaml
+from multibot_rewrite.planning.records import Table
+from multibot_rewrite.planning.shown import to_layout
+from multibot_rewrite.planning.table_formats import standing_by_robot
+from multibot_rewrite.related_files.yaml_text import quoted
 from multibot_rewrite.system.records import PUBLISHES, Place, System
 
 # The comment that xacro writes at the top of a document (xacro/__init__.py).
@@ -87,13 +87,13 @@ class Outputs(NamedTuple):
 
 def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
     """Return every file of a fleet. ``folder`` is where they will be, if they are written at all.
-    Raises InputError for a companion that cannot be read or rewritten, UsageError where two files
+    Raises InputError for a related file that cannot be read or rewritten, UsageError where two files
     would have the same path, and for parameter files in a style that does not serve the layout."""
     check_style(plan.file)
     with gc_paused():
         fleet, each = with_start_pose_nodes(plan), list(split_per_robot(plan))
         configs = list(rviz_outputs(plan, each))
-        made = [*companion_files(plan), *bridge_outputs(plan)]
+        made = [*related_files(plan), *bridge_outputs(plan)]
         files, findings = sorted_out(
             [*_descriptions(plan, plan.file.installed or folder), *made, *rviz_files(configs)]
         )
@@ -203,7 +203,7 @@ def _portable(plan: FleetPlan, folder: str, gap: Finding) -> Finding:
 
 
 def _remappings(table: Table) -> str:
-    """Return the remap rules of every node as in ``multibot plan --form json``; the names that
+    """Return the remap rules of every node as in ``multibot plan --output-kind json``; the names that
     result are in the plan. It is written as text, since PyYAML takes longer than all the rest."""
     scalar = cache(quoted)
     robots: dict[str, list[str]] = {}

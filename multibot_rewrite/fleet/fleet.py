@@ -29,15 +29,15 @@ from multibot_rewrite.knowledge.nodl.lookup import NodeKnowledge, find_interface
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, user_stack
+from multibot_rewrite.planning.bridged_topics import AS_ROBOTS, Models, bridged_as, bridged_topics
+from multibot_rewrite.planning.domain_bridge import with_bridges
+from multibot_rewrite.planning.plan import expect, named_frames, vacuous
+from multibot_rewrite.planning.records import Run, Table
+from multibot_rewrite.planning.table import build_table, joined, plugin_nodes
+from multibot_rewrite.planning.transforms import STATE_PUBLISHER, Edges, edges_of, frames_of
+from multibot_rewrite.planning.ways import merged
 from multibot_rewrite.producers.evidence.hardware import components, with_hardware
 from multibot_rewrite.producers.launch.records import LaunchOrder
-from multibot_rewrite.spelling.bridged_topics import AS_ROBOTS, Models, bridged_as, bridged_topics
-from multibot_rewrite.spelling.domain_bridge import with_bridges
-from multibot_rewrite.spelling.plan import expect, named_frames, vacuous
-from multibot_rewrite.spelling.records import Run, Table
-from multibot_rewrite.spelling.table import build_table, joined, plugin_nodes
-from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, Edges, edges_of, frames_of
-from multibot_rewrite.spelling.ways import merged
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import (
     NOT_KNOWN_PROCESS,
@@ -101,7 +101,7 @@ def make_fleet(
     *,
     nodes: str | None = None,
     nodl: Sequence[str] = (),
-    vocabulary: Sequence[str] = (),
+    definitions: Sequence[str] = (),
     xacro_args: Mapping[str, str] = NOTHING,
     trust: bool = False,
     launch: Sequence[LaunchOrder] = (),
@@ -115,7 +115,7 @@ def make_fleet(
     that start each robot's nodes. Raises as ``rewrite_all``, and UsageError for an unknown node
     set."""
     how: dict[str, Any] = {
-        "vocabulary": vocabulary,
+        "definitions": definitions,
         "xacro_args": xacro_args,
         "trust": trust,
         "distro": release,
@@ -132,20 +132,20 @@ def make_fleet(
     wired = under_plugins(runs.nodes, launched, members[0].handed_on, release)
     every = with_hardware(wired, members[0].source.root, members[0].source.file, known)
     fleet = assemble(members, every, make_naming(**policy), release)
-    return _with_bridge_and_findings(fleet, members, tuple(vocabulary), runs.findings)
+    return _with_bridge_and_findings(fleet, members, tuple(definitions), runs.findings)
 
 
 def _with_bridge_and_findings(
     fleet: Fleet,
     members: Sequence[Member],
-    vocabulary: tuple[str, ...],
+    definitions: tuple[str, ...],
     findings: Iterable[Finding],
 ) -> Fleet:
     """Return the fleet with its robots' collisions, findings about their nodes, and bridged topics."""
     table = fleet.table
     met = dict.fromkeys(robots_meet(table, members, fleet.naming))
     simulated = filter(is_for_simulator, members)
-    found = wrong_in_descriptions(members, vocabulary, simulated, members)
+    found = wrong_in_descriptions(members, definitions, simulated, members)
     # Nothing is started, and nothing says that they are simulated.
     wrong = (it._replace(level=WARNING) for it in found)
     table = table._replace(problems=(*table.problems, *met, *wrong, *findings))

@@ -49,7 +49,7 @@ from multibot_rewrite.fleet.robots.simulators import (
     note,
     without_world_systems,
 )
-from multibot_rewrite.spelling.way_checks import UNREACHABLE_NAME
+from multibot_rewrite.planning.way_checks import UNREACHABLE_NAME
 
 
 class FleetPlan(NamedTuple):
@@ -116,7 +116,7 @@ def plan_fleet(
         said: Mapping[str, Sequence[Finding]] = {}
         if jobs is None:
             file, said = with_own_arguments(file, naming, trust)
-        read = jobs or read_jobs(file.robots, naming, file.vocabulary, trust, file.distro)
+        read = jobs or read_jobs(file.robots, naming, file.definitions, trust, file.distro)
         robots = [
             placed(with_loaded_files(it._replace(findings=(*it.findings, *own))), file.shape)
             for it in without_world_systems(with_own_ports(rewrite_robots(file.robots, read)))
@@ -189,7 +189,7 @@ def _fleet(
     simulated = [it.member for it in robots if is_simulated(it)]
     said = [it.member for it in robots if is_said(it)]
     own = [it.member for it in robots if it.spec.launch]
-    wrong = wrong_in_descriptions(members, file.vocabulary, simulated, said, own)
+    wrong = wrong_in_descriptions(members, file.definitions, simulated, said, own)
     told = (*declared_twice(robots, naming, met), *other_manager(robots, table), *wrong)
     problems = tuple(dict.fromkeys((*every, *told, *notes)))
     return fleet._replace(table=table._replace(problems=problems))

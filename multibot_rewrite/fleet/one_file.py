@@ -16,13 +16,13 @@ from multibot_rewrite.base.naming import DEFAULT_LAYOUT, Naming, make_naming
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.base.rosnames import check_robot_names
 from multibot_rewrite.base.wording import plural
-from multibot_rewrite.companions.context import Context, make_context
-from multibot_rewrite.companions.formats import kind_alone, read_named, rewrite_alone
-from multibot_rewrite.companions.named_file import NamedFile
-from multibot_rewrite.companions.names.rename_map import KINDS, NO_OWN, companion_names
 from multibot_rewrite.description.rewriters.model_namespaces import given_topics, words_of
 from multibot_rewrite.description.sources.job import Job, read_jobs
 from multibot_rewrite.description.sources.read import Source, read_whole
+from multibot_rewrite.related_files.context import Context, make_context
+from multibot_rewrite.related_files.formats import kind_alone, read_named, rewrite_alone
+from multibot_rewrite.related_files.named_file import NamedFile
+from multibot_rewrite.related_files.names.rename_map import KINDS, NO_OWN, related_file_names
 from multibot_rewrite.rules.files.judge import judged_once
 from multibot_rewrite.rules.files.wheels import with_description
 
@@ -63,7 +63,7 @@ def rewrite_file(
     shared_topics: Iterable[str] = SHARED_TOPICS,
     groups: str = "keep",
     xacro_args: Mapping[str, str] | None = None,
-    vocabulary: Iterable[str] = (),
+    definitions: Iterable[str] = (),
     file: str = "",
     trust: bool = False,
     distro: str = "",
@@ -75,7 +75,7 @@ def rewrite_file(
     Raises InputError (cannot be read), UsageError (a wrong argument, or a description is needed).
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
-    given = (urdf, xacro_args, vocabulary, file, trust, release_here(distro))
+    given = (urdf, xacro_args, definitions, file, trust, release_here(distro))
     return next(_rewritten(source, (robot,), naming, *given))
 
 
@@ -93,7 +93,7 @@ def rewrite_files(
     shared_topics: Iterable[str] = SHARED_TOPICS,
     groups: str = "keep",
     xacro_args: Mapping[str, str] | None = None,
-    vocabulary: Iterable[str] = (),
+    definitions: Iterable[str] = (),
     file: str = "",
     trust: bool = False,
     distro: str = "",
@@ -102,7 +102,7 @@ def rewrite_files(
     such as the clock, is in the file of the first. Raises as ``rewrite_file``, before the first
     result."""
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
-    given = (urdf, xacro_args, vocabulary, file, trust, release_here(distro))
+    given = (urdf, xacro_args, definitions, file, trust, release_here(distro))
     return _rewritten(source, tuple(robots), naming, *given)
 
 
@@ -119,7 +119,7 @@ def _rewritten(
     naming: Naming,
     urdf: Source | None,
     xacro_args: Mapping[str, str] | None,
-    vocabulary: Iterable[str],
+    definitions: Iterable[str],
     file: str,
     trust: bool,
     release: str,
@@ -130,7 +130,7 @@ def _rewritten(
     kind = kind_alone(read.data, name)
     jobs: Mapping[str, Job] = {}
     if urdf is not None:
-        given = (xacro_args, vocabulary, "", trust, release)
+        given = (xacro_args, definitions, "", trust, release)
         jobs = read_jobs(robots, urdf, naming, None, *given)
     contexts = {it: _context(jobs.get(it), naming, release) for it in robots}
     if urdf is None:
@@ -156,7 +156,7 @@ def _context(job: Job | None, naming: Naming, release: str) -> Context:
     described, own = job.inventories[0], job.own.plain or NO_OWN
     made = words_of(described.claims), given_topics(described.claims)
     in_full = described.topics_in_full
-    names = companion_names(described.declared, job.naming, "", own, in_full=in_full)
+    names = related_file_names(described.declared, job.naming, "", own, in_full=in_full)
     return make_context(names.declared, job.naming, (), release, names.own, *made)
 
 

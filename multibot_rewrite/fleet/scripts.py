@@ -17,8 +17,6 @@ from typing import Any
 from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.findings.finding import ERROR, Finding, RewriteRefused
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.companions.params.rcl_parameters import check_values
-from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.build import Outputs, make_outputs
 from multibot_rewrite.fleet.file.fleet_file import FleetFile, read_fleet
@@ -34,6 +32,8 @@ from multibot_rewrite.fleet.robots.node_names import NodeNames, names_of
 from multibot_rewrite.fleet.robots.rewritten_robots import Jobs
 from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
+from multibot_rewrite.related_files.params.rcl_parameters import check_values
+from multibot_rewrite.related_files.yaml_text import YamlText, read_yaml
 
 
 class LoadedFleet:
@@ -85,7 +85,7 @@ class LoadedFleet:
     def made(self) -> Outputs:
         """Everything that ``multibot build`` would write, made on first use.
 
-        Raises InputError for a companion that cannot be read, RewriteRefused for one that cannot be
+        Raises InputError for a related file that cannot be read, RewriteRefused for one that cannot be
         rewritten.
         """
         made = make_outputs(self.plan)
@@ -117,7 +117,7 @@ class LoadedFleet:
     def text(self, path: str) -> str:
         """Return the text of one of these files; raises UsageError for an unknown path, as ``made``."""
         if path not in self.files:
-            hint = "list it under companions: in the fleet file"
+            hint = "list it under related_files: in the fleet file"
             raise UsageError(f"{self.file}: {unknown('file', path, self.files)}; {hint}")
         return self.files[path].data.decode()
 
@@ -160,7 +160,7 @@ def load_fleet(
     newest LTS).
 
     Raises InputError and UsageError for what cannot be read or used, RewriteRefused if two
-    robots would get the same name, VocabularyError and ProofError as ``rewrite`` does.
+    robots would get the same name, DefinitionsError and ProofError as ``rewrite`` does.
     """
     source = path if isinstance(path, Mapping) else os.fspath(path)
     file = read_fleet(source, distro, os.environ, Choice(robots, count))

@@ -8,7 +8,6 @@ from types import MappingProxyType
 from typing import Any
 
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.companions.params.rcl_parameters import parameters_text
 from multibot_rewrite.fleet.outputs import spawn as spawning
 from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
 from multibot_rewrite.fleet.scripts import LoadedFleet
@@ -33,6 +32,7 @@ from multibot_rewrite.launch.context import (
     written,
 )
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
+from multibot_rewrite.related_files.params.rcl_parameters import parameters_text
 
 Make = Callable[[LoadedRobot], "Iterable[Action] | Action"]
 SPAWNERS = MappingProxyType({"gz": spawning.GZ, "classic": spawning.CLASSIC})

@@ -16,7 +16,6 @@ from types import MappingProxyType
 from typing import Any
 
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.companions.rviz.rewrite import RvizText
 from multibot_rewrite.fleet.outputs.relays import BRIDGE, not_bridged
 from multibot_rewrite.fleet.outputs.rviz_outputs import robot_windows, window_start
 from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
@@ -33,8 +32,9 @@ from multibot_rewrite.launch.context import (
     sim_time,
     written,
 )
+from multibot_rewrite.planning.start import File, Start, keywords
 from multibot_rewrite.producers.launch.door import is_installed, of_launch, of_launch_ros
-from multibot_rewrite.spelling.start import File, Start, keywords
+from multibot_rewrite.related_files.rviz.rewrite import RvizText
 
 NONE, ONE, EACH = "none", "one", "each"
 MAP_SERVER, STATE = "map_server", "robot_state_publisher"
@@ -174,7 +174,7 @@ def _rviz(context: Context) -> list[Action]:
     fleet = fleet_of(context, _said("fleet"))
     windows = robot_windows(fleet.plan, each=word == EACH)
     if not windows:
-        raise UsageError(f"rviz:={word}: {fleet.file} has no rviz: under companions")
+        raise UsageError(f"rviz:={word}: {fleet.file} has no rviz: under related_files")
     if word == ONE and len(windows) > 1:
         # What works for one robot alone has a window of its own besides.
         shared = [it for it in windows if not it[1].robot]

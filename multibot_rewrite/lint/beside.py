@@ -12,16 +12,16 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.selection import is_on, level_of
 from multibot_rewrite.base.model import Claim, InputError
 from multibot_rewrite.base.naming import make_naming
-from multibot_rewrite.companions.context import Context
-from multibot_rewrite.companions.formats import read_named
-from multibot_rewrite.companions.named_file import MOVEIT, NamedFile, kind_of
-from multibot_rewrite.companions.names.rename_map import KINDS, CompanionNames
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.sources.packages import entries, package_of
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.lint.files.named import descriptions_below, robot_name
 from multibot_rewrite.lint.files.pairing import described
 from multibot_rewrite.lint.files.subjects import make_subject
+from multibot_rewrite.related_files.context import Context
+from multibot_rewrite.related_files.formats import read_named
+from multibot_rewrite.related_files.named_file import MOVEIT, NamedFile, kind_of
+from multibot_rewrite.related_files.names.rename_map import KINDS, CompanionNames
 from multibot_rewrite.rules.files.judge import judged, rules_for
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.rules.subject import NO_ROBOTS, Robots, Subject

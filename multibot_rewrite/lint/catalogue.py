@@ -11,8 +11,8 @@ from multibot_rewrite.base.findings.finding import Rule
 
 # The modules, by folder, that declare rules beside those of ``rules``.
 HOMES = {
-    "companions.params": "rewrite shared_defaults values",
-    "companions.rviz": "window_checks",
+    "related_files.params": "rewrite shared_defaults values",
+    "related_files.rviz": "window_checks",
     "description.checks": "references robots",
     "description.steps": "plan",
     "fleet.checks": "across_domains lacking meeting named_twice of_robots",
@@ -23,7 +23,7 @@ HOMES = {
     "fleet.robots": "joined_robots rewritten_robots robot_nodes simulators start_poses",
     "producers.evidence": "nodes",
     "producers.launch": "findings",
-    "spelling": "way_checks",
+    "planning": "way_checks",
 }
 
 

@@ -16,14 +16,14 @@ from multibot_rewrite.base.file_kinds import refuse_templates
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Rule, by_place, locate
 from multibot_rewrite.base.findings.selection import level_of
 from multibot_rewrite.base.lazy import gc_paused, lazy_compile
-from multibot_rewrite.base.model import InputError, VocabularyError
-from multibot_rewrite.companions.named_file import is_named_beside, kind_of
+from multibot_rewrite.base.model import DefinitionsError, InputError
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.document import tag_end
 from multibot_rewrite.lint.failures import breakdown, crash, failure, too_long
 from multibot_rewrite.lint.files.subjects import Failed, read_subjects
 from multibot_rewrite.lint.groups import active_rules
+from multibot_rewrite.related_files.named_file import is_named_beside, kind_of
 from multibot_rewrite.rules.facts.source_values import is_argument
 from multibot_rewrite.rules.settings import MARK, Settings, file_of, is_silent
 from multibot_rewrite.rules.subject import Subject
@@ -75,7 +75,7 @@ def _linted(
         found.append(failure(path, error, settings))
     except _TooLongError:
         found.append(too_long(path, settings.seconds))
-    except VocabularyError:
+    except DefinitionsError:
         raise
     except Exception as error:  # the other files are still linted
         found.append(breakdown(path, error))

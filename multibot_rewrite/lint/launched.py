@@ -22,21 +22,21 @@ from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Rule, locate
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.releases import ROS_2
-from multibot_rewrite.companions.formats import read_named
-from multibot_rewrite.companions.named_file import BRIDGE, PARAMS, kind_of
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.document import Document, read_document
 from multibot_rewrite.lint.beside import context_of
 from multibot_rewrite.lint.check import lint_data
+from multibot_rewrite.planning.bridged_topics import DIRECTIONS
+from multibot_rewrite.planning.records import Run
 from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.launch.bridges import expands, is_bridge, told_rows
 from multibot_rewrite.producers.launch.launched import InSimulator, Launched, file_of
 from multibot_rewrite.producers.launch.records import LaunchedNode
+from multibot_rewrite.related_files.formats import read_named
+from multibot_rewrite.related_files.named_file import BRIDGE, PARAMS, kind_of
 from multibot_rewrite.rules.files import bridges
 from multibot_rewrite.rules.files.judge import judged
 from multibot_rewrite.rules.settings import LEFT_OUT, Settings
-from multibot_rewrite.spelling.bridged_topics import DIRECTIONS
-from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import NOWHERE, Place
 
 # What has no effect in this simulator and this ROS, a joint that is not found there, and two senders.

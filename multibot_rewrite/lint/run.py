@@ -41,10 +41,10 @@ def lint_files(
     settings = among(paths, settings, cache)
     found = {path: _known(cache, path, settings) for path in paths} if cache else {}
     if unknown := [path for path in paths if found.get(path) is None]:
-        # A faulty vocabulary is reported before anything is linted.
+        # Plugin faulty definitions is reported before anything is linted.
         from multibot_rewrite.description.rewriters.tree import builtin_tree
 
-        builtin_tree(settings.vocabulary, settings.distro)
+        builtin_tree(settings.definitions, settings.distro)
         linted = _linted(unknown, settings, jobs, watch)
         for path, (its, asked) in zip(unknown, linted, strict=True):
             found[path] = its

@@ -20,16 +20,16 @@ from typing import Any, NamedTuple, TypeAlias
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.rosnames import resolve_bound
 from multibot_rewrite.knowledge.records import Endpoint
+from multibot_rewrite.planning.domain_bridge import DOMAIN_BRIDGE
+from multibot_rewrite.planning.of_runs import ACTION_PARTS
+from multibot_rewrite.planning.records import Rules, Run, Table
+from multibot_rewrite.planning.transforms import Edges
+from multibot_rewrite.planning.way_checks import bound_to, is_stand_in, running_nodes
+from multibot_rewrite.planning.ways import ros_arguments
 from multibot_rewrite.producers.ros.assemble import BUSY_MACHINE
 from multibot_rewrite.producers.ros.child import RUN_STUBS, observe, running
 from multibot_rewrite.producers.ros.participants import participants_here
 from multibot_rewrite.producers.ros.request import Request, to_text
-from multibot_rewrite.spelling.domain_bridge import DOMAIN_BRIDGE
-from multibot_rewrite.spelling.of_runs import ACTION_PARTS
-from multibot_rewrite.spelling.records import Rules, Run, Table
-from multibot_rewrite.spelling.transforms import Edges
-from multibot_rewrite.spelling.way_checks import bound_to, is_stand_in, running_nodes
-from multibot_rewrite.spelling.ways import ros_arguments
 from multibot_rewrite.system.environment import settings
 from multibot_rewrite.system.records import (
     ACTION,

@@ -20,11 +20,11 @@ from multibot_rewrite.base.conventions import CLIENT, LISTENER
 from multibot_rewrite.base.naming import TF_TOPICS
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.live.rehearsal import TF, Stub, action_parts, from_order, substitute_type
+from multibot_rewrite.planning.of_runs import sibling
+from multibot_rewrite.planning.ways import ros_arguments
 from multibot_rewrite.producers.ros import ros
 from multibot_rewrite.producers.ros.look import own_ends
 from multibot_rewrite.producers.ros.request import Send, run_worker
-from multibot_rewrite.spelling.of_runs import sibling
-from multibot_rewrite.spelling.ways import ros_arguments
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,

@@ -18,9 +18,9 @@ from multibot_rewrite.live.diagnose import Diagnosis
 from multibot_rewrite.live.learning.learn import learn
 from multibot_rewrite.live.learning.nodes_file import to_yaml as nodes_to_yaml
 from multibot_rewrite.live.seen_plan import NAMELESS, robots_to_plan, seen_plan
+from multibot_rewrite.planning.plan import to_yaml as plan_to_yaml
+from multibot_rewrite.planning.transforms import STATE_PUBLISHER
 from multibot_rewrite.rules.system.tf_trees import root_of
-from multibot_rewrite.spelling.plan import to_yaml as plan_to_yaml
-from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 from multibot_rewrite.system.guess import GuessedRobot
 from multibot_rewrite.system.words import is_tool
 

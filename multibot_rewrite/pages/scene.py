@@ -27,9 +27,9 @@ from multibot_rewrite.pages.states import (
     robots_of,
     worst,
 )
+from multibot_rewrite.planning.plan import robot_words
 from multibot_rewrite.rules.check import side_by_side
 from multibot_rewrite.rules.system.planned_ends import matches
-from multibot_rewrite.spelling.plan import robot_words
 from multibot_rewrite.system.coverage import Coverage, coverage
 from multibot_rewrite.system.index import EndKey, Index
 from multibot_rewrite.system.records import (

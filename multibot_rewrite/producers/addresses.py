@@ -21,16 +21,16 @@ from multibot_rewrite.description.readback.active import (
     opened,
     says_what_it_opens,
 )
-from multibot_rewrite.description.rewriters.vocabulary import (
-    Vocabulary,
-    VocabularySection,
+from multibot_rewrite.description.rewriters.plugin_definitions import (
+    Definitions,
+    PluginDefinition,
     split_path,
     split_step,
 )
 from multibot_rewrite.knowledge.node_entries import OWN_KINDS
 from multibot_rewrite.knowledge.records import Param
+from multibot_rewrite.planning.records import Given
 from multibot_rewrite.producers import evidence
-from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.system.records import CALIBRATION, COMPUTER, DEVICE, OWN, Address, Place
 
 # Those below are of services of the system.
@@ -39,12 +39,12 @@ _OFF = ("", "false", "no", "off")
 
 
 def of_hardware(
-    root: _Element, node: str, place: Place, vocabulary: Vocabulary, of_networks: bool = False
+    root: _Element, node: str, place: Place, definitions: Definitions, of_networks: bool = False
 ) -> Iterator[Address]:
     """Yield the devices of a description: what its known classes open, for others what parameters
     of such names hold, with ``of_networks`` any address; nothing without an address."""
     for system in root.iterfind("ros2_control"):
-        section = hardware_section(system, vocabulary)
+        section = hardware_section(system, definitions)
         params = system.iterfind("hardware/param")
         values = [(it.get("name", ""), (it.text or "").strip()) for it in params]
         held = [(_known().get(it[0]) or _of_value(it[1]), *it) for it in values]
@@ -60,7 +60,7 @@ def of_hardware(
         yield from dict.fromkeys(Address(*it, node, place) for it in held)
 
 
-def _opened_by(system: _Element, section: VocabularySection) -> Iterator[tuple[str, str, str]]:
+def _opened_by(system: _Element, section: PluginDefinition) -> Iterator[tuple[str, str, str]]:
     """Return kind, parameter and value of what a known class of hardware opens."""
     for kind, value, path in opened(system, section):
         if kind not in (RELATIVE, TRANSFORMS_ON):

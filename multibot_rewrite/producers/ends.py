@@ -15,16 +15,23 @@ from typing import NamedTuple, cast
 from lxml.etree import _Element
 
 from multibot_rewrite.base.releases import has_release
-from multibot_rewrite.companions.bridge import BOTH, FRAME, GZ, ROS, SERVICE as SERVICE_ROW, below
-from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs
 from multibot_rewrite.description.checks.links_and_joints import read_robot
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.knowledge.conditions import AND, holds, parse_condition
 from multibot_rewrite.knowledge.records import MOVE_GROUP, Endpoint, NodeFacts
+from multibot_rewrite.planning.of_runs import asked_alone, expanded, with_names
+from multibot_rewrite.planning.records import Run
 from multibot_rewrite.producers.evidence.filling import filled, lookup
 from multibot_rewrite.producers.evidence.semantics import FIXED, Semantics
-from multibot_rewrite.spelling.of_runs import asked_alone, expanded, with_names
-from multibot_rewrite.spelling.records import Run
+from multibot_rewrite.related_files.bridge import (
+    BOTH,
+    FRAME,
+    GZ,
+    ROS,
+    SERVICE as SERVICE_ROW,
+    below,
+)
+from multibot_rewrite.related_files.yaml_text import YamlText, items, line_of, pairs
 from multibot_rewrite.system.records import (
     CALLS,
     MAY,

@@ -94,14 +94,14 @@ def adopt(
     folder: str,
     *,
     xacro_args: Mapping[str, str] | None = None,
-    vocabulary: Iterable[str] = (),
+    definitions: Iterable[str] = (),
     trust: bool = False,
     distro: str = "",
 ) -> Adopted:
     """Give every description of ``folder`` an argument for a prefix, in its xacro sources; a plain URDF
     becomes a xacro. Writes nothing. Raises InputError where there is no description that can be
     expanded, or wherever the prefix is put, it changes more than names."""
-    tree = builtin_tree(tuple(vocabulary), release_here(distro))
+    tree = builtin_tree(tuple(definitions), release_here(distro))
     how = Expanding(TRUSTED if trust else BOUNDED, xacro_args or {})
     package = read_package(folder, tree, how)
     job = _Job(folder, package, tree, how, dict(package.unread))

@@ -21,8 +21,6 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.model import InputError, MultibotError
-from multibot_rewrite.companions.named_file import NamedFile
-from multibot_rewrite.companions.names.rename_map import KINDS
 from multibot_rewrite.description.checks.links_and_joints import WORLD
 from multibot_rewrite.description.joining.part import PREFIXED
 from multibot_rewrite.description.readback.xml import read_xml
@@ -34,6 +32,8 @@ from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder
 from multibot_rewrite.refactor.launch_argument import OF_ROBOT, LaunchEdit, Space, with_argument
 from multibot_rewrite.refactor.namespaces import TRIED_SPACE
 from multibot_rewrite.refactor.placing import Left
+from multibot_rewrite.related_files.named_file import NamedFile
+from multibot_rewrite.related_files.names.rename_map import KINDS
 
 _DESCRIPTION = "robot_description"
 

@@ -17,10 +17,10 @@ from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.left_out import source_folders
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.wording import plural
-from multibot_rewrite.companions.params.sections import MANAGER
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.refactor.launch_argument import OF_ROBOT
 from multibot_rewrite.refactor.placing import Left
+from multibot_rewrite.related_files.params.sections import MANAGER
 
 _CODE = (".py", ".cpp", ".hpp", ".cc", ".hh", ".h", ".c", ".lua")
 _SECTION = re.compile(rb"^([A-Za-z]\w*):[^\n]*\n(?:\s*#[^\n]*\n)*\s+ros__parameters:", re.MULTILINE)

@@ -21,7 +21,7 @@ from multibot_rewrite.base.naming import PREFIX, ROS_KINDS, Naming, make_naming
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.joining.part import in_one_line
 from multibot_rewrite.description.readback.xml import read_xml
-from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT
+from multibot_rewrite.description.rewriters.renaming import ROBOT_SLOT
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.steps.apply import Template
 from multibot_rewrite.description.steps.document import tag_end

@@ -21,7 +21,6 @@ from multibot_rewrite.base.model import InputError, MultibotError, UsageError
 from multibot_rewrite.base.naming import Affix, Naming, make_naming
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.releases import release_here
-from multibot_rewrite.companions.named_file import NamedFile
 from multibot_rewrite.description.rewriters.contact import respell_collisions
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED
@@ -50,6 +49,7 @@ from multibot_rewrite.refactor.source_edits import (
     source_edit,
     spans,
 )
+from multibot_rewrite.related_files.named_file import NamedFile
 
 # What a name of a kind may be called where it is used: a link's is that of a frame.
 KINDS: Mapping[str, tuple[str, ...]] = {
@@ -99,7 +99,7 @@ def rename_symbol(
     *,
     kind: str = "link",
     xacro_args: Mapping[str, str] | None = None,
-    vocabulary: Iterable[str] = (),
+    definitions: Iterable[str] = (),
     trust: bool = False,
     distro: str = "",
 ) -> Renaming:
@@ -116,7 +116,7 @@ def rename_symbol(
             raise UsageError(f"{name!r} is no name of a {symbol.kind}: write it without blanks")
     if symbol.old == symbol.new:
         raise UsageError(f"{symbol.old!r} is called so already")
-    tree = builtin_tree(tuple(vocabulary), release_here(distro))
+    tree = builtin_tree(tuple(definitions), release_here(distro))
     how = Expanding(TRUSTED if trust else BOUNDED, xacro_args or {})
     package = read_package(folder, tree, how)
     if not package.descriptions:

@@ -15,6 +15,7 @@ from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding, Rule
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import gc_paused, with_gaps
+from multibot_rewrite.planning.domain_bridge import DOMAIN_BRIDGE
 from multibot_rewrite.producers.bags.recording import is_recorded
 from multibot_rewrite.rules.declaration import rules_in
 from multibot_rewrite.rules.folded import folded, in_order
@@ -25,7 +26,6 @@ from multibot_rewrite.rules.system.names import topic_names_miss
 from multibot_rewrite.rules.system.planned_ends import missing, missing_endpoint
 from multibot_rewrite.rules.system.planned_nodes import missing_node, missing_robot, unplanned_node
 from multibot_rewrite.rules.with_plan import one_for_a_cause
-from multibot_rewrite.spelling.domain_bridge import DOMAIN_BRIDGE
 from multibot_rewrite.system.domains import (
     by_domain,
     domain_of,

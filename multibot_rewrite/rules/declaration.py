@@ -16,7 +16,7 @@ from multibot_rewrite.system.records import NOWHERE, Place
 if TYPE_CHECKING:
     import yaml
 
-    from multibot_rewrite.companions.named_file import NamedFile
+    from multibot_rewrite.related_files.named_file import NamedFile
     from multibot_rewrite.system.index import Index
 
 

@@ -63,7 +63,7 @@ class Settings(NamedTuple):
     arguments: tuple[ArgumentSet, ...] = ()
     robots: tuple[str, ...] = ()
     naming: Naming = make_naming()
-    vocabulary: tuple[str, ...] = ()
+    definitions: tuple[str, ...] = ()
     targets: tuple[str, ...] = ()
     roots: tuple[str, ...] = ()
     urdf: str = ""

@@ -47,7 +47,7 @@ def test_a_file_of_another_kind_is_not_copied_by_a_fleet(
     fleet.mkdir()
     (fleet / "r.urdf").write_text('<robot name="r"><link name="a"/></robot>')
     (fleet / "fleet.yaml").write_text(
-        "robots: [{name: robot1, description: r.urdf}]\ncompanions: {params: [../secret]}\n"
+        "robots: [{name: robot1, description: r.urdf}]\nrelated_files: {params: [../secret]}\n"
     )
     assert main(["build", str(fleet / "fleet.yaml"), "-o", str(tmp_path / "out")]) == 2
     said = capsys.readouterr().err

@@ -57,7 +57,7 @@ def test_what_a_check_of_a_build_says(capsys: pytest.CaptureFixture[str]) -> Non
 
 
 def test_rules_are_explained_each_once(capfd: pytest.CaptureFixture[str]) -> None:
-    given = options(output=None, form="table")
+    given = options(output=None, output_kind="table")
     assert inspect.explain(given, ["MG101,MB101", "MG101"]) == 0
     text = capfd.readouterr().out
     assert text.startswith("MG101 ") and text.count("\nMB101 ") == 1 and text.count("Why: ") == 2

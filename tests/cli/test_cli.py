@@ -159,7 +159,7 @@ def test_diff_of_a_stripped_pipe_reads_it_once(folder: Path) -> None:
 
 
 def test_changes_are_those_of_the_library(folder: Path) -> None:
-    words = ("rover.urdf", "robot1", "robot2", "--form", "changes", "-o", "changes.json")
+    words = ("rover.urdf", "robot1", "robot2", "--output-kind", "changes", "-o", "changes.json")
     assert run(folder, *words).code == 0
     table = json.loads((folder / "changes.json").read_bytes())
     assert table["file"] == "rover.urdf"
@@ -198,7 +198,7 @@ def test_the_examples_of_the_help_work(folder: Path) -> None:
     assert sorted(contents(folder / "out")) == names
 
 
-def test_a_vocabulary_file_teaches_a_plugin(folder: Path) -> None:
+def test_a_definitions_file_teaches_a_plugin(folder: Path) -> None:
     (folder / "in.urdf").write_text(
         '<robot name="a">\n<link name="base_link"/>\n<gazebo><plugin name="mine" '
         'filename="libmine.so"><my_frame>base_link</my_frame></plugin></gazebo>\n</robot>\n'
@@ -207,7 +207,7 @@ def test_a_vocabulary_file_teaches_a_plugin(folder: Path) -> None:
     without = run(folder, "in.urdf", "robot1")
     assert b"<my_frame>base_link</my_frame>" in without.out
     assert [line.split(":")[1] for line in without.err.splitlines()[:2]] == ["3", "3"]
-    taught = run(folder, "in.urdf", "robot1", "--vocabulary", "mine.vocab")
+    taught = run(folder, "in.urdf", "robot1", "--definitions", "mine.vocab")
     assert b"<my_frame>base_link/robot1</my_frame>" in taught.out
     assert "warning" not in taught.err
 
@@ -349,7 +349,7 @@ def test_no_link_is_followed(folder: Path, there: bool) -> None:
         pytest.param(("robot1", "-o", "./rover.urdf"), id="spelled-differently"),
         pytest.param(("robot1", "-o", "link.urdf"), id="link"),
         pytest.param(("robot1", "rover", "-o", "{robot}.urdf"), id="by-robot-name"),
-        pytest.param(("robot1", "--form", "changes", "-o", "rover.urdf"), id="changes"),
+        pytest.param(("robot1", "--output-kind", "changes", "-o", "rover.urdf"), id="changes"),
     ],
 )
 def test_the_input_is_never_overwritten(folder: Path, rover: bytes, words: tuple[str, ...]) -> None:

@@ -39,7 +39,7 @@ from multibot_rewrite.cli.multibot import MultibotCommand
 from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.description.reports.xacro_arguments import Argument, Use, XacroArguments
 from multibot_rewrite.description.rewriters.lookup import look_up
-from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
+from multibot_rewrite.description.rewriters.plugin_definitions import load_definitions
 from multibot_rewrite.fleet.one_file import RewrittenFile
 from multibot_rewrite.knowledge.nodl.writing import NodlFile
 from multibot_rewrite.knowledge.records import NodeFacts
@@ -123,11 +123,11 @@ words/word  uses topic form=list releases=jazzy
 """
 
 
-def test_a_section_of_the_vocabulary_as_docs_stacks_md_has_it(tmp_path: Path) -> None:
+def test_a_section_of_the_definitions_as_docs_stacks_md_has_it(tmp_path: Path) -> None:
     for insert in ("yes", "no"):
         file = tmp_path / f"{insert}.vocab"
         file.write_text(SECTION.format(insert))
-        known = load_vocabulary((str(file),), "jazzy")
+        known = load_definitions((str(file),), "jazzy")
         (section,) = look_up(known, "mine", ("plugin",))
         frame = {
             "path": "frame", "role": "uses", "kinds": ("frame",), "form": "whole", "default": "{link}",
@@ -168,7 +168,7 @@ def test_a_section_of_the_vocabulary_as_docs_stacks_md_has_it(tmp_path: Path) ->
     ):  # fmt: skip
         text = str(inspect._unknown(known, name, ("plugin",)))
         assert text == f"{name!r} is not known: {said}; {hint}"
-    later = load_vocabulary((str(file),), "humble")
+    later = load_definitions((str(file),), "humble")
     text = str(inspect._unknown(later, "mine", ("plugin",)))
     assert text.startswith("'mine' is not in humble, only in jazzy, kilted, lyrical, rolling; ")
 
@@ -277,7 +277,7 @@ def test_what_a_fleet_was_made_from_is_not_written_over(tmp_path: Path) -> None:
 def test_what_a_fleet_file_says_itself() -> None:
     names = (
         "robots", "stack", "nodes", "layout", "affix", "topics", "separator", "shared",
-        "vocabulary", "launch", "roots",
+        "definitions", "launch", "roots",
     )  # fmt: skip
     assert {
         "words": "ROBOT", **{it: f"--{it}" for it in names},
@@ -411,7 +411,7 @@ COMMAND = Command(
     (
         OptionGroup("input, and more", (argument("the file", "file", "FILE"),)),
         OptionGroup("output", (
-            choice("100 % of it", "--form", "FORM", "a|b"),
+            choice("100 % of it", "--output-kind", "FORM", "a|b"),
             switch("say less", "-q,--quiet"),
         )),
     ),
@@ -420,11 +420,11 @@ COMMAND = Command(
 
 
 def test_headings_and_names_are_painted() -> None:
-    text = "usage: x\noptions:\n  -q, --quiet  less\n  --form F\nNo: x\n"
+    text = "usage: x\noptions:\n  -q, --quiet  less\n  --output-kind F\nNo: x\n"
     assert parser.painted(text, False) == text
     assert parser.painted(text, True) == (
         "\033[1musage:\033[0m x\n\033[1moptions:\033[0m\n\033[36m  -q, --quiet\033[0m  less\n"
-        "\033[36m  --form\033[0m F\nNo: x\n"
+        "\033[36m  --output-kind\033[0m F\nNo: x\n"
     )
 
 
@@ -434,7 +434,7 @@ def test_headings_and_names_are_painted() -> None:
         (["--quite"], "unknown option --quite; did you mean '--quiet'?"),
         (["--from=a"],
          "unknown option --from; multibot check, multibot snapshot, multibot view take it;"
-         " did you mean '--form'?"),
+         " did you mean '--output-kind'?"),
         (["--changed"], "unknown option --changed"),
         (["--dry-run"],
          "unknown option --dry-run; --diff does that,"
@@ -444,10 +444,10 @@ def test_headings_and_names_are_painted() -> None:
          "unknown option --github; --format does that,"
          " which urdf-postfix, urdf-lint, multibot build and 5 more take"),
         # Dashes are not counted.
-        (["--fxxrm"], "unknown option --fxxrm; did you mean '--form'?"),
+        (["--fxxrm"], "unknown option --fxxrm; did you mean '--output-kind'?"),
         (["a", "b"], "unexpected b"),
         # A part of it says what it is, another first letter does not.
-        (["--output-form", "b"], "unknown option --output-form; did you mean '--form'?"),
+        (["--output-form", "b"], "unknown option --output-form; did you mean '--output-kind'?"),
         (["--norm"], "unknown option --norm"),
         # A short option, alone or with its value; what is no option is a value.
         (["-n", "3"],
@@ -466,9 +466,11 @@ def test_a_mistake_is_one_line(
 
 
 def test_what_a_command_is_told() -> None:
-    made = parser.parsed(parser.make_parser(COMMAND, "multibot do"), ["a", "--form", "b", "-q"])
+    made = parser.parsed(
+        parser.make_parser(COMMAND, "multibot do"), ["a", "--output-kind", "b", "-q"]
+    )
     assert vars(made) == {
-        "file": "a", "form": "b", "quiet": True, "command": "do", "findings_first": False,
+        "file": "a", "output_kind": "b", "quiet": True, "command": "do", "findings_first": False,
         "fail_on": "error", "program": "multibot", "h": None,
     }  # fmt: skip
     assert parser._colour_asked(["--color", "always", "--color=never"]) == "never"
@@ -476,7 +478,7 @@ def test_what_a_command_is_told() -> None:
         "auto",
         "always",
     )
-    assert parser._first_unknown_option(["--", "--odd"], ["--form"]) == ""
+    assert parser._first_unknown_option(["--", "--odd"], ["--output-kind"]) == ""
     assert parser._first_unknown_option(["-qv", "-q", "-q3", "-"], ["-q"]) == ""
 
 

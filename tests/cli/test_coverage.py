@@ -14,7 +14,7 @@ from graph_cases import as_planned
 
 from multibot_rewrite.cli import live
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.spelling.plan import read_plan
+from multibot_rewrite.planning.plan import read_plan
 from multibot_rewrite.system.coverage import coverage
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import (

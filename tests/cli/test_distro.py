@@ -68,11 +68,11 @@ def test_a_configuration_names_a_release_that_is_known(
     assert "distro is 'noetic', use one of humble, " in capsys.readouterr().err
 
 
-def test_a_vocabulary_is_checked_for_its_release(
+def test_a_definitions_is_checked_for_its_release(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (folder / "my.vocab").write_text("[element arm]\nat: nowhere\nreleases: humble\n")
-    words = ["inspect", "robot", "--vocabulary", "my.vocab", "--distro"]
+    words = ["inspect", "robot", "--definitions", "my.vocab", "--distro"]
     assert multibot.main([*words, "humble"]) == 2
     assert "there is no [element nowhere]" in capsys.readouterr().err
     assert multibot.main([*words, "jazzy"]) == 0

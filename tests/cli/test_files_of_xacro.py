@@ -37,11 +37,11 @@ POSTFIX, MULTIBOT, LINT = urdf_postfix.main, multibot.main, urdf_lint.main
 WRITERS: dict[str, Command] = {
     "postfix": (POSTFIX, "r.urdf.xacro robot1 -o"),
     "own arguments": (POSTFIX, "r.urdf.xacro robot1 tf_prefix:={robot}_ -o"),
-    "changes": (POSTFIX, "r.urdf.xacro robot1 --form changes -o"),
+    "changes": (POSTFIX, "r.urdf.xacro robot1 --output-kind changes -o"),
     "strip": (POSTFIX, "made.urdf robot1 --undo --xacro r.urdf.xacro tf_prefix:={robot}_ -o"),
     "plan": (MULTIBOT, "plan r.urdf.xacro robot1 robot2 -o"),
     "plan of a fleet": (MULTIBOT, "plan fleet.yaml -o"),
-    "remap": (MULTIBOT, "plan --form table r.urdf.xacro robot1 robot2 -o"),
+    "remap": (MULTIBOT, "plan --output-kind table r.urdf.xacro robot1 robot2 -o"),
     "check": (MULTIBOT, "check fleet.yaml --from graph.json -o"),
     "rehearse": (MULTIBOT, "rehearse fleet.yaml --save-snapshot"),
     "inspect": (MULTIBOT, "inspect r.urdf.xacro -o"),
@@ -116,7 +116,7 @@ WARNED: dict[str, Command] = {
     "lint": (LINT, "r.urdf.xacro --select MB144 --fail-on error tf_prefx:=x_"),
     "plan": (MULTIBOT, "plan r.urdf.xacro robot1 robot2 tf_prefx:={robot}_"),
     "plan of a fleet": (MULTIBOT, "plan fleet.yaml"),
-    "remap": (MULTIBOT, "plan --form table fleet.yaml"),
+    "remap": (MULTIBOT, "plan --output-kind table fleet.yaml"),
     "build": (MULTIBOT, "build fleet.yaml -o out"),
 }
 

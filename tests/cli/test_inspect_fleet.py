@@ -34,7 +34,7 @@ def inspected(
     folder: Path, capsys: pytest.CaptureFixture[str], more: str = "", own: str = ""
 ) -> list[str]:
     (folder / "fleet.yaml").write_text(FLEET.format(more, own))
-    assert main(["inspect", "fleet.yaml", "--form", "json"]) == 0
+    assert main(["inspect", "fleet.yaml", "--output-kind", "json"]) == 0
     rows = json.loads(capsys.readouterr().out)["processes"]
     return [
         " | ".join((it["whose"], it["process"], it["place"], ",".join(it["files"]), it["why"]))
@@ -74,7 +74,7 @@ def test_what_works_for_one_robot_alone_gives_each_its_window(
     """In a layout with a tf topic for each robot one rviz2 shows one robot."""
     (folder / "r.rviz").write_text("Visualization Manager: {}\n")
     (found,) = (
-        it for it in inspected(folder, capsys, "companions: {rviz: r.rviz}") if "rviz2" in it
+        it for it in inspected(folder, capsys, "related_files: {rviz: r.rviz}") if "rviz2" in it
     )
     assert found.startswith("each robot | rviz2") and "one rviz2 reads one" in found
 
@@ -100,7 +100,7 @@ def test_names_parameters_and_what_is_not_known(capsys: pytest.CaptureFixture[st
 
 
 def test_as_json(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["inspect", str(OWN / "plain"), "--form", "json"]) == 0
+    assert main(["inspect", str(OWN / "plain"), "--output-kind", "json"]) == 0
     (node,) = json.loads(capsys.readouterr().out)["nodes"]
     assert (node["name"], node["package"], node["not_known"]) == ("plain", "own_nodes", [])
     ends = {it["name"]: it for it in node["ends"]}

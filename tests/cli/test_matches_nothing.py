@@ -112,7 +112,7 @@ BESIDE = "urdf-postfix params.yaml robot1 --urdf rover.urdf -o out/p.yaml"
         ("multibot check fleet.yaml --from graph.json --domain 5", "is a graph of domain 67"),
         ("multibot plan rover.urdf r1 --stack nosuch", "stack 'nosuch' is not known"),
         (
-            "multibot snapshot --from graph.json --form nodes --node /nosuch",
+            "multibot snapshot --from graph.json --output-kind nodes --node /nosuch",
             "no node has this name",
         ),
         ("multibot rename nosuch new .", "no description has a link 'nosuch'"),

@@ -18,8 +18,8 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.description.library import rewrite
 from multibot_rewrite.description.rewriters.lookup import look_up
+from multibot_rewrite.description.rewriters.plugin_definitions import TYPES, load_definitions
 from multibot_rewrite.description.rewriters.tree import builtin_tree
-from multibot_rewrite.description.rewriters.vocabulary import TYPES, load_vocabulary
 from multibot_rewrite.lint import catalogue
 
 COMMAND = (sys.executable, "-m", "multibot_rewrite.cli.multibot")
@@ -38,7 +38,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty working directory; files of one name differ from test to test."""
     monkeypatch.chdir(tmp_path)
     builtin_tree.cache_clear()
-    load_vocabulary.cache_clear()
+    load_definitions.cache_clear()
     return tmp_path
 
 
@@ -56,7 +56,7 @@ class Multibot:
         return Result(code, *self.capture.readouterr())
 
     def json(self, *words: str) -> Any:
-        result = self(*words, "--form", "json")
+        result = self(*words, "--output-kind", "json")
         return json.loads(result.out)
 
 
@@ -96,18 +96,18 @@ def write(path: Path, text: str) -> None:
         (("--quiet", "check"), "write the command first, for example: multibot adopt --quiet"),
         (("--undo",), "write the command first, for example: multibot build --undo"),
         (
-            ("--form=json",),
-            "write the command first, for example: multibot inspect --form=json",
+            ("--output-kind=json",),
+            "write the command first, for example: multibot inspect --output-kind=json",
         ),
         (("--nothing",), "write the command first, for example: multibot check"),
         (("coverage", "a"), "there is no command 'coverage'; use urdf-lint PATH..."),
         (("rewrite", "a"), "there is no command 'rewrite'; use urdf-postfix INPUT ROBOT..."),
-        (("inspect", "x", "--suggest", "a"), "--suggest goes with --vocabulary only"),
-        (("inspect", "--form", "json", "--suggest", "a"), "--suggest goes with"),
+        (("inspect", "x", "--suggest", "a"), "--suggest goes with --definitions only"),
+        (("inspect", "--output-kind", "json", "--suggest", "a"), "--suggest goes with"),
         (("inspect", "a", "b"), "a: there is no such file or folder"),
         (("inspect", "no.urdf"), "no.urdf: there is no such file or folder"),
         (("inspect", "--suggest", "no.urdf"), "no.urdf: cannot be read: No such file"),
-        (("inspect", "--vocabulary", "no"), "no: cannot be read: No such file"),
+        (("inspect", "--definitions", "no"), "no: cannot be read: No such file"),
         (("inspect", "no"), "'no' is not known: no plugin, node, class, element, sensor type"),
         (("inspect", "amc"), "the nearest known: amcl"),
         (("inspect", "dwb_critics::GoalDistCritc"), "nearest known: dwb_critics::GoalDistCritic"),
@@ -157,9 +157,9 @@ def two(folder: Path) -> Path:
     return folder
 
 
-def test_the_vocabulary_of_the_project_counts(multibot: Multibot, two: Path) -> None:
+def test_the_definitions_of_the_project_counts(multibot: Multibot, two: Path) -> None:
     write(two / "acme.vocab", "[plugin acme]\nx uses joint link\n")
-    write(two / "pyproject.toml", '[tool.multibot-rewrite]\nvocabulary = ["acme.vocab"]\n')
+    write(two / "pyproject.toml", '[tool.multibot-rewrite]\ndefinitions = ["acme.vocab"]\n')
     assert "x     uses  joint link" in multibot("inspect", "libacme.so").out
 
 
@@ -171,7 +171,7 @@ def test_brackets_and_colons_are_shown_as_they_are() -> None:
     assert text == "[bold]x[/bold] :smile:\npath\nplugin[red]:car:\n"
 
 
-# ---------------------------------------------------------------- vocabulary
+# ---------------------------------------------------------------- definitions
 
 
 @pytest.mark.slow
@@ -215,8 +215,8 @@ def test_what_is_shown_of_a_plugin(multibot: Multibot) -> None:
 
 @pytest.mark.slow
 def test_every_row_names_the_line_it_stands_in(multibot: Multibot) -> None:
-    """The file and line of each row of the whole vocabulary, held against the files."""
-    home = Path(multibot_rewrite.__file__).parent / "description" / "rewriters" / "vocabulary"
+    """The file and line of each row of the whole plugin definitions, held against the files."""
+    home = Path(multibot_rewrite.__file__).parent / "description" / "rewriters" / "definitions"
     rows = [row for section in multibot.json("inspect")["sections"] for row in section["rows"]]
     assert len(rows) > 500
     texts = {path.name: path.read_text().split("\n") for path in home.glob("*.vocab")}
@@ -230,7 +230,7 @@ def test_every_row_names_the_line_it_stands_in(multibot: Multibot) -> None:
 
 def test_a_row_of_a_users_file_names_that_file(multibot: Multibot, folder: Path) -> None:
     write(folder / "my.vocab", "# mine\n[plugin gazebo_ros_diff_drive]\nnew_joint uses joint # n\n")
-    out = multibot("inspect", "gazebo_ros_diff_drive", "--vocabulary", "my.vocab").out
+    out = multibot("inspect", "gazebo_ros_diff_drive", "--definitions", "my.vocab").out
     assert [line.split()[-1] for line in out.splitlines() if line.startswith("new_joint")] == [
         "my.vocab:3",
         "my.vocab:3",
@@ -239,7 +239,7 @@ def test_a_row_of_a_users_file_names_that_file(multibot: Multibot, folder: Path)
 
 def test_a_default_that_is_never_inserted_is_marked(multibot: Multibot, folder: Path) -> None:
     write(folder / "my.vocab", "[plugin acme]\ninsert: no\nx uses topic default=go\n")
-    words = ("inspect", "libacme.so", "--vocabulary", "my.vocab")
+    words = ("inspect", "libacme.so", "--definitions", "my.vocab")
     assert "go (not inserted)" in multibot(*words).out
     (section,) = multibot.json(*words)["sections"]
     (row,) = section["rows"]
@@ -248,13 +248,13 @@ def test_a_default_that_is_never_inserted_is_marked(multibot: Multibot, folder: 
 
 @pytest.mark.slow
 def test_the_list_has_every_section(multibot: Multibot) -> None:
-    sections = load_vocabulary((), "").sections(*TYPES)
+    sections = load_definitions((), "").sections(*TYPES)
     listed, codes = (it.splitlines() for it in multibot("inspect").out.split("\n\n"))
     assert len(listed) == len(sections) + 1
     assert {it.split()[0] for it in codes[1:]} == catalogue.rules().keys()
     table = [it for it in multibot.json("inspect")["sections"] if it["type"] == "hardware"]
     assert {section["type"] for section in table} == {"hardware"}
-    assert len(table) == len(load_vocabulary((), NEWEST_LTS).sections("hardware"))
+    assert len(table) == len(load_definitions((), NEWEST_LTS).sections("hardware"))
 
 
 def test_the_type_narrows_a_name(multibot: Multibot) -> None:
@@ -262,7 +262,7 @@ def test_the_type_narrows_a_name(multibot: Multibot) -> None:
 
 
 def test_an_element_is_found_by_its_tag_the_exact_name_first() -> None:
-    found = look_up(load_vocabulary((), NEWEST_LTS), "sensor", ["element"])
+    found = look_up(load_definitions((), NEWEST_LTS), "sensor", ["element"])
     names = [section.names[0] for section in found]
     assert names[0] == "sensor"
     assert {"robot.sensor", "link.sensor"} <= set(names)
@@ -289,7 +289,7 @@ def test_a_name_like_nothing_is_told_where_to_look(multibot: Multibot) -> None:
     assert "; multibot inspect lists all\n" in multibot("inspect", "§§§§").err
 
 
-# ---------------------------------------------------------------- vocabulary --suggest
+# ---------------------------------------------------------------- definitions --suggest
 
 
 @pytest.mark.more
@@ -297,7 +297,7 @@ def test_a_suggestion_can_be_used_as_it_is(multibot: Multibot, two: Path) -> Non
     result = multibot("inspect", "--suggest", "a.urdf")
     assert (result.code, result.err) == (0, "")
     write(two / "new.vocab", result.out)
-    plain, done = (rewrite(str(two / "a.urdf"), "r1", vocabulary=it) for it in ([], ["new.vocab"]))
+    plain, done = (rewrite(str(two / "a.urdf"), "r1", definitions=it) for it in ([], ["new.vocab"]))
     assert [sum(it.code == "MB901" for it in one.findings) for one in (plain, done)] == [3, 0]
     assert "<x>hip_r1</x><x>arm/r1</x><list>hip_r1 arm/r1</list>" in done.text
 
@@ -316,7 +316,7 @@ def test_nothing_unknown_is_only_a_comment(multibot: Multibot, two: Path) -> Non
 @pytest.mark.more
 def test_a_suggestion_leaves_out_what_a_given_file_knows(multibot: Multibot, two: Path) -> None:
     write(two / "acme.vocab", "[plugin acme]\nx uses joint link\n")
-    result = multibot("inspect", "--suggest", "a.urdf", "--vocabulary", "acme.vocab")
+    result = multibot("inspect", "--suggest", "a.urdf", "--definitions", "acme.vocab")
     assert "[plugin" not in result.out
 
 

@@ -52,7 +52,16 @@ def test_a_table_is_made_with_what_is_open(
     form: str, open_: Folder, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     capsys.readouterr()
-    words = ["plan", open_.fleet, "--form", form, "-o", str(tmp_path / "made"), "--select", "MG303"]
+    words = [
+        "plan",
+        open_.fleet,
+        "--output-kind",
+        form,
+        "-o",
+        str(tmp_path / "made"),
+        "--select",
+        "MG303",
+    ]
     assert main(words) == 0
     said = capsys.readouterr().err
     assert said.count("MG303") == 1
@@ -116,7 +125,7 @@ description: rover.urdf
 distro: humble
 simulator: gazebo
 stack: [robot_state, robot_localization]
-companions: {params: ekf.yaml}
+related_files: {params: ekf.yaml}
 robots: [{name: robot1}, {name: robot2}]
 """
 

@@ -27,7 +27,7 @@ from multibot_rewrite.cli.report import check_report
 from multibot_rewrite.cli.usage import check_xacro, policy, robots, separators, xacro_args
 from multibot_rewrite.cli.values import MAX_DOMAIN
 from multibot_rewrite.lint.catalogue import rules
-from multibot_rewrite.spelling.table_formats import FORMS
+from multibot_rewrite.planning.table_formats import FORMS
 from multibot_rewrite.system import environment
 
 ROVER = str(FIXTURES / "robots" / "rover.urdf")
@@ -52,7 +52,7 @@ def names(command: Command) -> set[str]:
 @pytest.mark.parametrize("name", ALL)
 def test_a_command_has_the_options_that_all_have(name: str) -> None:
     wanted = set(HAS[name])
-    wanted |= NAMING | {"--robots", "--vocabulary"} if name in DESCRIPTION else set()
+    wanted |= NAMING | {"--robots", "--definitions"} if name in DESCRIPTION else set()
     wanted |= FINDINGS if name in REPORTS else set()
     assert wanted - names(ALL[name]) == set()
 
@@ -66,7 +66,7 @@ def test_an_option_has_one_help_wherever_it_is() -> None:
     # What is written or suggested differs with the command; --stack learns or uses one; init has
     # a layout of its own; check takes several domains.
     own = OUTPUT | {
-        "--domain", "--form", "--stack", "--diff", "--suggest", "--layout", "--force", "--undo",
+        "--domain", "--output-kind", "--stack", "--diff", "--suggest", "--layout", "--force", "--undo",
         "-n", "--count",
     }  # fmt: skip
     assert [it for it, told in texts.items() if len(told) > 1 and it not in own] == []
@@ -74,7 +74,7 @@ def test_an_option_has_one_help_wherever_it_is() -> None:
 
 
 def test_the_choices_are_those_of_the_modules_that_know_them() -> None:
-    forms = COMMANDS["plan"].option("--form").keywords["choices"]
+    forms = COMMANDS["plan"].option("--output-kind").keywords["choices"]
     assert ("plan", "table", *FORMS, "bridge", "sros2") == forms
     assert MAX_DOMAIN == environment.MAX_DOMAIN
     layouts = {name for it in LAYOUTS for name in (it.name, it.short)}
@@ -168,7 +168,7 @@ def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str
         ("urdf-lint a --formt json", "unknown option --formt; did you mean '--format'?"),
         ("multibot check p --format jsno", "'jsno' is not known"),
         ("multibot check p --format jsno", "did you mean 'json'?"),
-        ("multibot plan a b --form ros_args", "did you mean 'ros-args'?"),
+        ("multibot plan a b --output-kind ros_args", "did you mean 'ros-args'?"),
         ("urdf-postfix a b --layout frames", "did you mean 'frames-per-robot'?"),
         ("urdf-postfix a b --fail-on eror", "did you mean 'error'?"),
         ("multibot build --color", "argument --color: expected one argument"),
@@ -271,7 +271,7 @@ def test_an_unknown_layout_is_refused_by_the_library_too() -> None:
         ("urdf-postfix", ROVER, "r1"),
         ("urdf-lint", ROVER),
         ("multibot", "plan", ROVER, "r1"),
-        ("multibot", "plan", "--form=table", ROVER, "r1"),
+        ("multibot", "plan", "--output-kind=table", ROVER, "r1"),
         ("multibot", "inspect", ARM),
         ("multibot", "inspect", "--suggest", ROVER),
         ("multibot", "inspect", "MB202"),
@@ -300,7 +300,7 @@ def test_a_folder_holds_a_file_of_each_robot_and_no_list_of_changes(
     (made,) = (it for it in tmp_path.rglob("*") if it.is_file())
     assert made == tmp_path / "r1" / Path(ROVER).name
     told = f"urdf-postfix: {folder}: cannot be written: it is a folder, name a file in it\n"
-    words = ("urdf-postfix", ROVER, "r1", "--form", "changes", "-o", folder)
+    words = ("urdf-postfix", ROVER, "r1", "--output-kind", "changes", "-o", folder)
     assert said(capsys, *words) == (2, "", told)
 
 
@@ -336,13 +336,17 @@ def test_the_plan_knows_the_names_that_a_rewrite_with_the_same_options_makes(
     assert "left_base_footprint" not in out
 
 
-def test_a_vocabulary_reaches_every_command_that_reads_a_description(
+def test_a_definitions_reaches_every_command_that_reads_a_description(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     more = tmp_path / "bad.vocab"
     more.write_text("[plugin acme]\nx uses wheel\n")
-    for words in (["plan", ROVER, "r"], ["plan", "--form=table", ROVER, "r"], ["inspect", ARM]):
-        code, _, err = said(capsys, "multibot", *words, "--vocabulary", str(more))
+    for words in (
+        ["plan", ROVER, "r"],
+        ["plan", "--output-kind=table", ROVER, "r"],
+        ["inspect", ARM],
+    ):
+        code, _, err = said(capsys, "multibot", *words, "--definitions", str(more))
         assert (code, "bad.vocab:2: unknown kind 'wheel'" in err) == (2, True), words
 
 
@@ -440,7 +444,7 @@ def test_every_code_is_explained_by_code_name_and_beginning(
     assert [line.split()[0] for line in many] == ["code", *codes]
     listed = said(capsys, "multibot", "inspect")[1].partition("\ncode  ")[2].splitlines()[1:]
     assert [line.split()[0] for line in listed] == list(rules())
-    shown = json.loads(said(capsys, "multibot", "inspect", "mb202", "--form", "json")[1])
+    shown = json.loads(said(capsys, "multibot", "inspect", "mb202", "--output-kind", "json")[1])
     assert [it["code"] for it in shown["rules"]] == ["MB202"]
 
 
@@ -472,7 +476,7 @@ def test_help_imports_nothing_heavy(name: str) -> None:
     there = set(done.stderr.split())
     assert f"multibot_rewrite.cli.{module}" in there
     heavy = {"lxml", "yaml", "rich", "json", "xacro", "multibot_rewrite.description.library"}
-    rooms = {"lint", "rules", "spelling", "fleet", "companions", "description", "producers"}
+    rooms = {"lint", "rules", "planning", "fleet", "related_files", "description", "producers"}
     assert there & (heavy | {f"multibot_rewrite.{room}" for room in rooms}) == set()
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``multibot plan --form table`` as a person meets it."""
+"""``multibot plan --output-kind table`` as a person meets it."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from healthy_systems import single
 from paths import FIXTURES
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.spelling.plan import read_plan
-from multibot_rewrite.spelling.table_formats import FORMS
+from multibot_rewrite.planning.plan import read_plan
+from multibot_rewrite.planning.table_formats import FORMS
 from multibot_rewrite.system.json import to_json
 
 ROVER = str(FIXTURES / "robots" / "rover.urdf")
@@ -21,12 +21,12 @@ GZ = str(FIXTURES / "robots" / "rover_gz.urdf")
 
 
 def run(capture: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str]:
-    code = main(["plan", "--form=table", *words])
+    code = main(["plan", "--output-kind=table", *words])
     return code, *capture.readouterr()
 
 
 def test_a_postfix_names_six_rules_for_an_action(capsys: pytest.CaptureFixture[str]) -> None:
-    _, out, _ = run(capsys, ROVER, "robot1", "--stack", "nav2", "--form", "ros-args")
+    _, out, _ = run(capsys, ROVER, "robot1", "--stack", "nav2", "--output-kind", "ros-args")
     for part in ("", "/_action/send_goal", "/_action/cancel_goal", "/_action/feedback"):
         assert f"navigate_to_pose{part}:=navigate_to_pose/robot1{part}" in out, part
 
@@ -37,7 +37,7 @@ def test_every_form_is_written_to_a_file(
     form: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     target = tmp_path / "out"
-    words = (ROVER, "robot1", "--layout", "both", "--form", form)
+    words = (ROVER, "robot1", "--layout", "both", "--output-kind", form)
     code, out, _ = run(capsys, *words, "-o", str(target))
     assert (code, out) == (0, "")
     _, printed, _ = run(capsys, *words)
@@ -45,7 +45,7 @@ def test_every_form_is_written_to_a_file(
 
 
 def test_the_bridge_of_a_fleet(capsys: pytest.CaptureFixture[str]) -> None:
-    code, out, err = run(capsys, GZ, "r1", "r2", "--layout", "both", "--form", "bridge")
+    code, out, err = run(capsys, GZ, "r1", "r2", "--layout", "both", "--output-kind", "bridge")
     assert code == 0, err
     rows = yaml.safe_load(out)
     assert "/clock" in {row["ros_topic_name"] for row in rows}
@@ -59,7 +59,9 @@ def test_the_bridge_of_a_fleet(capsys: pytest.CaptureFixture[str]) -> None:
         pytest.param((ROVER, "robot-1"), "robot_1", id="robot"),
         pytest.param(("gone.urdf", "a"), "is not there", id="no-file"),
         pytest.param((ROVER, "a", "a"), "twice", id="robot-twice"),
-        pytest.param((ROVER, "a", "--form", "json", "-o", ROVER), "rover.urdf", id="onto-input"),
+        pytest.param(
+            (ROVER, "a", "--output-kind", "json", "-o", ROVER), "rover.urdf", id="onto-input"
+        ),
     ],
 )
 def test_wrong_use_is_one_line(

@@ -18,7 +18,7 @@ from multibot_rewrite.base.wording import for_terminal, one_line
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
 from multibot_rewrite.cli.declared.commands import COMMANDS
 from multibot_rewrite.cli.output import print_bytes
-from multibot_rewrite.spelling.plan import to_yaml
+from multibot_rewrite.planning.plan import to_yaml
 from multibot_rewrite.system.json import to_json
 
 FAKED = "FAKE: all is well"
@@ -104,7 +104,7 @@ LINES = (
         ["urdf-lint", f"{EVIL}.xacro"],
         ["urdf-postfix", f"{EVIL}.xacro", "robot1", f"{EVIL}:={EVIL}"],
         ["inspect", f"{EVIL}.xacro"],
-        ["inspect", f"{EVIL}.xacro", "--form", "json"],
+        ["inspect", f"{EVIL}.xacro", "--output-kind", "json"],
     ),
     *(["inspect", "--suggest", FILE], ["inspect", EVIL]),
     *(["inspect", f"{EVIL}.xacro"], ["inspect", f"{EVIL}.xacro", f"a:={EVIL}"]),
@@ -113,13 +113,34 @@ LINES = (
         ["inspect", f"MB,{EVIL}"],
         ["help", EVIL],
         [EVIL],
-        ["plan", "--form=table", FILE, "robot1", "--stack", EVIL],
+        ["plan", "--output-kind=table", FILE, "robot1", "--stack", EVIL],
     ),
     *(
-        ["plan", "--form=table", FILE, "robot1", "robot2", "--stack", "nav2", "--form", it]
+        [
+            "plan",
+            "--output-kind=table",
+            FILE,
+            "robot1",
+            "robot2",
+            "--stack",
+            "nav2",
+            "--output-kind",
+            it,
+        ]
         for it in ("table",)
     ),
-    *(["plan", "--form=table", FILE, "robot1", "--nodes", f"{EVIL}.yaml", "--stack", "nav2"],),
+    *(
+        [
+            "plan",
+            "--output-kind=table",
+            FILE,
+            "robot1",
+            "--nodes",
+            f"{EVIL}.yaml",
+            "--stack",
+            "nav2",
+        ],
+    ),
     *(["plan", FILE, "robot1", "robot2", "--stack", "nav2", "-o", EVIL],),
     *(["check", "plan.yaml", "--from", "graph.json"],),
     *(["check", "plan.yaml", "--from", "graph.json", "--format", it] for it in ("text",)),
@@ -127,7 +148,7 @@ LINES = (
     *(["check", "plan.yaml", "--from", f"{EVIL}.json"],),
     *(
         ["check", f"{EVIL}.yaml", "--from", "graph.json"],
-        ["snapshot", "--form", "nodes", "--from", "graph.json"],
+        ["snapshot", "--output-kind", "nodes", "--from", "graph.json"],
     ),
     *(["build", "fleet.yaml", "-o", f"{EVIL}out"], ["build", f"{EVIL}.yaml", "-o", "out"]),
     *(["check", "--from", "graph.json"], ["check", "--from", f"{EVIL}.json"]),

@@ -51,7 +51,7 @@ def test_a_file_for_each_robot_and_a_summary(
 
 def test_changes_of_every_robot_are_its_own(tmp_path: Path) -> None:
     changes = tmp_path / "changes.json"
-    words = [ARM, "left", "right", PREFIX, "--form", "changes"]
+    words = [ARM, "left", "right", PREFIX, "--output-kind", "changes"]
     assert urdf_postfix.main([*words, "-o", str(changes)]) == 0
     made = json.loads(changes.read_text())["robots"]
     for robot in ("left", "right"):
@@ -109,7 +109,7 @@ def test_strip_with_the_xacro(tmp_path: Path, options: list[str]) -> None:
         (multibot.main, ["inspect", "--suggest", ARM, PREFIX], "no robot is named"),
         (
             multibot.main,
-            ["plan", "--form=table", ARM, "left", "right", "tf_prefix:={tf}"],
+            ["plan", "--output-kind=table", ARM, "left", "right", "tf_prefix:={tf}"],
             "placeholder {tf}",
         ),
         (multibot.main, ["plan", ARM, "left", "tf_prefix:={tf}"], "unknown placeholder {tf}"),

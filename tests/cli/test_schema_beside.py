@@ -24,7 +24,7 @@ COMMANDS = {
     "plan": (["plan", "{urdf}", "--robots", "a,b", "-o", "{new}/a.yaml"], {"a.yaml": editors.PLAN}),
     "plan in JSON": (["plan", "{urdf}", "--robots", "a,b", "-o", "{new}/a.json"], {"a.json": ""}),
     "nodes": (
-        ["snapshot", "--form", "nodes", "--from", "{graph}", "-o", "{new}/a.yaml"],
+        ["snapshot", "--output-kind", "nodes", "--from", "{graph}", "-o", "{new}/a.yaml"],
         {"a.yaml": editors.NODES},
     ),
     "suggestion": (

@@ -33,7 +33,11 @@ COMMAND_LINES: dict[str, tuple[Callable[[Sequence[str]], int], list[str], int]] 
     "init": (multibot.main, ["init", PATH, "-o", "-"], 2),
     "plan": (multibot.main, ["plan", PATH, "robot1", "--stack", "nav2"], 2),
     "plan of a fleet": (multibot.main, ["plan", "fleet.yaml"], 2),
-    "plan --form": (multibot.main, ["plan", "--form=table", PATH, "robot1", "--stack", "nav2"], 2),
+    "plan --output-kind": (
+        multibot.main,
+        ["plan", "--output-kind=table", PATH, "robot1", "--stack", "nav2"],
+        2,
+    ),
     "rehearse": (multibot.main, ["rehearse", PATH, "robot1", "--stack", "nav2"], 2),
     "view": (multibot.main, ["view", PATH, "-o", "-"], 2),
     "adopt": (multibot.main, ["adopt", "."], 2),

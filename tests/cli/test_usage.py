@@ -184,12 +184,19 @@ def test_only_notes_are_called_notes(levels: tuple[str, ...], text: str) -> None
 def test_the_name_or_the_form_says_that_it_is_nodl(
     target: str | None, form: str | None, nodl: bool
 ) -> None:
-    assert snapshot.is_nodl(options(output=target, form=form)) is nodl
+    assert snapshot.is_nodl(options(output=target, output_kind=form)) is nodl
 
 
 def test_what_a_snapshot_does_not_take_together() -> None:
     names = {"node": [], "namespace": None, "stack": None, "distro": None}
-    usual = {**USUAL, **names, "timeout": None, "domain": None, "output": None, "form": "nodes"}
+    usual = {
+        **USUAL,
+        **names,
+        "timeout": None,
+        "domain": None,
+        "output": None,
+        "output_kind": "nodes",
+    }
     usual |= {"expect": []}
     assert snapshot._check_use(options(**usual))
     assert snapshot._check_use(options(**{**usual, "expect": ["/a"], "timeout": 0.0}))
@@ -202,13 +209,13 @@ def test_what_a_snapshot_does_not_take_together() -> None:
     same = options(**{**usual, "snapshot": ["g.json"], "output": "./g.json"})
     assert said(snapshot._check_use, same).startswith("./g.json is a file that is read")
     assert snapshot._check_use(options(**{**usual, "snapshot": ["g.json"], "output": "n.yaml"}))
-    assert not snapshot._check_use(options(**{**usual, "form": "rosgraph"}))
+    assert not snapshot._check_use(options(**{**usual, "output_kind": "rosgraph"}))
     for name, given in (("node", ["/a"]), ("namespace", "/a"), ("stack", "s"), ("distro", "jazzy")):
-        lonely = options(**{**usual, "form": None, name: given})
-        hint = f"--{name} is for a description of nodes: add --form nodes"
+        lonely = options(**{**usual, "output_kind": None, name: given})
+        hint = f"--{name} is for a description of nodes: add --output-kind nodes"
         assert said(snapshot._check_use, lonely) == hint
-    assert said(snapshot.is_nodl, options(output="a.nodl.yaml", form="nodes")) == (
-        "a.nodl.yaml is the name of a NoDL file; leave out --form nodes"
+    assert said(snapshot.is_nodl, options(output="a.nodl.yaml", output_kind="nodes")) == (
+        "a.nodl.yaml is the name of a NoDL file; leave out --output-kind nodes"
     )
 
 
@@ -367,7 +374,7 @@ def test_files_that_options_name_to_be_read() -> None:
         "snapshot",
         "urdf",
         "xacro",
-        "vocabulary",
+        "definitions",
         "nodes",
         "suggest",
     )
@@ -400,7 +407,7 @@ def test_a_file_that_is_not_there_is_told_with_what_helps(
 def test_a_result_is_not_written_over_a_file_that_an_option_names(tmp_path: Path) -> None:
     file = tmp_path / "own.vocab"
     file.write_text("old")
-    given = options(output=str(file), vocabulary=[str(file)])
+    given = options(output=str(file), definitions=[str(file)])
     assert said(output.deliver, given, b"new").startswith(f"{file} is a file that is read")
     assert file.read_text() == "old"
 

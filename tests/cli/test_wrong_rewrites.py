@@ -56,8 +56,8 @@ WRONG = (
       for it in ("-o x", "--in-place")),
     ("r.urdf a --xacro r.xacro",
      ("--xacro goes with --undo; to rewrite a xacro, name it as the INPUT\n",)),
-    *((f"r.urdf a --form changes --{it}",
-       (f"--form changes lists what a rewrite changes: leave out --{it}\n",))
+    *((f"r.urdf a --output-kind changes --{it}",
+       (f"--output-kind changes lists what a rewrite changes: leave out --{it}\n",))
       for it in ("undo", "in-place", "diff")),
     *((f"{it} a --in-place", ("--in-place needs a URDF file, not standard input or xacro\n",))
       for it in ("-", "r.xacro", "r.urdf.xacro")),
@@ -67,17 +67,17 @@ WRONG = (
     ("r.urdf a -o ''", ("-o/--output: the name is empty",)),
     ("r.urdf a -o {name}.urdf", ("unknown placeholder {name}, only {robot} is filled in\n",)),
     ("r.urdf a b -o {robot}/{n}", ("unknown placeholder {n}, only {robot} is filled in\n",)),
-    ("r.urdf a --form changes -o {robot}.json",
+    ("r.urdf a --output-kind changes -o {robot}.json",
      ("--output {robot}.json: unknown placeholder {robot}, one file serves all robots\n",)),
     ("r.urdf a b -o o", ("several robots need one file each", "{robot}")),
     *((f"{it} a b", (f"several robots need one file each: -o out/, or -o 'out/{{robot}}{end}'\n",))
       for it, end in (("r.urdf", ".urdf"), ("r.sdf", ".sdf"), ("-", ".urdf"))),
     ("one.rviz a b -o two.rviz",
      ("-o 'out/{robot}.rviz'; multibot build writes one for all robots\n",)),
-    # Files of a vocabulary.
-    ("r.urdf a --vocabulary my.vocab", ("my.vocab", "is not there")),
-    ("r.urdf a --vocabulary .", (".", "cannot be read")),
-    ("r.urdf a --vocabulary r.urdf", ("r.urdf:1:", "[section]")),
+    # Files of plugin definitions.
+    ("r.urdf a --definitions my.vocab", ("my.vocab", "is not there")),
+    ("r.urdf a --definitions .", (".", "cannot be read")),
+    ("r.urdf a --definitions r.urdf", ("r.urdf:1:", "[section]")),
 )  # fmt: skip
 
 

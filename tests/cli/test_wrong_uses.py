@@ -32,8 +32,9 @@ def options(**given: Any) -> argparse.Namespace:
 
 
 REWRITE = {
-    "input": "r.urdf", "words": [], "urdf": None, "xacro": None, "vocabulary": [], "undo": False,
-    "in_place": False, "output": None, "form": "description", "diff": False, "select": [], "ignore": [],
+    "input": "r.urdf", "words": [], "urdf": None, "xacro": None, "definitions": [], "undo": False,
+    "in_place": False, "output": None, "output_kind": "description", "diff": False, "select": [],
+    "ignore": [],
     "format": "text",
 }  # fmt: skip
 
@@ -48,7 +49,10 @@ def test_a_rewrite_does_not_land_on_what_it_reads(tmp_path: Path) -> None:
     assert said(rewrite_use.check_use, onto, ["a"]) == told
     for more, option in (
         ({"urdf": files["u"], "output": files["u"]}, "urdf"),
-        ({"vocabulary": [files["v"]], "form": "changes", "output": files["v"]}, "vocabulary"),
+        (
+            {"definitions": [files["v"]], "output_kind": "changes", "output": files["v"]},
+            "definitions",
+        ),
         ({"xacro": files["x.xacro"], "undo": True, "output": files["x.xacro"]}, "xacro"),
     ):
         message = said(rewrite_use.check_use, options(**{**use, **more}), ["a"])
@@ -104,7 +108,7 @@ def test_a_lint_that_cannot_be_meant(given: dict[str, object], message: str) -> 
 
 PLAN = {
     **dict.fromkeys(("robots", "count", "stack", "launch", "layout", "affix", "topics")),
-    "form": "plan",
+    "output_kind": "plan",
     "separator": [], "shared": [], "input": "a.launch.py", "words": [], "output": None,
 }  # fmt: skip
 

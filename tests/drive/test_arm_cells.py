@@ -100,7 +100,7 @@ def fleet_of(arm: Arm, more: str, release: str, layout: str) -> str:
         f"distro: {release}\nlayout: {layout}\nsimulator: {arm.simulator}\nstack: [{stack}]\n"
         f"description: arm.urdf\n{f'srdf: {EXAMPLE}/arm.srdf' if more else ''}\n"
         f"robots: [{{name: left{poses[0]}}}, {{name: right{poses[1]}}}]\n"
-        f"companions: {{{', '.join(files)}}}\n"
+        f"related_files: {{{', '.join(files)}}}\n"
     )
 
 

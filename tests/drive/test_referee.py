@@ -44,6 +44,6 @@ def test_nothing_that_is_imported_loads_it() -> None:
 
 
 def test_its_facts_are_those_of_sources() -> None:
-    """No file of the package is read either: neither its tables nor its vocabulary."""
+    """No file of the package is read either: neither its tables nor its plugin definitions."""
     words = [it for file in FILES for it in file.read_text().split() if "multibot_rewrite/" in it]
     assert words == []

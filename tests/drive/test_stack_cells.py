@@ -48,7 +48,7 @@ def with_controllers(cell: Cell, folder: Path) -> str:
     source = stack_cells.ROOT / stack_cells.ROBOTS[cell.robot]
     (folder / "robot.urdf").write_text(source.read_text())
     text = cell.fleet.replace(str(source), "robot.urdf")
-    return f"{text}companions: {{params: config/controllers.yaml}}\n"
+    return f"{text}related_files: {{params: config/controllers.yaml}}\n"
 
 
 @pytest.mark.sample(106)

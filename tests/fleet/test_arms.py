@@ -16,7 +16,7 @@ from fleet_folder import built_fleet, planned_fleet
 from lxml import etree
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
-from multibot_rewrite.spelling.way_checks import running_nodes
+from multibot_rewrite.planning.way_checks import running_nodes
 
 pytestmark = pytest.mark.slow
 
@@ -89,7 +89,7 @@ description: arm.urdf.xacro
 srdf: arm.srdf.xacro
 stack: [ros2_control, moveit]
 simulator: none
-companions: {moveit: [kinematics.yaml, servo.yaml, sensors_3d.yaml], rviz: moveit.rviz}
+related_files: {moveit: [kinematics.yaml, servo.yaml, sensors_3d.yaml], rviz: moveit.rviz}
 """
 TWO = "robots: [{name: left}, {name: right}]\n"
 OWN = "arguments: {prefix: '{robot}_'}\n"
@@ -303,7 +303,9 @@ force_mode_controller:
 def test_a_listener_in_a_controllers_code_has_the_rules_of_its_process(tmp_path: Path) -> None:
     """ur_controllers force_mode_controller.cpp makes a tf2_ros::TransformListener of a buffer alone."""
     (tmp_path / "controllers.yaml").write_text(CONTROLLERS)
-    more = f"{TWO}".replace("{name: left}", "{name: left, companions: {params: controllers.yaml}}")
+    more = f"{TWO}".replace(
+        "{name: left}", "{name: left, related_files: {params: controllers.yaml}}"
+    )
     files, _ = built(tmp_path, more)
     # One spawner loads it, with what its own node needs.
     lines = [it for it in files["commands.md"].splitlines() if "spawner force_mode" in it]
@@ -337,7 +339,7 @@ def test_a_controllers_file_that_a_launch_file_fills_is_taken_unedited(
 ) -> None:
     """ur_controllers.yaml has its prefix in keys, lists and alone."""
     (tmp_path / "controllers.yaml").write_text(FILLED_BY_LAUNCH)
-    more = TWO.replace("{name: left}", "{name: left, companions: {params: controllers.yaml}}")
+    more = TWO.replace("{name: left}", "{name: left, related_files: {params: controllers.yaml}}")
     files, findings = built(tmp_path, own + more, "frames-per-robot")
     made = yaml.safe_load(files["left/controllers.yaml"])
     arm = made["/left/arm_controller"]["ros__parameters"]
@@ -391,7 +393,7 @@ def test_where_the_content_of_a_moveit_file_goes(
     name: str, text: str, path: str, tmp_path: Path
 ) -> None:
     (tmp_path / name).write_text(text)
-    more = TWO.replace("{name: left}", f"{{name: left, companions: {{moveit: {name}}}}}")
+    more = TWO.replace("{name: left}", f"{{name: left, related_files: {{moveit: {name}}}}}")
     files, _ = built(tmp_path, more)
     made = yaml.safe_load(files["left/moveit_parameters.yaml"])["/**"]["ros__parameters"]
     assert path in made

@@ -28,7 +28,7 @@ from multibot_rewrite.fleet.launch import launch_file
 from multibot_rewrite.fleet.launch.launch_python import to_python
 from multibot_rewrite.fleet.launch.starts import CLASSIC, GZ, FleetStarts, RobotStarts
 from multibot_rewrite.fleet.outputs.relays import BRIDGE
-from multibot_rewrite.spelling.start import File, Process, Start, Text
+from multibot_rewrite.planning.start import File, Process, Start, Text
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "frame-prefix", "postfix")
 

@@ -31,7 +31,7 @@ stack: robot_localization
 robots:
   - {name: robot1, model: robot1/robot}
   - {name: robot2, model: robot2/robot}
-companions: {bridge: b.yaml, params: p.yaml}
+related_files: {bridge: b.yaml, params: p.yaml}
 """
 
 
@@ -88,7 +88,7 @@ def test_a_row_follows_the_word_that_a_system_makes_its_topic_of(
     (tmp_path / "b.yaml").write_text(rows)
     (tmp_path / "fleet.yaml").write_text(
         f"description: rov.urdf\nlayout: {layout}\nsimulator: gazebo\n"
-        "robots: [{name: robot1}, {name: robot2}]\ncompanions: {bridge: b.yaml}\n"
+        "robots: [{name: robot1}, {name: robot2}]\nrelated_files: {bridge: b.yaml}\n"
     )
     outputs = built_fleet(tmp_path / "fleet.yaml")
     files = {it.path: it.data for it in outputs.files}

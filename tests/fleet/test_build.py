@@ -35,7 +35,7 @@ from multibot_rewrite.fleet.build import NOTE
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.fleet.robots.robot_groups import said_once
-from multibot_rewrite.spelling.plan import to_yaml
+from multibot_rewrite.planning.plan import to_yaml
 from multibot_rewrite.system.json import from_yaml
 
 pytestmark = pytest.mark.slow

@@ -14,7 +14,7 @@ from paths import FIXTURES
 from plans import ends_of
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.spelling.plan import read_plan
+from multibot_rewrite.planning.plan import read_plan
 
 IMAGE, INFO = "sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo"
 CLASSIC = FIXTURES / "robots" / "rover.urdf"

@@ -19,7 +19,7 @@ from plans import ends_of, own
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.spelling.plan import read_plan
+from multibot_rewrite.planning.plan import read_plan
 
 URDF = """\
 <robot name="arm">
@@ -72,7 +72,7 @@ distro: jazzy
 srdf: arm.srdf
 stack: moveit
 simulator: none
-companions: {moveit: [limits.yaml, controllers.yaml, servo.yaml], rviz: moveit.rviz}
+related_files: {moveit: [limits.yaml, controllers.yaml, servo.yaml], rviz: moveit.rviz}
 robots:
   - {name: left, description: arm.urdf, pose: {y: 0.5, yaw: 1.5}}
   - {name: right, description: other.urdf, pose: {y: -0.5}}
@@ -184,7 +184,7 @@ def test_arms_that_their_descriptions_fix_to_the_world_share_its_link(tmp_path: 
 
 
 def test_values_that_disagree_are_said_and_the_first_counts(tmp_path: Path) -> None:
-    own = fleet("pose: {y: -0.5}", "pose: {y: -0.5}, companions: {moveit: [other.yaml]}")
+    own = fleet("pose: {y: -0.5}", "pose: {y: -0.5}, related_files: {moveit: [other.yaml]}")
     text = "default_velocity_scaling_factor: {}\njoint_limits: {{elbow: {{max_velocity: 1.0}}}}\n"
     files, findings = built(
         tmp_path, fleet_yaml=own, limits_yaml=text.format(0.5), other_yaml=text.format(0.1)
@@ -248,5 +248,5 @@ def test_moveit_does_not_fit_layout_frame_prefix(tmp_path: Path) -> None:
     assert "'left/base'" in said.message
     # Without its SRDF the robot runs no MoveIt.
     quiet = own.replace("stack: moveit", "stack: robot_state").splitlines(keepends=True)
-    text = "".join(it for it in quiet if not it.startswith(("companions", "srdf")))
+    text = "".join(it for it in quiet if not it.startswith(("related_files", "srdf")))
     assert [it for it in built(tmp_path, fleet_yaml=text)[1] if it.code == "MF837"] == []

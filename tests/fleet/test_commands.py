@@ -10,7 +10,7 @@ import pytest
 from paths import ROBOTS
 
 from multibot_rewrite import load_fleet
-from multibot_rewrite.spelling.plan import read_plan
+from multibot_rewrite.planning.plan import read_plan
 
 FLEET = """\
 distro: {release}
@@ -163,7 +163,7 @@ def test_a_twist_mux_that_no_file_tells_its_topics_gets_those_of_its_package(
     )
     text = f"description: {ROBOTS / 'rover.urdf'}\nlayout: both\nstack: teleop\n"
     text += "robots: [{name: robot1}, {name: robot2}]\n"
-    text += "companions: {params: mux.yaml}\n" if own else ""
+    text += "related_files: {params: mux.yaml}\n" if own else ""
     (tmp_path / "fleet.yaml").write_text(text)
     made = load_fleet(tmp_path / "fleet.yaml")
     launch = made.text("fleet.launch.py")

@@ -31,7 +31,7 @@ FLEET = """layout: both
 robots:
   - {name: robot1, description: urdf/arm.urdf}
   - {name: robot2, description: urdf/arm.urdf}
-companions: {params: [config/arm.yaml]}
+related_files: {params: [config/arm.yaml]}
 """
 
 
@@ -111,7 +111,7 @@ def test_each_robot_loads_its_own_of_what_cmake_installs_elsewhere(
 def test_what_cmake_installs_elsewhere_is_found_without_being_listed(package: Path) -> None:
     text = "install(DIRECTORY config/ DESTINATION share/my_arm/control)\n"
     (package / "CMakeLists.txt").write_text(text)
-    alone = FLEET.replace("companions: {params: [config/arm.yaml]}\n", "")
+    alone = FLEET.replace("related_files: {params: [config/arm.yaml]}\n", "")
     found = built(package, f"{package}/control/arm.yaml", fleet=alone)
     assert found == [f"{package}/out/{robot}/arm.yaml" for robot in ("robot1", "robot2")]
 
@@ -157,7 +157,7 @@ def test_another_file_of_that_name_is_reported(
 
 
 @pytest.mark.more
-def test_a_file_that_is_no_companion_stays(
+def test_a_file_that_is_no_related_file_stays(
     package: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert built(package, "/nowhere/other.yaml") == ["/nowhere/other.yaml"] * 2

@@ -39,7 +39,7 @@ def _built(folder: Path, layout: str, distro: str, ip: str = "10.0.0.2", params:
     text = FLEET.format(layout, distro, ip)
     if params:
         (folder / "controllers.yaml").write_text(params)
-        text += "companions: {params: [controllers.yaml]}\n"
+        text += "related_files: {params: [controllers.yaml]}\n"
     (folder / "fleet.yaml").write_text(text)
     return main(["build", str(folder / "fleet.yaml"), "-o", str(folder / "out"), "-q"])
 

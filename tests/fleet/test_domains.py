@@ -21,7 +21,7 @@ from multibot_rewrite.fleet.build import Outputs
 from multibot_rewrite.fleet.checks.closed_plan import closed_plan
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import expected
-from multibot_rewrite.spelling.plan import read_plan, to_yaml
+from multibot_rewrite.planning.plan import read_plan, to_yaml
 from multibot_rewrite.system.domains import by_domain, domain_of
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES

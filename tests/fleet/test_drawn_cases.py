@@ -12,7 +12,7 @@ from drawn_fleets import KINDS, NAV_PARAMS, RVIZ, SRDF, Data, DrawnFleet
 from fleet_folder import planned_fleet
 from paths import ROBOTS
 
-from multibot_rewrite.spelling.plan import read_plan
+from multibot_rewrite.planning.plan import read_plan
 
 GZ, CART, XACRO, ARM = "gz rover", "plain cart", "xacro rover", "arm"
 
@@ -38,7 +38,7 @@ CASES = {
     "a prefix that makes frames alike": fleet(
         f"{CART}, {GZ}", {"name": "burger", "prefix": "burger0"}, {"name": "left", "prefix": "left1"},
         layout="both", separators={"link": "_"}, stack="teleop",
-        companions={"params": ["nav.yaml"]},
+        related_files={"params": ["nav.yaml"]},
     ),
     "a drive of the other robot": fleet(
         f"{CART}, {GZ}", {"name": "r1"}, {"name": "r2"}, layout="tf-per-robot", stack="nav2"
@@ -54,7 +54,7 @@ CASES = {
         f"{GZ}, {GZ}", {"name": "a", "model": "b"}, {"name": "b", "model": "a"}, layout="both"
     ),
     "a robot called as a frame": fleet(
-        f"{GZ}, {GZ}", {"name": "r1", "companions": {"params": ["nav.yaml"]}}, {"name": "base_link"},
+        f"{GZ}, {GZ}", {"name": "r1", "related_files": {"params": ["nav.yaml"]}}, {"name": "base_link"},
         layout="both",
     ),
     "a robot called as frames end": fleet(
@@ -68,8 +68,8 @@ CASES = {
         layout="postfix",
     ),
     "configs of one name": fleet(
-        f"{GZ}, {GZ}", {"name": "r1", "companions": {"rviz": "one.rviz"}},
-        {"name": "r2", "companions": {"rviz": "arm/one.rviz"}}, layout="frames-per-robot",
+        f"{GZ}, {GZ}", {"name": "r1", "related_files": {"rviz": "one.rviz"}},
+        {"name": "r2", "related_files": {"rviz": "arm/one.rviz"}}, layout="frames-per-robot",
     ),
     "costmaps without namespaces, behind a prefix": fleet(
         f"{CART}, {CART}", {"name": "r1"}, {"name": "r2"}, layout="postfix", stack="navigation"
@@ -139,7 +139,7 @@ def test_a_node_of_a_file_that_is_called_like_a_stack_is_the_files(
     Path("stack of mine.yaml").write_text("move_group:\n  ros__parameters: {a: b}\n")
     Path("fleet.yaml").write_text(
         "layout: both\ndistro: jazzy\ndescription: rover.urdf\nstack: moveit\n"
-        "companions: {params: stack of mine.yaml}\nrobots: [{name: r1}, {name: r2, pose: {x: 2}}]\n"
+        "related_files: {params: stack of mine.yaml}\nrobots: [{name: r1}, {name: r2, pose: {x: 2}}]\n"
     )
     assert run("build", "fleet.yaml", "-o", "out")[0] == 0
     plan = read_plan(Path("out/plan.yaml").read_bytes(), "plan.yaml")
@@ -156,10 +156,10 @@ def test_configs_of_one_name_have_a_name_each(tmp_path: Path) -> None:
 def test_an_empty_list_of_files_is_none(tmp_path: Path) -> None:
     """A robot with ``params: []`` has none of the fleet's files: its nodes get frames of its own, as if
     nobody had files."""
-    own: Data = {"name": "r1", "companions": {"params": []}}
+    own: Data = {"name": "r1", "related_files": {"params": []}}
     drawn = fleet(
         f"{CART}, {GZ}", own, {"name": "r2", "stack": []}, layout="both", stack="localization",
-        companions={"params": ["nav.yaml"]},
+        related_files={"params": ["nav.yaml"]},
     )  # fmt: skip
     judge(drawn, tmp_path)
     assert "odom_frame_id: r1/odom" in (tmp_path / "out/r1/params.yaml").read_text()
@@ -174,7 +174,7 @@ def test_a_parameter_file_may_be_called_as_the_bridge_is(
     Path("bridge.yaml").write_text("amcl:\n  ros__parameters: {base_frame_id: base_link}\n")
     Path("fleet.yaml").write_text(
         "layout: tf-per-robot\ndistro: jazzy\nstack: [nav2]\ndescription: rover.urdf\n"
-        "companions: {params: bridge.yaml}\n"
+        "related_files: {params: bridge.yaml}\n"
         "robots: [{name: r1, pose: {x: 0}}, {name: r2, pose: {x: 2}}]\n"
     )
     assert run("build", "fleet.yaml", "-o", "out")[0] == 0

@@ -157,7 +157,7 @@ def test_no_error_of_a_parameter_file_is_new_to_the_folder(
         (tmp_path / name).write_text(text)
     fleet.write_text(
         f"layout: {layout}\ndistro: jazzy\nsimulator: none\nstack: [nav2]\n"
-        f"description: robot.urdf\ncompanions: {{params: own.yaml}}\n{ROBOTS}"
+        f"description: robot.urdf\nrelated_files: {{params: own.yaml}}\n{ROBOTS}"
     )
     wrong = built_all_the_same(fleet, out, capsys)
     if wrong is None:

@@ -132,7 +132,7 @@ def test_a_namespace_is_filled_in_layouts_with_namespaces(
 ) -> None:
     path = xacro(tmp_path, "namespace", BASE, default)
     (tmp_path / "p.yaml").write_text(IMU)
-    outputs = made(path, layout=layout, companions={"params": str(tmp_path / "p.yaml")})
+    outputs = made(path, layout=layout, related_files={"params": str(tmp_path / "p.yaml")})
     assert [it.text for it in root(outputs, "robot2").iter("topic")] == ["robot2/scan"]
     assert names(outputs, "robot2", "ros2_control") == ["robot2/system"]
     (params,) = (it.data for it in outputs.files if it.path == "robot2/p.yaml")

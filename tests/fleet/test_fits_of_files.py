@@ -11,7 +11,7 @@ from paths import ROOT
 from plans import ends_of
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.spelling.plan import read_plan
+from multibot_rewrite.planning.plan import read_plan
 
 ROVER = ROOT / "examples" / "launch_tutorial" / "rover.urdf"
 RVIZ = ROOT / "examples" / "launch_tutorial" / "rover.rviz"
@@ -89,7 +89,7 @@ def test_nav2_drives_a_controller(release: str, layout: str, tmp_path: Path) -> 
     """diff_drive_controller.cpp: commands at ~/cmd_vel, odometry at ~/odom; no launch file of the robot
     has a rule for them. In Humble nothing but the plugin hands the description over."""
     text = f"layout: {layout}\naffix: prefix\ndistro: {release}\nstack: nav2\n"
-    more = "description: driven.urdf\ncompanions: {params: controllers.yaml}\n"
+    more = "description: driven.urdf\nrelated_files: {params: controllers.yaml}\n"
     assert build(tmp_path, text + more, driven_urdf=DRIVEN, controllers_yaml=CONTROLLERS) == 0
     last = "velocity_smoother" if release == "humble" else "collision_monitor"
     assert ("publishes", "/robot1/drive/cmd_vel") in ends(tmp_path, f"/robot1/{last}")
@@ -103,7 +103,7 @@ def test_nav2_drives_a_controller(release: str, layout: str, tmp_path: Path) -> 
 def test_a_section_without_the_type_takes_that_of_the_bridge(tmp_path: Path) -> None:
     """Kilted's Nav2 sends TwistStamped, the bridge file has Twist, and no file says otherwise."""
     text = f"layout: both\ndistro: kilted\nstack: navigation\ndescription: {ROVER}\n"
-    more = "companions: {params: nav2.yaml, bridge: bridge.yaml}\n"
+    more = "related_files: {params: nav2.yaml, bridge: bridge.yaml}\n"
     assert build(tmp_path, text + more, nav2_yaml=NAV2, bridge_yaml=PLAIN) == 0
     launch = (tmp_path / "out" / "fleet.launch.py").read_text()
     started = launch.split("Node(")
@@ -118,7 +118,9 @@ def test_real_robots_in_domains_need_no_bridge_to_gazebo(tmp_path: Path) -> None
     text = (
         f"layout: both\ndistro: jazzy\nstack: slam_toolbox\nsimulator: none\ndescription: {ROVER}\n"
     )
-    more = "domains: {robot1: 11, robot2: 12}\ncrossing: [tf]\ncompanions: {bridge: bridge.yaml}\n"
+    more = (
+        "domains: {robot1: 11, robot2: 12}\ncrossing: [tf]\nrelated_files: {bridge: bridge.yaml}\n"
+    )
     assert build(tmp_path, text + more, bridge_yaml=PLAIN) == 0
     assert not (tmp_path / "out" / "robot1" / "bridge.yaml").exists()
     assert "ros_gz_bridge has to" not in (tmp_path / "out" / "plan.yaml").read_text()
@@ -127,7 +129,7 @@ def test_real_robots_in_domains_need_no_bridge_to_gazebo(tmp_path: Path) -> None
 def test_rviz_shows_what_its_file_has(tmp_path: Path) -> None:
     """The panels of Nav2 are in nav2_default_view.rviz; this file has none."""
     text = f"layout: both\ndistro: kilted\nstack: [nav2, rviz_nav2]\ndescription: {ROVER}\n"
-    assert build(tmp_path, f"{text}companions: {{rviz: {RVIZ}}}\n") == 0
+    assert build(tmp_path, f"{text}related_files: {{rviz: {RVIZ}}}\n") == 0
     assert is_as_planned(tmp_path)
 
 
@@ -192,7 +194,9 @@ def test_assisted_teleop_takes_the_type_of_its_server(
     nav2, own = (f"    {it}\n" if it else "" for it in (behaviors, mux))
     text = f"layout: both\ndistro: {release}\nstack: {stack}\ndescription: {ROVER}\n"
     files = {"nav2_yaml": ASSISTED.format(nav2), "mux_yaml": MUX.format(own)}
-    assert build(tmp_path, f"{text}companions: {{params: [nav2.yaml, mux.yaml]}}\n", **files) == 0
+    assert (
+        build(tmp_path, f"{text}related_files: {{params: [nav2.yaml, mux.yaml]}}\n", **files) == 0
+    )
     plan = read_plan((tmp_path / "out" / "plan.yaml").read_bytes(), "plan.yaml")
     of_server = [it for it in plan.ends if it.node == "/robot1/behavior_server"]
     assert "/robot1/cmd_vel_teleop" in {it.name for it in of_server}
@@ -214,7 +218,7 @@ def test_the_launch_replaces_the_share_folders_in_a_parameter_file(
     (tmp_path / "nav2.yaml").write_text(f"{NAV2}{own}")
     (tmp_path / "fleet.yaml").write_text(
         f"distro: {release}\nlayout: {layout}\nstack: nav2\ndescription: {ROVER}\n"
-        "companions: {params: [nav2.yaml]}\nrobots: [{name: a}, {name: b}]\n"
+        "related_files: {params: [nav2.yaml]}\nrobots: [{name: a}, {name: b}]\n"
     )
     build = ["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out"), "-q"]
     assert main(build) == 0
@@ -242,7 +246,7 @@ def test_a_topic_to_which_a_launched_node_appends_a_word_is_left_to_its_rule(
     )
     (tmp_path / "fleet.yaml").write_text(
         f"distro: lyrical\nlayout: postfix\nsimulator: none\nlaunch: [up.launch.py]\n"
-        f"description: {ROVER}\ncompanions: {{params: [nav2.yaml]}}\n"
+        f"description: {ROVER}\nrelated_files: {{params: [nav2.yaml]}}\n"
         "robots: [{name: a}, {name: b}]\n"
     )
     main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out"), "-q"])

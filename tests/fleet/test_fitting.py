@@ -12,7 +12,7 @@ from plans import ends_of, own
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.robots.fitting.node_topics import CommandEnd, entry_of
-from multibot_rewrite.spelling.plan import read_plan
+from multibot_rewrite.planning.plan import read_plan
 
 ROVER = ROOT / "examples" / "launch_tutorial" / "rover.urdf"
 PLAIN, STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
@@ -91,7 +91,7 @@ def test_odometry_without_a_topic_comes_where_it_is_read(tmp_path: Path) -> None
 def test_cartographer_gets_its_options(tmp_path: Path) -> None:
     """node_main.cc ends without both flags."""
     (tmp_path / "carto.lua").write_text('options = {map_frame = "map"}\nreturn options\n')
-    more = "simulator: none\ncompanions: {lua: carto.lua}"
+    more = "simulator: none\nrelated_files: {lua: carto.lua}"
     out = built(tmp_path, f"distro: jazzy\nstack: cartographer\n{more}")
     text = (out / "fleet.launch.py").read_text()
     assert "'-configuration_directory', file(" in text
@@ -116,7 +116,7 @@ def test_cartographer_sends_what_its_options_say(
     """node.cc PublishLocalTrajectoryData. A robot without a file gets one (trajectory_options.cc: no
     option has a default) that leaves odom to the drive and reads what is there."""
     (tmp_path / "own.lua").write_text(f"options = {{{options}}}\nreturn options\n")
-    given = "\nsimulator: none\ncompanions: {lua: own.lua}" if options else ""
+    given = "\nsimulator: none\nrelated_files: {lua: own.lua}" if options else ""
     out = built(tmp_path, f"distro: jazzy\nstack: cartographer{given}")
     plan = read_plan((out / "plan.yaml").read_bytes(), "plan.yaml")
     (node,) = (it for it in own(plan, "robot1") if it.endswith("cartographer_node"))
@@ -145,7 +145,7 @@ def test_nav2_sends_to_an_input_of_twist_mux(
     if is_filed:
         section = f"{last}: {{ros__parameters: {{cmd_vel_out_topic: cmd_vel}}}}\n"
         (tmp_path / "p.yaml").write_text(section)
-        text += "\ncompanions: {params: p.yaml}"
+        text += "\nrelated_files: {params: p.yaml}"
     out = built(tmp_path, text)
     assert "MG312" not in capfd.readouterr().err
     assert sent_on(out, "/robot1/cmd_vel") == ["twist_mux"]
@@ -161,7 +161,7 @@ def muxed(folder: Path, *inputs: str) -> str:
     head += "    locks: {stop: {topic: stop, timeout: 0.0, priority: 255}}\n"
     head += "    topics:\n" if inputs else ""
     (folder / "mux.yaml").write_text(head + "\n".join(lines) + "\n")
-    return "simulator: gazebo\ncompanions: {params: mux.yaml}"
+    return "simulator: gazebo\nrelated_files: {params: mux.yaml}"
 
 
 def test_a_mux_without_an_input_for_a_planner_gets_the_stacks(tmp_path: Path) -> None:
@@ -322,7 +322,7 @@ def test_a_filter_places_the_robot_where_the_bridge_has_no_tf(
     """One of the two sends odom to base_link on tf: never both, never none."""
     (tmp_path / "bridge.yaml").write_text("".join(TRANSFORMS.format(*it) for it in rows_))
     text = "distro: jazzy\nsimulator: gazebo\nstack: robot_localization\n"
-    text += "companions: {bridge: bridge.yaml}"
+    text += "related_files: {bridge: bridge.yaml}"
     fleet, out = tmp_path / "fleet.yaml", tmp_path / "out"
     fleet.write_text(f"layout: {layout}\ndescription: {ROVER}\n{text}\n{ROBOTS}\n")
     assert main(["build", str(fleet), "-o", str(out), "-q"]) == 0

@@ -24,7 +24,7 @@ from multibot_rewrite.fleet.file.checked_yaml import TYPES, _in_words
 from multibot_rewrite.fleet.file.fleet_data import SCHEMA, check_files, schema, with_paths
 from multibot_rewrite.fleet.file.fleet_file import KINDS, FleetFile, read_fleet
 from multibot_rewrite.fleet.file.robot_spec import Pose, RobotSpec
-from multibot_rewrite.spelling.plan import is_fleet
+from multibot_rewrite.planning.plan import is_fleet
 from tools.pages import fleet_keys
 
 ONE = "robots:\n  - {name: a, description: rover.urdf}\n"
@@ -77,7 +77,7 @@ def test_a_fault_in_an_included_file_has_its_name_and_line(tmp_path: Path) -> No
 
 # Keys of a fleet and of a robot that hold one path or several.
 OF_FILES = (
-    "include", "description", "simulated", "srdf", "rviz", "nodes", "vocabulary", "simulator_world",
+    "include", "description", "simulated", "srdf", "rviz", "nodes", "definitions", "simulator_world",
     "controllers", "moveit",
 )  # fmt: skip
 
@@ -87,11 +87,11 @@ def test_paths_are_below_the_folder_of_their_file() -> None:
         own: dict[str, Any] = {**dict.fromkeys(OF_FILES, f"{to}a"), "srdf": up, "model": "a"}
         return {
             **own,
-            "vocabulary": [f"{to}a", f"{to}b"],
+            "definitions": [f"{to}a", f"{to}b"],
             "nodl": [f"{to}n"],
             "launch_roots": f"{to}r",
             "launch": [f"{to}a.launch.py x:=1 y:=2", "pkg b.launch.py", f"{to}c.launch.py"],
-            "companions": {"params": [f"{to}p", {"amcl": {"file": "a"}}], "rviz": f"{to}v"},
+            "related_files": {"params": [f"{to}p", {"amcl": {"file": "a"}}], "rviz": f"{to}v"},
             "robots": [{"name": "a", **own}],
             "join": [own],
         }
@@ -105,10 +105,13 @@ def test_paths_are_below_the_folder_of_their_file() -> None:
     ("data", "place"),
     [
         *(({key: "no.x"}, (key,)) for key in OF_FILES),
-        ({"vocabulary": [__file__, "no.x"]}, ("vocabulary",)),
+        ({"definitions": [__file__, "no.x"]}, ("definitions",)),
         ({"launch": "no.x a:=1"}, ("launch",)),
         ({"launch": ["pkg a.launch.py", "no.x"]}, ("launch",)),
-        ({"companions": {"rviz": __file__, "params": [{"a": {}}, "no.x"]}}, ("companions", "params")),
+        (
+            {"related_files": {"rviz": __file__, "params": [{"a": {}}, "no.x"]}},
+            ("related_files", "params"),
+        ),
         ({"robots": [{"name": "a"}, {"srdf": "no.x"}]}, ("robots", 1, "srdf")),
         ({"join": [{"description": "no.x"}]}, ("join", 0, "description")),
     ],
@@ -150,21 +153,21 @@ BAD: dict[str, tuple[str, ...]] = {
         "robots:\n  - name: a\n    descripton: x\n",
         "3: robots[0]: unknown key 'descripton'; did you mean 'description'?",
     ),
-    "unknown-companion": (
-        f"{ONE}companions: {{parms: params.yaml}}\n",
-        "3: companions: unknown key 'parms'; did you mean 'params'?",
+    "unknown-related-file": (
+        f"{ONE}related_files: {{parms: params.yaml}}\n",
+        "3: related_files: unknown key 'parms'; did you mean 'params'?",
     ),
     "unknown-pose-key": (
         "robots:\n  - {name: a, description: rover.urdf, pose: {yow: 1}}\n",
         "2: robots[0].pose: unknown key 'yow'; did you mean 'yaw'?",
     ),
-    "companion-at-the-top": (
+    "related-file-at-the-top": (
         f"params: nav2.yaml\n{ONE}",
-        "1: unknown key 'params'; write companions: {params: ...}",
+        "1: unknown key 'params'; write related_files: {params: ...}",
     ),
-    "companion-in-other-words": (
+    "related-file-in-other-words": (
         f"rviz_config: a.rviz\n{ONE}",
-        "1: unknown key 'rviz_config'; write companions: {rviz: ...}",
+        "1: unknown key 'rviz_config'; write related_files: {rviz: ...}",
     ),
     "key-that-begins-several": (
         f"shared: [/scan]\n{ONE}",
@@ -200,14 +203,14 @@ BAD: dict[str, tuple[str, ...]] = {
         "robots:\n  - {name: a, description: nope.urdf}\n",
         "2: FOLDER/nope.urdf does not exist; correct the path",
     ),
-    "missing-companion": (
-        f"{ONE}companions:\n  rviz: nope.rviz\n",
+    "missing-related-file": (
+        f"{ONE}related_files:\n  rviz: nope.rviz\n",
         "4: FOLDER/nope.rviz does not exist; correct the path",
     ),
-    "companion-folder": (f"{ONE}companions: {{params: .}}\n", "3: FOLDER/. is a folder"),
+    "related-file-folder": (f"{ONE}related_files: {{params: .}}\n", "3: FOLDER/. is a folder"),
     "missing-include": (f"include: nope.yaml\n{ONE}", "1: FOLDER/nope.yaml does not exist"),
     "missing-nodes": (f"nodes: nope.yaml\n{ONE}", "1: FOLDER/nope.yaml does not exist"),
-    "missing-vocabulary": (f"vocabulary: [a.vocab]\n{ONE}", "1: FOLDER/a.vocab does not exist"),
+    "missing-definitions": (f"definitions: [a.vocab]\n{ONE}", "1: FOLDER/a.vocab does not exist"),
     "cyclic-include": (
         f"include: fleet.yaml\n{ONE}",
         " the file includes itself (fleet.yaml -> fleet.yaml); remove one include",
@@ -303,7 +306,7 @@ BAD: dict[str, tuple[str, ...]] = {
         "2: 'a' has arguments but no xacro file; remove them, or give a xacro",
     ),
     "arguments-list": (f"{ONE}arguments: [a]\n", "3: arguments: ['a'] is not valid; write keys"),
-    "companions-none": (f"{ONE}companions:\n", "3: companions: the value is missing"),
+    "related-files-none": (f"{ONE}related_files:\n", "3: related_files: the value is missing"),
     "broken": (
         "robots: [\n",
         "2:1: not valid YAML: did not find expected node content; correct the YAML",
@@ -312,21 +315,21 @@ BAD: dict[str, tuple[str, ...]] = {
     "too-deep": (f"robots: {'[' * 600}{']' * 600}\n", "1:108: not valid YAML: it is nested deeper"),
     "nul": ("robots:\n  - {name: a\0}\n", " not valid YAML: unacceptable character #x0000"),
     "params-of-rviz": (
-        f"{ONE}companions: {{params: one_robot.rviz}}\n",
+        f"{ONE}related_files: {{params: one_robot.rviz}}\n",
         "@one_robot.rviz:1: not a ROS 2 parameter file: it is an RViz config; list it under rviz",
     ),
     "params-anchor": (
-        f"{ONE}companions: {{params: bad.yaml}}\n",
+        f"{ONE}related_files: {{params: bad.yaml}}\n",
         "@bad.yaml:1: rcl takes no anchors or aliases (&x); write the value out",
         "amcl: {ros__parameters: &x {a: 1}}\n",
     ),
     "params-tab": (
-        f"{ONE}companions: {{params: bad.yaml}}\n",
+        f"{ONE}related_files: {{params: bad.yaml}}\n",
         "@bad.yaml:2:1: not valid YAML: a tab; indent with spaces",
         "amcl:\n\tros__parameters: {a: 1}\n",
     ),
     "rviz-of-ros1": (
-        f"{ONE}companions: {{rviz: bad.yaml}}\n",
+        f"{ONE}related_files: {{rviz: bad.yaml}}\n",
         "@bad.yaml:1: this is a ROS 1 config (rviz/Grid), which rviz2 cannot load; create it in rv",
         "Visualization Manager: {Displays: [{Class: rviz/Grid}]}\n",
     ),
@@ -334,9 +337,12 @@ BAD: dict[str, tuple[str, ...]] = {
         "robots:\n  - {name: a, description: rover.urdf, srdf: params.yaml}\n",
         "@params.yaml: a parameter file; rewrite it with urdf-postfix, or name it in",
     ),
-    "moveit-of-rviz": (f"{ONE}companions: {{moveit: one_robot.rviz}}\n", "@one_robot.rviz:1: not "),
+    "moveit-of-rviz": (
+        f"{ONE}related_files: {{moveit: one_robot.rviz}}\n",
+        "@one_robot.rviz:1: not ",
+    ),
     "bridge-of-params": (
-        f"{ONE}companions: {{bridge: params.yaml}}\n",
+        f"{ONE}related_files: {{bridge: params.yaml}}\n",
         "@params.yaml:2: not a list of topics",
     ),
 }
@@ -377,7 +383,7 @@ def test_the_schema_is_one_and_says_so() -> None:
     from jsonschema import Draft202012Validator
 
     Draft202012Validator.check_schema(schema())
-    assert keys(schema()["$defs"]["companions"]) == set(KINDS)
+    assert keys(schema()["$defs"]["related_files"]) == set(KINDS)
     used = re.findall(r'"type": "(\w+)"', json.dumps(schema()))
     assert set(used) <= set(TYPES)
 
@@ -435,7 +441,7 @@ def test_an_old_jsonschema_is_one_line(
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("part", [(), ("$defs", "robot"), ("$defs", "companions")])
+@pytest.mark.parametrize("part", [(), ("$defs", "robot"), ("$defs", "related_files")])
 def test_every_key_of_the_schema_is_explained(part: tuple[str, ...]) -> None:
     found = schema()
     for key in part:

@@ -10,7 +10,7 @@ from paths import FIXTURES
 from plans import ends_of
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.spelling.plan import read_plan
+from multibot_rewrite.planning.plan import read_plan
 from multibot_rewrite.system.records import surely
 
 QOS = "qos: {history: KEEP_ALL, reliability: RELIABLE}"
@@ -62,7 +62,7 @@ def test_a_parameter_file_does_not_take_a_document_away(tmp_path: Path) -> None:
     params.write_text(
         "amcl:\n  ros__parameters:\n    scan_topic: laser\n    base_frame_id: base_link\n"
     )
-    file = fleet(tmp_path, more="companions: {params: params.yaml}\n")
+    file = fleet(tmp_path, more="related_files: {params: params.yaml}\n")
     assert main(["build", file, "-o", str(tmp_path / "out")]) == 0
     found = planned(tmp_path)
     assert found["/robot1/brand_new"] == "acme_msgs/msg/New"
@@ -75,7 +75,7 @@ def test_a_node_that_a_parameter_file_alone_names_has_its_document(
 ) -> None:
     params = tmp_path / "params.yaml"
     params.write_text("amcl:\n  ros__parameters:\n    base_frame_id: base_link\n")
-    file = Path(fleet(tmp_path, more="companions: {params: params.yaml}\n"))
+    file = Path(fleet(tmp_path, more="related_files: {params: params.yaml}\n"))
     file.write_text(file.read_text().replace("stack: amcl\n", ""))
     assert main(["build", str(file), "-o", str(tmp_path / "out")]) == 0
     assert "amcl as in" in capsys.readouterr().err

@@ -41,7 +41,7 @@ def test_a_section_in_the_namespace_of_its_robot_is_for_that_robot(tmp_path: Pat
     """Clearpath's generators write the sections of controllers below the robot's namespace."""
     section = "{ros__parameters: {base: {type: diff_drive_controller/DiffDriveController}}}"
     text = f"/r1:\n  controller_manager: {section}\n  base: {{ros__parameters: {{rate: 1}}}}\n"
-    robot = "{name: r1, description: base.urdf, companions: {params: own.yaml}}"
+    robot = "{name: r1, description: base.urdf, related_files: {params: own.yaml}}"
     folder = fleet_folder(
         tmp_path,
         f"layout: L1\nstack: ros2_control\nrobots: [{robot}]\n",
@@ -211,7 +211,7 @@ def test_no_file_of_a_robot_has_a_word_of_another(fleet: tuple[str, dict[str, st
 
 
 @pytest.mark.more
-def test_companions_of_one_name_are_in_folders_of_their_own(tmp_path: Path) -> None:
+def test_related_files_of_one_name_are_in_folders_of_their_own(tmp_path: Path) -> None:
     (tmp_path / "more").mkdir()
     (tmp_path / "more" / "params.yaml").write_text("x:\n  ros__parameters: {a: 1}\n")
     text = SMALL.replace("[params.yaml]", "[params.yaml, more/params.yaml]")

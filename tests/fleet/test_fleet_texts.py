@@ -19,18 +19,18 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.base.rosnames import check_full_name, check_topic_name
-from multibot_rewrite.companions.bridge import BridgeFile, rewrite_bridge
-from multibot_rewrite.companions.context import make_context
-from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.fleet.file.robot_spec import Pose
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs import spawn, teleop
 from multibot_rewrite.fleet.outputs.bridge_outputs import fill_bridge, merge_bridges
 from multibot_rewrite.fleet.robots import start_poses
-from multibot_rewrite.spelling.bridged_topics import (
+from multibot_rewrite.planning.bridged_topics import (
     BridgedTopic,
 )
-from multibot_rewrite.spelling.start import shell_line
+from multibot_rewrite.planning.start import shell_line
+from multibot_rewrite.related_files.bridge import BridgeFile, rewrite_bridge
+from multibot_rewrite.related_files.context import make_context
+from multibot_rewrite.related_files.yaml_text import read_yaml
 
 LAYOUTS = ("L1", "L2", "L3", "L4")
 TYPES = "  ros_type_name: a/msg/B\n  gz_type_name: gz.msgs.B\n"
@@ -329,7 +329,7 @@ def test_a_description_that_already_starts_with_the_world(fleet: Any) -> None:
 
 
 def classic(*namespaces: str) -> str:
-    """Plugins that no vocabulary has, so that nothing is inserted in them."""
+    """Plugins that no plugin definitions has, so that nothing is inserted in them."""
     plugins = (
         f'<plugin name="p{at}" filename="libgazebo_ros_acme.so">{namespace}</plugin>'
         for at, namespace in enumerate(namespaces)
@@ -384,7 +384,7 @@ def test_a_bridge_to_the_simulator_reads_commands(fleet: Any) -> None:
     to_gz = ((side, "ROS_TO_GZ", ["/r1/go"]) for side in ("", "ros_", "gz_"))
     for side, direction, heard in (*to_gz, ("", "GZ_TO_ROS", [])):
         Path("bridge.yaml").write_text(rows.format(side, direction))
-        plan = fleet("L2", more="companions: {bridge: bridge.yaml}\n")
+        plan = fleet("L2", more="related_files: {bridge: bridge.yaml}\n")
         assert [it.topic for it in teleop.teleops(plan)][:1] == heard
 
 
@@ -403,7 +403,7 @@ def test_a_bridge_to_the_simulator_reads_commands(fleet: Any) -> None:
 def test_a_controller_of_humble(fleet: Any, controller: str, stamped: str, heard: str) -> None:
     more = f"    use_stamped_vel: {stamped}\n" if stamped else ""
     Path("own.yaml").write_text(f"{controller}:\n  ros__parameters:\n    publish_rate: 5.0\n{more}")
-    plan = fleet("L2", controller, more="distro: humble\ncompanions: {params: own.yaml}\n")
+    plan = fleet("L2", controller, more="distro: humble\nrelated_files: {params: own.yaml}\n")
     it = teleop.teleops(plan)[0]
     assert (it.topic, it.stamped) == (f"/r1/{controller}/{heard}", "unstamped" not in heard)
 

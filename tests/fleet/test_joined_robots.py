@@ -111,7 +111,7 @@ def test_it_is_what_a_fleet_makes_of_the_joined_files(folder: Path) -> None:
     assert main(["join", "robot.urdf.join", "-q", "-o", "by_hand/robot.urdf"]) == 0
     (folder / "by_hand/fleet.yaml").write_text(
         f"{KEYS}description: robot.urdf\nsrdf: robot.srdf\nrobots: [{{name: cell1}}]\n"
-        "companions: {params: robot_controllers.yaml}\n"
+        "related_files: {params: robot_controllers.yaml}\n"
     )
     by_hand = outputs("by_hand/fleet.yaml")
     assert made.keys() == by_hand.keys()

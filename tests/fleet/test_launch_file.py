@@ -19,9 +19,9 @@ from told_nodes import nodes_of, words_of
 from multibot_rewrite import launch, load_fleet
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.live.rehearsal import stage, staged, with_substitutes
+from multibot_rewrite.planning.plan import read_plan
 from multibot_rewrite.producers.launch.performed import Launching, performed
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan import read_plan
 from multibot_rewrite.system.records import doubts
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
@@ -131,7 +131,7 @@ def of_nav2(folder: Path, distro: str = "jazzy", **keys: str) -> str:
     more = "".join(f"{key}: {value}\n" for key, value in keys.items())
     (folder / "fleet.yaml").write_text(
         f"distro: {distro}\ndescription: hexbase.urdf.xacro\n{more}"
-        f"companions: {{params: nav2_params.yaml}}\n{TWO}"
+        f"related_files: {{params: nav2_params.yaml}}\n{TWO}"
     )
     out = folder / "out"
     assert main(["build", str(folder / "fleet.yaml"), "-o", str(out), "-q"]) == 0
@@ -173,7 +173,7 @@ def test_a_manager_in_a_plugin_is_not_started_besides(
     )
     (tmp_path / "fleet.yaml").write_text(
         f"layout: tf-per-robot\ndistro: humble\nsimulator: {simulator}\ndescription: arm.urdf\n"
-        f"companions: {{params: c.yaml}}\n{TWO}"
+        f"related_files: {{params: c.yaml}}\n{TWO}"
     )
     assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out"), "-q"]) == 0
     python = (tmp_path / "out" / "fleet.launch.py").read_text()
@@ -194,7 +194,7 @@ def test_slam_toolbox_is_left_to_a_manager_that_lists_it(tmp_path: Path) -> None
     (tmp_path / "slam.yaml").write_text(both)
     (tmp_path / "fleet.yaml").write_text(
         "layout: tf-per-robot\ndistro: jazzy\ndescription: hexbase.urdf.xacro\n"
-        f"stack: nav2_slam\ncompanions: {{params: slam.yaml}}\n{TWO}"
+        f"stack: nav2_slam\nrelated_files: {{params: slam.yaml}}\n{TWO}"
     )
     shutil.copy(ROOT / "examples" / "namespace_and_prefix" / "hexbase.urdf.xacro", tmp_path)
     assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out"), "-q"]) == 0

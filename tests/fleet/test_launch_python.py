@@ -9,7 +9,7 @@ from multibot_rewrite.fleet.launch.each_robot import functions
 from multibot_rewrite.fleet.launch.launch_python import to_python
 from multibot_rewrite.fleet.launch.starts import FleetStarts, RobotStarts
 from multibot_rewrite.fleet.outputs.relays import BRIDGE, not_bridged
-from multibot_rewrite.spelling.start import File, Start, Text
+from multibot_rewrite.planning.start import File, Start, Text
 
 PARAMS = File("r1/p.yaml")
 FULL = RobotStarts(

@@ -12,7 +12,7 @@ from rule_examples import DESCRIPTION
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.launch import launched_robot
-from multibot_rewrite.fleet.outputs.companion_files import launched_values
+from multibot_rewrite.fleet.outputs.related_files import launched_values
 from multibot_rewrite.producers.launch.records import (
     LaunchedNode,
     LaunchGraph,
@@ -25,7 +25,7 @@ FLEET = """\
 layout: frames-per-robot
 affix: prefix
 distro: jazzy
-companions: {{params: [{params}]}}
+related_files: {{params: [{params}]}}
 launch: bringup.launch.py
 robots:
   - {{name: robot1, description: robot.urdf}}

@@ -385,7 +385,7 @@ def test_a_node_gets_the_parameter_files_of_its_own(tmp_path: Path) -> None:
         here('two', parameters=['FOLDER/two.yaml', {'rate': 5}]),
         here('none'),
     """.replace("FOLDER", str(tmp_path))
-    found = actions(tmp_path, body, more="simulator: none\ncompanions: {params: own.yaml}")
+    found = actions(tmp_path, body, more="simulator: none\nrelated_files: {params: own.yaml}")
     files = {
         name: [Path(it).name for it in of(found, name)["parameters"] if isinstance(it, str)]
         for name in ("one", "two", "none")
@@ -1075,7 +1075,7 @@ def test_move_group_has_what_its_launch_file_and_its_files_say_of_pipelines(tmp_
     (tmp_path / "kinematics.yaml").write_text("g: {kinematics_solver: k/K}\n")
     body = f"""Node(package='moveit_ros_move_group', executable='move_group', name='move_group',
         parameters=['{tmp_path}/pipes.yaml', {{'ompl.planning_plugin': 'mine/Two'}}]),"""
-    more = "simulator: none\nsrdf: arm.srdf\ncompanions: {moveit: [kinematics.yaml]}"
+    more = "simulator: none\nsrdf: arm.srdf\nrelated_files: {moveit: [kinematics.yaml]}"
     told = of(actions(tmp_path, body, more=more), "move_group")["parameters"]
     files = [Path(it).name for it in told if isinstance(it, str)]
     assert files.index("moveit_parameters.yaml") < files.index("pipes.yaml")
@@ -1169,7 +1169,7 @@ def test_a_launch_file_that_opens_a_window_opens_one_for_a_robot_or_for_all(
     body = (
         "Node(package='rviz2', executable='rviz2', arguments=['-d', 'robot.rviz']), here('first'),"
     )
-    more = "simulator: none\ncompanions: {rviz: robot.rviz}"
+    more = "simulator: none\nrelated_files: {rviz: robot.rviz}"
     opened = []
     for robot in ("robot1", "robot2"):
         found = actions(tmp_path, body, more=more, layout=layout, given={"robots": robot})

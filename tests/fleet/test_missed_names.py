@@ -45,7 +45,7 @@ layout: tf-per-robot
 distro: humble
 simulator: none
 description: rover.urdf
-companions: {params: params.yaml}
+related_files: {params: params.yaml}
 nodes: nodes.yaml
 stack: nav2_here
 robots: [{name: robot1}, {name: robot2}]

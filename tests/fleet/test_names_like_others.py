@@ -69,8 +69,8 @@ def test_a_row_may_bring_the_frames_of_the_simulator_elsewhere(layout: str, name
     """They are nobody's tree then; that the robot's tree lacks them is a warning that says where they
     are."""
     robots = [{"name": "a"}, {"name": "b", "pose": {"x": 3}}]
-    companions = {"bridge": ["rows.yaml"]}
-    data = {"layout": layout, "description": "rover.urdf", "companions": companions}
+    related_files = {"bridge": ["rows.yaml"]}
+    data = {"layout": layout, "description": "rover.urdf", "related_files": related_files}
     files = {"rover.urdf": ROVER, "rows.yaml": f"{BRIDGE}- {FRAMES.format(name)}\n"}
     for said in built({**data, "robots": robots}, files):
         if layout != "frames-per-robot":
@@ -118,7 +118,7 @@ def test_a_robot_may_be_called_as_a_part_of_all(layout: str) -> None:
     part of a robot still tells of one."""
     robots = [{"name": "camera"}, {"name": "rex", "pose": {"x": 3}}]
     data = {"layout": layout, "description": "rover.urdf", "robots": robots}
-    data["companions"] = {"params": ["seen.yaml"]}
+    data["related_files"] = {"params": ["seen.yaml"]}
     files = {"rover.urdf": ROVER.replace("</robot>", CAMERA)}
     said, _ = built(data, {**files, "seen.yaml": SEEN.format("camera")})
     assert "MB863" not in said

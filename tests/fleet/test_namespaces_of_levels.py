@@ -13,7 +13,7 @@ from multibot_rewrite import compare
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import expected
-from multibot_rewrite.spelling.plan import to_yaml
+from multibot_rewrite.planning.plan import to_yaml
 from multibot_rewrite.system.json import from_yaml
 from multibot_rewrite.system.records import System
 

@@ -19,7 +19,7 @@ from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.library import rewrite
 from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER, expected, facts_of, make_fleet
-from multibot_rewrite.spelling.plan import to_yaml
+from multibot_rewrite.planning.plan import to_yaml
 from multibot_rewrite.system.json import from_json, from_yaml, to_json
 
 COLLISION = FIXTURES / "graphs" / "MG402.json"
@@ -68,7 +68,7 @@ def test_all_commands_have_the_same_robots(
     text = text.replace("{name: b}", "{name: b, pose: {x: 2}}") if poses == "both" else text
     file = str(fleet_folder(tmp_path, text))
     _, planned, _ = run(capsys, "plan", file)
-    _, table, _ = run(capsys, "plan", "--form=table", file, "--form", "json")
+    _, table, _ = run(capsys, "plan", "--output-kind=table", file, "--output-kind", "json")
     assert main(["build", file, "-o", str(tmp_path / "out")]) == 0
     schema, _, built = (tmp_path / "out" / "plan.yaml").read_text().partition("\n")
     assert (schema, built) == ("# yaml-language-server: $schema=.system.schema.json", planned)
@@ -102,11 +102,11 @@ def test_one_such_robot_among_others_is_an_error_of_every_command(
 
 
 def test_a_table_of_nothing_says_so(rover: str, capsys: pytest.CaptureFixture[str]) -> None:
-    words = ("plan", "--form=table", rover, "robot1", "--stack", NO_STATE_PUBLISHER)
+    words = ("plan", "--output-kind=table", rover, "robot1", "--stack", NO_STATE_PUBLISHER)
     code, _, err = run(capsys, *words)
     assert (code, err.count("\n")) == (0, 1)
     assert "no node of robot1 is known, so no rule is for it" in err
-    assert run(capsys, "plan", "--form=table", rover, "robot1")[2] == ""
+    assert run(capsys, "plan", "--output-kind=table", rover, "robot1")[2] == ""
 
 
 # ---------------------------------------------------------------- files of plans

@@ -126,7 +126,7 @@ def test_the_command_writes_a_file_for_each(
         assert section["ros__parameters"]["base_frame_id"] == f"{robot}/base_footprint"
 
 
-@pytest.mark.parametrize("option", ["--undo", "--form=changes"])
+@pytest.mark.parametrize("option", ["--undo", "--output-kind=changes"])
 def test_options_of_descriptions_are_refused(
     option: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -14,14 +14,14 @@ from named_ends import named_ends
 from random_parameters import LAYOUTS, RELEASE, STACKS, is_plain, planned, random_file
 
 from multibot_rewrite.base.rosnames import bind, parse_remap, resolve_bound
-from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.planning.records import Run
 from multibot_rewrite.producers.evidence.filling import filled
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-from multibot_rewrite.spelling.records import Run
+from multibot_rewrite.related_files.yaml_text import read_yaml
 from multibot_rewrite.system.records import Robot
 
 

@@ -53,7 +53,7 @@ layout: {layout}
 affix: {affix}
 distro: {release}
 description: robot.urdf
-companions: {{params: p.yaml{more}}}
+related_files: {{params: p.yaml{more}}}
 robots: [{{name: robot1}}, {{name: robot2}}]
 """
 

@@ -31,7 +31,7 @@ distro: humble
 robots:
   - {name: robot1, description: dog.urdf}
   - {name: robot2, description: dog.urdf, pose: {y: 2}}
-companions: {params: ekf.yaml}
+related_files: {params: ekf.yaml}
 """
 
 
@@ -57,7 +57,9 @@ def test_all_that_read_a_frame_that_nothing_sends_are_told(tmp_path: Path) -> No
     """behavior_server has no parameters here: timed_behavior.hpp takes base_link."""
     (tmp_path / "dog.urdf").write_text(DOG.replace("base_link", "d0/base_link"))
     (tmp_path / "ekf.yaml").write_text(COSTMAP)
-    text = FLEET.replace("LAYOUT", "tf-per-robot").replace("companions", "stack: nav2\ncompanions")
+    text = FLEET.replace("LAYOUT", "tf-per-robot").replace(
+        "related_files", "stack: nav2\nrelated_files"
+    )
     (tmp_path / "fleet.yaml").write_text(text)
     found = built_fleet(tmp_path / "fleet.yaml").findings
     (said,) = [it for it in found if it.code == "MG413" and "frame base_link," in it.message]

@@ -48,7 +48,7 @@ affix: prefix
 separators: {{link: _}}
 description: {XACROS / "arm.urdf.xacro"}
 srdf: arm.srdf
-companions: {{params: controllers.yaml, moveit: [limits.yaml]}}
+related_files: {{params: controllers.yaml, moveit: [limits.yaml]}}
 """
 BY_PLACEHOLDER = """\
 arguments: {tf_prefix: '{robot}_'}
@@ -182,7 +182,7 @@ def test_a_fleet_with_own_arguments_can_be_pickled(tmp_path: Path) -> None:
 
 @pytest.mark.more
 def test_two_arguments_of_which_one_has_no_default(tmp_path: Path) -> None:
-    """As UR's macro, which needs ``name`` and ``tf_prefix``: the companions' names follow both."""
+    """As UR's macro, which needs ``name`` and ``tf_prefix``: the related_files' names follow both."""
     text = (
         '<robot name="$(arg name)" xmlns:xacro="http://www.ros.org/wiki/xacro">'
         '<xacro:arg name="tf_prefix" default=""/>'
@@ -199,7 +199,7 @@ def test_two_arguments_of_which_one_has_no_default(tmp_path: Path) -> None:
         "layout": "frames-per-robot", "affix": "prefix", "distro": "jazzy",
         "description": "arm.urdf.xacro",
         "arguments": {"name": "{robot}", "tf_prefix": "{robot}_"},
-        "companions": {"params": ["controllers.yaml"]},
+        "related_files": {"params": ["controllers.yaml"]},
         "robots": [{"name": "left"}, {"name": "right"}],
     }  # fmt: skip
     file = tmp_path / "fleet.yaml"
@@ -247,7 +247,7 @@ def test_a_default_that_is_not_empty_is_known_in_files(joint: str, tmp_path: Pat
         "simulator": "none",
         "description": str(tmp_path / "lbr.urdf.xacro"),
         "arguments": {"robot_name": "{robot}"},
-        "companions": {"params": str(tmp_path / "controllers.yaml")},
+        "related_files": {"params": str(tmp_path / "controllers.yaml")},
         "robots": [{"name": "robot1"}, {"name": "robot2"}],
     }
     made = built_fleet(data, "jazzy")
@@ -307,7 +307,7 @@ def test_a_topic_that_an_argument_has_made_the_robots(
     given = f"arguments: {{own: '{value}'}}\n" if value else ""
     (tmp_path / "fleet.yaml").write_text(
         f"layout: {layout}\naffix: prefix\ndistro: jazzy\ndescription: bot.urdf.xacro\n{given}"
-        "stack: localization\ncompanions: {params: nav2.yaml}\nrobots: [{name: r1}, {name: r2}]\n"
+        "stack: localization\nrelated_files: {params: nav2.yaml}\nrobots: [{name: r1}, {name: r2}]\n"
     )
     made = load_fleet(tmp_path / "fleet.yaml")
     rows = yaml.safe_load(made.text("r1/bridge.yaml"))

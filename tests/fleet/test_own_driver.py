@@ -24,7 +24,7 @@ affix: prefix
 robots:
   - {{name: robot1, description: bare.urdf, pose: {{x: 1.0}}}}
   - {{name: robot2, description: bare.urdf, pose: {{x: 3.0}}}}
-companions: {{params: params.yaml}}
+related_files: {{params: params.yaml}}
 """
 NODES = """\
 nodes:

@@ -105,8 +105,8 @@ def test_a_number_is_taken_back_only_as_it_was_written(tmp_path: Path) -> None:
     paths = (f"address+1:hardware/param[@name={it}]=59152" for it in ("client_port", "other"))
     own.write_text(f"[hardware a/B]\nopens: {' '.join(paths)}\n")
     text = text.replace("<hardware>", f"<hardware>{KUKA_PORT}")
-    two = [*rewrite_all(text, ["a", "b"], distro="jazzy", vocabulary=[str(own)])]
-    back = partial(strip, robot="b", distro="jazzy", vocabulary=[str(own)])
+    two = [*rewrite_all(text, ["a", "b"], distro="jazzy", definitions=[str(own)])]
+    back = partial(strip, robot="b", distro="jazzy", definitions=[str(own)])
     assert back(two[1].data) == text.encode()
     for old, new in (("59153<", "59152<"), ("from 59152 -->", "from 59152 --> ")):
         assert old.encode() in two[1].data
@@ -126,7 +126,7 @@ def test_two_mavros_of_one_system_are_joined_by_topics_of_their_own(tmp_path: Pa
     (tmp_path / "p.yaml").write_text("mavros_node: {ros__parameters: {tgt_system: 1}}\n")
     (tmp_path / "d.urdf").write_text('<robot name="d"><link name="base_link"/></robot>')
     robots = "".join(f"  - {{name: uav{it}, description: d.urdf}}\n" for it in (1, 2))
-    text = f"layout: both\ndistro: jazzy\nrobots:\n{robots}companions: {{params: p.yaml}}\n"
+    text = f"layout: both\ndistro: jazzy\nrobots:\n{robots}related_files: {{params: p.yaml}}\n"
     (tmp_path / "fleet.yaml").write_text(text)
     plan = planned_fleet(tmp_path / "fleet.yaml")
     files = {it.path: it.text for it in make_outputs(plan, "out").files}

@@ -284,7 +284,7 @@ def test_a_filter_whose_file_is_there_runs_or_its_lack_is_told(
     fleet.write_text(
         f"distro: humble\nlayout: tf-per-robot\nsimulator: none\nstack: [{stack}navigation, "
         "slam_toolbox]\ndescription: ../config/rover.urdf\n"
-        f"companions: {{params: [{files}]}}\nrobots: [{{name: robot1}}, {{name: robot2}}]\n"
+        f"related_files: {{params: [{files}]}}\nrobots: [{{name: robot1}}, {{name: robot2}}]\n"
     )
     out = tmp_path / "out"
     assert main(["build", str(fleet), "-o", str(out)]) == 0
@@ -308,7 +308,7 @@ def test_what_a_check_says_of_the_folder_alone_is_an_error(
     fleet.write_text(
         "layout: tf-per-robot\ndistro: jazzy\nsimulator: none\nstack: [nav2]\n"
         f"description: {ROOT / 'fixtures' / 'robots' / 'rover.urdf'}\n"
-        "companions: {params: amcl.yaml}\nrobots: [{name: robot1}, {name: robot2, pose: {y: 3}}]\n"
+        "related_files: {params: amcl.yaml}\nrobots: [{name: robot1}, {name: robot2, pose: {y: 3}}]\n"
     )
     assert main(["build", str(fleet), "-o", str(out), "-q"]) == code
     said = capsys.readouterr().err

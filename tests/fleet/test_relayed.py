@@ -20,7 +20,7 @@ from multibot_rewrite.base.findings.finding import NOTE
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.fleet.scripts import LoadedFleet
-from multibot_rewrite.spelling.bridged_topics import TF_TYPE
+from multibot_rewrite.planning.bridged_topics import TF_TYPE
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, End, System
 
 RVIZ = "Visualization Manager:\n  Displays: []\n  Global Options: {Fixed Frame: map}\n"
@@ -38,7 +38,7 @@ def fleet(folder: Path, layout: str) -> LoadedFleet:
         "robots:\n"
         f"  - {{name: robot1, description: {ROBOTS / 'rover.urdf'}}}\n"
         f"  - {{name: robot2, description: {ROBOTS / 'rover.urdf'}}}\n"
-        "companions: {rviz: one.rviz}\n"
+        "related_files: {rviz: one.rviz}\n"
     )
     (folder / "fleet.yaml").write_text(text)
     return load_fleet(folder / "fleet.yaml")

@@ -96,7 +96,7 @@ OWN = """\
 layout: frames-per-robot
 robots:
   - {name: robot1, description: rover.urdf}
-  - {name: robot2, description: own.urdf, companions: {params: own.yaml}}
+  - {name: robot2, description: own.urdf, related_files: {params: own.yaml}}
 """
 
 
@@ -160,7 +160,7 @@ def test_files_of_one_name_are_in_as_many_folders_as_tell_them_apart(
     source: str, path: str
 ) -> None:
     places = (("r.rviz", "config/r.rviz"),)
-    robot = SimpleNamespace(spec=SimpleNamespace(name="r", companions=ALIKE, places=places))
+    robot = SimpleNamespace(spec=SimpleNamespace(name="r", related_files=ALIKE, places=places))
     assert path_for(robot, source) == path  # type: ignore[arg-type]
 
 
@@ -175,7 +175,7 @@ def test_nothing_is_found_in_what_real_files_become(layout: str, tmp_path: Path)
     looked_at, told = 0, []
     for at, file in enumerate(params[:: len(params) // 12]):
         text = f"layout: {layout}\naffix: prefix\nstack: nav2\ndescription: {urdfs[at * 80]}\n"
-        text += f"companions: {{params: {file}}}\nrobots: [{{name: rob_a}}, {{name: rob_b}}]\n"
+        text += f"related_files: {{params: {file}}}\nrobots: [{{name: rob_a}}, {{name: rob_b}}]\n"
         try:
             made = make_outputs(planned(tmp_path, text))
         except MultibotError:

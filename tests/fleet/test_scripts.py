@@ -18,10 +18,10 @@ from paths import FIXTURES, SUPPORT
 
 from multibot_rewrite import InputError, RewriteRefused, UsageError, load_fleet
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.companions.params.rcl_parameters import node_parameters
-from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
 from multibot_rewrite.fleet.scripts import LoadedFleet
+from multibot_rewrite.related_files.params.rcl_parameters import node_parameters
+from multibot_rewrite.related_files.yaml_text import read_yaml
 
 ROVER = FIXTURES / "robots" / "rover.urdf"
 PARAMS = """\
@@ -51,7 +51,7 @@ stack: [nav2, robot_state]
 robots:
   - {{name: robot1, description: rover.urdf, pose: {{x: 1.0, y: 0.5, yaw: 1.5}}}}
   - {{name: robot2, description: rover.urdf, model: second}}
-companions:
+related_files:
   params: [params.yaml]
 """
 LAYOUTS = ("L1", "L2", "L3", "L4")
@@ -219,7 +219,7 @@ def test_arguments_of_programs(tmp_path: Path) -> None:
         (lambda it: it.params("params.yaml", "amlc"), ("params.yaml", "did you mean 'amcl'")),
         (lambda it: it.params("params.yaml", "my_nod"), ("did you mean 'my_node'",)),
         (lambda it: it.params("parms.yaml", "amcl"), ("did you mean 'robot1/params.yaml'",)),
-        (lambda it: it.text("parms.yaml"), ("under companions",)),
+        (lambda it: it.text("parms.yaml"), ("under related_files",)),
         (lambda it: it._fleet.robot("robt1"), ("did you mean 'robot1'", "robot2")),
         (lambda it: it._fleet.table.name("amcl"), ("all robots",)),
     ],
@@ -273,7 +273,7 @@ def test_robots_that_would_meet_are_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.more
-def test_a_companion_that_cannot_be_rewritten_is_refused(tmp_path: Path) -> None:
+def test_a_related_file_that_cannot_be_rewritten_is_refused(tmp_path: Path) -> None:
     params = "robot1:\n  amcl:\n    ros__parameters: {a: 1}\n"
     loaded = fleet(tmp_path, params=params)
     with pytest.raises(RewriteRefused, match="MB883"):

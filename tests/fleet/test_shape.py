@@ -49,7 +49,7 @@ def fleet(folder: Path, shape: str, **keys: Any) -> dict[str, Any]:
     params = [str(folder / f"my {it}.yaml") for it in NODES]
     robots = [{"name": "robot1", "pose": {"x": 1.5}}, {"name": "robot2"}]
     usual = {"layout": shapes()[shape].layouts[0], "distro": "jazzy"} if shape else {}
-    own = {"description": str(folder / "r.urdf"), "companions": {"params": params}}
+    own = {"description": str(folder / "r.urdf"), "related_files": {"params": params}}
     both = {"shape": shape} if shape else {}
     return {**usual, **own, **both, "robots": robots, **keys}
 
@@ -77,7 +77,7 @@ def test_clearpath_has_a_setup_folder(tmp_path: Path) -> None:
     lidar.write_text(PARAMS.format("urg_node"))
     (tmp_path / "robot.yaml").write_text("system: {ros2: {namespace: a200}}  # kept\n")
     keys = fleet(tmp_path, "clearpath")
-    keys["companions"]["params"].append(str(lidar))
+    keys["related_files"]["params"].append(str(lidar))
     made = load_fleet(keys)
     own = {it.removeprefix("robot2/") for it in made.files if it.startswith("robot2/")}
     places = {"robot.urdf.xacro", "robot.yaml", "sensors/config/lidar2d_0.yaml"}
@@ -127,7 +127,7 @@ def test_clearpath_starts_a_bridge_for_each_sensor(tmp_path: Path) -> None:
         row = f"- {{topic_name: {it}/scan, {types}, direction: GZ_TO_ROS}}\n"
         (folder / f"{it}.yaml").write_text(row)
     bridges = {"bridge": [str(it) for it in sorted(folder.iterdir())]}
-    made = load_fleet(fleet(tmp_path, "clearpath", companions=bridges))
+    made = load_fleet(fleet(tmp_path, "clearpath", related_files=bridges))
     for it in ("lidar2d_0", "lidar2d_1"):
         (row,) = yaml.safe_load(made.text(f"robot2/sensors/config/{it}.yaml"))
         assert (
@@ -135,7 +135,7 @@ def test_clearpath_starts_a_bridge_for_each_sensor(tmp_path: Path) -> None:
             == f"/robot2/{it}/scan"
         )
     assert len(yaml.safe_load(made.text("robot2/bridge.yaml"))) == 2
-    plain = load_fleet(fleet(tmp_path, "", layout="tf-per-robot", companions=bridges))
+    plain = load_fleet(fleet(tmp_path, "", layout="tf-per-robot", related_files=bridges))
     assert not [it for it in plain.files if "lidar2d" in it]
 
 
@@ -153,7 +153,7 @@ def test_clearpaths_generator_is_that_of_the_robot(
 def test_only_the_first_file_of_a_node_gets_its_place(tmp_path: Path) -> None:
     keys = fleet(tmp_path, "clearpath")
     (tmp_path / "more.yaml").write_text(PARAMS.format("controller_manager"))
-    keys["companions"]["params"].append(str(tmp_path / "more.yaml"))
+    keys["related_files"]["params"].append(str(tmp_path / "more.yaml"))
     files = load_fleet(keys).files
     assert {"robot1/more.yaml", "robot1/platform/config/control.yaml"} <= set(files)
 
@@ -164,11 +164,11 @@ def test_a_file_in_a_folder_of_the_vendor_takes_no_other_place(tmp_path: Path) -
     folder.mkdir(parents=True)
     (folder / "control.yaml").write_text(PARAMS.format("controller_manager"))
     keys = fleet(tmp_path, "clearpath")
-    keys["companions"]["params"].insert(0, str(folder / "control.yaml"))
+    keys["related_files"]["params"].insert(0, str(folder / "control.yaml"))
     files = set(load_fleet(keys).files)
     places = {f"robot1/{it}/config/control.yaml" for it in ("manipulators", "platform")}
     assert places <= files
-    keys["companions"]["params"] = [str(folder / "control.yaml")]
+    keys["related_files"]["params"] = [str(folder / "control.yaml")]
     assert set(load_fleet(keys).files) & places == {"robot1/manipulators/config/control.yaml"}
 
 
@@ -203,15 +203,15 @@ def test_turtlebot4_as_it_is(tmp_path: Path) -> None:
 def test_husarion_gets_its_bridge_file(tmp_path: Path) -> None:
     row = "topic_name: imu, ros_type_name: sensor_msgs/msg/Imu, gz_type_name: gz.msgs.IMU"
     (tmp_path / "b.yaml").write_text(f"- {{{row}, direction: GZ_TO_ROS}}\n")
-    keys = fleet(tmp_path, "husarion")["companions"] | {"bridge": str(tmp_path / "b.yaml")}
-    (line,) = commands(tmp_path, "husarion", simulator="gazebo", companions=keys)
+    keys = fleet(tmp_path, "husarion")["related_files"] | {"bridge": str(tmp_path / "b.yaml")}
+    (line,) = commands(tmp_path, "husarion", simulator="gazebo", related_files=keys)
     assert line.startswith("ros2 launch husarion_ugv_gazebo simulate_robot.launch.py")
     assert line.endswith(" gz_bridge_config_path:=$PWD/robot1/bridge.yaml")
     assert " localization_config_path:=$PWD/'robot1/my ekf_filter.yaml' " in line
 
 
 def test_a_command_without_files_is_left_out(tmp_path: Path) -> None:
-    assert commands(tmp_path, "nav2", companions={}) == []
+    assert commands(tmp_path, "nav2", related_files={}) == []
 
 
 @pytest.mark.parametrize(

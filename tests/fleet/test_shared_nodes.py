@@ -97,7 +97,7 @@ def test_a_map_server_without_a_map_is_told(
     if value is not None:
         own_file = f"map_server: {{ros__parameters: {{yaml_filename: {value}}}}}\n"
         (tmp_path / "own.yaml").write_text(own_file)
-        text += "companions: {params: own.yaml}\n"
+        text += "related_files: {params: own.yaml}\n"
     (tmp_path / "fleet.yaml").write_text(text)
     found = make_outputs(planned_fleet(tmp_path / "fleet.yaml")).findings
     assert [it.level for it in found if it.code == "MF857"] == ["note"] * is_told

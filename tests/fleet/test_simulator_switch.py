@@ -143,7 +143,7 @@ def test_a_manager_that_an_argument_would_load_is_told_with_it(
     assert (said in told) == bool(value)
     if value:
         file.write_text(
-            f"{fleet}arguments: {{{name}: '{value}'}}\ncompanions: {{params: c.yaml}}\n"
+            f"{fleet}arguments: {{{name}: '{value}'}}\nrelated_files: {{params: c.yaml}}\n"
         )
         assert main(command) == 0
         assert "MG723" not in capsys.readouterr().err

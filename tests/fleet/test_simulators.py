@@ -76,7 +76,7 @@ def test_no_controller_sent_joint_states_before_a_rewrite_either(
     )
     (tmp_path / "fleet.yaml").write_text(
         "layout: frames-per-robot\ndistro: humble\nsimulator: gazebo\ndescription: arm.urdf\n"
-        "companions: {params: params.yaml}\nrobots: [{name: robot1}]\n"
+        "related_files: {params: params.yaml}\nrobots: [{name: robot1}]\n"
     )
     main(["plan", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "plan.yaml")])
     said = capsys.readouterr().err

@@ -79,7 +79,7 @@ def test_what_cannot_be_read_is_said(tmp_path: Path) -> None:
 def test_a_built_folder_runs_as_its_plan_says(tmp_path: Path) -> None:
     robots = "".join(f"  - {{name: {it}, description: {ROVER}}}\n" for it in ROBOTS)
     text = f"layout: frames-per-robot\nstack: [robot_localization]\nrobots:\n{robots}"
-    text += "companions: {params: ekf.yaml}\n"
+    text += "related_files: {params: ekf.yaml}\n"
     (tmp_path / "fleet.yaml").write_text(text)
     # The plugin of the drive sends it.
     frame = "{odom0: odom, publish_tf: false}"

@@ -169,7 +169,7 @@ def build(sources: Path, tmp_path: Path) -> Build:
             "fill_arguments": way == FILLED,
             "stack": ["ros2_control", "moveit"],
             "simulator": "none",
-            "companions": {
+            "related_files": {
                 "params": [str(sources / it) for it in arm.params],
                 "moveit": [str(sources / it) for it in arm.moveit],
                 "rviz": str(sources / arm.rviz),

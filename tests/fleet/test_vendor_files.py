@@ -49,7 +49,7 @@ def plan(folder: Path, description: str, more: str = "", params: str = "") -> Fl
     (folder / name).write_text(description)
     (folder / "p.yaml").write_text(params)
     fleet = folder / "fleet.yaml"
-    own = "companions: {params: p.yaml}\n" if params else ""
+    own = "related_files: {params: p.yaml}\n" if params else ""
     head = f"description: {name}\nlayout: tf-per-robot\naffix: prefix\n{own}"
     fleet.write_text(f"{head}{more}robots: [{{name: robot1}}, {{name: robot2}}]\n")
     return planned_fleet(fleet, "jazzy")

@@ -112,7 +112,7 @@ def test_inspect_shows_versions_and_days(capsys: pytest.CaptureFixture[str]) -> 
     lines = [" ".join(it.split()) for it in capsys.readouterr().out.splitlines()]
     assert "lyrical 2.10.0 a3442d2f6 2.7.0 2024-03-03 older than the release" in lines
     assert not any("humble" in it for it in lines)
-    assert main(["inspect", "twist_mux", "--form", "json"]) == 0
+    assert main(["inspect", "twist_mux", "--output-kind", "json"]) == 0
     (node,) = json.loads(capsys.readouterr().out)["nodes"]
     assert node["versions"]["humble"]["now"] == "4.3.0"
     assert main(["inspect", "twist_mux"]) == 0

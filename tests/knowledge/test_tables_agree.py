@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is known of a node stands in two tables: its names in knowledge/*.yaml, its parameters in
-companions/params/params.yaml. They may not say two things of one node, in any release."""
+related_files/params/params.yaml. They may not say two things of one node, in any release."""
 
 from __future__ import annotations
 

@@ -208,7 +208,7 @@ stack: nav2_composed
 robots:
   - {name: robot1, description: rover.urdf}
   - {name: robot2, description: rover.urdf}
-companions: {params: params.yaml}
+related_files: {params: params.yaml}
 """
 PARAMS = """\
 controller_server:

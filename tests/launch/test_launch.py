@@ -40,7 +40,7 @@ stack: [nav2, robot_state]
 robots:
   - {name: robot1, description: rover.urdf, pose: {x: 1.0, y: 0.5, yaw: 1.5}}
   - {name: robot2, description: rover.urdf, model: second}
-companions:
+related_files:
   params: params.yaml
   rviz: one.rviz
 """

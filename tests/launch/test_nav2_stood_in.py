@@ -18,10 +18,10 @@ import yaml
 from launched_here import read_here
 from nav2_fleet import FILE, written
 
-from multibot_rewrite.companions.rviz.rewrite import RvizText
 from multibot_rewrite.launch import nav2
 from multibot_rewrite.producers.launch.child import launch_graph
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchOrder
+from multibot_rewrite.related_files.rviz.rewrite import RvizText
 
 BESIDE = ["map_server", "amcl"]
 NAV2 = {
@@ -253,7 +253,7 @@ def test_a_window_needs_a_config(tmp_path: Path) -> None:
         read_here(kept, tmp_path)
         words = (("fleet", str(file)), ("rviz", "each"))
         notes = launch_graph(LaunchOrder(str(FILE), words, trusted=True)).notes
-    assert any(f"rviz:=each: {file} has no rviz: under companions" in it.message for it in notes)
+    assert any(f"rviz:=each: {file} has no rviz: under related_files" in it.message for it in notes)
 
 
 @pytest.mark.parametrize("clock", [True, False, None])

@@ -24,7 +24,7 @@ stack: nav2
 robots:
   - {name: robot1, description: rover.urdf}
   - {name: robot2, description: rover.urdf}
-companions: {params: params.yaml}
+related_files: {params: params.yaml}
 """
 PARAMS = "bt_navigator:\n  ros__parameters: {odom_topic: /odom, robot_base_frame: base_link}\n"
 HEAD = """\

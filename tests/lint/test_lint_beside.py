@@ -13,10 +13,17 @@ import pytest
 from paths import FIXTURES, ROBOTS, fixture_text
 
 from multibot_rewrite.base.releases import RELEASES
-from multibot_rewrite.companions.named_file import BRIDGE, MOVEIT, PARAMS, RVIZ, is_linted, kind_of
 from multibot_rewrite.knowledge.declared import FILE, is_known
 from multibot_rewrite.knowledge.nodl.lookup import INDEX
 from multibot_rewrite.lint.check import lint_data, lint_file
+from multibot_rewrite.related_files.named_file import (
+    BRIDGE,
+    MOVEIT,
+    PARAMS,
+    RVIZ,
+    is_linted,
+    kind_of,
+)
 from multibot_rewrite.rules.files.parameter_files import beyond
 from multibot_rewrite.rules.settings import Settings
 from tools.interfaces.declared_table import ID, plugin_owners, table

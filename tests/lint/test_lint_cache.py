@@ -235,9 +235,9 @@ def test_other_settings_are_other_results(here: Path, what: str) -> None:
     assert new > 0
 
 
-def test_a_vocabulary_is_part_of_it(here: Path) -> None:
+def test_a_definitions_is_part_of_it(here: Path) -> None:
     row = "[plugin libacme.so]\nframe uses link\n"
-    with_one = SETTINGS._replace(vocabulary=("extra.vocab",))
+    with_one = SETTINGS._replace(definitions=("extra.vocab",))
     assert identity(with_one) == identity(with_one) != identity(SETTINGS)
     before = identity(with_one)
     write(here / "extra.vocab", row)
@@ -453,7 +453,7 @@ def test_every_look_at_the_disk_is_noted(unnoted: list[str]) -> None:
     from multibot_rewrite.lint.files.included import set_among
 
     forget()
-    builtin_tree((), SETTINGS.distro)  # the identity of a run has all vocabularies
+    builtin_tree((), SETTINGS.distro)  # the identity of a run has all plugin definitions
     settings, _ = outside.recorded(lambda: set_among(SOURCES, SETTINGS))
     for path in SOURCES:
         outside.recorded(lambda path=path: lint_file(path, settings))

@@ -127,7 +127,7 @@ WRONG: list[tuple[Sequence[str], str]] = [
     (["-", "--fix"], "standard input is linted alone"),
     (["good.urdf", "--config", "no.toml"], "no.toml"),
     (["good.urdf", "--baseline", "no.json"], "no.json"),
-    (["good.urdf", "--vocabulary", "no.vocab"], "no.vocab"),
+    (["good.urdf", "--definitions", "no.vocab"], "no.vocab"),
     (["good.urdf", "--output", "left.urdf/report"], "left.urdf is a file, not a folder"),
     (["good.urdf", "--output", "good.urdf"], "choose another one for --output"),
     (["good.urdf", "--output", "sub/../good.urdf"], "choose another one for --output"),

@@ -156,7 +156,7 @@ WRONG = [
     ("roots = ['robots/rover.urdf']", "roots: there is no folder"),
     ("urdf = 'nowhere.urdf'", "urdf: no file 'nowhere.urdf' in"),
     ("urdf = ['robots/rover.urdf']", "urdf is a list, write a text in quotes"),
-    ("vocabulary = ['nowhere.vocab']", "vocabulary: no file 'nowhere.vocab' in"),
+    ("definitions = ['nowhere.vocab']", "definitions: no file 'nowhere.vocab' in"),
     ("xacro = {files = '*'}", "xacro is a table, write tables [[xacro]]"),
     ("xacro = ['a']", "xacro, number 1 is a string, write a table"),
     ("[[xacro]]\nfiles = '*'", "xacro, number 1: no arguments"),
@@ -261,7 +261,7 @@ def test_the_command_replaces_or_adds(project: Path) -> None:
         baseline = "a.json"
         layout = "L4"
         affix = "prefix"
-        vocabulary = ["data/mine.vocab"]
+        definitions = ["data/mine.vocab"]
         [[xacro]]
         arguments = {sim = "gz"}
     """
@@ -272,7 +272,7 @@ def test_the_command_replaces_or_adds(project: Path) -> None:
         baseline="b.json",
         fail_on="note",
         layout="L1",
-        vocabulary=("more.vocab",),
+        definitions=("more.vocab",),
         arguments=(("fake", "true"),),
         urdf="other.urdf",
     )
@@ -281,7 +281,7 @@ def test_the_command_replaces_or_adds(project: Path) -> None:
     assert (it.baseline, it.fail_on, settings.urdf) == ("b.json", "note", "other.urdf")
     assert settings.naming == make_naming("L1", "prefix")
     assert settings.roots == (str(project / "external"),)
-    assert settings.vocabulary == (str(project / "data/mine.vocab"), "more.vocab")
+    assert settings.definitions == (str(project / "data/mine.vocab"), "more.vocab")
     assert [str(given) for given in settings.arguments] == ["sim:=gz", "fake:=true"]
 
 
@@ -329,7 +329,7 @@ EXAMPLES = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
 
 @pytest.mark.parametrize("text", EXAMPLES)
 def test_an_example_of_the_page_is_read(project: Path, text: str) -> None:
-    for name in ("robots/rover.urdf", "vocabulary/acme.vocab"):
+    for name in ("robots/rover.urdf", "definitions/acme.vocab"):
         (project / name).parent.mkdir(exist_ok=True)
         (project / name).write_text("")
     (project / "src").mkdir()

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 from lint_calls import Settings, lint_data
 
-from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
+from multibot_rewrite.description.rewriters.plugin_definitions import load_definitions
 from multibot_rewrite.rules.schema.described import chunks, described
 
 NEW = Settings(select=("MB11", "MB120", "MB124", "MB125", "MB15", "MB16", "MB17"))
@@ -806,11 +806,11 @@ def test_every_row_of_sdf_has_a_source() -> None:
 
 @pytest.mark.more
 def test_every_value_of_a_plugin_has_a_source() -> None:
-    vocabulary = load_vocabulary((), "", packages=False)
+    definitions = load_definitions((), "", packages=False)
     places = [
         (name, row.name, it)
-        for name, of_ros_1 in vocabulary.valued()
-        for values in filter(None, [vocabulary.values(name, of_ros_1)])
+        for name, of_ros_1 in definitions.valued()
+        for values in filter(None, [definitions.values(name, of_ros_1)])
         for row in values.rows.values()
         for it in (row.place, row.checked)
     ]

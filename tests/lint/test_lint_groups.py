@@ -56,7 +56,7 @@ def test_a_lint_of_a_urdf_loads_nothing_for_other_files(tmp_path: Path) -> None:
         *(
             "description.sources.access",
             "description.rewriters.patterns",
-            "spelling.bridged_topics",
+            "planning.bridged_topics",
         ),
     )
     loaded = set(run.stdout.splitlines()[-1].split())

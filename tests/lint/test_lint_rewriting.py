@@ -95,14 +95,14 @@ def test_a_row_of_another_release(
     """By a word in the row, or by the setting of a section that adds it."""
     words, setting = ("", "releases: humble\n") if whole else (" releases=humble", "")
     row = row.replace(" uses link", f" uses link{words}").replace(" keep ", f" keep{words} ")
-    vocabulary = tmp_path / "my.vocab"
-    vocabulary.write_text(f"[plugin lamp]\nz uses link\n[plugin lamp]\n{setting}{row}\n")
+    definitions = tmp_path / "my.vocab"
+    definitions.write_text(f"[plugin lamp]\nz uses link\n[plugin lamp]\n{setting}{row}\n")
     file = tmp_path / "r.urdf"
     plugin = f"<gazebo><plugin name='l' filename='liblamp.so'>{text}</plugin></gazebo>"
     file.write_text(f"<robot name='r'><link name='base'/>{plugin}</robot>")
 
     def found(release: str) -> list[str]:
-        settings = Settings(select=("MB905",), vocabulary=(str(vocabulary),), distro=release)
+        settings = Settings(select=("MB905",), definitions=(str(definitions),), distro=release)
         return [it.message for it in lint_file(str(file), settings)]
 
     about = f"{line} of plugin lamp is not in jazzy, only in humble: nothing in it is renamed"
@@ -112,12 +112,12 @@ def test_a_row_of_another_release(
 
 @pytest.mark.more
 def test_a_plugin_that_only_another_release_has(tmp_path: Path) -> None:
-    vocabulary = tmp_path / "my.vocab"
-    vocabulary.write_text("[plugin lamp]\nopens: nothing\nreleases: <=jazzy\nlink uses link\n")
+    definitions = tmp_path / "my.vocab"
+    definitions.write_text("[plugin lamp]\nopens: nothing\nreleases: <=jazzy\nlink uses link\n")
     file = tmp_path / "r.urdf"
     plugin = "<gazebo><plugin name='l' filename='liblamp.so'><link>a</link></plugin></gazebo>"
     file.write_text(f"<robot name='r'><link name='a'/>{plugin}</robot>")
-    settings = Settings(select=("MB902",), vocabulary=(str(vocabulary),), distro="kilted")
+    settings = Settings(select=("MB902",), definitions=(str(definitions),), distro="kilted")
     (found,) = lint_file(str(file), settings)
     assert "plugin 'liblamp.so' is not in kilted, only in humble, jazzy" in found.message
     assert "--distro" in found.hint

@@ -94,7 +94,7 @@ BAD = (
     'topics = "name"', 'affix = "front"', 'groups = "drop"', 'distro = "foxy2"', "robots = 3",
     "xacro = [{files = 'a'}]", "xacro = [{arguments = {a = []}}]", "xacro = {arguments = {}}",
     "xacro = [{arguments = {}, file = 'a'}]", 'fail-on = "all"', 'targets = ["usd"]',
-    'baseline = ""', "unknown = 1", 'roots = "src"', "layout = 1", "urdf = 1", "vocabulary = 'a'",
+    'baseline = ""', "unknown = 1", 'roots = "src"', "layout = 1", "urdf = 1", "definitions = 'a'",
     "exclude = ['']", "per-file-ignores = {a = 'MB1'}",
 )  # fmt: skip
 

@@ -11,9 +11,9 @@ from plans import PlannedRobot, planned, planned_end
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.live.diagnose import diagnose, diagnose_domains
+from multibot_rewrite.planning.domain_bridge import with_bridges
+from multibot_rewrite.planning.plan import to_yaml
 from multibot_rewrite.rules.check import check_domains
-from multibot_rewrite.spelling.domain_bridge import with_bridges
-from multibot_rewrite.spelling.plan import to_yaml
 from multibot_rewrite.system.domains import by_domain, named, side_by_side, unnamed
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import (

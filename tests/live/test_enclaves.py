@@ -69,7 +69,7 @@ def fleet(layout: str) -> tuple[System, dict[str, Patterns], str]:
     plan, policy = folder / f"{layout}.yaml", folder / f"{layout}.xml"
     words = [ROVER, "robot1", "robot2", "--stack", "nav2", "--layout", layout]
     assert main(["plan", *words, "-o", str(plan)]) == 0
-    assert main(["plan", *words, "--form", "sros2", "-o", str(policy)]) == 0
+    assert main(["plan", *words, "--output-kind", "sros2", "-o", str(policy)]) == 0
     text = policy.read_text()
     return read_plan(plan.read_bytes(), "plan"), dds_topics(text), text
 
@@ -146,7 +146,7 @@ def test_an_endpoint_by_parameter_is_allowed_although_it_only_may_be_there(tmp_p
     )
     words = [ROVER, "robot1", "--nodes", str(nodes), "--stack", "own", "--layout", "both"]
     assert main(["plan", *words, "-o", str(plan)]) == 0
-    assert main(["plan", *words, "--form", "sros2", "-o", str(policy)]) == 0
+    assert main(["plan", *words, "--output-kind", "sros2", "-o", str(policy)]) == 0
     planned = {it.name for it in surely(read_plan(plan.read_bytes(), "plan")).ends}
     assert "/robot1/odom" in planned and "/robot1/debug" not in planned
     assert {"rt/robot1/odom", "rt/robot1/debug"} <= dds_topics(policy.read_text())["/robot1"][0]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``multibot snapshot --form nodes``: what a graph shows becomes facts, whose tables serve the code."""
+"""``multibot snapshot --output-kind nodes``: a graph becomes facts, whose tables serve the code."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ from multibot_rewrite.knowledge.stacks import built_in, user_stack
 from multibot_rewrite.live.learning.choosing import choose_nodes
 from multibot_rewrite.live.learning.learn import LearnedNode, learn
 from multibot_rewrite.live.learning.nodes_file import to_yaml
-from multibot_rewrite.spelling.of_runs import expanded, parsed
-from multibot_rewrite.spelling.records import Table
-from multibot_rewrite.spelling.table import build_table
+from multibot_rewrite.planning.of_runs import expanded, parsed
+from multibot_rewrite.planning.records import Table
+from multibot_rewrite.planning.table import build_table
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import (
     ACTION,
@@ -440,7 +440,19 @@ def test_what_is_learned_gives_the_whole_table(
 ) -> None:
     mine = str(tmp_path / "mine.yaml")
     assert (
-        main(["snapshot", "--form", "nodes", "--from", str(shot), "--stack", "mine", "-o", mine])
+        main(
+            [
+                "snapshot",
+                "--output-kind",
+                "nodes",
+                "--from",
+                str(shot),
+                "--stack",
+                "mine",
+                "-o",
+                mine,
+            ]
+        )
         == 0
     )
     note = "left out as tools: /rviz2; to learn one give its name to --node"
@@ -450,7 +462,7 @@ def test_what_is_learned_gives_the_whole_table(
     assert names == ["driver", "eye"]
     rover = str(FIXTURES / "robots" / "rover.urdf")
     fleet = [rover, "robot1", "robot2", "--nodes", mine, "--stack", "mine", "--layout"]
-    assert main(["plan", "--form=table", *fleet, "frames-per-robot"]) == 0
+    assert main(["plan", "--output-kind=table", *fleet, "frames-per-robot"]) == 0
     out, err = capsys.readouterr()
     assert err == ""
     for rule in ("/cmd_vel -> cmd_vel", "/dock/_action/feedback -> dock/_action/feedback"):
@@ -464,7 +476,7 @@ def test_an_incomplete_view_is_written_and_reported(
     caveat = Caveat("not-settled", True, "it still changed")
     shot.write_bytes(to_json(seen._replace(environment=environment(caveat))))
     mine = tmp_path / "mine.yaml"
-    assert main(["snapshot", "--form", "nodes", "--from", str(shot), "-o", str(mine)]) == 3
+    assert main(["snapshot", "--output-kind", "nodes", "--from", str(shot), "-o", str(mine)]) == 3
     assert "multibot: incomplete: it still changed\n" in capsys.readouterr().err
     assert "/odom" in mine.read_text()
 
@@ -473,7 +485,7 @@ def test_helpers_without_a_node_are_reported(
     shot: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     shot.write_bytes(to_json(graph(node(), LISTENER)))
-    assert main(["snapshot", "--form", "nodes", "--from", str(shot)]) == 0
+    assert main(["snapshot", "--output-kind", "nodes", "--from", str(shot)]) == 0
     assert "they are left out: /transform_listener_impl_55d0c0ffee" in capsys.readouterr().err
 
 
@@ -498,7 +510,7 @@ def test_wrong_use_is_one_line(
     shot: Path, words: list[str], said: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     try:
-        code: object = main(["snapshot", "--form", "nodes", "--from", str(shot), *words])
+        code: object = main(["snapshot", "--output-kind", "nodes", "--from", str(shot), *words])
     except SystemExit as end:
         code = end.code
     out, err = capsys.readouterr()
@@ -511,7 +523,7 @@ def test_what_is_no_snapshot_is_one_line(
     shot: Path, data: bytes, capsys: pytest.CaptureFixture[str]
 ) -> None:
     shot.write_bytes(data)
-    assert main(["snapshot", "--form", "nodes", "--from", str(shot)]) == 2
+    assert main(["snapshot", "--output-kind", "nodes", "--from", str(shot)]) == 2
     out, err = capsys.readouterr()
     assert (out, err.count("\n")) == ("", 1)
     assert err.startswith(f"multibot: {shot}")

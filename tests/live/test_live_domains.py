@@ -13,8 +13,8 @@ from live_commands import TEXT
 from paths import ROBOTS
 from plans import PlannedRobot, planned, planned_end
 
-from multibot_rewrite.spelling.domain_bridge import with_bridges
-from multibot_rewrite.spelling.plan import to_yaml
+from multibot_rewrite.planning.domain_bridge import with_bridges
+from multibot_rewrite.planning.plan import to_yaml
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Domain
 
 pytestmark = pytest.mark.live

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``multibot snapshot --form nodes`` of real nodes: with the rules of its table nothing leaks."""
+"""``multibot snapshot --output-kind nodes`` of real nodes: its table's rules leave no leak."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.knowledge.node_library import stack_of
 from multibot_rewrite.knowledge.stacks import user_stack
-from multibot_rewrite.spelling.records import Run, Table
-from multibot_rewrite.spelling.table import build_table
-from multibot_rewrite.spelling.ways import arguments, started
+from multibot_rewrite.planning.records import Run, Table
+from multibot_rewrite.planning.table import build_table
+from multibot_rewrite.planning.ways import arguments, started
 from multibot_rewrite.system.json import from_json
 from multibot_rewrite.system.records import System
 
@@ -78,7 +78,7 @@ def files(
     with live_fleet.running(domain(0), code, below, **tf2):
         words = (
             "snapshot",
-            "--form",
+            "--output-kind",
             "nodes",
             "--node",
             "/driver,/pilot",
@@ -90,7 +90,7 @@ def files(
         seen = multibot(0, "snapshot", "-o", shot, *PATIENTLY, **tf2)
     words = (
         "snapshot",
-        "--form",
+        "--output-kind",
         "nodes",
         "--from",
         shot,
@@ -182,12 +182,12 @@ def full(node: Run) -> str:
 
 def test_where_nothing_runs_nothing_is_written(tmp_path: Path) -> None:
     file = tmp_path / "mine.yaml"
-    done = multibot(2, "snapshot", "--form", "nodes", "--timeout", "1", "-o", str(file))
+    done = multibot(2, "snapshot", "--output-kind", "nodes", "--timeout", "1", "-o", str(file))
     assert (done.returncode, file.exists()) == (2, False)
     assert "incomplete: no node was seen" in done.stderr
     assert "there is no node to learn in this graph" in done.stderr
 
 
 def test_a_wrong_rmw_is_one_line() -> None:
-    done = multibot(2, "snapshot", "--form", "nodes", RMW_IMPLEMENTATION="rmw_nonsense_cpp")
+    done = multibot(2, "snapshot", "--output-kind", "nodes", RMW_IMPLEMENTATION="rmw_nonsense_cpp")
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (4, "", 1)

@@ -22,9 +22,9 @@ from multibot_rewrite.fleet.fleet import Fleet, expected, make_fleet
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.live.rehearsal import stub_nodes
+from multibot_rewrite.planning.records import Run
+from multibot_rewrite.planning.ways import ros_arguments
 from multibot_rewrite.producers.ros import ros
-from multibot_rewrite.spelling.records import Run
-from multibot_rewrite.spelling.ways import ros_arguments
 from multibot_rewrite.system.records import ACTION, TOPIC
 
 pytestmark = pytest.mark.live

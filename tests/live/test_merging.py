@@ -140,7 +140,7 @@ def test_the_command_joins_and_check_takes_all(
         (["snapshot", "--from", ""], "the name is empty"),
         (["snapshot", "--from", "tcp/h"], "write PROTOCOL/HOST:PORT"),
         (
-            ["snapshot", "--form", "nodes", "--from", "a.json", "--from", "tcp/h:1"],
+            ["snapshot", "--output-kind", "nodes", "--from", "a.json", "--from", "tcp/h:1"],
             "two sources",
         ),
     ],

@@ -124,7 +124,7 @@ def test_a_folder_has_a_file_for_each_node_and_a_plan_of_them_fits_the_graph(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     folder, plan = str(tmp_path / "nodl"), str(tmp_path / "plan.yaml")
-    learned = ("--from", HEALTHY, "--namespace", "/robot1", "--form", "nodl")
+    learned = ("--from", HEALTHY, "--namespace", "/robot1", "--output-kind", "nodl")
     assert main(["snapshot", *learned, "-o", folder]) == 0
     assert (tmp_path / "nodl/local_costmap/local_costmap.nodl.yaml").is_file()
     stacks = "pilot,local_costmap/local_costmap"
@@ -143,7 +143,7 @@ def test_nav2_from_its_own_graph_is_as_planned_and_a_leak_is_found(
     graph = healthy(nav2("L1"))
     seen, folder, plan = (str(tmp_path / it) for it in ("graph.json", "nodl", "plan.yaml"))
     Path(seen).write_bytes(to_json(graph))
-    given = ("--from", seen, "--namespace", "/robot1", "--form", "nodl", "-o", folder)
+    given = ("--from", seen, "--namespace", "/robot1", "--output-kind", "nodl", "-o", folder)
     assert main(["snapshot", *given]) == 0
     robots = ("robot1", "robot2", "--layout", "L1", "--stack", "nav2", "--distro", NEWEST_LTS)
     assert main(["plan", str(ROVER), *robots, "--nodes", folder, "-o", plan]) == 0
@@ -174,7 +174,7 @@ def test_the_ending_of_the_file_tells_the_form(
     assert main([*PILOT, "-o", str(in_yaml)]) == main([*PILOT, "-o", str(in_json)]) == 0
     assert yaml.safe_load(in_yaml.read_text()) == json.loads(in_json.read_text())
     capsys.readouterr()
-    assert main([*PILOT, "--form", "nodl"]) == 0
+    assert main([*PILOT, "--output-kind", "nodl"]) == 0
     assert capsys.readouterr().out == in_yaml.read_text()
 
 
@@ -182,6 +182,6 @@ def test_a_file_is_for_one_node(tmp_path: Path, capsys: pytest.CaptureFixture[st
     many = ("snapshot", "--from", HEALTHY, "--namespace", "/robot1")
     assert main([*many, "-o", str(tmp_path / "all.nodl.yaml")]) == 2
     assert "a NoDL file is for one node, here are 8" in capsys.readouterr().err
-    assert main([*PILOT, "--form", "nodes", "-o", str(tmp_path / "a.nodl.yaml")]) == 2
-    assert "leave out --form nodes" in capsys.readouterr().err
+    assert main([*PILOT, "--output-kind", "nodes", "-o", str(tmp_path / "a.nodl.yaml")]) == 2
+    assert "leave out --output-kind nodes" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())

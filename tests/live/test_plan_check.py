@@ -13,7 +13,7 @@ from plans import optional
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.spelling.plan import read_plan, to_yaml
+from multibot_rewrite.planning.plan import read_plan, to_yaml
 from multibot_rewrite.system.json import from_yaml, to_json
 from multibot_rewrite.system.records import Caveat, System
 

@@ -16,10 +16,10 @@ from node_answers import told
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.fleet.outputs.built_states import with_built
+from multibot_rewrite.planning.plan import read_plan, to_yaml
 from multibot_rewrite.producers.ros import ask
 from multibot_rewrite.producers.ros.observe import AGAIN_SECONDS, Answers
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan import read_plan, to_yaml
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.parameters import Answer, Question, with_answers
 from multibot_rewrite.system.records import (

@@ -40,11 +40,11 @@ from multibot_rewrite.live.rehearsal import (
     with_substitutes,
     without_doubles,
 )
-from multibot_rewrite.spelling.plan import expect
-from multibot_rewrite.spelling.records import Run, Table
-from multibot_rewrite.spelling.table import build_table, plugin_nodes
-from multibot_rewrite.spelling.transforms import edges_of, frames_of, with_odometry
-from multibot_rewrite.spelling.ways import WAYS
+from multibot_rewrite.planning.plan import expect
+from multibot_rewrite.planning.records import Run, Table
+from multibot_rewrite.planning.table import build_table, plugin_nodes
+from multibot_rewrite.planning.transforms import edges_of, frames_of, with_odometry
+from multibot_rewrite.planning.ways import WAYS
 from multibot_rewrite.system.json import from_json
 from multibot_rewrite.system.records import (
     ACTION,
@@ -257,7 +257,9 @@ def rewritten(layout: str) -> tuple[Inventory, Naming]:
 def sent(layout: str, *stacks: str) -> dict[str, list[Edge]]:
     inventory, naming = rewritten(layout)
     nodes = [node for stack in stacks for node in stack_of(built_in(NEWEST_LTS), stack)]
-    reading = read(inventory.document.source, "rover.urdf", builtin_tree((), NEWEST_LTS).vocabulary)
+    reading = read(
+        inventory.document.source, "rover.urdf", builtin_tree((), NEWEST_LTS).definitions
+    )
     plugins = [it.fact for it in plugin_nodes(reading, "robot1")]
     found = edges_of("robot1", inventory, nodes, plugins, naming)
     return {node.removesuffix("_robot1"): edges for (_, node), edges in found.items() if edges}

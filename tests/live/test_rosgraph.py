@@ -158,7 +158,7 @@ def test_check_and_learn_take_a_message_in_yaml_and_in_json(
     words = ("--namespace", "/robot1", "--node", "/robot1/pilot")
     texts = []
     for path in (HEALTHY, str(in_yaml), str(in_json)):
-        assert main(["snapshot", "--form", "nodes", "--from", path, *words]) == 0
+        assert main(["snapshot", "--output-kind", "nodes", "--from", path, *words]) == 0
         texts.append(capsys.readouterr().out)
     assert texts[0] == texts[1] == texts[2] != ""
     plan = tmp_path / "plan.yaml"

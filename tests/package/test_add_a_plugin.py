@@ -11,9 +11,13 @@ import guides
 import pytest
 from paths import ROOT
 
-from multibot_rewrite.description.rewriters import vocabulary
-from multibot_rewrite.description.rewriters.vocabulary import FORMS, KINDS, TYPES
-from multibot_rewrite.description.rewriters.vocabulary.grammar import OPTIONS, ROLES, SETTINGS
+from multibot_rewrite.description.rewriters import plugin_definitions as definitions
+from multibot_rewrite.description.rewriters.plugin_definitions import FORMS, KINDS, TYPES
+from multibot_rewrite.description.rewriters.plugin_definitions.grammar import (
+    OPTIONS,
+    ROLES,
+    SETTINGS,
+)
 
 pytestmark = pytest.mark.slow
 
@@ -66,7 +70,7 @@ def test_the_page_and_the_grammar_name_every_word() -> None:
     words = {*ROLES, *KINDS, *FORMS, *SETTINGS}
     assert sorted(word for word in words if not re.search(rf"`{word}[` ]", GUIDE)) == []
     assert [option for option in OPTIONS if f"{option}=" not in GUIDE] == []
-    grammar = Path(vocabulary.__file__).with_name("README.md").read_text()
+    grammar = Path(definitions.__file__).with_name("README.md").read_text()
     forms = [f"form={form}" for form in FORMS]
     wanted = [*forms, *(f"    {s}: " for s in SETTINGS), *(f"[{t} " for t in TYPES)]
     assert [word for word in (*wanted, *(f"{o}=" for o in OPTIONS)) if word not in grammar] == []

@@ -278,10 +278,10 @@ def test_strip_with_other_options(tmp_path: Path, words: tuple[str, ...]) -> Non
         pytest.param("colour: red", ("unknown setting 'colour'",), id="setting"),
     ],
 )
-def test_a_mistake_in_a_vocabulary_file(tmp_path: Path, row: str, said: tuple[str, ...]) -> None:
+def test_a_mistake_in_a_definitions_file(tmp_path: Path, row: str, said: tuple[str, ...]) -> None:
     (tmp_path / "my.vocab").write_text(f"[plugin mine]\n{row}\n")
     line = 2 + row.count("\n")
-    words = ("-", "robot1", "--vocabulary", "my.vocab", "-o", "out.urdf")
+    words = ("-", "robot1", "--definitions", "my.vocab", "-o", "out.urdf")
     result = run(tmp_path, *words, stdin=ROVER.encode())
     check_refusal(tmp_path, result, UNUSABLE, (f"my.vocab:{line}:", *said))
 
@@ -327,7 +327,7 @@ def test_output_that_cannot_be_written(
     before = contents(tmp_path)
     if form == "changes":
         path = path.replace("{robot}", "robot1")
-    words = ("--form", form, "-o", path)
+    words = ("--output-kind", form, "-o", path)
     result = run(tmp_path, "-", *robots, *words, stdin=ROVER.encode())
     place = path.replace("{robot}", "robot1")
     check_refusal(tmp_path, result, UNUSABLE, (f"{place}: cannot be written", *said))

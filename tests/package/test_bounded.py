@@ -20,14 +20,14 @@ from multibot_rewrite import knowledge
 from multibot_rewrite.base import bounded
 from multibot_rewrite.base.model import InputError, MultibotError
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
+from multibot_rewrite.description.rewriters.plugin_definitions import load_definitions
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.build import read_manifest
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.stacks import user_stack
 from multibot_rewrite.knowledge.yaml_with_lines import read_yaml_with_lines
 from multibot_rewrite.lint.config.baseline import read_baseline
+from multibot_rewrite.related_files.yaml_text import read_yaml
 from multibot_rewrite.system.json import from_json, from_json as from_json_plan, from_yaml
 
 NODES = Path(knowledge.__file__).parent / "nodes"
@@ -243,7 +243,7 @@ READ_TEXT: dict[str, Reader] = {
     "description": read_file,
     "nodes": lambda path: user_stack(path, NEWEST_LTS),
     "parameters": lambda path: load_known_nodes(path, NEWEST_LTS),
-    "vocabulary": lambda path: load_vocabulary((path,), NEWEST_LTS),
+    "definitions": lambda path: load_definitions((path,), NEWEST_LTS),
     "baseline": read_baseline,
 }
 

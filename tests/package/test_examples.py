@@ -14,7 +14,7 @@ from page_commands import Shown
 from paths import ROOT
 from plans import own, robot_named
 
-from multibot_rewrite.spelling.plan import read_plan
+from multibot_rewrite.planning.plan import read_plan
 
 pytestmark = pytest.mark.slow
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every fact that was read from public source has a row of the vocabulary, or a stated reason.
+"""Every fact that was read from public source has a row of the plugin definitions, or a stated reason.
 
 ``fixtures/facts.tsv`` holds a line for each thing an element, plugin or hardware class reads: type,
 names, ROS version, path, kind. ``fixtures/facts_exceptions.tsv`` holds, for the lines that the
-vocabulary decides otherwise, type, first name, path and the reason.
+definitions decides otherwise, type, first name, path and the reason.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ from paths import FIXTURES
 
 from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.description.rewriters.tree import TreeNode, builtin_tree, qualified
-from multibot_rewrite.description.rewriters.vocabulary import (
-    VocabularySection,
-    load_vocabulary,
+from multibot_rewrite.description.rewriters.plugin_definitions import (
+    PluginDefinition,
+    load_definitions,
     split_path,
     split_step,
 )
+from multibot_rewrite.description.rewriters.tree import TreeNode, builtin_tree, qualified
 
 LEAST_FACTS = 1500
 # Kinds of facts that are no name of ours: nothing may be renamed there.
 NO_NAMES = {"value", "param_name", "param_file", "material", "visual", "light"}
-# What the facts call a kind, and what the vocabulary may call it.
+# What the facts call a kind, and what the plugin definitions may call it.
 KINDS = {
     "node_name": {"node"},
     "remap": {"topic"},
@@ -72,7 +72,7 @@ def facts() -> list[Fact]:
 
 
 def exceptions() -> dict[tuple[str, str, str], str]:
-    """(type, first name, path) -> the reason why the vocabulary does not follow the fact."""
+    """(type, first name, path) -> the reason why the plugin definitions does not follow the fact."""
     rows = (FIXTURES / "facts_exceptions.tsv").read_text().splitlines()
     return {(t, name, path): reason for t, name, path, reason in (row.split("\t") for row in rows)}
 
@@ -99,14 +99,14 @@ def test_every_exception_is_needed_and_says_why() -> None:
 
 
 def trouble(fact: Fact) -> str:
-    """What is wrong with the vocabulary, measured by this fact; empty where nothing is."""
+    """What is wrong with the plugin definitions, measured by this fact; empty where nothing is."""
     return element_trouble(fact) if fact.type == "element" else host_trouble(fact)
 
 
 def host_trouble(fact: Fact) -> str:
     """The same for a plugin or a hardware class, under each of its names."""
     for name in fact.names:
-        found = load_vocabulary((), NEWEST_LTS).find(fact.type, name)
+        found = load_definitions((), NEWEST_LTS).find(fact.type, name)
         flavours = [
             r for r in found if not (fact.ros in ("1", "2") and r.ros not in ("", fact.ros))
         ]
@@ -119,10 +119,10 @@ def host_trouble(fact: Fact) -> str:
     return ""
 
 
-def host_site(section: VocabularySection, path: str) -> SiteRow | None:
+def host_site(section: PluginDefinition, path: str) -> SiteRow | None:
     """The row of a plugin or hardware class for a path, its own or one that holds for all."""
     common = {"plugin": "plugin", "hardware": "ros2_control"}[section.type]
-    (shared,) = load_vocabulary((), NEWEST_LTS).find("element", common)
+    (shared,) = load_definitions((), NEWEST_LTS).find("element", common)
     return {site.path: site for site in shared.sites + section.sites}.get(path)
 
 

@@ -12,7 +12,7 @@ from healthy_systems import TWIST, with_node
 from paths import ROBOTS, ROOT
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.spelling.plan import read_plan
+from multibot_rewrite.planning.plan import read_plan
 from multibot_rewrite.system.json import to_json
 from multibot_rewrite.system.records import PUBLISHES, System
 
@@ -64,7 +64,7 @@ def test_one_rviz_for_all_and_one_for_each(layout: str, windows: list[str], tmp_
     config = (ROOT / "examples" / "multibot_example" / "config" / "rover.rviz").read_text()
     (tmp_path / "one.rviz").write_text(config)
     (tmp_path / "fleet.yaml").write_text(
-        f"layout: {layout}\ndescription: rover.urdf\ncompanions: {{rviz: one.rviz}}\n"
+        f"layout: {layout}\ndescription: rover.urdf\nrelated_files: {{rviz: one.rviz}}\n"
         "robots: [{name: robot1}, {name: robot2, pose: {y: 2.0}}]\n"
     )
     out = tmp_path / "out"

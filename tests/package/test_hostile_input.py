@@ -124,7 +124,7 @@ CASES: dict[str, tuple[str | bytes, tuple[str, ...], int, str]] = {
     ),
     "large-snapshot": (
         b"",
-        (MULTIBOT, "snapshot", "--form", "nodes", "--from", "/dev/zero"),
+        (MULTIBOT, "snapshot", "--output-kind", "nodes", "--from", "/dev/zero"),
         2,
         "over the limit of",
     ),
@@ -161,7 +161,7 @@ ENDINGS = (".urdf.xacro", ".urdf", ".sdf", ".yaml", ".json", ".toml")
 def test_it_ends_with_one_clear_line(name: str, tmp_path: Path) -> None:
     text, (program, *words), code, said = CASES[name]
     (tmp_path / "good.urdf").write_text(GOOD)
-    (tmp_path / "fleet.yaml").write_text(fleet("companions: {lua: in.yaml}\n"))
+    (tmp_path / "fleet.yaml").write_text(fleet("related_files: {lua: in.yaml}\n"))
     for ending in ENDINGS:
         data = text if isinstance(text, bytes) else text.encode()
         (tmp_path / f"in{ending}").write_bytes(data)

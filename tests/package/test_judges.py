@@ -86,7 +86,7 @@ def test_five_judges_agree(corpus: dict[str, Path], tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("every", [12, pytest.param(1, marks=pytest.mark.deep)])
 def test_both_readings_know_the_same_plugins(corpus: dict[str, Path], every: int) -> None:
-    vocabulary = builtin_tree((), NEWEST_LTS).vocabulary
+    definitions = builtin_tree((), NEWEST_LTS).definitions
     wrong = {}
     for name, path in list(corpus.items())[::every]:
         data = path.read_bytes()
@@ -104,7 +104,7 @@ def test_both_readings_know_the_same_plugins(corpus: dict[str, Path], every: int
             and "is written for ROS 1" not in it.message
             for it in findings
         )
-        second = len(read(data, name, vocabulary).unknown) if b"<plugin" in data else 0
+        second = len(read(data, name, definitions).unknown) if b"<plugin" in data else 0
         if first != second:
             wrong[name] = first, second
     assert wrong == {}

@@ -27,8 +27,8 @@ FLOORS = (
     ("system",),
     ("knowledge",),
     ("description",),
-    ("spelling",),
-    ("companions",),
+    ("planning",),
+    ("related_files",),
     ("producers",),
     ("rules",),
     ("lint", "live"),
@@ -121,7 +121,7 @@ def test_the_check_sees_the_imports_there_are() -> None:
         "fleet/scripts.py",
         "fleet/file/system_sources.py",
         "refactor/adopt.py",
-        "companions/join.py",
+        "related_files/join.py",
         "refactor/rename.py",
         "description/joining/part.py",
         "description/library.py",
@@ -195,7 +195,9 @@ def test_every_error_is_public_and_one_family() -> None:
 def test_the_package_ships_its_types_and_its_data() -> None:
     assert files("multibot_rewrite").joinpath("py.typed").is_file()
     assert (
-        files("multibot_rewrite").joinpath("description/rewriters/vocabulary/urdf.vocab").is_file()
+        files("multibot_rewrite")
+        .joinpath("description/rewriters/plugin_definitions/urdf.vocab")
+        .is_file()
     )
 
 

@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite import (
+    DefinitionsError,
     InputError,
     MultibotError,
     RewriteRefused,
     UsageError,
-    VocabularyError,
     rewrite,
     rewrite_all,
     strip,
@@ -137,7 +137,9 @@ def test_what_cannot_be_read_is_named(
         pytest.param(SMALL, "r1", {"topics": "none"}, UsageError, id="topics"),
         pytest.param(SMALL, "r1", {"separators": {"leg": "_"}}, UsageError, id="kind"),
         pytest.param(SMALL, "r1", {"separators": {"link": "x"}}, UsageError, id="separator"),
-        pytest.param(SMALL, "r1", {"vocabulary": ["no.vocab"]}, VocabularyError, id="vocabulary"),
+        pytest.param(
+            SMALL, "r1", {"definitions": ["no.vocab"]}, DefinitionsError, id="definitions"
+        ),
         pytest.param("<html/>", "r1", {}, InputError, id="root"),
         pytest.param(SMALL_R1, "r1", {}, RewriteRefused, id="rewritten"),
         pytest.param(TWICE, "r1", {}, RewriteRefused, id="name-twice"),

@@ -34,7 +34,9 @@ PANEL = "  - Class: slam_toolbox::SlamToolboxPlugin\n    Name: Slam\n"
 HAND = "hand_controller: {type: %s}"
 KNOWN, OWN = "joint_trajectory_controller/JointTrajectoryController", "acme/Hand"
 NODES = f"nodes:\n  hand_controller: {{package: acme, types: [{OWN}], host: controller_manager}}\n"
-FLEET = "description: hexbase.urdf.xacro\nlayout: frames-per-robot\ncompanions: {rviz: nav2.rviz}\n"
+FLEET = (
+    "description: hexbase.urdf.xacro\nlayout: frames-per-robot\nrelated_files: {rviz: nav2.rviz}\n"
+)
 FLEET += "robots: [{name: robot1}, {name: robot2, pose: {y: 2.0}}]\n"
 LAUNCH = fixture_text("mends_launch.txt")
 CONTROLLER = '{"manager": "/robot1/controller_manager", "name": "arm", "state": "%s", "claims": []}'

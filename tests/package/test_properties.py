@@ -141,7 +141,7 @@ def test_many_at_once_are_each_alone(robot: Robot, words: Options, fleet: list[s
     assert [r.robot for r in together] == fleet
 
 
-# Robots that are called like frames and topics, shared ones too, and like words of the vocabulary.
+# Robots that are called like frames and topics, shared ones too, and like words of plugin definitions.
 odd_names = st.sampled_from(
     (
         "world",

@@ -74,7 +74,7 @@ RIGHT = """\
 from pathlib import Path
 from multibot_rewrite import explain, load_fleet, rewrite, rewrite_all, strip
 text: str = rewrite("r.urdf", "r1", layout="both", separators={"link": "_"}, topics=None).text
-names = [it.robot for it in rewrite_all(b"<robot/>", {"r1", "r2"}, vocabulary=["a"], again=True)]
+names = [it.robot for it in rewrite_all(b"<robot/>", {"r1", "r2"}, definitions=["a"], again=True)]
 data: bytes = strip(Path("r.urdf"), "r1", affix="prefix", shared_frames=("map",))
 reason: str = explain("r.urdf", 3, groups="rename")[0].reason
 start: dict[str, object] = load_fleet("f.yaml").robot("r1").node("amcl", "p.yaml")
@@ -114,7 +114,7 @@ def test_mypy_sees_every_option(tmp_path: Path) -> None:
     [
         (lambda: rewrite(SMALL, "r1", layuot="L1"), "'layuot'; did you mean 'layout'?"),
         (lambda: rewrite_all(SMALL, ["r1"], seperators={}), "did you mean 'separators'?"),
-        (lambda: strip(SMALL, "r1", vocabluary=[]), "did you mean 'vocabulary'?"),
+        (lambda: strip(SMALL, "r1", vocabluary=[]), "did you mean 'definitions'?"),
         (lambda: explain(SMALL, 1, afix="prefix"), "'afix'; did you mean 'affix'?"),
         (lambda: load_fleet(pathh="x"), "has no argument 'pathh'; did you mean 'path'?"),
         (lambda: load_fleet("x", zzz=1), "has no argument 'zzz'; it takes path"),
@@ -131,7 +131,7 @@ def test_a_wrong_name_is_one_line(call: Callable[[], object], message: str) -> N
 
 
 TEXTS = ("layout", "affix", "topics", "groups", "file")
-NAMES = ("shared_frames", "shared_topics", "vocabulary")
+NAMES = ("shared_frames", "shared_topics", "definitions")
 MAPS = ("separators", "xacro_args")
 NO_TEXT = (3, b"both", Path("both"), ["both"], True)
 NO_NAMES = ("map", b"map", None, 3, ["map", 3], Path("map"))
@@ -291,7 +291,7 @@ def test_robots_may_be_a_set() -> None:
 
 
 def test_options_come_in_any_iterable() -> None:
-    text = rewrite(SMALL, "r1", shared_frames=(it for it in ["base"]), vocabulary=iter(())).text
+    text = rewrite(SMALL, "r1", shared_frames=(it for it in ["base"]), definitions=iter(())).text
     assert text == rewrite(SMALL, "r1", shared_frames=["base"]).text != SMALL
 
 

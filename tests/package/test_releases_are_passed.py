@@ -18,7 +18,7 @@ PUBLIC = (
     "fleet/file/system_sources.py",
     "fleet/scripts.py",
     "refactor/adopt.py",
-    "companions/join.py",
+    "related_files/join.py",
     "refactor/rename.py",
     "base/releases.py",
 )
@@ -97,7 +97,7 @@ def test_every_call_of_what_is_made_once_names_the_release() -> None:
         for function in tree.body
         if isinstance(function, Function) and is_cached(function) and (found := place(function))
     }
-    assert {"built_in", "built_in_nodes", "builtin_tree", "load_vocabulary"} <= asking.keys()
+    assert {"built_in", "built_in_nodes", "builtin_tree", "load_definitions"} <= asking.keys()
     forgotten = [
         f"{file}:{call.lineno}: {call.func.id}"
         for file, tree in sources().items()

@@ -32,7 +32,7 @@ def ros2(*words: str) -> int:
 @pytest.mark.more
 def test_words_reach_the_command(capsys: pytest.CaptureFixture[str]) -> None:
     rover = str(FIXTURES / "robots" / "rover.urdf")
-    words = ["plan", rover, "robot1", "--stack", "nav2", "--form", "ros-args"]
+    words = ["plan", rover, "robot1", "--stack", "nav2", "--output-kind", "ros-args"]
     assert ros2(*words) == main(words) == 0
     first, second = capsys.readouterr().out.split("# robot1: map_server", 1)
     assert second.count("# robot1: map_server") == 1

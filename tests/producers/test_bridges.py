@@ -7,6 +7,7 @@ import pytest
 import yaml
 from launched_nodes import AT, launched, started
 
+from multibot_rewrite.planning.records import Run
 from multibot_rewrite.producers.launch.bridges import (
     Row,
     bridge_rows,
@@ -14,7 +15,6 @@ from multibot_rewrite.producers.launch.bridges import (
     refused_rows,
     told_rows,
 )
-from multibot_rewrite.spelling.records import Run
 
 BRIDGE = ("ros_gz_bridge", "parameter_bridge", "bridge")
 

@@ -10,7 +10,7 @@ from paths import FIXTURES, ROOT
 from plans import optional, own
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.spelling.plan import read_plan
+from multibot_rewrite.planning.plan import read_plan
 
 EXAMPLES = sorted((ROOT / "examples").rglob("fleet*.yaml"))
 
@@ -85,7 +85,7 @@ def test_controllers_in_gazebo_start_as_planned(
     fleet, out = tmp_path / "fleet.yaml", tmp_path / "out"
     fleet.write_text(
         f"distro: {release}\nlayout: tf-per-robot\nsimulator: gazebo\nstack: {stack}\n"
-        f"description: arm.urdf\ncompanions: {{params: control.yaml}}\n{ROBOTS}\n"
+        f"description: arm.urdf\nrelated_files: {{params: control.yaml}}\n{ROBOTS}\n"
     )
     assert main(["build", str(fleet), "-o", str(out), "-q"]) == 0
     launched = ["check-launch", str(out / "fleet.launch.py")]

@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 from launched_nodes import AT
 
+from multibot_rewrite.planning.records import Run
 from multibot_rewrite.producers.launch.bridges import BridgedDomains, bridged_domains
-from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 
 FILE = """\

@@ -16,12 +16,12 @@ from paths import FIXTURES
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.planning.of_runs import ends_of, with_names
+from multibot_rewrite.planning.records import Given, Run
 from multibot_rewrite.producers.evidence.filling import filled
 from multibot_rewrite.producers.sources import expressions, programs
 from multibot_rewrite.producers.sources.facts import NodeSource, node_of_program
 from multibot_rewrite.producers.sources.records import parameter_in
-from multibot_rewrite.spelling.of_runs import ends_of, with_names
-from multibot_rewrite.spelling.records import Given, Run
 from multibot_rewrite.system.records import NOWHERE, RUNS, End
 
 OWN = FIXTURES / "own_nodes"

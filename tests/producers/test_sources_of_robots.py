@@ -7,8 +7,7 @@ import pytest
 from given_parameters import run_given
 from lxml import etree
 
-from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
+from multibot_rewrite.description.rewriters.plugin_definitions import load_definitions
 from multibot_rewrite.knowledge.records import (
     UNKNOWN,
     Endpoint,
@@ -16,6 +15,7 @@ from multibot_rewrite.knowledge.records import (
     NodeFacts,
     SentTransform,
 )
+from multibot_rewrite.planning.records import Given, Run
 from multibot_rewrite.producers.addresses import held_by, of_hardware, of_parameters
 from multibot_rewrite.producers.ends import bridge_ends, edges_off, sensor_frames, sensor_on
 from multibot_rewrite.producers.launch.beside_ends import prefix_of
@@ -23,7 +23,7 @@ from multibot_rewrite.producers.launch.known_node import known_node
 from multibot_rewrite.producers.launch.records import LaunchNote
 from multibot_rewrite.producers.launch.snapshot import _caveats, _clocks, _measured, _Part, _refused
 from multibot_rewrite.producers.launch.spawners import params_text, ros2_run, ros_arguments
-from multibot_rewrite.spelling.records import Given, Run
+from multibot_rewrite.related_files.yaml_text import read_yaml
 from multibot_rewrite.system.records import (
     COMPUTER,
     DEVICE,
@@ -141,7 +141,7 @@ def test_the_devices_of_a_description(
 ) -> None:
     inside = "".join(f'<param name="{name}">{it}</param>' for name, it in params.items())
     root = etree.fromstring(HARDWARE.format(plugin, inside))
-    made = [*of_hardware(root, "/m", AT, load_vocabulary((), "jazzy"))]
+    made = [*of_hardware(root, "/m", AT, load_definitions((), "jazzy"))]
     assert [(it.kind, it.value) for it in made] == found
     assert all(it == Address(it.kind, "robot_ip", it.value, "/m", AT) for it in made)
 
@@ -172,14 +172,14 @@ def test_the_devices_of_a_description(
         ),
     ],
 )
-def test_what_a_known_class_opens_is_that_of_the_vocabulary(
+def test_what_a_known_class_opens_is_that_of_the_definitions(
     plugin: str, params: dict[str, str], found: list[tuple[str, str, str]]
 ) -> None:
     """default_serial_factory.cpp of robotiq_driver, ec_master.hpp of ethercat_driver_ros2,
     hardware_interface.cpp:700 of ur_robot_driver, system_interface.cpp:393 of lbr_fri_ros2_stack."""
     inside = "".join(f'<param name="{name}">{it}</param>' for name, it in params.items())
     root = etree.fromstring(HARDWARE.format(plugin, inside))
-    made = of_hardware(root, "/m", AT, load_vocabulary((), "jazzy"))
+    made = of_hardware(root, "/m", AT, load_definitions((), "jazzy"))
     assert [(it.kind, it.name, it.value) for it in made] == found
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from launched_nodes import AT, launched, runs, started
 
+from multibot_rewrite.planning.transforms import sent_by
 from multibot_rewrite.producers.launch.models import (
     Models,
     Published,
@@ -16,7 +17,6 @@ from multibot_rewrite.producers.launch.models import (
     sent_in_simulator,
 )
 from multibot_rewrite.producers.launch.records import LaunchedNode, ParameterText
-from multibot_rewrite.spelling.transforms import sent_by
 from multibot_rewrite.system.records import Edge, edge_of
 
 ROBOT = '<robot name="r"><link name="base"/><gazebo>{}</gazebo></robot>'

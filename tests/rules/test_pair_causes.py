@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from graph_examples import read_example
 
+from multibot_rewrite.planning.ways import COMPONENT, HOST, PLUGIN, SPAWNER
 from multibot_rewrite.rules.check import check
 from multibot_rewrite.rules.system.causes import (
     Spelled,
@@ -22,7 +23,6 @@ from multibot_rewrite.rules.system.causes import (
     why_other_name,
 )
 from multibot_rewrite.rules.system.planned_ends import _why_besides, probable_matches, similar
-from multibot_rewrite.spelling.ways import COMPONENT, HOST, PLUGIN, SPAWNER
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import whose_by_plan
 

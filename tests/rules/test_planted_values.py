@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Values that a reader takes and nobody means, each beside the one that is meant.
 
-Of gz-sim, gz-sensors and ros2_control 6: what their code does with them is in the vocabulary and in
+Of gz-sim, gz-sensors and ros2_control 6: what their code does with them is in plugin definitions and in
 ``sdf.schema``, with file and line.
 """
 

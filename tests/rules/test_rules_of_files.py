@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 import yaml
 from paths import fixture_text
-from rule_examples import BUILT, COMPANIONS
+from rule_examples import BUILT, RELATED_FILES
 
 from multibot_rewrite.base.findings.finding import Finding, Rule
 from multibot_rewrite.base.naming import make_naming
@@ -136,7 +136,7 @@ def by_both(
     distro: str = NEWEST_LTS,
 ) -> tuple[list[str], list[str]]:
     """What the lint says of a file in a package (of the rover, where it has none), and what a build."""
-    file, key = COMPANIONS[kind]
+    file, key = RELATED_FILES[kind]
     for name, content in {**ROVER, **beside, file: text}.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(content)
@@ -145,8 +145,8 @@ def by_both(
     )
     robots = [{"name": it, "description": "urdf/rover.urdf"} for it in ROBOTS]
     params = [it for it in beside if it.endswith(".yaml")]
-    companions = {"params": params, key: file} if params else {key: file}
-    fleet = {"layout": "both", "robots": robots, "companions": companions, "distro": distro}
+    related_files = {"params": params, key: file} if params else {key: file}
+    fleet = {"layout": "both", "robots": robots, "related_files": related_files, "distro": distro}
     (folder / "fleet.yaml").write_text(yaml.safe_dump(fleet))
     built = make_outputs(plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {}))).findings
     return places(linted, file, rules), places(list(built), file, rules)

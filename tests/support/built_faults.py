@@ -27,7 +27,7 @@ distro: jazzy
 description: {EXAMPLE}/hexbase.urdf.xacro
 stack: [nav2]
 robots: [{{name: robot1, pose: {{x: 1}}}}, {{name: robot2, pose: {{x: 2}}}}]
-companions: {{params: {EXAMPLE}/nav2_params.yaml, bridge: {EXAMPLE}/bridge.yaml}}
+related_files: {{params: {EXAMPLE}/nav2_params.yaml, bridge: {EXAMPLE}/bridge.yaml}}
 """
 # A file and its text -> the text with a fault.
 Edit = Callable[[str, str], str]

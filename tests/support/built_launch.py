@@ -22,7 +22,8 @@ wheels:
 """
 FLEETS = {
     "classic": f"description: rover.urdf\n{TWO}",
-    "gz": f"description: rover_gz.urdf\nstack: gz_ros2_control\ncompanions: {{params: c.yaml}}\n{TWO}",
+    "gz": "description: rover_gz.urdf\nstack: gz_ros2_control\nrelated_files: {params: c.yaml}\n"
+    + TWO,
     "sdf": f"description: rover.sdf\n{TWO}",
     "real": f"description: two_finger_arm.urdf\nsimulator: none\nstack: robot_state\n{TWO}",
     "kinds": (

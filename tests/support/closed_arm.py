@@ -148,7 +148,7 @@ distro: jazzy
 stack: [ros2_control]
 description: arm.urdf
 srdf: arm.srdf
-companions:
+related_files:
   params: [controllers.yaml, sensors.yaml]
   bridge: bridge.yaml
   moveit: moveit.yaml

@@ -143,7 +143,7 @@ controller_server:
 distro: jazzy
 stack: [nav2_slam, twist_mux, stamper]
 description: rover.urdf
-companions:
+related_files:
   params: [controllers.yaml, ekf.yaml, nav2.yaml]
   bridge: bridge.yaml
   moveit: moveit.yaml

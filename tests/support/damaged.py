@@ -64,7 +64,7 @@ class Place(NamedTuple):
 BUILD = ("multibot", "build", "fleet.yaml", "-o", "out", "--quiet")
 
 
-def _companion(file: str) -> Place:
+def _related_file(file: str) -> Place:
     of_arm = file in ("limits.yaml", "arm.srdf")
     urdf = () if file == "tree.xml" else ("--urdf", "arm.urdf.xacro" if of_arm else "rover.urdf")
     own = ("urdf-postfix", file, "robot1", *urdf, "-o", "out")
@@ -81,7 +81,7 @@ PLACES = (
         ),
     ),
     *map(
-        _companion,
+        _related_file,
         (
             "one_robot.rviz",
             "params.yaml",
@@ -158,8 +158,8 @@ PLACES = (
 def whole_folder(folder: Path) -> Path:
     """A folder in which each of the commands works."""
     fleet = mixed().replace(
-        "companions: {rviz: one_robot.rviz}",
-        "companions: {rviz: one_robot.rviz, lua: slam.lua, behavior_trees: [tree.xml]}",
+        "related_files: {rviz: one_robot.rviz}",
+        "related_files: {rviz: one_robot.rviz, lua: slam.lua, behavior_trees: [tree.xml]}",
     )
     fleet_folder(folder, fleet)
     for name, text in {

@@ -11,8 +11,8 @@ from paths import FIXTURES
 
 from multibot_rewrite.base.rosnames import bind, resolve_bound
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.spelling.of_runs import parsed
-from multibot_rewrite.spelling.records import Run
+from multibot_rewrite.planning.of_runs import parsed
+from multibot_rewrite.planning.records import Run
 from multibot_rewrite.system.records import ACTION, SERVICE, TOPIC, End
 from tools.interfaces.compare import is_same
 from tools.interfaces.table import Fact, from_table

@@ -18,16 +18,16 @@ from multibot_rewrite.description.readback.meeting import (
 )
 from multibot_rewrite.description.readback.nodes import BELOW, TOPIC, RuntimeName, wheels_in
 from multibot_rewrite.description.readback.reading import Reading, read
-from multibot_rewrite.description.rewriters.tree import builtin_tree
-from multibot_rewrite.description.rewriters.vocabulary import (
+from multibot_rewrite.description.rewriters.plugin_definitions import (
     TYPES,
-    Vocabulary,
-    VocabularySection,
-    check_vocabulary,
+    Definitions,
+    PluginDefinition,
+    check_definitions,
     library,
-    load_vocabulary,
+    load_definitions,
 )
+from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.steps.apply import Template, cut, fill
 from multibot_rewrite.description.steps.collect import Inventory, collect, declarations
 from multibot_rewrite.description.steps.document import read_document
-from multibot_rewrite.spelling.transforms import edges_in
+from multibot_rewrite.planning.transforms import edges_in

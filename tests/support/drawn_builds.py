@@ -147,9 +147,9 @@ def _meaning(it: FleetFile) -> dict[str, object]:
             file="", line=0,
             # What is joined is called by the file that lists its parts.
             description="" if row.parts else row.description,
-            companions={
+            related_files={
                 kind: [path.replace(row.file, "FLEET") for path in paths]
-                for kind, paths in row.companions.items()
+                for kind, paths in row.related_files.items()
             },
             filled=tuple((path.replace(row.file, "FLEET"), text) for path, text in row.filled),
         )

@@ -439,7 +439,7 @@ def _robot_row(making: _Making, name: str, kind: str, words: Mapping[str, str]) 
     ]
     for key, made in (
         ("stack", lambda: draw(st.sampled_from(stacks))),
-        ("companions", lambda: _companions(making, kind, name)),
+        ("related_files", lambda: _related_files(making, kind, name)),
     ):
         value = made() if (key, kind) not in shared or maybe(draw, 2) else shared[key, kind]
         shared.setdefault((key, kind), value)
@@ -484,7 +484,7 @@ def _written(making: _Making, stem: str, ending: str, text: str, name: str) -> s
     return path
 
 
-def _companions(making: _Making, kind: str, name: str) -> Data:
+def _related_files(making: _Making, kind: str, name: str) -> Data:
     draw, what = making.draw, KINDS[kind].what
     found: Data = {}
     if draw(st.booleans()) and kind != "gz arm":
@@ -824,11 +824,11 @@ CAUSES = {
     # file of a robot, which has the pose as well: no other is written.
     "a parameter file is called as one that is written": Cause(
         lambda data, _: _first(data).update(
-            companions={"params": ["start_pose.yaml"]}, pose={"x": -9}
+            related_files={"params": ["start_pose.yaml"]}, pose={"x": -9}
         ),
         lambda fleet: any(
             "pose" in row
-            and "start_pose.yaml" in row.get("companions", {}).get("params", ())
+            and "start_pose.yaml" in row.get("related_files", {}).get("params", ())
             and {"slam_toolbox", "nav2_slam"}.isdisjoint(row.get("stack", ()))
             and not is_bringup(fleet.data)
             for row in fleet.data["robots"]

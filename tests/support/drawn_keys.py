@@ -130,7 +130,7 @@ def _known(draw: st.DrawFn, data: Data, files: dict[str, str]) -> None:
         data["nodl"] = "none"
     if maybe(draw, 4):
         files["config/acme.vocab"] = VOCABULARY
-        data["vocabulary"] = draw(st.sampled_from(("config/acme.vocab", ["config/acme.vocab"])))
+        data["definitions"] = draw(st.sampled_from(("config/acme.vocab", ["config/acme.vocab"])))
     if maybe(draw, 4):
         files["config/our_nodes.yaml"] = NODES
         data["nodes"] = "config/our_nodes.yaml"
@@ -164,17 +164,17 @@ def _beside(draw: st.DrawFn, data: Data, files: dict[str, str]) -> None:
         if draw(st.booleans()):
             data["free_fleet"]["charger"] = "{robot}_dock"
     for row, own in stacks_of(data):
-        companions = row.get("companions", {})
+        related_files = row.get("related_files", {})
         if {"nav2", "navigation"} & {*own} and maybe(draw, 4):
             files["trees/main.xml"] = TREE
-            companions = {**companions, "behavior_trees": ["trees/main.xml"]}
+            related_files = {**related_files, "behavior_trees": ["trees/main.xml"]}
         if maybe(draw, 1) and row.get("simulator") == "gazebo":
             row["use_sim_time"] = True
         if maybe(draw, 1):
             files["config/cartographer.lua"] = LUA
-            companions = {**companions, "lua": ["config/cartographer.lua"]}
-        row.update({"companions": companions} if companions else {})
-        if companions.get("bridge") and draw(st.booleans()):
+            related_files = {**related_files, "lua": ["config/cartographer.lua"]}
+        row.update({"related_files": related_files} if related_files else {})
+        if related_files.get("bridge") and draw(st.booleans()):
             row["bridge_namespace"] = "sensors"
         row.update({"fill_arguments": draw(st.booleans())} if maybe(draw, 1) else {})
 

@@ -25,7 +25,15 @@ SHORT = {
 }
 OF_ALL = ("description", "join", "srdf", "arguments", "stack", "simulator")
 PATHS = (
-    *("description", "srdf", "simulated", "simulator_world", "nodes", "vocabulary", "launch_roots"),
+    *(
+        "description",
+        "srdf",
+        "simulated",
+        "simulator_world",
+        "nodes",
+        "definitions",
+        "launch_roots",
+    ),
 )
 FILES = ("params", "rviz", "moveit", "bridge", "behavior_trees", "lua")
 
@@ -104,12 +112,12 @@ def _at_the_top(data: Data) -> None:
         _raise(data, rows, key, nothing=[] if key == "stack" else None)
     top: Data = {}
     for kind in FILES:
-        own = [row.get("companions", {}) for row in rows]
+        own = [row.get("related_files", {}) for row in rows]
         _raise(top, own, kind, nothing=None if kind == "rviz" else [])
         for row, it in zip(rows, own, strict=True):
-            row.pop("companions", None)
-            row.update({"companions": it} if it else {})
-    data |= {"companions": top} if top else {}
+            row.pop("related_files", None)
+            row.update({"related_files": it} if it else {})
+    data |= {"related_files": top} if top else {}
 
 
 def _raise(top: Data, rows: Sequence[Data], key: str, nothing: object) -> None:
@@ -128,7 +136,7 @@ def _raise(top: Data, rows: Sequence[Data], key: str, nothing: object) -> None:
 def _words(data: Data) -> None:
     """A list of one word is a word."""
     for row in (data, *data["robots"]):
-        for own in (row, row.get("companions", {})):
+        for own in (row, row.get("related_files", {})):
             for key in ("stack", *FILES):
                 value = own.get(key)
                 if isinstance(value, list) and len(value) == 1 and isinstance(value[0], str):
@@ -155,7 +163,7 @@ def _from(folder: str, key: str, value: Any) -> Any:
         return [os.path.relpath(it, folder) for it in value]
     if key == "join":
         return [{**it, "description": os.path.relpath(it["description"], folder)} for it in value]
-    if key != "companions":
+    if key != "related_files":
         return value
     return {
         kind: [os.path.relpath(it, folder) if isinstance(it, str) else it for it in own]

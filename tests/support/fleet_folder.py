@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A folder with a fleet: two kinds of robots, companion files, and the fleet file that names them."""
+"""A folder with a fleet: two kinds of robots, related files, and the fleet file that names them."""
 
 from __future__ import annotations
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.records import UNKNOWN
+from multibot_rewrite.planning.records import Given, Run
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-from multibot_rewrite.spelling.records import Given, Run
+from multibot_rewrite.related_files.yaml_text import read_yaml
 from multibot_rewrite.system.records import Place
 
 

@@ -420,7 +420,7 @@ COMMON = f"layout: frames-per-robot\ndescription: rover.urdf\n{TWO}"
 def _of_rover(key: str, file: str, text: Callable[[int], str]) -> Files:
     """A fleet of two rovers with one file that grows; the name of the file with __ for its dot."""
     named = file.replace("__", ".")
-    fleet = f"{COMMON}companions: {{{key}: {named}}}\n"
+    fleet = f"{COMMON}related_files: {{{key}: {named}}}\n"
     return lambda n: {"fleet": fleet, file: text(n)}
 
 

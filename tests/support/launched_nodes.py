@@ -10,9 +10,9 @@ from multibot_rewrite.fleet.fleet import facts_of, known_nodes
 from multibot_rewrite.fleet.launch.launched_robot import given_with, nodes_with
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.planning.start import AS_USUAL
 from multibot_rewrite.producers.launch.of_robot import Launched, with_launched
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchNote
-from multibot_rewrite.spelling.start import AS_USUAL
 from multibot_rewrite.system.records import Place
 
 AT = Place("/ws/bringup.launch.py", 12)

@@ -12,7 +12,7 @@ from typing import Any
 
 from plans import PlannedRobot, planned, planned_end
 
-from multibot_rewrite.spelling.plan import to_yaml
+from multibot_rewrite.planning.plan import to_yaml
 from multibot_rewrite.system.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC, End
 
 COMMAND = [sys.executable, "-m", "multibot_rewrite.cli.multibot"]

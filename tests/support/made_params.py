@@ -9,10 +9,10 @@ from beside import findings_of
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.naming import make_naming
-from multibot_rewrite.companions.context import Context, fill_template, make_context
-from multibot_rewrite.companions.params.rewrite import rewrite_params
-from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.knowledge.stacks import load_stack
+from multibot_rewrite.related_files.context import Context, fill_template, make_context
+from multibot_rewrite.related_files.params.rewrite import rewrite_params
+from multibot_rewrite.related_files.yaml_text import read_yaml
 
 LINKS = ("base_link", "base_footprint", "laser", "tool0")
 JOINTS = ("left_wheel", "right_wheel", "shoulder", "elbow")
@@ -40,8 +40,10 @@ def made(
     text: str, policy: tuple[str, str] = L2, distro: str = "jazzy", **more: object
 ) -> tuple[str, tuple[Finding, ...]]:
     """The file for robot1 (in the graph) and r1 (in frames), and what is told about it."""
-    companion = rewrite_params(read_yaml(text.encode(), "p.yaml"), setting(policy, distro), **more)  # type: ignore[arg-type]
-    return fill_template(companion.template, "robot1", "r1"), findings_of(companion)
+    related_file = rewrite_params(
+        read_yaml(text.encode(), "p.yaml"), setting(policy, distro), **more
+    )  # type: ignore[arg-type]
+    return fill_template(related_file.template, "robot1", "r1"), findings_of(related_file)
 
 
 def codes(findings: Iterable[Finding]) -> list[str]:

@@ -4,7 +4,7 @@
 from typing import NamedTuple
 
 from multibot_rewrite.knowledge.records import Endpoint
-from multibot_rewrite.spelling.records import Table
+from multibot_rewrite.planning.records import Table
 
 
 class NamedEnd(NamedTuple):

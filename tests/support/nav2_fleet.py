@@ -27,7 +27,7 @@ stack: [{stack}, robot_state_publisher]
 robots:
   - {{name: robot1, description: %s, pose: {{x: 1.0}}}}
   - {{name: robot2, description: %s, pose: {{x: 3.0}}}}
-companions: {{params: params.yaml, rviz: one.rviz}}
+related_files: {{params: params.yaml, rviz: one.rviz}}
 """
 FLEET = FLEET.replace("%s", str(ROBOTS / "rover.urdf"))
 

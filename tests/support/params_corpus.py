@@ -21,10 +21,10 @@ from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.companions.context import fill_template, make_context
-from multibot_rewrite.companions.params.rewrite import rewrite_params
-from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.knowledge.stacks import load_stack
+from multibot_rewrite.related_files.context import fill_template, make_context
+from multibot_rewrite.related_files.params.rewrite import rewrite_params
+from multibot_rewrite.related_files.yaml_text import YamlText, read_yaml
 
 FOLDERS = ("nav2_params", "localization_params", "controllers")
 REFUSALS = FIXTURES / "params_refusals.json"
@@ -57,16 +57,16 @@ def outcome(data: bytes, file: str, layout: str, affix: str) -> Outcome:
         document = read_yaml(data, file)
         naming = make_naming(layout=layout, affix=affix)
         context = make_context(declared(document), naming, facts(), distro=NEWEST_LTS)
-        companion = rewrite_params(document, context)
+        related_file = rewrite_params(document, context)
     except InputError as error:
         return Outcome(reason(str(error), file), "")
     except Exception as error:
         return Outcome("", f"{type(error).__name__}: {error}")
-    findings = findings_of(companion, [ROBOT])
+    findings = findings_of(related_file, [ROBOT])
     bad = next((it.code for it in findings if it.level == ERROR), "")
     if bad:
         return Outcome(bad, "", findings)
-    text = fill_template(companion.template, ROBOT, ROBOT)
+    text = fill_template(related_file.template, ROBOT, ROBOT)
     return Outcome("", "; ".join(problems(document, text, naming)), findings)
 
 

@@ -16,6 +16,6 @@ stack: [nav2, robot_state]
 robots:
   - {name: robot1, description: rover.urdf, pose: {x: 1.0}}
   - {name: robot2, description: rover.urdf, pose: {x: 2.0}}
-companions: {params: [params.yaml]}
+related_files: {params: [params.yaml]}
 """
 PARAMS = "amcl:\n  ros__parameters: {base_frame_id: base_footprint}\n"

@@ -57,7 +57,7 @@ def planned(
     (folder / "p.yaml").write_text(text)
     (folder / "fleet.yaml").write_text(
         f"layout: {layout}\naffix: {affix}\ndistro: {RELEASE}\ndescription: robot.urdf\n"
-        f"stack: [{stack}]\ncompanions: {{params: p.yaml}}\n"
+        f"stack: [{stack}]\nrelated_files: {{params: p.yaml}}\n"
         "robots: [{name: robot1}, {name: robot2}]\n"
     )
     plan = planned_fleet(folder / "fleet.yaml")

@@ -31,10 +31,10 @@ from multibot_rewrite.rules.declaration import LAUNCH, SYSTEM
 from multibot_rewrite.rules.launch.judge import judge_launch
 from multibot_rewrite.rules.settings import Settings
 
-# What every companion file of an example stands beside, unless ``beside`` has another robot.urdf.
+# What every related file file of an example stands beside, unless ``beside`` has another robot.urdf.
 DESCRIPTION = fixture_text("rule_examples_description.urdf")
 # Format of an example -> its file, and the key of a fleet file that names it.
-COMPANIONS = {
+RELATED_FILES = {
     "params": ("example.yaml", "params"),
     "rviz": ("example.rviz", "rviz"),
     "moveit": ("joint_limits.yaml", "moveit"),
@@ -70,13 +70,15 @@ def found(
 
 def is_built(rule: Rule) -> bool:
     """Is a whole fleet built for the examples of the rule?"""
-    made = (companion_example, fleet_example, description_example)
+    made = (related_file_example, fleet_example, description_example)
     return not _is_alone(rule) and RUNNERS[_format(rule)] in made
 
 
 def _is_alone(rule: Rule) -> bool:
-    """Is the example a companion file that is linted by itself?"""
-    return _format(rule) in COMPANIONS and rule.code.startswith("MB") and BUILT not in rule.options
+    """Is the example a related file file that is linted by itself?"""
+    return (
+        _format(rule) in RELATED_FILES and rule.code.startswith("MB") and BUILT not in rule.options
+    )
 
 
 def _format(rule: Rule) -> str:
@@ -105,7 +107,7 @@ def lint_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
     options: dict[str, Any] = {"roots": (str(folder),), **rule.options}
     if "urdf" in options:
         options["urdf"] = str(folder / options["urdf"])
-    options["vocabulary"] = tuple(str(folder / it) for it in options.get("vocabulary", ()))
+    options["definitions"] = tuple(str(folder / it) for it in options.get("definitions", ()))
     return lint_file(str(file), Settings(select=(rule.code,), **options))
 
 
@@ -136,13 +138,13 @@ def rewrite_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
         return list(refused.findings)
 
 
-def companion_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
+def related_file_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
     """A fleet of two robots with the example as one of their files."""
-    file, key = COMPANIONS[rule.formats[0]]
+    file, key = RELATED_FILES[rule.formats[0]]
     _write(folder, {file: example})
-    named = rule.options.get("companions", {})
+    named = rule.options.get("related_files", {})
     assert isinstance(named, dict)
-    return _fleet(rule, {"companions": {**named, key: file}}, folder)
+    return _fleet(rule, {"related_files": {**named, key: file}}, folder)
 
 
 def fleet_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
@@ -213,7 +215,7 @@ def launch_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
 
 RUNNERS: dict[str, Callable[[Rule, str, Path], list[Finding]]] = {
     **dict.fromkeys((URDF, SRDF, XACRO), lint_example),
-    **dict.fromkeys(COMPANIONS, companion_example),
+    **dict.fromkeys(RELATED_FILES, related_file_example),
     "rewrite": rewrite_example,
     "fleet": fleet_example,
     "fleet-urdf": description_example,

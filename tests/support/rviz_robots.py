@@ -10,9 +10,9 @@ from typing import Any
 import yaml
 
 from multibot_rewrite.base.naming import make_naming
-from multibot_rewrite.companions.names.rename_map import CompanionNames
-from multibot_rewrite.companions.rviz.read_config import RvizRobot, rviz_data
-from multibot_rewrite.companions.yaml_text import YamlText, pairs
+from multibot_rewrite.related_files.names.rename_map import CompanionNames
+from multibot_rewrite.related_files.rviz.read_config import RvizRobot, rviz_data
+from multibot_rewrite.related_files.yaml_text import YamlText, pairs
 
 Declared = dict[str, dict[str, Any]]
 MAPS = {"Frames": "link", "Links": "link", "Joints": "joint"}

@@ -18,8 +18,8 @@ import yaml
 from multibot_rewrite.fleet.scripts import LoadedFleet
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.live.rehearsal import Stub, played, stub_nodes
-from multibot_rewrite.spelling.transforms import with_odometry
-from multibot_rewrite.spelling.way_checks import running_nodes
+from multibot_rewrite.planning.transforms import with_odometry
+from multibot_rewrite.planning.way_checks import running_nodes
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Edge, edge_of
 
 Told = Mapping[str, Any]

@@ -33,7 +33,7 @@ from multibot_rewrite.base.rosnames import (
 from multibot_rewrite.fleet.build import Outputs
 from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.knowledge.records import Endpoint
-from multibot_rewrite.spelling.of_runs import parsed
+from multibot_rewrite.planning.of_runs import parsed
 from multibot_rewrite.system.records import RUNS, System
 
 DESCRIPTION = "robot_description"

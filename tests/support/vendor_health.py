@@ -17,8 +17,8 @@ from vendor_systems import OTHER, ROBOT, Outcome, Started
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.planning.records import Rules, Run
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.records import Rules, Run
 from multibot_rewrite.system.records import End, Node, System
 
 TF = ("/tf", "/tf_static")

@@ -104,7 +104,7 @@ def fleet_text(recipe: Recipe, system: Mapping[str, Any], layout: str, count: in
     keys = {"layout": layout, "affix": "prefix", "distro": system["release"]}
     rest = {**system["fleet"], **recipe.fleet}
     if recipe.window:
-        rest["companions"] = {**rest.get("companions", {}), "rviz": recipe.window["config"]}
+        rest["related_files"] = {**rest.get("related_files", {}), "rviz": recipe.window["config"]}
     fleet = {**keys, **{key: it for key, it in rest.items() if key not in ("layout", "affix")}}
     return yaml.safe_dump({**fleet, "robots": robots}, sort_keys=False, width=110)
 

@@ -17,7 +17,7 @@ from multibot_rewrite.base.model import Edit
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.rewriters.insert import Insertion
-from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT
+from multibot_rewrite.description.rewriters.renaming import ROBOT_SLOT
 from multibot_rewrite.description.steps import plan as planning
 from multibot_rewrite.description.steps.plan import LAST, Plan
 from multibot_rewrite.description.steps.renames import RenameMap, make_renames

@@ -29,8 +29,8 @@ from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.spelling.of_runs import parsed
-from multibot_rewrite.spelling.records import Run
+from multibot_rewrite.planning.of_runs import parsed
+from multibot_rewrite.planning.records import Run
 from multibot_rewrite.system.records import TOPIC, Edge, End, Node, System
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
@@ -86,7 +86,7 @@ def planned(name: str, release: str, layout: str, folder: Path) -> FleetPlan:
         "distro": release,
         "description": "arm.urdf",
         "launch": ["system.yaml"],
-        "companions": {"params": ["controllers.yaml"]},
+        "related_files": {"params": ["controllers.yaml"]},
         "robots": [{"name": it} for it in ROBOTS],
     }
     texts = {"fleet.yaml": fleet, "controllers.yaml": sections}

@@ -17,9 +17,9 @@ from multibot_rewrite.base.releases import NEWEST_LTS, RELEASES
 from multibot_rewrite.knowledge.node_library import stack_of
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in
-from multibot_rewrite.spelling.plan import expect
-from multibot_rewrite.spelling.records import Table
-from multibot_rewrite.spelling.table import build_table
+from multibot_rewrite.planning.plan import expect
+from multibot_rewrite.planning.records import Table
+from multibot_rewrite.planning.table import build_table
 from multibot_rewrite.system.records import Node, System
 
 SYSTEMS = {

@@ -11,7 +11,10 @@ from paths import ROOT
 
 from multibot_rewrite.base.findings.codes import examples
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
-from multibot_rewrite.description.rewriters.vocabulary import check_vocabulary, load_vocabulary
+from multibot_rewrite.description.rewriters.plugin_definitions import (
+    check_definitions,
+    load_definitions,
+)
 from multibot_rewrite.lint import catalogue
 from tools.pages.__main__ import main
 from tools.pages.every import SECTIONS, STANDS_FOR, every_page, meant
@@ -59,8 +62,8 @@ def test_text_is_no_html() -> None:
         assert found == [], name
 
 
-def test_every_section_of_the_vocabulary_is_on_its_page() -> None:
-    for it in check_vocabulary(load_vocabulary((), "", packages=False)):
+def test_every_section_of_the_definitions_is_on_its_page() -> None:
+    for it in check_definitions(load_definitions((), "", packages=False)):
         page = made()[f"plugins/{it.file.removesuffix('.vocab')}.md"]
         assert f"\n## {it.name}\n" in page
 
@@ -79,7 +82,7 @@ def test_every_command_and_option_is_on_the_page() -> None:
         # clients of AMCL and the base frame of it: nav2_amcl/src/amcl_node.cpp
         ("known-nodes.md", ("### amcl\n", "`initialpose`", "### joint_trajectory_controller\n")),
         ("known-parameters.md", ("`amcl` (nav2_amcl)", "`base_frame_id`")),
-        ("fleet-keys.md", ("`robots`", "`companions`", "required")),
+        ("fleet-keys.md", ("`robots`", "`related_files`", "required")),
         ("interfaces.md", ("## Endpoints", "## Parameters and launch files", "navigation2")),
         ("lint-triage.md", ("## MB202 ", "true: ")),
         ("upstream.md", ("```diff\n--- a/", "Revision `")),

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from multibot_rewrite.description.rewriters.vocabulary import Vocabulary
+from multibot_rewrite.description.rewriters.plugin_definitions import Definitions
 from tools.interfaces import plugin_files, sdf_elements
 from tools.interfaces.__main__ import main
 from tools.interfaces.hardware_parameters import read_hardware
@@ -105,7 +105,7 @@ class Timer {
 
 def made_of(folders: list[Path]) -> str:
     """What is printed where nothing is known yet."""
-    return plugin_files.new_values(folders, Vocabulary({}, ""))
+    return plugin_files.new_values(folders, Definitions({}, ""))
 
 
 def test_helpers_read_by_a_prefix(tmp_path: Path) -> None:
@@ -238,10 +238,10 @@ def test_a_row_has_the_newest_tag_and_the_releases_that_read_it(tmp_path: Path) 
     assert older == "old value integer read=Drive.cc:2@ignition-gazebo6_6.1.0 releases=humble"
 
 
-def test_what_the_vocabulary_has_is_not_printed(tmp_path: Path) -> None:
+def test_what_the_definitions_has_is_not_printed(tmp_path: Path) -> None:
     folder = checkout(tmp_path, "gz-sim8_8.1.0", '_sdf->Get<int>("x");\n_sdf->Get<double>("y");')
     known = made_of([folder]).replace("y value number", "y value integer")
-    (row,) = plugin_files.new_values([folder], Vocabulary({"a.vocab": known}, "")).splitlines()[4:]
+    (row,) = plugin_files.new_values([folder], Definitions({"a.vocab": known}, "")).splitlines()[4:]
     assert row == "y value number read=Drive.cc:3"
 
 

@@ -119,7 +119,7 @@ def test_what_only_looks_like_a_name_is_none(value: str) -> None:
 def test_what_is_claimed_or_kept_is_no_mention() -> None:
     known = plugin("libgazebo_ros_diff_drive.so", "<left_joint>hip</left_joint>")
     assert surveyed(f'{known}<gazebo reference="base"/>').mentions == {}
-    # joint@type is kept by the vocabulary whatever it says.
+    # joint@type is kept by the plugin definitions whatever it says.
     assert surveyed('<link name="fixed"/>').mentions == {}
 
 

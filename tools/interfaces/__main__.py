@@ -4,7 +4,7 @@
 Each FOLDER is a checkout of a tag or commit and is called REPOSITORY@VERSION. The table is printed;
 with ``--compare RELEASE``, the differences to the nodes that are known of that release, and nodes
 beside them that ``nodes.txt`` does not have; with ``--nodl NODE``, the NoDL document of that node; with
-``--plugins``, what plugins of simulators and ros2_control hardware read and the vocabulary has not
+``--plugins``, what plugins of simulators and ros2_control hardware read and our definitions lack
 or otherwise (checkouts of a release may be in a folder of its name, the oldest release first); with
 ``--sdf``, what SDF has, of one checkout of sdformat.
 """
@@ -17,7 +17,7 @@ from pathlib import Path
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import RELEASES
-from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
+from multibot_rewrite.description.rewriters.plugin_definitions import load_definitions
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.producers.sources.records import joined
 from tools.interfaces import plugin_files, sdf_elements
@@ -50,7 +50,7 @@ def _printed(given: argparse.Namespace) -> int:
         sys.stdout.write(sdf_elements.to_schema(given.folders[0]))
         return 0
     if given.plugins:
-        known = load_vocabulary((), "", packages=False)
+        known = load_definitions((), "", packages=False)
         sys.stdout.write(plugin_files.new_values(given.folders, known))
         return 0
     index = indexed(joined([read_folder(folder) for folder in sorted(given.folders)]))

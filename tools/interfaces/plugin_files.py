@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checkouts of simulator plugins and ros2_control hardware -> values for the vocabulary.
+"""Checkouts of simulator plugins and ros2_control hardware -> values for the plugin definitions.
 
 Which libraries there are and what they are made of is in CMakeLists.txt, which classes in the
 macros that register them; hardware classes are in the files that describe plugins.
@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import RELEASES
-from multibot_rewrite.description.rewriters.vocabulary import Value, Vocabulary
-from multibot_rewrite.description.rewriters.vocabulary.values import VALUE, read_values
+from multibot_rewrite.description.rewriters.plugin_definitions import Definitions, Value
+from multibot_rewrite.description.rewriters.plugin_definitions.values import VALUE, read_values
 from tools.interfaces.hardware_parameters import read_hardware
 from tools.interfaces.helper_classes import by_prefix
 from tools.interfaces.plugin_parameters import (
@@ -26,7 +26,7 @@ from tools.interfaces.plugin_parameters import (
     reads_any,
 )
 
-HEAD = "# What code reads and the vocabulary has not: lines to be put in, or to correct it by.\n"
+HEAD = "# What code reads and the plugin definitions lack: lines to be put in, or to correct them by.\n"
 # The releases of a tag by how it begins, or of the folder that a checkout is in; in the order of time.
 OF_RELEASES = (
     (("ignition-gazebo6", "humble"), ("humble",)),
@@ -83,14 +83,14 @@ class Plugin(NamedTuple):
     shared: tuple[str, ...] = ()
 
 
-def new_values(folders: Iterable[Path], vocabulary: Vocabulary) -> str:
-    """Sections of what the vocabulary has not, or otherwise; raises UsageError for what is no
+def new_values(folders: Iterable[Path], definitions: Definitions) -> str:
+    """Sections of what the plugin definitions has not, or otherwise; raises UsageError for what is no
     checkout."""
     found: dict[str, list[Plugin]] = {}
     for folder in folders:
         for it in read_plugins(folder):
             found.setdefault(it.names[0], []).append(it)
-    sections = (_section(found[name], vocabulary) for name in sorted(found))
+    sections = (_section(found[name], definitions) for name in sorted(found))
     return "\n".join([HEAD, *("\n".join(it) + "\n" for it in sections if it)])
 
 
@@ -213,7 +213,7 @@ def _place(texts: dict[str, str], word: str) -> tuple[str, int]:
     return path, text.count("\n", 0, text.index(word)) + 1
 
 
-def _section(plugins: list[Plugin], vocabulary: Vocabulary) -> list[str]:
+def _section(plugins: list[Plugin], definitions: Definitions) -> list[str]:
     """Return a plugin over all its tags, each row as the newest tag that has it says it."""
     newest = plugins[-1]
     # A library that was renamed keeps the classes it was known by.
@@ -224,7 +224,7 @@ def _section(plugins: list[Plugin], vocabulary: Vocabulary) -> list[str]:
         for it in plugin.parameters:
             rows.setdefault(it.name, []).append((plugin, it))
     made = [_row(rows[name], newest, there) for name in sorted(rows)]
-    known = _known(names[0], vocabulary)
+    known = _known(names[0], definitions)
     new = [it for it in made if next(read_values("", 0, [it])) not in known]
     kind, _, own = names[0].rpartition(" ")
     head = [f"[{'block' if kind == 'block' else 'values'} {' '.join([own, *names[1:]])}]"]
@@ -235,10 +235,10 @@ def _section(plugins: list[Plugin], vocabulary: Vocabulary) -> list[str]:
     return [*head, *new] if new or (not made and not known) else []
 
 
-def _known(name: str, vocabulary: Vocabulary) -> Container[Value]:
-    """Return what the vocabulary has, without what it knows from elsewhere: units and ranges."""
+def _known(name: str, definitions: Definitions) -> Container[Value]:
+    """Return what the plugin definitions have, without what comes from elsewhere: units, ranges."""
     kind, _, own = name.rpartition(" ")
-    found = vocabulary.values(own, kind == "ros1")
+    found = definitions.values(own, kind == "ros1")
     return [
         it._replace(unit="", low=None, high=None, is_open=False, checked=it.place)
         for it in (found.rows.values() if found else ())

@@ -18,7 +18,7 @@ together: [the fleet file](fleet-file.md).
 TITLES = {
     "The fleet": (),
     "A robot": ("$defs", "robot"),
-    "Companions": ("$defs", "companions"),
+    "RelatedFiles": ("$defs", "related_files"),
     "A cell": ("properties", "cell"),
     "Zenoh": ("properties", "zenoh"),
 }

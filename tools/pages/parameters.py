@@ -14,7 +14,7 @@ HEAD = """\
 # Known parameters
 
 What nodes of public packages have in their parameter files that holds a name. How files are
-rewritten, and how a node of your own is described: [parameter files](companions.md).
+rewritten, and how a node of your own is described: [parameter files](related-files.md).
 
 | node | parameters that hold names | inserted where absent |
 |---|---|---|

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The pages of the vocabulary, one for each of its files."""
+"""The pages of the plugin definitions, one for each of its files."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from itertools import groupby
 
 from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.description.rewriters.lookup import facts
-from multibot_rewrite.description.rewriters.vocabulary import (
-    VocabularySection,
-    check_vocabulary,
-    load_vocabulary,
+from multibot_rewrite.description.rewriters.plugin_definitions import (
+    PluginDefinition,
+    check_definitions,
+    load_definitions,
 )
 from tools.pages.markdown import plain
 
 HEAD = """\
 # Plugins, elements and hardware classes
 
-Everything the rewriters know, from `multibot_rewrite/description/rewriters/vocabulary/*.vocab`;
+Everything the rewriters know, from `multibot_rewrite/description/rewriters/plugin_definitions/*.vocab`;
 `multibot inspect NAME` prints one.
 
 `declares` and `uses` name kinds, tried in order until one resolves; `keep` values are never renamed.
@@ -33,7 +33,7 @@ Topics under *only a remap moves* get a remap rule unless the file has one.
 
 def pages() -> dict[str, str]:
     """Path below docs/ -> Markdown: a page for each file, and the list of them."""
-    sections = check_vocabulary(load_vocabulary((), "", packages=False))
+    sections = check_definitions(load_definitions((), "", packages=False))
     by_file = groupby(sorted(sections, key=lambda r: (r.file, r.line)), lambda r: r.file)
     files = {file.removesuffix(".vocab"): list(found) for file, found in by_file}
     rows = (f"| [{name}]({name}.md) | {len(found)} |\n" for name, found in files.items())
@@ -43,11 +43,11 @@ def pages() -> dict[str, str]:
     }
 
 
-def _page(name: str, sections: Iterable[VocabularySection]) -> str:
+def _page(name: str, sections: Iterable[PluginDefinition]) -> str:
     return f"# {name}\n{''.join(map(_section, sections))}"
 
 
-def _section(section: VocabularySection) -> str:
+def _section(section: PluginDefinition) -> str:
     lines = [f"\n## {section.name}\n"]
     known = facts(section)
     about = known.pop("about", "")

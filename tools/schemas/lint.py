@@ -68,7 +68,7 @@ def _known() -> dict[str, Schema]:
         ),
         "roots": _said("folders in which package://NAME is looked for", _list(_TEXT)),
         "urdf": _said("the URDF of SRDF files, where it is not the one of that name", _TEXT),
-        "vocabulary": _said("files of plugins and their parameters", _list(_TEXT)),
+        "definitions": _said("files of plugins and their parameters", _list(_TEXT)),
         "xacro": _said(
             "each is one more expansion of the files, with these arguments",
             _list(

@@ -137,11 +137,11 @@ def output(about: str, default: str = "") -> Option:
     return _option("-o,--output", text, "PATH", type=values.path, **more)
 
 
-def form(about: str, known: str) -> Option:
-    """Return the option ``--form``: the kind of a command's result, the first one by default."""
+def output_kind(about: str, known: str) -> Option:
+    """Return the option ``--output-kind``: the kind of a command's result, the first one by default."""
     first, *_ = words = known.split("|")
     text = f"{about}: {', '.join(words)}; default: {first}"
-    return choice(text, "--form", "FORM", known, first)
+    return choice(text, "--output-kind", "KIND", known, first)
 
 
 def _option(names: str, about: str, metavar: str, **more: Any) -> Option:
@@ -152,6 +152,6 @@ KINDS: Mapping[str, Callable[..., Option]] = {
     it.__name__: it
     for it in (
         *(argument, value, path, switch, choice, several, some, each),
-        *(sources, launch, launch_words, output, form),
+        *(sources, launch, launch_words, output, output_kind),
     )
 }

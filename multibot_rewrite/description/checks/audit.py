@@ -19,8 +19,8 @@ from multibot_rewrite.description.checks.problem import Problem, to_findings
 from multibot_rewrite.description.checks.twice import rewritten_before
 from multibot_rewrite.description.checks.unknown import ANOTHER_RELEASE, not_here, unknown_parts
 from multibot_rewrite.description.readback.xml import elements_at
+from multibot_rewrite.description.rewriters.plugin_definitions.grammar import split_path
 from multibot_rewrite.description.rewriters.tree import Tree
-from multibot_rewrite.description.rewriters.vocabulary.grammar import split_path
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.document import Document, tag_end
 
@@ -112,10 +112,10 @@ def other_releases(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
         section = host.node.section
         if section is None:
             continue
-        for site in tree.vocabulary.rows_elsewhere(section.type, section.names[0]):
+        for site in tree.definitions.rows_elsewhere(section.type, section.names[0]):
             if site.path in {it.path for it in section.sites} or site.role == "keep":
                 continue
-            where = not_here(tree.vocabulary, releases_with(site.releases))
+            where = not_here(tree.definitions, releases_with(site.releases))
             steps, attribute = split_path(site.path)
             for element in elements_at(host.element, steps):
                 if attribute and element.get(attribute) is None:
@@ -131,7 +131,7 @@ def other_ros(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
         section = host.node.section
         if section is None or section.type != "plugin" or section.ros != "2":
             continue
-        flavours = tree.vocabulary.of_every_ros("plugin", section.names[0])
+        flavours = tree.definitions.of_every_ros("plugin", section.names[0])
         theirs = {tag for other in flavours if other.ros == "1" for tag in other.tags}
         known = section.tags | host.node.children.keys()
         left = sorted({str(child.tag) for child in host.element} & (theirs - known))

@@ -26,9 +26,9 @@ from multibot_rewrite.base.wording import plural
 from multibot_rewrite.description.checks.problem import Problem, about
 from multibot_rewrite.description.rewriters.forms import IN_FRONT
 from multibot_rewrite.description.rewriters.model_namespaces import INCLUDE, MODEL, namespace_of
+from multibot_rewrite.description.rewriters.plugin_definitions import PluginDefinition
 from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.rewriters.tree import Tree, library_key
-from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.description.steps.collect import SRDF, Host, Inventory
 from multibot_rewrite.knowledge.controller_ways import controller_way
 
@@ -231,7 +231,7 @@ def _host(host: Host, code: str, message: str, hint: str) -> Problem:
     return Problem(host.element, message, None, hint, (), code)
 
 
-def _known_hosts(inventory: Inventory) -> Iterator[tuple[VocabularySection, Host]]:
+def _known_hosts(inventory: Inventory) -> Iterator[tuple[PluginDefinition, Host]]:
     for host in inventory.hosts:
         if host.node.section is not None:
             yield host.node.section, host
@@ -281,7 +281,7 @@ GAZEBO = {"humble": "Fortress", "jazzy": "Harmonic", "kilted": "Ionic", "lyrical
 
 def ignored_namespaces(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     """Yield namespaces of models that the release's Gazebo does not read."""
-    release = tree.vocabulary.release
+    release = tree.definitions.release
     for model in [] if _are_read(tree) else _with_namespace(inventory):
         who = f"Gazebo {GAZEBO.get(release, 'of main')} ({release})"
         message = f"{who} does not read the namespace {namespace_of(model)!r} of {_named(model)}"
@@ -291,7 +291,7 @@ def ignored_namespaces(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
 def used_namespaces(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     """Yield namespaces of models that plugins of theirs put in front of their relative topics."""
     models = _with_namespace(inventory) if _are_read(tree) else []
-    release = tree.vocabulary.release
+    release = tree.definitions.release
     below = [
         host.element
         for section, host in (_known_hosts(inventory) if models else ())
@@ -306,8 +306,8 @@ def used_namespaces(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
 
 
 def _are_read(tree: Tree) -> bool:
-    sections = tree.vocabulary.find("element", "sdf.model")
-    return any(has_release(it.model_namespace, tree.vocabulary.release) for it in sections)
+    sections = tree.definitions.find("element", "sdf.model")
+    return any(has_release(it.model_namespace, tree.definitions.release) for it in sections)
 
 
 def _with_namespace(inventory: Inventory) -> list[_Element]:

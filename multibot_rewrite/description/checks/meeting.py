@@ -23,7 +23,7 @@ from multibot_rewrite.description.readback import meeting
 from multibot_rewrite.description.readback.active import active_parts
 from multibot_rewrite.description.readback.nodes import SERVICE, TOPIC, RuntimeName
 from multibot_rewrite.description.readback.reading import Reading, read, read_tree
-from multibot_rewrite.description.rewriters.vocabulary import Vocabulary
+from multibot_rewrite.description.rewriters.plugin_definitions import Definitions
 from multibot_rewrite.description.steps.apply import fill
 from multibot_rewrite.description.steps.document import Document
 
@@ -41,7 +41,7 @@ BY_HAND = "write it for each robot by hand, as by an argument of a xacro"
 
 
 def shared_by_all(
-    document: Document, pieces: list[bytes], naming: Naming, vocabulary: Vocabulary
+    document: Document, pieces: list[bytes], naming: Naming, definitions: Definitions
 ) -> Iterator[Problem]:
     """Yield the names that every robot of a description would have, each at its element in the source.
 
@@ -50,7 +50,7 @@ def shared_by_all(
     was left below the name of the model.
     """
     robot = _unused(document)
-    return shared_with(document, fill(pieces, robot), robot, naming, vocabulary)
+    return shared_with(document, fill(pieces, robot), robot, naming, definitions)
 
 
 Said = TypeVar("Said", Problem, Finding)
@@ -75,12 +75,12 @@ def shared_by_both(
     pieces: list[bytes],
     robots: tuple[str, str],
     naming: Naming,
-    vocabulary: Vocabulary,
+    definitions: Definitions,
 ) -> Iterator[Problem]:
     """Yield the names that these two robots would share, but not every robot, as ``arm_left`` of ``b``
     and ``arm`` of ``left_b``."""
     twin = _unused(document)
-    named = {it: read(fill(pieces, it), document.file, vocabulary).names for it in (*robots, twin)}
+    named = {it: read(fill(pieces, it), document.file, definitions).names for it in (*robots, twin)}
     every = {(it.kind, it.name) for it in meeting.same_for_all(named.pop(twin), twin, naming)}
     for met in meeting.meetings(named, naming):
         it = met.name
@@ -91,11 +91,11 @@ def shared_by_both(
 
 
 def shared_with(
-    document: Document, text: bytes, robot: str, naming: Naming, vocabulary: Vocabulary
+    document: Document, text: bytes, robot: str, naming: Naming, definitions: Definitions
 ) -> Iterator[Problem]:
     """Yield the names in the text of ``robot``, a unique name, that every robot would have."""
     try:
-        reading = read(text, document.file, vocabulary)
+        reading = read(text, document.file, definitions)
     except InputError as error:
         raise ProofError(str(error)) from None
     for it in reading.missed:
@@ -103,17 +103,17 @@ def shared_with(
             f"{document.file}: {it.name[1:]!r} below the model's name ({it.path}) is a frame that tf "
             "does not have"
         )
-    found = [*_changed(document, reading, robot, naming, vocabulary)]
+    found = [*_changed(document, reading, robot, naming, definitions)]
     shared = list(meeting.same_for_all(reading.names, robot, naming))
     for it in (it for it in shared if not it.of_controllers):
         element, message = it.element_in(document.root), meeting.said(ALL, it)
         found.append(Problem(element, message, None, meeting.advice(it), (), meeting.code_of(it)))
     for names in lists_by_key((it.number, it) for it in shared if it.of_controllers).values():
         plugin = names[0].element_in(document.root)
-        found.append(_of_controllers(plugin, names, naming, vocabulary.release))
+        found.append(_of_controllers(plugin, names, naming, definitions.release))
     yield from found
     if not found and robot.encode() not in text:
-        yield from _same_text(document, naming, vocabulary)
+        yield from _same_text(document, naming, definitions)
     if next(document.root.iter("link"), None) is None:
         from multibot_rewrite.description.sources.included_by import robot_instead  # few ask for it
 
@@ -121,10 +121,10 @@ def shared_with(
         yield Problem(document.root, "the robot has no link", None, hint, (), NO_LINK)
 
 
-def _same_text(document: Document, naming: Naming, vocabulary: Vocabulary) -> Iterator[Problem]:
+def _same_text(document: Document, naming: Naming, definitions: Definitions) -> Iterator[Problem]:
     """Yield a problem if all robots get the same text, and something in it is not kept apart by a
     namespace."""
-    parts = list(active_parts(document.root, vocabulary))
+    parts = list(active_parts(document.root, definitions))
     for part in parts:
         if part.opens_something and not (naming.topics == NAMESPACE and part.is_apart):
             message = f"all robots get the same text, and {part.kind} {part.name!r} runs in it"
@@ -134,13 +134,13 @@ def _same_text(document: Document, naming: Naming, vocabulary: Vocabulary) -> It
 
 
 def _changed(
-    document: Document, reading: Reading, robot: str, naming: Naming, vocabulary: Vocabulary
+    document: Document, reading: Reading, robot: str, naming: Naming, definitions: Definitions
 ) -> Iterator[Problem]:
     """Yield the names that were shared or matched before the rewrite, and are not after it."""
     images = any(meeting.CAMERA_INFO in it.name for it in reading.names)
     if b":=" not in document.source and not images and not _alike(reading, robot):
         return
-    before = read_tree(document.root, vocabulary)
+    before = read_tree(document.root, definitions)
     for lost in meeting.lost_rules(before, reading):
         if lost.name.strip("/") not in naming.shared_topics:
             plugin = next(islice(document.root.iter("plugin"), lost.number, None), document.root)

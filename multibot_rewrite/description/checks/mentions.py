@@ -18,9 +18,9 @@ from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.base.naming import TF_TOPICS, Naming, spelled
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.readback.active import is_loaded
+from multibot_rewrite.description.rewriters.plugin_definitions import Definitions
 from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.rewriters.tree import Tree, TreeNode, values_of_plugin
-from multibot_rewrite.description.rewriters.vocabulary import Vocabulary
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.document import finding, value_slot
 
@@ -102,12 +102,12 @@ def unclaimed_mentions(
         Mention(*slot, telling[slot[3]])
         for slot in _unclaimed(inventory, suspects)
         if not kept(slot[0], slot[2], tree, nodes)
-        and not _is_unread(slot[0], slot[2], tree.vocabulary)
+        and not _is_unread(slot[0], slot[2], tree.definitions)
         and (telling[slot[3]] in names or _is_meant(slot[0], slot[2], slot[3]))
     ]
 
 
-def _is_unread(element: etree._Element, attribute: str, vocabulary: Vocabulary) -> bool:
+def _is_unread(element: etree._Element, attribute: str, definitions: Definitions) -> bool:
     """Return whether it is text that urdfdom does not read (model.cpp, link.cpp, joint.cpp), or is
     in a parameter that a plugin or hardware reads in no release, for ROS 1 or 2. Then all that it
     reads is known. Nothing reads the call of a macro that xacro has left."""
@@ -121,9 +121,9 @@ def _is_unread(element: etree._Element, attribute: str, vocabulary: Vocabulary) 
         path = f"{element.tag}/{path}"
         if parent.tag == HARDWARE:
             name = element.get("name", "")
-            every = [vocabulary.values(text_at(parent, PLUGIN))]
+            every = [definitions.values(text_at(parent, PLUGIN))]
         elif parent.tag == PLUGIN:
-            every = [values_of_plugin(parent, vocabulary, it) for it in (False, True)]
+            every = [values_of_plugin(parent, definitions, it) for it in (False, True)]
             # A node's own element has a known content.
             name = path[:-1] if path.startswith("ros/") else str(element.tag)
         else:

@@ -15,7 +15,7 @@ from multibot_rewrite.base.naming import CLOSED_KINDS, FRAME_KINDS, is_keyword
 from multibot_rewrite.base.nearest import Guesses, did_you_mean_one_of
 from multibot_rewrite.description.checks.problem import Problem, about
 from multibot_rewrite.description.rewriters.forms import Declared, NamePart
-from multibot_rewrite.description.rewriters.spelling import kind_of, must_be_declared, names_in
+from multibot_rewrite.description.rewriters.renaming import kind_of, must_be_declared, names_in
 from multibot_rewrite.description.steps.collect import Inventory
 
 if TYPE_CHECKING:

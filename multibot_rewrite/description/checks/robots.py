@@ -10,7 +10,7 @@ from multibot_rewrite.base.model import Claim
 from multibot_rewrite.base.naming import FRAME_KINDS, NO_OWN_NAMES, TOPIC_KINDS, removal
 from multibot_rewrite.description.checks.problem import Problem, about
 from multibot_rewrite.description.rewriters.forms import Declared
-from multibot_rewrite.description.rewriters.spelling import is_reached, must_be_declared
+from multibot_rewrite.description.rewriters.renaming import is_reached, must_be_declared
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.document import finding
 from multibot_rewrite.description.steps.renames import RenameMap

@@ -18,8 +18,8 @@ from multibot_rewrite.description.readback.active import (
     is_loaded,
     plugin_name,
 )
+from multibot_rewrite.description.rewriters.plugin_definitions import Definitions, PluginDefinition
 from multibot_rewrite.description.rewriters.tree import ANY_WITH_ROS, Tree, library_key
-from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, VocabularySection
 from multibot_rewrite.description.steps.collect import SRDF, Inventory
 
 ANOTHER_RELEASE = (
@@ -33,9 +33,9 @@ CODES = {PLUGIN: "MB902", HARDWARE: "MB903", INCLUDE: "MB906"}
 def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     """Yield plugins, hardware classes, sensor types and included models that may open something
     unknown, and those of a Gazebo that the release lacks, each at its element."""
-    guesses, release, root = Guesses(), tree.vocabulary.release, inventory.document.root
+    guesses, release, root = Guesses(), tree.definitions.release, inventory.document.root
     # An SRDF starts nothing.
-    parts = [] if inventory.format == SRDF else [*active_parts(root, tree.vocabulary)]
+    parts = [] if inventory.format == SRDF else [*active_parts(root, tree.definitions)]
     # Once: so are the others.
     known = (it for it in parts if it.kind == PLUGIN and it.is_known)
     old = next((it for it in known if it.name.startswith(CLASSIC)), None)
@@ -45,10 +45,10 @@ def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
         if not is_loaded(plugin):
             message = f"nothing loads the <plugin> {plugin_name(plugin)!r} here"
             yield Problem(plugin, message, None, "move it into a <gazebo>", (), NOT_LOADED)
-    by_ros = _by_ros(parts, tree.vocabulary)
+    by_ros = _by_ros(parts, tree.definitions)
     for part in parts:
         if not part.is_known:
-            message, hint = _said(part, tree.vocabulary, guesses)
+            message, hint = _said(part, tree.definitions, guesses)
             yield Problem(part.element, message, None, hint, (), CODES.get(part.kind, "MB902"))
         elif part is old:
             message = f"plugin {part.name!r} is of Gazebo Classic, which {release} has not"
@@ -62,22 +62,22 @@ def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
             yield Problem(part.element, message, None, hint, (), CODES[PLUGIN])
 
 
-def _by_ros(parts: Iterable[ActivePart], vocabulary: Vocabulary) -> dict[str, list[ActivePart]]:
+def _by_ros(parts: Iterable[ActivePart], definitions: Definitions) -> dict[str, list[ActivePart]]:
     """Return the plugins that ROS 1 and ROS 2 both have, by the ROS as whose they are read; none where
     the document's is known."""
     return lists_by_key(
         (it.section.ros, it)
         for it in parts
-        if it.section and len(vocabulary.find(PLUGIN, library_key(it.name))) > 1
+        if it.section and len(definitions.find(PLUGIN, library_key(it.name))) > 1
     )
 
 
-def is_unknown(section: VocabularySection) -> bool:
+def is_unknown(section: PluginDefinition) -> bool:
     """Return whether a plugin has no section. Then its element's is used, or that for any ROS node."""
     return section.select == "plugin" or section.names[0] == ANY_WITH_ROS
 
 
-def _said(part: ActivePart, vocabulary: Vocabulary, guesses: Guesses) -> tuple[str, str]:
+def _said(part: ActivePart, definitions: Definitions, guesses: Guesses) -> tuple[str, str]:
     if part.kind == INCLUDE:
         return (
             f"the included {part.name!r} is not read: its topics and frames stay as they are",
@@ -89,14 +89,14 @@ def _said(part: ActivePart, vocabulary: Vocabulary, guesses: Guesses) -> tuple[s
         return f"{who} is known by its parameters alone: what it opens is not known", SAY_IT
     kind = "hardware" if part.kind == HARDWARE else "plugin" if part.kind == PLUGIN else "sensor"
     name = library_key(part.name) if part.kind == PLUGIN else part.name
-    if others := vocabulary.releases_elsewhere(kind, name):
-        where = not_here(vocabulary, others)
+    if others := definitions.releases_elsewhere(kind, name):
+        where = not_here(definitions, others)
         return f"{who} {where}: its own parameters are not renamed", ANOTHER_RELEASE
-    near = guesses.hint(name, vocabulary.names(kind), SLIP)
+    near = guesses.hint(name, definitions.names(kind), SLIP)
     message = f"{who} has no plugin definition: its own parameters are not renamed"
     return message, near or SAY_IT
 
 
-def not_here(vocabulary: Vocabulary, releases: Iterable[str]) -> str:
+def not_here(definitions: Definitions, releases: Iterable[str]) -> str:
     """Return the words for something that is in other releases only."""
-    return f"is not in {vocabulary.release}, only in {', '.join(releases)}"
+    return f"is not in {definitions.release}, only in {', '.join(releases)}"

@@ -20,8 +20,8 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.releases import ROS_1, ROS_2
 from multibot_rewrite.description.readback.parameters import given_at, holds
 from multibot_rewrite.description.readback.xml import child_text, text_of
-from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, VocabularySection
-from multibot_rewrite.description.rewriters.vocabulary.grammar import split_opens
+from multibot_rewrite.description.rewriters.plugin_definitions import Definitions, PluginDefinition
+from multibot_rewrite.description.rewriters.plugin_definitions.grammar import split_opens
 
 # gz-sim's loader takes a library with or without lib and .so, versions, and the old name
 # (gazebosim/gz-sim src/SystemLoader.cc).
@@ -32,12 +32,12 @@ WITH_ROS = "any_with_ros"
 
 
 def plugin_section(
-    plugin: _Element, vocabulary: Vocabulary
-) -> tuple[VocabularySection | None, bool]:
+    plugin: _Element, definitions: Definitions
+) -> tuple[PluginDefinition | None, bool]:
     """Return the definition of a plugin, or None, and whether the plugin itself is known."""
     with_ros = plugin.find("ros") is not None
     for key in _keys(plugin):
-        found = vocabulary.find("plugin", key)
+        found = definitions.find("plugin", key)
         # gz-sim calls a plugin by its class. One that is called so is no library of Gazebo Classic,
         # which calls a node by that name; those of gazebo_ros are for Classic alone.
         sites = found[0].sites if found and not key.startswith("gazebo_ros") else ()
@@ -49,7 +49,7 @@ def plugin_section(
             return _of_release(found, plugin), True
     if not with_ros:
         return None, False
-    return vocabulary.find("plugin", WITH_ROS)[0], False
+    return definitions.find("plugin", WITH_ROS)[0], False
 
 
 def _keys(plugin: _Element) -> Iterator[str]:
@@ -64,7 +64,7 @@ def _keys(plugin: _Element) -> Iterator[str]:
     yield plugin.get("type", "").strip()
 
 
-def _of_release(found: Sequence[VocabularySection], plugin: _Element) -> VocabularySection:
+def _of_release(found: Sequence[PluginDefinition], plugin: _Element) -> PluginDefinition:
     """Return the section of the ROS that loads a plugin. Only ROS 2 reads <ros>; without one the
     release that reads more of the parameters counts, ROS 2 if both do."""
     by_release = {section.ros: section for section in found}
@@ -83,9 +83,9 @@ def hardware_class(system: _Element) -> str:
     return child_text(blocks[-1], "plugin") or "" if blocks else ""
 
 
-def hardware_section(system: _Element, vocabulary: Vocabulary) -> VocabularySection | None:
+def hardware_section(system: _Element, definitions: Definitions) -> PluginDefinition | None:
     """Return the definition of the class that a ros2_control system loads."""
-    return next(iter(vocabulary.find("hardware", hardware_class(system))), None)
+    return next(iter(definitions.find("hardware", hardware_class(system))), None)
 
 
 PLUGIN, HARDWARE, SENSOR, INCLUDE = "plugin", "hardware class", "sensor type", "included model"
@@ -124,7 +124,7 @@ class ActivePart(NamedTuple):
     kind: str
     element: _Element
     name: str
-    section: VocabularySection | None
+    section: PluginDefinition | None
 
     @property
     def is_known(self) -> bool:
@@ -144,21 +144,21 @@ class ActivePart(NamedTuple):
         return {NAMESPACE} == {it for it in words if not split_opens(it).path}
 
 
-def active_parts(root: _Element, vocabulary: Vocabulary) -> Iterator[ActivePart]:
+def active_parts(root: _Element, definitions: Definitions) -> Iterator[ActivePart]:
     """Yield all active parts of a description, kind by kind."""
     every = lists_by_key((str(it.tag), it) for it in root.iter("plugin", "sensor", "include"))
     for plugin in every["plugin"]:
         inside = _NO_PLUGINS.intersection(it.tag for it in plugin.iterancestors())
         if is_loaded(plugin) and not inside:
-            section, known = plugin_section(plugin, vocabulary)
+            section, known = plugin_section(plugin, definitions)
             yield ActivePart(PLUGIN, plugin, plugin_name(plugin), section if known else None)
     for system in root.iter("ros2_control"):
         if class_ := hardware_class(system):
-            yield ActivePart(HARDWARE, system, class_, hardware_section(system, vocabulary))
+            yield ActivePart(HARDWARE, system, class_, hardware_section(system, definitions))
     for sensor in every["sensor"]:
         type_ = sensor.get("type", "").strip()
         if type_ and _is_simulated(sensor):
-            section = next(iter(vocabulary.find("sensor", type_)), None)
+            section = next(iter(definitions.find("sensor", type_)), None)
             yield ActivePart(SENSOR, sensor, type_, section)
     for include in every["include"]:
         uri = child_text(include, "uri")
@@ -186,7 +186,7 @@ def _is_simulated(sensor: _Element) -> bool:
     return next(sensor.iterancestors("gazebo", "sdf"), None) is not None
 
 
-def says_what_it_opens(section: VocabularySection) -> bool:
+def says_what_it_opens(section: PluginDefinition) -> bool:
     """Return whether a definition says what the plugin opens."""
     if section.opens:
         return UNKNOWN not in section.opens
@@ -194,7 +194,7 @@ def says_what_it_opens(section: VocabularySection) -> bool:
     return bool(section.wired) or any(not _OPENED.isdisjoint(it.kinds) for it in own)
 
 
-def opened(host: _Element, section: VocabularySection) -> Iterator[tuple[str, str, str]]:
+def opened(host: _Element, section: PluginDefinition) -> Iterator[tuple[str, str, str]]:
     """Yield kind, text and parameter of the addresses and files that a part of the robot opens, and
     of relative names that no row has."""
     if NAMESPACE in section.opens:

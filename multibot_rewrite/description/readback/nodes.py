@@ -32,8 +32,8 @@ from multibot_rewrite.description.readback.parameters import (
     wired_of,
 )
 from multibot_rewrite.description.readback.xml import child_text, text_of
-from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
-from multibot_rewrite.description.rewriters.vocabulary.grammar import SENT
+from multibot_rewrite.description.rewriters.plugin_definitions import PluginDefinition
+from multibot_rewrite.description.rewriters.plugin_definitions.grammar import SENT
 from multibot_rewrite.knowledge.controller_ways import controller_way
 
 TOPIC, SERVICE, ACTION = "topic", "service", "action"
@@ -90,7 +90,7 @@ class ReadNode(NamedTuple):
     transform it publishes. ``helper`` is a node that it starts in addition to its own, ``manager``
     the full name of the controller manager that it makes, if any."""
 
-    section: VocabularySection
+    section: PluginDefinition
     number: int
     name: str
     namespace: str
@@ -109,7 +109,7 @@ class ReadNode(NamedTuple):
 
 
 def node_of(
-    plugin: _Element, number: int, section: VocabularySection, release: str
+    plugin: _Element, number: int, section: PluginDefinition, release: str
 ) -> ReadNode | None:
     """Return the ROS 2 node that a plugin starts; None where it starts none."""
     paths = {site.path for site in section.sites}
@@ -150,7 +150,7 @@ def node_of(
     )
 
 
-def _manager(plugin: _Element, section: VocabularySection, name: str, namespace: str) -> str:
+def _manager(plugin: _Element, section: PluginDefinition, name: str, namespace: str) -> str:
     """Return the controller manager: the plugin's node; Classic's plugin is another node."""
     site = next((it for it in section.sites if it.path == "controller_manager_name"), None)
     if site is None:
@@ -194,7 +194,7 @@ def itself(node: ReadNode) -> BoundNode:
     return _bound(node.name, node.namespace, rules)
 
 
-def _node_name(plugin: _Element, section: VocabularySection) -> str:
+def _node_name(plugin: _Element, section: PluginDefinition) -> str:
     """Return a Gazebo Classic plugin's own name, or that of the controller manager it loads."""
     if _has_own_name(section):
         return plugin.get("name", "").strip()
@@ -203,7 +203,7 @@ def _node_name(plugin: _Element, section: VocabularySection) -> str:
     return next(named, "") or section.names[0].replace("-", "_")
 
 
-def _has_own_name(section: VocabularySection) -> bool:
+def _has_own_name(section: PluginDefinition) -> bool:
     return any(site.path == "@name" for site in section.sites if site.role == "declares")
 
 
@@ -254,7 +254,7 @@ def full_name(name: str, kind: str, bound: BoundNode) -> str:
 def _endpoints(
     plugin: _Element,
     number: int,
-    section: VocabularySection,
+    section: PluginDefinition,
     bound: BoundNode,
     rules: tuple[ReadRule, ...],
     release: str,
@@ -276,7 +276,7 @@ def _endpoints(
 
 
 def _asked_for(
-    plugin: _Element, section: VocabularySection, rules: tuple[ReadRule, ...]
+    plugin: _Element, section: PluginDefinition, rules: tuple[ReadRule, ...]
 ) -> Iterator[tuple[str, str, str, str, str, str]]:
     """Yield kind, role, name, parameter and type of what a node asks for, and what would enable it."""
     off = switched_off(plugin, section)
@@ -289,7 +289,7 @@ def _asked_for(
         kind = SERVICE if site.kinds[0] == SERVICE else TOPIC
         for name in (it for it in values_of(plugin, site) if site.does or it not in named):
             yield kind, site.does, name, site.path, site.type, ""
-    # Other topics below the plugin's own name are not in the vocabulary, but in its remap rules.
+    # Other topics below the plugin's own name are in its remap rules, not in its definition.
     for source in (it.rule.source for it in rules):
         if source.startswith("~") and source not in named:
             yield TOPIC, "", source, "", "", ""
@@ -306,7 +306,7 @@ def is_of_others(site: SiteRow) -> bool:
     return site.when == SENT or (site.role == "keep" and "topic" in site.path.lower())
 
 
-def frames_of(plugin: _Element, section: VocabularySection) -> Iterator[tuple[str, str]]:
+def frames_of(plugin: _Element, section: PluginDefinition) -> Iterator[tuple[str, str]]:
     """Yield the frames in the parameters of a plugin, each with the parameter."""
     for site in section.sites:
         if site.form == "whole" and site.kinds[:1] == ("frame",):

@@ -31,7 +31,7 @@ from multibot_rewrite.description.readback.parameters import (
     wired_of,
 )
 from multibot_rewrite.description.readback.xml import child_text, values_at
-from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
+from multibot_rewrite.description.rewriters.plugin_definitions import PluginDefinition
 
 _NOT_VALID = lazy_compile("@|~|//|:=")
 # Elements whose topics are those of Gazebo's transport.
@@ -39,7 +39,7 @@ OF_GZ = frozenset({"sensor", "particle_emitter"})
 
 
 def resolved(
-    host: _Element, section: VocabularySection, release: str
+    host: _Element, section: PluginDefinition, release: str
 ) -> Iterator[tuple[str, str, str]]:
     """Yield kind, name and parameter of the topics of something that is no ROS 2 node. Names are
     below the namespace that it puts in front, and below the word that topics are made of; none
@@ -76,7 +76,7 @@ def resolved(
             yield TRANSFORMS_ON if wired.name in TF_TOPICS else kind, name, path or wired.name
 
 
-def of_others(host: _Element, section: VocabularySection) -> Iterator[tuple[str, str]]:
+def of_others(host: _Element, section: PluginDefinition) -> Iterator[tuple[str, str]]:
     """Yield name and parameter of the topics that are the world's or unchanged, below the namespace
     that the plugin puts in front. If that is the model's name it also is before a slash
     (rotors_simulator gazebo_mavlink_interface.cpp, as PX4's)."""
@@ -92,7 +92,7 @@ def of_others(host: _Element, section: VocabularySection) -> Iterator[tuple[str,
 
 
 def _full(
-    host: _Element, section: VocabularySection, site: SiteRow, above: str | None
+    host: _Element, section: PluginDefinition, site: SiteRow, above: str | None
 ) -> Iterator[str]:
     """Yield the full names at a site, below the namespace of relative ones, without those that are
     below a node or model which the simulator names."""
@@ -111,7 +111,7 @@ def as_valid_topic(name: str) -> str:
     return _NOT_VALID.sub("", name.replace(" ", "_"))
 
 
-def _namespace(host: _Element, section: VocabularySection) -> str | None:
+def _namespace(host: _Element, section: PluginDefinition) -> str | None:
     """Return the text that the plugin puts before relative names; None for the model's name."""
     named = (it for it in section.sites if it.kinds[:1] == ("namespace",) and it.form == "whole")
     # What is below a <ros> is a node's of ROS 2.
@@ -126,7 +126,7 @@ def _joined(above: str, name: str) -> str:
     return f"/{above.strip('/')}/{name.strip('/')}".replace("//", "/")
 
 
-def reads_it(section: VocabularySection, release: str) -> bool:
+def reads_it(section: PluginDefinition, release: str) -> bool:
     """Return whether this system puts the namespace of its model in front, in ``release``."""
     return bool(section.model_namespace) and has_release(section.model_namespace, release)
 

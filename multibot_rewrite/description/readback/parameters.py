@@ -16,13 +16,13 @@ from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.description.readback.xml import child_text, is_on, values_at
-from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
-from multibot_rewrite.description.rewriters.vocabulary.grammar import (
+from multibot_rewrite.description.rewriters.plugin_definitions import PluginDefinition
+from multibot_rewrite.description.rewriters.plugin_definitions.grammar import (
     MODEL as OF_FILE,
     SENT,
     SPAWNED,
 )
-from multibot_rewrite.description.rewriters.vocabulary.values import WiredTopic, is_type
+from multibot_rewrite.description.rewriters.plugin_definitions.values import WiredTopic, is_type
 
 MODEL = SPAWNED
 _SLOT = lazy_compile(r"\{([^{}]+)\}")
@@ -83,7 +83,7 @@ def given_at(host: _Element, path: str) -> list[str]:
     return [] if start is None else list(values_at(start, below))
 
 
-def switched_off(host: _Element, section: VocabularySection) -> dict[str, str]:
+def switched_off(host: _Element, section: PluginDefinition) -> dict[str, str]:
     """Return the topics that no parameter turns on, with the parameters that would."""
     found = list(_switches(host, section))
     on = {topic for _, topic, is_set in found if is_set}
@@ -91,13 +91,13 @@ def switched_off(host: _Element, section: VocabularySection) -> dict[str, str]:
     return {topic: " or ".join(names) for topic, names in off.items()}
 
 
-def sends_odometry(host: _Element, section: VocabularySection) -> bool:
+def sends_odometry(host: _Element, section: PluginDefinition) -> bool:
     """Return whether the transform of odometry is on. Its switch is the first one of /tf."""
     found = [is_set for _, topic, is_set in _switches(host, section) if topic == "/tf"]
     return not found or found[0]
 
 
-def _switches(host: _Element, section: VocabularySection) -> Iterator[tuple[str, str, bool]]:
+def _switches(host: _Element, section: PluginDefinition) -> Iterator[tuple[str, str, bool]]:
     for switch in section.switches:
         parameter, topic, *usual = switch.split("=")
         yield parameter, topic, is_on(child_text(host, parameter), usual=bool(usual))
@@ -131,7 +131,7 @@ def around(host: _Element) -> _Element:
     return next(host.iterancestors("model", "robot"), host)
 
 
-def wired_of(plugin: _Element, section: VocabularySection) -> Iterator[tuple[WiredTopic, str]]:
+def wired_of(plugin: _Element, section: PluginDefinition) -> Iterator[tuple[WiredTopic, str]]:
     """Yield each wired topic with the path of the parameter that it is below, empty without one."""
     for it in section.wired:
         if it.when and not holds(plugin, it.when):
@@ -141,7 +141,7 @@ def wired_of(plugin: _Element, section: VocabularySection) -> Iterator[tuple[Wir
             yield it._replace(name=name, type=_type(plugin, it.type)), path
 
 
-def filled(plugin: _Element, section: VocabularySection, name: str) -> Iterator[str]:
+def filled(plugin: _Element, section: PluginDefinition, name: str) -> Iterator[str]:
     """Yield the name with each value of the paths in its braces."""
     head, slot, rest = name.partition("{")
     if not slot:

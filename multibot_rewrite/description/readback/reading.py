@@ -19,8 +19,8 @@ from multibot_rewrite.description.readback.nodes import (
 )
 from multibot_rewrite.description.readback.other_topics import of_others, resolved
 from multibot_rewrite.description.readback.xml import read_xml, values_at
-from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, VocabularySection
-from multibot_rewrite.description.rewriters.vocabulary.grammar import MODEL as OF_MODEL
+from multibot_rewrite.description.rewriters.plugin_definitions import Definitions, PluginDefinition
+from multibot_rewrite.description.rewriters.plugin_definitions.grammar import MODEL as OF_MODEL
 
 NODE, FRAME = "node", "frame"
 # Where a frame is written that no parameter holds.
@@ -52,27 +52,27 @@ class _Host(NamedTuple):
 
     element: _Element
     number: int
-    section: VocabularySection
+    section: PluginDefinition
 
 
-def read(data: bytes, file: str, vocabulary: Vocabulary) -> Reading:
+def read(data: bytes, file: str, definitions: Definitions) -> Reading:
     """Read a description as the programs do that load it; raises InputError."""
-    return read_tree(read_xml(data, file), vocabulary)
+    return read_tree(read_xml(data, file), definitions)
 
 
-def read_tree(root: _Element, vocabulary: Vocabulary) -> Reading:
+def read_tree(root: _Element, definitions: Definitions) -> Reading:
     """Return the names of a parsed description; raises nothing."""
-    hosts, unknown = _hosts(root, vocabulary)
-    nodes = _nodes(hosts, vocabulary.release)
+    hosts, unknown = _hosts(root, definitions)
+    nodes = _nodes(hosts, definitions.release)
     with_node = {it.number for it in nodes}
     names = [*_links(root), *_of_nodes(nodes), *_without_rules(root, hosts, with_node)]
-    names += _of_hosts(root, hosts, "plugin", with_node, vocabulary)
+    names += _of_hosts(root, hosts, "plugin", with_node, definitions)
     systems = enumerate(root.iter("ros2_control"))
-    known = ((it, number, active.hardware_section(it, vocabulary)) for number, it in systems)
+    known = ((it, number, active.hardware_section(it, definitions)) for number, it in systems)
     hardware = [_Host(it, number, section) for it, number, section in known if section]
-    names += _of_hosts(root, hardware, "ros2_control", (), vocabulary)
-    names += _of_sensors(root, vocabulary)
-    names += _of_elements(root, vocabulary)
+    names += _of_hosts(root, hardware, "ros2_control", (), definitions)
+    names += _of_sensors(root, definitions)
+    names += _of_elements(root, definitions)
     missed = tuple(it for it in names if it.kind == FRAME and it.name.startswith(parameters.MODEL))
     heard = tuple(it for it in names if it not in missed) if missed else tuple(names)
     below = (end for it in nodes for end in _endpoints(it, below=True))
@@ -85,17 +85,19 @@ def read_tree(root: _Element, vocabulary: Vocabulary) -> Reading:
     return Reading(nodes, heard, tuple(unknown), _of_first_senders(missed, hosts), ends)
 
 
-def transforms_sent(root: _Element, vocabulary: Vocabulary) -> Iterator[tuple[_Element, str, str]]:
+def transforms_sent(
+    root: _Element, definitions: Definitions
+) -> Iterator[tuple[_Element, str, str]]:
     """Yield the plugins that send a transform of odometry, with the frames of parent and child."""
-    hosts, _ = _hosts(root, vocabulary)
+    hosts, _ = _hosts(root, definitions)
     senders = {it.number: it for it in hosts if "/tf" in it.section.publishes}
-    for node in _nodes(senders.values(), vocabulary.release):
+    for node in _nodes(senders.values(), definitions.release):
         frames = dict(node.frames)
         for parent, child in node.sends:
             yield senders[node.number].element, frames[parent], frames[child]
 
 
-def _hosts(root: _Element, vocabulary: Vocabulary) -> tuple[list[_Host], list[tuple[int, str]]]:
+def _hosts(root: _Element, definitions: Definitions) -> tuple[list[_Host], list[tuple[int, str]]]:
     """Return the plugins with a definition, and those without one."""
     hosts: list[_Host] = []
     unknown: list[tuple[int, str]] = []
@@ -103,7 +105,7 @@ def _hosts(root: _Element, vocabulary: Vocabulary) -> tuple[list[_Host], list[tu
         # The class of a ros2_control system, or a plugin of Webots: none of Gazebo's.
         if not active.is_loaded(plugin) or not {"filename", "name"} & {*plugin.attrib}:
             continue
-        section, known = active.plugin_section(plugin, vocabulary)
+        section, known = active.plugin_section(plugin, definitions)
         if not known:
             unknown.append((number, plugin.get("filename", "") or plugin.get("name", "")))
         if section is not None:
@@ -173,13 +175,13 @@ def _endpoints(node: ReadNode, below: bool) -> Iterator[RuntimeName]:
 
 
 def _of_hosts(
-    root: _Element, hosts: list[_Host], tag: str, nodes: Container[int], vocabulary: Vocabulary
+    root: _Element, hosts: list[_Host], tag: str, nodes: Container[int], definitions: Definitions
 ) -> Iterator[RuntimeName]:
     for host in hosts:
         if host.number not in nodes or _is_of_either(host):
-            yield from _topics(host, tag, vocabulary.release)
+            yield from _topics(host, tag, definitions.release)
         yield from _frames(host, tag)
-        yield from _lookups(root, host, vocabulary)
+        yield from _lookups(root, host, definitions)
         yield from _opened(host, tag)
 
 
@@ -191,24 +193,24 @@ def _is_of_either(host: _Host) -> bool:
     return any(it.kinds == ("namespace",) and "/" not in it.path for it in host.section.sites)
 
 
-def _of_sensors(root: _Element, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
+def _of_sensors(root: _Element, definitions: Definitions) -> Iterator[RuntimeName]:
     for number, sensor in enumerate(root.iter("sensor")):
         # What is known about every sensor, and about those of this type.
-        of_type = vocabulary.find("sensor", sensor.get("type", "").strip())
-        for section in (*vocabulary.find("element", "sensor"), *of_type):
+        of_type = definitions.find("sensor", sensor.get("type", "").strip())
+        for section in (*definitions.find("element", "sensor"), *of_type):
             host = _Host(sensor, number, section)
-            yield from _topics(host, "sensor", vocabulary.release)
+            yield from _topics(host, "sensor", definitions.release)
             yield from _opened(host, "sensor")
 
 
-def _of_elements(root: _Element, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
+def _of_elements(root: _Element, definitions: Definitions) -> Iterator[RuntimeName]:
     for tag, held in WITH_TOPICS:
         if next(root.iter(held), None) is None:
             continue
-        (section,) = vocabulary.find("element", tag)
+        (section,) = definitions.find("element", tag)
         for number, element in enumerate(root.iter(tag.rpartition(".")[2])):
             host = _Host(element, number, section)
-            yield from _topics(host, element.tag, vocabulary.release)
+            yield from _topics(host, element.tag, definitions.release)
 
 
 def _links(root: _Element) -> Iterator[RuntimeName]:
@@ -239,11 +241,11 @@ def _opened(host: _Host, tag: str) -> Iterator[RuntimeName]:
         yield RuntimeName(kind, value, tag, host.number, path)
 
 
-def _lookups(root: _Element, host: _Host, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
+def _lookups(root: _Element, host: _Host, definitions: Definitions) -> Iterator[RuntimeName]:
     """Yield names that a plugin or system looks up in the whole world, of things that this file
     has; with the robot's own model in front it is another name, where the model keeps its name."""
     kind, tag = host.section.unique, str(host.element.tag)
-    (every,) = vocabulary.find("element", tag)
+    (every,) = definitions.find("element", tag)
     sites = [it for it in (*every.sites, *host.section.sites) if it.role != "keep"]
     model = root if root.tag == "robot" else next(root.iter("model"), root)
     for site in (it for it in sites if it.form in ("scoped", "suffixed")):

@@ -14,7 +14,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.loose_xml import is_loose, well_formed
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.description.rewriters.vocabulary import split_path, split_step
+from multibot_rewrite.description.rewriters.plugin_definitions import split_path, split_step
 
 # Blanks between elements are most of a tree, and no text that a consumer reads.
 _PARSER = etree.XMLParser(resolve_entities=False, huge_tree=True, remove_blank_text=True)

@@ -16,7 +16,7 @@ from multibot_rewrite.base.naming import FRAME_KINDS, PREFIX, TOPIC_KINDS, Namin
 from multibot_rewrite.description.checks.mentions import MENTIONED, kept, mentioned
 from multibot_rewrite.description.rewriters.forms import IN_FRONT
 from multibot_rewrite.description.rewriters.insert import without
-from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT, ResolvedName, respelled
+from multibot_rewrite.description.rewriters.renaming import ROBOT_SLOT, ResolvedName, respelled
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED
@@ -98,7 +98,7 @@ def explain_line(
 def _source(tree: Tree, site: SiteRow) -> str:
     """Return the source of the section that has the site."""
     type_, name, *_ = site.section.split(" ")
-    sections = tree.vocabulary.find(type_, name)
+    sections = tree.definitions.find(type_, name)
     return next((it.source for it in sections if it.source and site in it.sites), "")
 
 

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite.base.grouping import lists_by_key
-from multibot_rewrite.base.model import VocabularyError
+from multibot_rewrite.base.model import DefinitionsError
 from multibot_rewrite.base.rosnames import split_remap
 from multibot_rewrite.base.wording import clip
 from multibot_rewrite.description.checks.mentions import MENTIONED
@@ -17,13 +17,13 @@ from multibot_rewrite.description.checks.unknown import is_unknown
 from multibot_rewrite.description.reports.explain import plugin_name, short_name
 from multibot_rewrite.description.rewriters import tree
 from multibot_rewrite.description.rewriters.forms import Declared
-from multibot_rewrite.description.rewriters.text import text_at
-from multibot_rewrite.description.rewriters.vocabulary.grammar import (
+from multibot_rewrite.description.rewriters.plugin_definitions.grammar import (
     read_header,
     read_section,
     split_path,
     split_step,
 )
+from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.steps.collect import Host, Inventory
 
 if TYPE_CHECKING:
@@ -122,7 +122,7 @@ def _section_name(type_: str, element: _Element) -> str:
 def _can_head(type_: str, name: str) -> bool:
     try:
         return read_header("", f"{type_} {name}]") == (type_, name)
-    except VocabularyError:
+    except DefinitionsError:
         return False
 
 
@@ -157,7 +157,7 @@ def _is_path(path: str) -> bool:
     """Return whether a row can start with this path: XML allows more in a name."""
     try:
         _, sites = read_section("", 0, ["plugin x]", f"{path} keep it"])
-    except VocabularyError:
+    except DefinitionsError:
         return False
     return path in sites
 
@@ -253,7 +253,7 @@ def shown(value: str) -> str:
     return repr(clip(value))
 
 
-def vocabulary_text(sections: Iterable[SuggestedSection], file: str) -> str:
+def definitions_text(sections: Iterable[SuggestedSection], file: str) -> str:
     """Return a usable file of plugin definitions; without sections only comments."""
     name = " ".join(file.split())
     parts = [_text(section, name.rpartition("/")[2]) for section in sections]

@@ -216,7 +216,7 @@ def _shape_of(text: str) -> tuple[str, str]:
 
 
 def as_json(found: XacroArguments) -> dict[str, object]:
-    """Return the report as ``--form json`` writes it."""
+    """Return the report as ``--output-kind json`` writes it."""
     rows = [(it, [use._asdict() for use in it.uses]) for it in found.arguments]
     arguments = [it._asdict() | {"uses": uses, "for_robots": it.value} for it, uses in rows]
     return {

@@ -22,14 +22,14 @@ from multibot_rewrite.description.rewriters.own_defaults import (
     filled,
     second_senders,
 )
-from multibot_rewrite.description.rewriters.remap_rules import named, ros_home, rules_in
-from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT, respelled, spell_default
-from multibot_rewrite.description.rewriters.text import text_at, text_of
-from multibot_rewrite.description.rewriters.vocabulary import (
-    VocabularySection,
+from multibot_rewrite.description.rewriters.plugin_definitions import (
+    PluginDefinition,
     split_path,
     split_step,
 )
+from multibot_rewrite.description.rewriters.remap_rules import named, ros_home, rules_in
+from multibot_rewrite.description.rewriters.renaming import ROBOT_SLOT, respelled, spell_default
+from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.knowledge.controller_ways import controller_way
 
 
@@ -79,7 +79,7 @@ def insertions(hosts: Hosts, declared: Declared, naming: Naming) -> list[Inserti
 
 
 def _of_ros_1(
-    host: etree._Element, section: VocabularySection, naming: Naming
+    host: etree._Element, section: PluginDefinition, naming: Naming
 ) -> Iterator[Insertion]:
     """Yield the namespace of a ROS 1 plugin that is the root or the model's name, which the text does
     not have. With namespaces both are inserted, otherwise only the first."""
@@ -97,7 +97,7 @@ def _of_ros_1(
 
 def _apart(
     host: etree._Element,
-    section: VocabularySection,
+    section: PluginDefinition,
     declared: Declared,
     naming: Naming,
     home: etree._Element | None,
@@ -120,7 +120,7 @@ def _apart(
 
 
 def lacks_namespace(
-    host: etree._Element, section: VocabularySection, declared: Declared, naming: Naming
+    host: etree._Element, section: PluginDefinition, declared: Declared, naming: Naming
 ) -> bool:
     """Return whether a host needs a namespace that it does not set itself."""
     sites = tuple([it for it in section.sites if "namespace" in it.kinds])
@@ -144,7 +144,7 @@ def without(item: Insertion, release: str) -> str:
 
 def _defaults(
     host: etree._Element,
-    section: VocabularySection,
+    section: PluginDefinition,
     declared: Declared,
     naming: Naming,
     hidden: str,
@@ -212,7 +212,7 @@ def _filling(made: Insertion, there: etree._Element, path: str) -> Insertion:
 
 
 def _remaps(
-    host: etree._Element, section: VocabularySection, naming: Naming, home: etree._Element | None
+    host: etree._Element, section: PluginDefinition, naming: Naming, home: etree._Element | None
 ) -> Iterator[Insertion]:
     """Yield a rule for each topic that only a remap can move, unless the file has one."""
     rules = rules_in(home)

@@ -8,21 +8,21 @@ from collections.abc import Iterable, Sequence
 
 from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.base.nearest import nearest_few
+from multibot_rewrite.description.rewriters.plugin_definitions import Definitions, PluginDefinition
+from multibot_rewrite.description.rewriters.plugin_definitions.values import ROLES, WiredTopic
 from multibot_rewrite.description.rewriters.tree import library_key
-from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, VocabularySection
-from multibot_rewrite.description.rewriters.vocabulary.values import ROLES, WiredTopic
 
 
-def look_up(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> list[VocabularySection]:
+def look_up(definitions: Definitions, name: str, types: Sequence[str]) -> list[PluginDefinition]:
     """Return the sections of these types that ``name`` means: a library file in any spelling, a class,
     an element (``sensor`` also finds ``robot.sensor``, after it), a sensor type or a block."""
     keys = spellings(name)
     found = [
         section
         for type_ in types
-        for known in vocabulary.names(type_)
+        for known in definitions.names(type_)
         if known in keys or (type_ == "element" and known.rpartition(".")[2] == name)
-        for section in vocabulary.find(type_, known)
+        for section in definitions.find(type_, known)
     ]
     found.sort(key=lambda section: keys.isdisjoint(section.names))
     return list({(section.file, section.line): section for section in found}.values())
@@ -34,9 +34,9 @@ def spellings(name: str) -> set[str]:
     return {name.strip(), library, name.strip().replace("ignition::gazebo::", "gz::sim::")}
 
 
-def near_names(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> list[str]:
+def near_names(definitions: Definitions, name: str, types: Sequence[str]) -> list[str]:
     """Return up to three known names most like ``name``, in upper or lower case."""
-    known = {known.lower(): known for type_ in types for known in vocabulary.names(type_)}
+    known = {known.lower(): known for type_ in types for known in definitions.names(type_)}
     words = sorted(word.lower() for word in spellings(name))
     near = [word for key in words for word in nearest_few(key, known, 3)]
     parts = [word for word in known if any(key and key in word for key in words)]
@@ -49,7 +49,7 @@ def block_of(site: SiteRow) -> str:
     return name if type_ == "block" else ""
 
 
-def facts(section: VocabularySection) -> dict[str, str]:
+def facts(section: PluginDefinition) -> dict[str, str]:
     """Return the meaning of each setting with its value, without empty ones."""
     found = {
         "about": section.about,

@@ -29,7 +29,7 @@ from multibot_rewrite.base.model import Claim, SiteRow
 from multibot_rewrite.base.naming import TOPIC_KINDS
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.description.rewriters.forms import Declared, NamePart
-from multibot_rewrite.description.rewriters.spelling import Rules
+from multibot_rewrite.description.rewriters.renaming import Rules
 from multibot_rewrite.description.rewriters.text import text_at
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
     from lxml.etree import _Element
 
-    from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
+    from multibot_rewrite.description.rewriters.plugin_definitions import PluginDefinition
 
 MODEL, INCLUDE = "model", "include"
 # Sections of these elements, and where their namespace is.
@@ -73,7 +73,7 @@ def _subtopic(site: SiteRow) -> SiteRow:
 
 
 def own_namespaces(
-    claims: list[Claim], hosts: Iterable[tuple[_Element, VocabularySection]]
+    claims: list[Claim], hosts: Iterable[tuple[_Element, PluginDefinition]]
 ) -> list[Claim]:
     """Return the claims for a layout without namespaces. A plugin's namespace is then a word like any
     other if nothing else keeps robots apart: relative names in the code of a ROS 1 plugin (a node of
@@ -90,7 +90,7 @@ def _word_of(claim: Claim, plugins: Container[_Element]) -> Claim:
     return claim._replace(site=_word(claim.site)) if plugin in plugins else claim
 
 
-def has_own_names(section: VocabularySection) -> bool:
+def has_own_names(section: PluginDefinition) -> bool:
     """Return whether a ROS 1 plugin has names in its code that only its namespace changes."""
     if not any(it.name[:1] not in "/{" for it in section.wired):
         return False

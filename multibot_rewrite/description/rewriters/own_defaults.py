@@ -16,9 +16,12 @@ from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.base.naming import POSTFIX, Naming
+from multibot_rewrite.description.rewriters.plugin_definitions import PluginDefinition
+from multibot_rewrite.description.rewriters.plugin_definitions.grammar import (
+    MODEL as OF_MODEL,
+    SPAWNED,
+)
 from multibot_rewrite.description.rewriters.text import end_of, text_at
-from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
-from multibot_rewrite.description.rewriters.vocabulary.grammar import MODEL as OF_MODEL, SPAWNED
 
 # What the spawner calls the model: no frame that robot_state_publisher sends has it in front.
 MODEL, SENSOR = SPAWNED, "{sensor}"
@@ -26,7 +29,7 @@ MODEL, SENSOR = SPAWNED, "{sensor}"
 SHOWN = f"{OF_MODEL}/"
 WORLD = "world"
 _SLOT = lazy_compile(r"\{(\w+)\}")
-Hosts = Iterable[tuple[etree._Element, VocabularySection]]
+Hosts = Iterable[tuple[etree._Element, PluginDefinition]]
 
 
 def default_of(host: etree._Element, default: str, naming: Naming) -> str:
@@ -101,12 +104,12 @@ def second_senders(hosts: Hosts, naming: Naming) -> frozenset[etree._Element]:
     return frozenset(second)
 
 
-def frame_sites(host: etree._Element, section: VocabularySection, naming: Naming) -> list[SiteRow]:
+def frame_sites(host: etree._Element, section: PluginDefinition, naming: Naming) -> list[SiteRow]:
     """Return the rows for frames of a system that sends a transform with these parameters."""
     return [it for it in _of_model(section) if default_of(host, it.default, naming)]
 
 
-def _of_model(section: VocabularySection) -> list[SiteRow]:
+def _of_model(section: PluginDefinition) -> list[SiteRow]:
     """Return the rows for frames that are below the model's name by default."""
     return [it for it in section.sites if OF_MODEL in it.default and it.kinds[:1] == ("frame",)]
 
@@ -123,7 +126,7 @@ def is_false(text: str) -> bool:
     return text.strip().lower() in ("false", "0")
 
 
-def switched_off(plugin: etree._Element, section: VocabularySection) -> dict[str, str]:
+def switched_off(plugin: etree._Element, section: PluginDefinition) -> dict[str, str]:
     """Return the topics that none of their switches turns on, with the parameters that would."""
     found = [it.split("=") for it in section.switches]
     on = set()

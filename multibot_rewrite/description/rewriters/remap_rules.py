@@ -20,9 +20,9 @@ from multibot_rewrite.base.naming import TF_TOPICS, TOPIC_KINDS
 from multibot_rewrite.base.rosnames import RemapRule, expand, remapped_node, split_remap
 from multibot_rewrite.description.rewriters.forms import NamePart, remap
 from multibot_rewrite.description.rewriters.own_defaults import filled
-from multibot_rewrite.description.rewriters.spelling import Rules
+from multibot_rewrite.description.rewriters.plugin_definitions import PluginDefinition
+from multibot_rewrite.description.rewriters.renaming import Rules
 from multibot_rewrite.description.rewriters.text import text_at, text_of
-from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
 
 FORMS = ("remap", "argument")
 # Of a parameter whose value is a topic, or what topics are below.
@@ -64,7 +64,7 @@ class _Node(NamedTuple):
 
 
 def names_in_rules(
-    claims: Iterable[Claim], served: Iterable[tuple[etree._Element, VocabularySection]]
+    claims: Iterable[Claim], served: Iterable[tuple[etree._Element, PluginDefinition]]
 ) -> Rules:
     """Return the names in each claimed rule, by the number of the claim."""
     rules = [(at, claim) for at, claim in enumerate(claims) if claim.site.form in FORMS]
@@ -88,7 +88,7 @@ def names_in_rules(
     return found
 
 
-def ros_home(host: etree._Element, section: VocabularySection) -> etree._Element | None:
+def ros_home(host: etree._Element, section: PluginDefinition) -> etree._Element | None:
     """Return where ROS settings of a plugin go; None if a ``<ros>`` must be made first."""
     ros = host.find("ros")
     if ros is not None:
@@ -106,7 +106,7 @@ def rules_in(home: etree._Element | None) -> list[RemapRule]:
     return [it for it in rules if it is not None]
 
 
-def named(host: etree._Element, section: VocabularySection) -> tuple[str, str]:
+def named(host: etree._Element, section: PluginDefinition) -> tuple[str, str]:
     """Return the name and namespace of a plugin's node, after the rules for these."""
     home = ros_home(host, section)
     # Beside a helper in the plugin's namespace the node is where a rule for its own name places it.
@@ -128,7 +128,7 @@ def _flag(argument: etree._Element) -> str:
     return text if text.startswith("-") and text not in _ALONE else ""
 
 
-def _asked(host: etree._Element, section: VocabularySection) -> Iterator[_Asked]:
+def _asked(host: etree._Element, section: PluginDefinition) -> Iterator[_Asked]:
     """Yield the names in its code without a parameter, and the parameters that hold names."""
     yield from (_Asked(name, "") for name in section.topics)
     for site in section.sites:

@@ -16,17 +16,17 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.base.loose_xml import NAMESPACES
-from multibot_rewrite.base.model import SiteRow, VocabularyError
-from multibot_rewrite.description.rewriters.text import text_at
-from multibot_rewrite.description.rewriters.vocabulary import (
+from multibot_rewrite.base.model import DefinitionsError, SiteRow
+from multibot_rewrite.description.rewriters.plugin_definitions import (
+    Definitions,
+    PluginDefinition,
     Values,
-    Vocabulary,
-    VocabularySection,
     advice,
-    load_vocabulary,
+    load_definitions,
     split_path,
     split_step,
 )
+from multibot_rewrite.description.rewriters.text import text_at
 
 if TYPE_CHECKING:
     from lxml.etree import _Element
@@ -63,7 +63,7 @@ class TreeNode:
     __slots__ = ("_make", "element_name", "visit", *_CONTENT)
 
     def __init__(
-        self, section: VocabularySection | None = None, sites: tuple[SiteRow, ...] = ()
+        self, section: PluginDefinition | None = None, sites: tuple[SiteRow, ...] = ()
     ) -> None:
         self._make: Callable[[str], TreeNode] | None = None
         self.element_name = ""
@@ -138,12 +138,12 @@ class Tree:
     visit so far.
     """
 
-    def __init__(self, vocabulary: Vocabulary) -> None:
-        self.vocabulary = vocabulary
+    def __init__(self, definitions: Definitions) -> None:
+        self.definitions = definitions
         self.formats: dict[str, TreeNode] = {}
         self.tags: set[str] = set()
         self._chosen: dict[tuple[str, str, int], TreeNode] = {}
-        places = vocabulary.places()
+        places = definitions.places()
         self._nodes = {name: TreeNode.later(name, self._make) for name in places}
         self._below: dict[str, list[str]] = {name: [] for name in places}
         for name, parents in places.items():
@@ -153,12 +153,12 @@ class Tree:
                     self.tags.add(_tag(name))
                 elif parent in self._below:
                     self._below[parent].append(name)
-                elif not self.vocabulary.has("element", parent):
-                    (section, *_) = self.vocabulary.find("element", name)
+                elif not self.definitions.has("element", parent):
+                    (section, *_) = self.definitions.find("element", name)
                     raise _wrong(section, f"at: {parent}: there is no [element {parent}]")
 
     def check(self) -> None:
-        """Read every section now; raises VocabularyError for the first mistake."""
+        """Read every section now; raises DefinitionsError for the first mistake."""
         for node in self._nodes.values():
             assert node.section is not None
 
@@ -176,7 +176,7 @@ class Tree:
         return max(found, key=lambda name: len(self.formats[name].children.keys() & tags))
 
     def _make(self, element_name: str) -> TreeNode:
-        (section,) = self.vocabulary.find("element", element_name)
+        (section,) = self.definitions.find("element", element_name)
         node = TreeNode(section, section.sites)
         if section.select:
             if section.select not in SELECTORS:
@@ -186,7 +186,7 @@ class Tree:
             child = self._nodes[name]
             if node.children.setdefault(_tag(name), child) is not child:
                 place = f"{element_name}/{_tag(name)} has a section or sites already"
-                raise _wrong(self.vocabulary.find("element", name)[0], place)
+                raise _wrong(self.definitions.find("element", name)[0], place)
             node.active[_tag(name)] = child
         self._know(node)
         return node
@@ -205,14 +205,14 @@ class Tree:
 
         def select(element: _Element) -> TreeNode:
             for key in keys(element):
-                found = _flavour(self.vocabulary.find(type_, key), element)
+                found = _flavour(self.definitions.find(type_, key), element)
                 if found is not None and not _is_another(element, key, found):
                     return self._node(base, found)
             return base
 
         return select
 
-    def _node(self, base: TreeNode, section: VocabularySection) -> TreeNode:
+    def _node(self, base: TreeNode, section: PluginDefinition) -> TreeNode:
         assert base.section is not None
         key = (base.section.names[0], section.file, section.line)
         found = self._chosen.get(key)
@@ -225,7 +225,7 @@ class Tree:
         return found
 
 
-def _is_another(element: _Element, key: str, section: VocabularySection) -> bool:
+def _is_another(element: _Element, key: str, section: PluginDefinition) -> bool:
     """Return whether it is a class of gz-sim, by its name, in a library with a name of Gazebo
     Classic's, where the name is that of a node."""
     of_node = any(it.path == "@name" and it.role == "declares" for it in section.sites)
@@ -237,8 +237,8 @@ def _tag(name: str) -> str:
     return qualified(name.rpartition(".")[2])
 
 
-def _wrong(section: VocabularySection, message: str) -> VocabularyError:
-    return VocabularyError(f"{section.file}:{section.line}: [{section.name}] {message}")
+def _wrong(section: PluginDefinition, message: str) -> DefinitionsError:
+    return DefinitionsError(f"{section.file}:{section.line}: [{section.name}] {message}")
 
 
 def plugin_keys(element: _Element) -> list[str]:
@@ -260,7 +260,7 @@ def library_and_class(filename: str, name: str) -> list[str]:
 
 
 def values_of_plugin(
-    element: _Element, vocabulary: Vocabulary, of_ros_1: bool = False
+    element: _Element, definitions: Definitions, of_ros_1: bool = False
 ) -> Values | None:
     """Return the known values of a plugin, by its library, or by its class.
 
@@ -270,7 +270,7 @@ def values_of_plugin(
     library, *others = plugin_keys(element)
     forked = library and not library.startswith(_GZ_SIM)
     keys = [library, *(it for it in others if not (forked and it.startswith(_GZ_CLASSES)))]
-    return next(filter(None, (vocabulary.values(it, of_ros_1) for it in keys)), None)
+    return next(filter(None, (definitions.values(it, of_ros_1) for it in keys)), None)
 
 
 def library_key(library: str) -> str:
@@ -300,7 +300,7 @@ SELECTORS: dict[str, Callable[[_Element], list[str]]] = {
 }
 
 
-def _flavour(found: Sequence[VocabularySection], element: _Element) -> VocabularySection | None:
+def _flavour(found: Sequence[PluginDefinition], element: _Element) -> PluginDefinition | None:
     """Return the ROS 1 or ROS 2 section of plugins with one file name: the children tell them
     apart, ROS 2 where none do. A ``ros`` child is ROS 2, because nothing in ROS 1 reads one. What
     decides for the whole document is in the plugin definitions already (``sources/release_said.py``).
@@ -314,14 +314,14 @@ def _flavour(found: Sequence[VocabularySection], element: _Element) -> Vocabular
 
 
 @lru_cache(maxsize=16)
-def builtin_tree(vocabulary: tuple[str, ...], release: str, ros: str = "") -> Tree:
+def builtin_tree(definitions: tuple[str, ...], release: str, ros: str = "") -> Tree:
     """Return the tree of a release, made once: built-in and installed definitions, and the files
-    ``vocabulary``. ``ros`` is "1" or "2" if it is known which of them loads the plugins."""
-    sections = load_vocabulary(vocabulary, release, ros=ros)
+    ``definitions``. ``ros`` is "1" or "2" if it is known which of them loads the plugins."""
+    sections = load_definitions(definitions, release, ros=ros)
     try:
         tree = Tree(sections)
         if sections.extended:
             tree.check()
         return tree
-    except VocabularyError as error:
-        raise VocabularyError(f"{error}{advice(str(error))}") from None
+    except DefinitionsError as error:
+        raise DefinitionsError(f"{error}{advice(str(error))}") from None

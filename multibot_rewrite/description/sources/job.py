@@ -69,7 +69,7 @@ class Job(NamedTuple):
     data: bytes
     file: str
     naming: Naming
-    vocabulary: tuple[str, ...]
+    definitions: tuple[str, ...]
     urdf: tuple[bytes, str] | None
     release: str
     why: str = ""
@@ -80,8 +80,8 @@ class Job(NamedTuple):
 
     @property
     def tree(self) -> Tree:
-        """The rewriters; raises VocabularyError."""
-        return builtin_tree(self.vocabulary, self.release, self.ros)
+        """The rewriters; raises DefinitionsError."""
+        return builtin_tree(self.definitions, self.release, self.ros)
 
     @property
     def urdf_declarations(self) -> Declared:
@@ -102,7 +102,7 @@ def read_job(
     naming: Naming,
     urdf: Source | None = None,
     xacro_args: Arguments | None = None,
-    vocabulary: Iterable[str] = (),
+    definitions: Iterable[str] = (),
     file: str = "",
     words: Sequence[str] = (),
     trust: bool = False,
@@ -116,7 +116,7 @@ def read_job(
     and what they name after any of the words is the robot's own. ``trust`` lets xacro files do
     anything. ``aside`` sets systems of the world aside.
     """
-    read = reader(source, naming, urdf, tuple(vocabulary), file, trust, release, aside)
+    read = reader(source, naming, urdf, tuple(definitions), file, trust, release, aside)
     return job_for(read, xacro_args or {}, words)
 
 
@@ -126,7 +126,7 @@ def read_jobs(
     naming: Naming,
     urdf: Source | None,
     xacro_args: Arguments | None,
-    vocabulary: Iterable[str],
+    definitions: Iterable[str],
     file: str,
     trust: bool,
     release: str,
@@ -134,7 +134,7 @@ def read_jobs(
 ) -> dict[str, Job]:
     """Return the job of each robot, one for all unnamed in the arguments. Raises as ``read_job``."""
     given = xacro_args or {}
-    read = reader(source, naming, urdf, tuple(vocabulary), file, trust, release, aside)
+    read = reader(source, naming, urdf, tuple(definitions), file, trust, release, aside)
     named = [robot for robot in robots if name_robot(given, [robot])]
     others = [robot for robot in robots if robot not in named]
     jobs = {robot: job_for(read, given, [robot]) for robot in named}
@@ -161,7 +161,7 @@ def reader(
     source: Source,
     naming: Naming,
     urdf: Source | None,
-    vocabulary: tuple[str, ...],
+    definitions: tuple[str, ...],
     file: str,
     trust: bool,
     release: str,
@@ -182,9 +182,9 @@ def reader(
         pair = (beside.data, beside.file) if beside else None
         name = file or own.file
         said = release_said(release, own.data + (beside.data if beside else b""), own.file)
-        tree = builtin_tree(vocabulary, said.release)
+        tree = builtin_tree(definitions, said.release)
         ros = ROS_2 if release else ros_shown(own.data, own.file, tree)
-        job = Job(own.data, name, naming, vocabulary, pair, *said, ros, read=found)
+        job = Job(own.data, name, naming, definitions, pair, *said, ros, read=found)
         if not aside:
             return job
         data, left = set_aside(job.data, job.file, job.tree)

@@ -159,7 +159,7 @@ def ros_shown(data: bytes, file: str, tree: Tree) -> str:
     on it."""
     names = {it.decode(errors="replace").strip() for it in _LIBRARY.findall(data)}
     keys = {library_key(it.rpartition("/")[2]) for it in names}
-    found = [{one.ros for one in tree.vocabulary.find("plugin", it)} for it in keys]
+    found = [{one.ros for one in tree.definitions.find("plugin", it)} for it in keys]
     if all(len(it) < 2 for it in found):
         return ""
     try:

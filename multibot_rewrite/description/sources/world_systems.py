@@ -55,7 +55,7 @@ def _may_load(tag: bytes, tree: Tree) -> bool:
         name.decode(): value.decode("utf-8", "replace") for name, _, value in _SAID.findall(tag)
     }
     keys = library_and_class(said.get("filename", ""), said.get("name", ""))
-    known = (it for key in keys for it in tree.vocabulary.find("plugin", key))
+    known = (it for key in keys for it in tree.definitions.find("plugin", key))
     return b"&" in tag or any(WORLD in it.opens for it in known)
 
 

@@ -14,7 +14,7 @@ from multibot_rewrite.base.findings.finding import Finding, locate
 from multibot_rewrite.base.model import Change, Claim, Edit
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.description.rewriters.forms import Declared
-from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT, respelled
+from multibot_rewrite.description.rewriters.renaming import ROBOT_SLOT, respelled
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.document import Document, path_of, silenced, tag_end

@@ -12,18 +12,18 @@ from multibot_rewrite.base import naming
 from multibot_rewrite.base.file_kinds import DESCRIPTIONS, refuse_others
 from multibot_rewrite.base.findings.finding import locate
 from multibot_rewrite.base.model import FOR_OLD_GAZEBO, Claim, InputError, SiteRow
-from multibot_rewrite.description.rewriters import spelling
+from multibot_rewrite.description.rewriters import renaming
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.model_namespaces import (
     below_models,
     names_in_topics,
     own_namespaces,
 )
+from multibot_rewrite.description.rewriters.plugin_definitions import PluginDefinition
+from multibot_rewrite.description.rewriters.plugin_definitions.grammar import MODEL, SENT
 from multibot_rewrite.description.rewriters.remap_rules import names_in_rules
 from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.rewriters.tree import Tree, TreeNode
-from multibot_rewrite.description.rewriters.vocabulary import VocabularySection
-from multibot_rewrite.description.rewriters.vocabulary.grammar import MODEL, SENT
 from multibot_rewrite.description.steps.document import Document, read_document
 
 NOTHING: Declared = {}
@@ -50,11 +50,11 @@ class Inventory(NamedTuple):
     hosts: list[Host]
     declared: dict[str, dict[str, Claim]]
     format: str
-    names: list[tuple[spelling.ResolvedName, ...]]
+    names: list[tuple[renaming.ResolvedName, ...]]
     release: str
 
     @property
-    def served(self) -> list[tuple[etree._Element, VocabularySection]]:
+    def served(self) -> list[tuple[etree._Element, PluginDefinition]]:
         """The hosts that have a section, with it."""
         return [(it.element, it.node.section) for it in self.hosts if it.node.section is not None]
 
@@ -79,7 +79,7 @@ def collect(
     is."""
     format_ = _format(document, tree, SRDF if urdf_declarations else "")
     claims, hosts = _walk(document, tree, format_)
-    release = tree.vocabulary.release
+    release = tree.definitions.release
     claims = _of_the_robot(below_models(claims, document.source, release))
     # No word of ROS is one that topics of Gazebo are made of.
     of_gz = claims
@@ -91,7 +91,7 @@ def collect(
     rules = names_in_rules(claims, inventory.served)
     rules = {**rules, **names_in_topics(of_gz, declared, layout.renames_models)}
     apart = layout.at_run_time
-    return inventory._replace(names=spelling.resolved_names(claims, declared, apart, rules))
+    return inventory._replace(names=renaming.resolved_names(claims, declared, apart, rules))
 
 
 def _walk(document: Document, tree: Tree, format_: str) -> tuple[list[Claim], list[Host]]:
@@ -124,7 +124,7 @@ def _walk(document: Document, tree: Tree, format_: str) -> tuple[list[Claim], li
                 claims.append(Claim(site, element, start, attribute, value))
         if text is not None:
             value = text_of(element)
-            if (value or spelling.takes_empty(text)) and _applies(text, element):
+            if (value or renaming.takes_empty(text)) and _applies(text, element):
                 claims.append(Claim(text, element, start, "", value))
     return claims, hosts
 

@@ -24,9 +24,9 @@ from multibot_rewrite.base.loose_xml import ESCAPES
 from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.description.rewriters.insert import Insertion, query, without
 from multibot_rewrite.description.rewriters.own_defaults import SHOWN
-from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT
+from multibot_rewrite.description.rewriters.plugin_definitions import is_step
+from multibot_rewrite.description.rewriters.renaming import ROBOT_SLOT
 from multibot_rewrite.description.rewriters.text import text_of
-from multibot_rewrite.description.rewriters.vocabulary import is_step
 from multibot_rewrite.description.steps.document import (
     Document,
     emptied,

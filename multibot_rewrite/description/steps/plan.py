@@ -13,7 +13,7 @@ from multibot_rewrite.base.model import Claim, Edit
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.description.rewriters.contact import respell_collisions
 from multibot_rewrite.description.rewriters.insert import Insertion, insertions
-from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT
+from multibot_rewrite.description.rewriters.renaming import ROBOT_SLOT
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.document import fillable, finding, place_in, value_slot
 from multibot_rewrite.description.steps.inserted import insertion_edits, slot_edits

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.naming import Affix, Naming, affix
 from multibot_rewrite.description.rewriters.contact import Respell
-from multibot_rewrite.description.rewriters.spelling import Spelling, is_reached, renamed_at
+from multibot_rewrite.description.rewriters.renaming import Spelling, is_reached, renamed_at
 from multibot_rewrite.description.steps.collect import Inventory
 
 # Kind and text of a name, and whether a ROS namespace reaches it.

@@ -10,7 +10,7 @@ from itertools import accumulate
 from multibot_rewrite.base.model import Claim, Edit
 from multibot_rewrite.base.naming import Naming, removal
 from multibot_rewrite.description.rewriters.contact import respell_collisions
-from multibot_rewrite.description.rewriters.spelling import ResolvedName, is_reached, unspelled
+from multibot_rewrite.description.rewriters.renaming import ResolvedName, is_reached, unspelled
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.document import emptied, value_places, value_slot
 from multibot_rewrite.description.steps.inserted import removals

@@ -21,7 +21,7 @@ from multibot_rewrite.base.naming import FRAME_KINDS, Naming, affix, removal, sp
 from multibot_rewrite.description.rewriters.contact import respell_collisions
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.insert import insertions, query, without
-from multibot_rewrite.description.rewriters.spelling import (
+from multibot_rewrite.description.rewriters.renaming import (
     ROBOT_SLOT,
     ResolvedName,
     is_reached,

@@ -11,7 +11,7 @@ from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.fleet.file.domains import Apart
 from multibot_rewrite.fleet.fleet import Fleet, planned
 from multibot_rewrite.fleet.launch.starts import FleetStarts
-from multibot_rewrite.spelling.domain_bridge import crossings, services_apart
+from multibot_rewrite.planning.domain_bridge import crossings, services_apart
 from multibot_rewrite.system.domains import domain_of
 from multibot_rewrite.system.records import MAY, System
 

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator, Sequence, Set
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.knowledge.records import MANAGER
+from multibot_rewrite.planning.ways import HOST, SPAWNER
 from multibot_rewrite.producers.launch.launched import NOT_WHOLE
 from multibot_rewrite.rules.check import ABSENCE, absences, check_view
 from multibot_rewrite.rules.launch.judge import CLAIMS
@@ -29,7 +30,6 @@ from multibot_rewrite.rules.system import (
     transforms,
 )
 from multibot_rewrite.rules.system.commands import command_to_nobody
-from multibot_rewrite.spelling.ways import HOST, SPAWNER
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.parameters import LIST_CONTROLLERS

@@ -31,9 +31,7 @@ from multibot_rewrite.fleet.launch.starts import (
     launch_arguments,
 )
 from multibot_rewrite.fleet.outputs.relays import BRIDGE
-from multibot_rewrite.producers.launch.performed import END, Action, Launching, performed, share
-from multibot_rewrite.producers.launch.spawners import ros2_run, ros_arguments
-from multibot_rewrite.spelling.start import (
+from multibot_rewrite.planning.start import (
     File,
     Led,
     Start,
@@ -46,6 +44,8 @@ from multibot_rewrite.spelling.start import (
     path_of,
     with_rest,
 )
+from multibot_rewrite.producers.launch.performed import END, Action, Launching, performed, share
+from multibot_rewrite.producers.launch.spawners import ros2_run, ros_arguments
 from multibot_rewrite.system.records import SIM_TIME, Place
 
 # The transitions of a life cycle, by number, and the states before and after the first.

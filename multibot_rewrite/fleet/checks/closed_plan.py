@@ -29,13 +29,14 @@ from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.fleet import Fleet, planned
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.bridge_outputs import bridge_outputs
-from multibot_rewrite.fleet.outputs.companion_files import companion_files
 from multibot_rewrite.fleet.outputs.output_file import OutputFile, line_in_source
+from multibot_rewrite.fleet.outputs.related_files import related_files
 from multibot_rewrite.fleet.robots.rewritten_robots import SET_PREFIX, RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import group_robots, split_per_robot
 from multibot_rewrite.fleet.robots.simulators import unread_drives
 from multibot_rewrite.fleet.robots.start_poses import with_start_pose_nodes
 from multibot_rewrite.knowledge.parameters import load_known_nodes
+from multibot_rewrite.planning.bridged_topics import BOTH, once
 from multibot_rewrite.producers.ends import BRIDGE_FILE, NEEDS, bridge_ends
 from multibot_rewrite.producers.evidence.nodes import MANAGER
 from multibot_rewrite.producers.launch.bridges import services_in
@@ -50,7 +51,6 @@ from multibot_rewrite.rules.system.states import (
 )
 from multibot_rewrite.rules.system.tf_pieces import tf_tree_in_pieces
 from multibot_rewrite.rules.system.unsent import frame_not_sent, no_longer_sent, open_ends
-from multibot_rewrite.spelling.bridged_topics import BOTH, once
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import ALONE, Whose, whose_by_plan
 from multibot_rewrite.system.records import (
@@ -219,7 +219,7 @@ def closed_plan(plan: FleetPlan) -> Fleet:
         fleet = with_start_pose_nodes(plan)
         # The others close as the first one of each that differs in more than its names does.
         few = _of_some(plan, [it.robots[0] for it in group_robots(plan)])
-        made = [*companion_files(few), *bridge_outputs(few)]
+        made = [*related_files(few), *bridge_outputs(few)]
         gaps = gaps_of(plan, fleet, made)
         rows = [it for it in bridge_outputs(plan) if isinstance(it, OutputFile)]
         return fleet._replace(gaps=gaps, bridged=bridged_by(plan, rows))
@@ -261,7 +261,7 @@ def _shared(plan: FleetPlan) -> Iterator[Finding]:
     """Yield a finding for each shared name that nothing of the fleet has."""
     specs = [it.spec for it in plan.robots]
     filled = {path: text.encode() for it in specs for path, text in it.filled}
-    beside = (path for it in specs for paths in it.companions.values() for path in paths)
+    beside = (path for it in specs for paths in it.related_files.values() for path in paths)
     launched = (order.file for it in specs for order in it.launch)
     files = dict.fromkeys((*beside, *launched, *plan.file.files[1:]))
     texts = (filled.get(path) or data_of_file(path) for path in files)

@@ -18,7 +18,7 @@ ALREADY = "the robot's own {} for one robot, too"
 
 def wrong_in_descriptions(
     members: Iterable[Member],
-    vocabulary: tuple[str, ...],
+    definitions: tuple[str, ...],
     simulated: Iterable[Member],
     said: Iterable[Member] = (),
     launched: Iterable[Member] = (),
@@ -34,9 +34,9 @@ def wrong_in_descriptions(
         for source, made in ((it.sent, it.described), (it.source, it.inventory))
     }
     for file, (document, made, it) in documents.items():
-        distro = it.vocabulary.release
+        distro = it.definitions.release
         settings = Settings(
-            vocabulary=vocabulary, distro=distro, ros=ROS_2, simulated=file in in_gazebo
+            definitions=definitions, distro=distro, ros=ROS_2, simulated=file in in_gazebo
         )
         told = {(one.code, one.message) for one in it.shared}
         for one in _linted(document, made, settings, file in in_gazebo - sure):

@@ -31,7 +31,7 @@ from multibot_rewrite.system.records import PUBLISHES, RUNS, SUBSCRIBES, End, Sy
 from multibot_rewrite.system.words import moves
 
 MAP_SERVER, MAP = "map_server", "yaml_filename"
-_MAP = f"write its {MAP} into a parameter file (companions: {{params: FILE}}), or use nav2_slam"
+_MAP = f"write its {MAP} into a parameter file (related_files: {{params: FILE}}), or use nav2_slam"
 LACKING = declare("MF857", "node-without-its-file", ERROR, formats=("fleet",))
 NO_CAMERA = declare("MF861", "node-without-its-camera", WARNING, formats=("fleet",))
 
@@ -118,7 +118,7 @@ def unmoved(robot: RewrittenRobot, facts: Sequence[NodeFacts], system: System) -
     # Is all known that it runs, some of it by its source?
     known = all(it.is_known and not it.untold for it in facts)
     by_source = any(" " in it.kind for it in facts)
-    parts = active_parts(robot.member.source.root, robot.member.vocabulary)
+    parts = active_parts(robot.member.source.root, robot.member.definitions)
     if not (known and by_source and all(it.is_known for it in parts)):
         return
     read = {it.name for it in system.ends if it.role == SUBSCRIBES}

@@ -27,12 +27,12 @@ from multibot_rewrite.description.readback.meeting import (
 from multibot_rewrite.description.readback.nodes import RuntimeName
 from multibot_rewrite.description.readback.reading import NODE
 from multibot_rewrite.description.readback.xml import elements_at
-from multibot_rewrite.description.rewriters.vocabulary.grammar import split_path
+from multibot_rewrite.description.rewriters.plugin_definitions.grammar import split_path
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.fleet.robots.member import Member, line_of
 from multibot_rewrite.fleet.robots.own_values import Written, own_value, sources_of
-from multibot_rewrite.spelling.records import Table
-from multibot_rewrite.spelling.transforms import Edges
+from multibot_rewrite.planning.records import Table
+from multibot_rewrite.planning.transforms import Edges
 from multibot_rewrite.system.records import KINDS
 
 NOTHING: Mapping[str, Written] = MappingProxyType({})

@@ -13,9 +13,9 @@ from multibot_rewrite.description.readback.meeting import FRAMES
 from multibot_rewrite.description.sources.own_names import name_robot
 from multibot_rewrite.fleet.robots.rewritten_robots import SET_PREFIX, RewrittenRobot, at_robot
 from multibot_rewrite.knowledge.records import MANAGER
+from multibot_rewrite.planning.records import Table
 from multibot_rewrite.rules.description.multirobot.named_robots import robots_share_a_name
 from multibot_rewrite.rules.system.transforms import robots_name_twice
-from multibot_rewrite.spelling.records import Table
 
 # The kinds of declared names that differ from robot to robot.
 _DECLARED = ("link", "joint", "frame", "sensor", "hardware")

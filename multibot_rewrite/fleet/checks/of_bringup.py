@@ -21,12 +21,12 @@ from multibot_rewrite.fleet.checks.described import as_known
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.launched_robot import launch_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
+from multibot_rewrite.planning.transforms import STATE_PUBLISHER
 from multibot_rewrite.producers.launch.records import LaunchGraph, ParameterText
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import NO_TREE, launched
 from multibot_rewrite.rules.check import judge
 from multibot_rewrite.rules.launch.judge import as_sure, judge_launch
-from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 from multibot_rewrite.system.index import Index, index
 from multibot_rewrite.system.ownership import ALONE
 from multibot_rewrite.system.records import System
@@ -73,7 +73,7 @@ def as_in_the_vendors_files(plan: FleetPlan, found: Iterable[Finding]) -> Iterat
     launched_with = {
         os.path.realpath(path): path
         for robot in plan.robots
-        for path in (robot.spec.companions.get("params", ()) if robot.spec.launch else ())
+        for path in (robot.spec.related_files.get("params", ()) if robot.spec.launch else ())
     }
     alone = cache(lambda path: _errors_in(path, plan.file.distro))
     for it in found:

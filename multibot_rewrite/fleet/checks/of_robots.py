@@ -11,11 +11,10 @@ from math import ceil, dist
 from multibot_rewrite.base.conventions import CLOCK, USUAL_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, declare
 from multibot_rewrite.base.wording import shorten
-from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.description.checks.problem import to_findings
 from multibot_rewrite.description.checks.shapes import filled_by
 from multibot_rewrite.description.readback.meeting import OPENED
-from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, load_vocabulary
+from multibot_rewrite.description.rewriters.plugin_definitions import Definitions, load_definitions
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.fleet.checks.lacking import lacking, without_camera
 from multibot_rewrite.fleet.checks.named_twice import named_twice
@@ -31,16 +30,17 @@ from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence, node_source
 from multibot_rewrite.fleet.robots.simulators import is_simulated, other_hardware
 from multibot_rewrite.knowledge.parameters import KnownNodes, load_known_nodes
 from multibot_rewrite.knowledge.records import MANAGER
+from multibot_rewrite.planning.bridged_topics import is_bridged
+from multibot_rewrite.planning.transforms import STATE_PUBLISHER
 from multibot_rewrite.producers.addresses import of_hardware, of_parameters, of_words
 from multibot_rewrite.producers.launch.findings import NOT_LAUNCHED
 from multibot_rewrite.producers.launch.handed_on import for_robot
+from multibot_rewrite.related_files.names.rename_map import spell
 from multibot_rewrite.rules.check import judge
 from multibot_rewrite.rules.files.ros_names import in_description
 from multibot_rewrite.rules.launch.models import in_each_other
 from multibot_rewrite.rules.system.clocks import clocks_mixed, compares_times, two_clocks
 from multibot_rewrite.rules.system.sharing import one_device
-from multibot_rewrite.spelling.bridged_topics import is_bridged
-from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 from multibot_rewrite.system.index import index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import DEVICE, SERVES, Address, Place, Robot, System
@@ -123,8 +123,8 @@ def _one_device_each(plan: FleetPlan) -> Iterator[Finding]:
     robots = plan.robots
     told = {name for it in plan.fleet.table.problems if it.code == OPENED for name in it.names}
     known = load_known_nodes(plan.file.nodes, plan.file.distro)
-    vocabulary = load_vocabulary(plan.file.vocabulary, plan.file.distro)
-    hardware = {it.spec.namespace: tuple(_of_hardware(it, told, vocabulary)) for it in robots}
+    definitions = load_definitions(plan.file.definitions, plan.file.distro)
+    hardware = {it.spec.namespace: tuple(_of_hardware(it, told, definitions)) for it in robots}
     by_name = {it.spec.namespace: it for it in robots}
     count = Counter((it.name, it.value) for its in hardware.values() for it in its)
     hints: dict[Sources, str] = {}
@@ -138,7 +138,7 @@ def _one_device_each(plan: FleetPlan) -> Iterator[Finding]:
             met = [one for one, key in keys if count.get(key, 0) > 1]
             hints[sources] = own_value(sources_of(robot.written, robot.member, met))
         yield _said(it, "; ".join(filter(None, (it.hint, hints[sources]))))
-    of_all = Counter(path for it in robots for path in it.spec.companions.get("params", ()))
+    of_all = Counter(path for it in robots for path in it.spec.related_files.get("params", ()))
     # What a file for several robots has is told there, or numbered.
     shared = frozenset(path for path, count in of_all.items() if count > 1)
     given = [one for it in robots for one in _of_nodes(it, plan.evidence_of(it), known, shared)]
@@ -158,14 +158,14 @@ def _said(it: Finding, hint: str) -> Finding:
 
 
 def _of_hardware(
-    robot: RewrittenRobot, told: Collection[str], vocabulary: Vocabulary
+    robot: RewrittenRobot, told: Collection[str], definitions: Definitions
 ) -> Iterator[Address]:
     """Yield the addresses of a robot's devices, at its line of the fleet file; none if simulated."""
     spec = robot.spec
     if spec.simulator != "gazebo":
         node, place = f"/{spec.namespace}/{MANAGER}", Place(spec.file, spec.line, 1)
         root = robot.member.inventory.document.root
-        found = of_hardware(root, node, place, vocabulary)
+        found = of_hardware(root, node, place, definitions)
         yield from (it for it in found if it.value not in told)
 
 
@@ -318,7 +318,7 @@ def _launched_prefixes(plan: FleetPlan) -> Iterator[Finding]:
         publisher = own or (every[0] if len(every) == 1 else None)
         given = publisher.values.get(FRAME_PREFIX) if publisher else None
         # What is in a parameter file is rewritten there.
-        if given and given.place.file in robot.spec.companions.get("params", ()):
+        if given and given.place.file in robot.spec.related_files.get("params", ()):
             continue
         prefix = str(given.value).strip("/") if given else ""
         if not given or prefix == robot.frame_prefix.strip("/"):

@@ -8,9 +8,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from lxml.etree import _Element
 
 from multibot_rewrite.base.conventions import OF_EVERY_NODE, is_tool_word
-from multibot_rewrite.companions.moveit.file_kind import SIMPLE
-from multibot_rewrite.companions.params.sections import PARAMETERS
-from multibot_rewrite.companions.yaml_text import YamlText
 from multibot_rewrite.description.readback.reading import FRAME, read
 from multibot_rewrite.description.rewriters.own_defaults import frame_sites
 from multibot_rewrite.description.rewriters.text import text_at
@@ -30,6 +27,13 @@ from multibot_rewrite.fleet.robots.member import without_simulator
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence
 from multibot_rewrite.knowledge.parameters import KnownNodes
+from multibot_rewrite.planning.of_runs import ends_of, lookups_of, with_names
+from multibot_rewrite.planning.plan import tf_topic
+from multibot_rewrite.planning.records import Run
+from multibot_rewrite.planning.table import plugin_nodes
+from multibot_rewrite.planning.transforms import STATE_PUBLISHER, sent_by, tree_joints
+from multibot_rewrite.planning.way_checks import is_stand_in
+from multibot_rewrite.planning.ways import merged
 from multibot_rewrite.producers.ends import (
     BRIDGE_FILE,
     BRIDGE_NODE,
@@ -55,13 +59,9 @@ from multibot_rewrite.producers.evidence.semantics import (
     semantics,
 )
 from multibot_rewrite.producers.launch.spawners import active
-from multibot_rewrite.spelling.of_runs import ends_of, lookups_of, with_names
-from multibot_rewrite.spelling.plan import tf_topic
-from multibot_rewrite.spelling.records import Run
-from multibot_rewrite.spelling.table import plugin_nodes
-from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, sent_by, tree_joints
-from multibot_rewrite.spelling.way_checks import is_stand_in
-from multibot_rewrite.spelling.ways import merged
+from multibot_rewrite.related_files.moveit.file_kind import SIMPLE
+from multibot_rewrite.related_files.params.sections import PARAMETERS
+from multibot_rewrite.related_files.yaml_text import YamlText
 from multibot_rewrite.system.records import (
     MAY,
     NOWHERE,
@@ -98,7 +98,7 @@ def of_sources(robot: RewrittenRobot, evidence: RobotEvidence, srdf: Job | None 
         nodes.append(node._replace(endpoints=ends))
     real = robot.spec.simulator == REAL
     text = without_simulator(source.source, source.file) if real else source.source
-    reading = read(text, source.file, robot.member.vocabulary)
+    reading = read(text, source.file, robot.member.definitions)
     plain = [_plainly(robot, it) for it in given]
     sections = {it.node: it for it in plain}
     alone = []
@@ -279,7 +279,7 @@ def _heard(fleet: Fleet, robot: RewrittenRobot, bridges: Iterable[OutputFile]) -
     if robot.spec.simulator == REAL:
         return
     roots = (fleet.inventories[robot.spec.namespace].document.root, robot.member.source.root)
-    release = robot.member.vocabulary.release
+    release = robot.member.definitions.release
     sensors, sources = ([*sensor_frames(it, robot.spec.model, release)] for it in roots)
     for end, inside, frame in (row for text in bridges for row in bridge_rows(text.yaml)):
         it = sensor_on(inside, sensors)
@@ -343,4 +343,4 @@ def _plainly(robot: RewrittenRobot, given: Run) -> Run:
 
 
 def _documents(robot: RewrittenRobot, kind: str) -> list[YamlText]:
-    return [own_yaml(robot.spec, path) for path in robot.spec.companions.get(kind, ())]
+    return [own_yaml(robot.spec, path) for path in robot.spec.related_files.get(kind, ())]

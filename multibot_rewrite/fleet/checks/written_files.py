@@ -7,10 +7,6 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding, Rule
-from multibot_rewrite.companions.context import Context
-from multibot_rewrite.companions.moveit.file_kind import SIMPLE
-from multibot_rewrite.companions.named_file import BRIDGE, MOVEIT, PARAMS, NamedFile
-from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import OutputFile, line_in_source
@@ -19,14 +15,18 @@ from multibot_rewrite.fleet.robots.member import line_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import RobotGroup
 from multibot_rewrite.knowledge.parameters import load_known_nodes
+from multibot_rewrite.planning.bridged_topics import DIRECTIONS, bridged_topics
 from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
+from multibot_rewrite.related_files.context import Context
+from multibot_rewrite.related_files.moveit.file_kind import SIMPLE
+from multibot_rewrite.related_files.named_file import BRIDGE, MOVEIT, PARAMS, NamedFile
+from multibot_rewrite.related_files.params.sections import PARAMETERS
 from multibot_rewrite.rules.files.bridges import GzTopic, GzTopics, no_gz_topic
 from multibot_rewrite.rules.files.controllers import undeclared_controller
 from multibot_rewrite.rules.files.judge import codes, judged, judged_once
 from multibot_rewrite.rules.files.section_facts import Beside
 from multibot_rewrite.rules.files.wheels import with_description
-from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, bridged_topics
 from multibot_rewrite.system.records import NOWHERE, Place
 
 

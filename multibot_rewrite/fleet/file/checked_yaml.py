@@ -12,7 +12,7 @@ from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.file_kinds import FLEET, refuse_others
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.nearest import did_you_mean_one_of, other_words
-from multibot_rewrite.companions.yaml_text import line_of, pairs, read_yaml, refuse_anchors
+from multibot_rewrite.related_files.yaml_text import line_of, pairs, read_yaml, refuse_anchors
 
 Path = tuple[Any, ...]
 # JSON Schema's types in plain words.
@@ -26,7 +26,7 @@ TYPES = {
 }
 SHOWN = 60
 # The key under which a fleet file names the files beside a description.
-BELOW = "companions"
+BELOW = "related_files"
 
 
 class CheckedYaml(NamedTuple):

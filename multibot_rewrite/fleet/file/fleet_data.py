@@ -28,7 +28,7 @@ from multibot_rewrite.fleet.file.checked_yaml import CheckedYaml, Path, text_che
 from multibot_rewrite.knowledge.nodl.lookup import NO_DOCUMENTS, find_interfaces
 
 PATHS = (
-    *("include", "description", "simulated", "srdf", "rviz", "nodes", "vocabulary"),
+    *("include", "description", "simulated", "srdf", "rviz", "nodes", "definitions"),
     "simulator_world",
 )
 # The parts of a robot.
@@ -38,7 +38,7 @@ Places = Mapping[Path, tuple[str, int]]
 
 def check_files(data: Mapping[str, Any], at: Path, places: Places) -> None:
     """Check that every named file exists; its content is checked later."""
-    for key in (*PATHS, *BESIDE, "launch", "companions", "robots", JOIN):
+    for key in (*PATHS, *BESIDE, "launch", "related_files", "robots", JOIN):
         value = data.get(key, ())
         if key in ("robots", JOIN):
             for number, inner in enumerate(value):
@@ -46,7 +46,7 @@ def check_files(data: Mapping[str, Any], at: Path, places: Places) -> None:
             continue
         if key == "launch":
             value = [_file_and_rest(it)[0] for it in listed(value) if not _of_package(it)]
-        kinds = value.items() if key == "companions" and value else [("", value)]
+        kinds = value.items() if key == "related_files" and value else [("", value)]
         for kind, paths in kinds:
             here = (*at, key, kind) if kind else (*at, key)
             words = (it for it in listed(paths) if isinstance(it, str))
@@ -89,8 +89,10 @@ def with_paths(folder: str, data: dict[str, Any]) -> dict[str, Any]:
             path = f"{shlex.quote(_joined(folder, file))} {rest}".rstrip()
             launch.append(text if _of_package(text) else path)
         result["launch"] = launch
-    if "companions" in result:
-        result["companions"] = {kind: resolve(it) for kind, it in result["companions"].items()}
+    if "related_files" in result:
+        result["related_files"] = {
+            kind: resolve(it) for kind, it in result["related_files"].items()
+        }
     for key in ("robots", JOIN):
         if key in result:
             result[key] = [with_paths(folder, inner) for inner in result[key]]

@@ -23,7 +23,7 @@ from multibot_rewrite.fleet.file.robot_spec import WORLD_LINK, RobotSpec, is_sim
 from multibot_rewrite.fleet.outputs.zenoh_configuration import Setup, zenoh_of
 
 KINDS = ("params", "rviz", "moveit", "bridge", "behavior_trees", "lua")
-LISTS = ("include", "stack", "nodl", "vocabulary", "shared_frames", "shared_topics")
+LISTS = ("include", "stack", "nodl", "definitions", "shared_frames", "shared_topics")
 POLICY = tuple(Policy.__annotations__)
 # What ``params_style`` says of parameter files for nav2_bringup.
 BRINGUP = "bringup"
@@ -51,7 +51,7 @@ class FleetFile(NamedTuple):
     installed: str
     nodes: str
     nodl: tuple[str, ...]
-    vocabulary: tuple[str, ...]
+    definitions: tuple[str, ...]
     robots: tuple[RobotSpec, ...]
     files: tuple[str, ...] = ()
     shared_nodes: tuple[str, ...] = ()
@@ -83,7 +83,7 @@ def read_fleet(
     data = read.data
     release, why = _release(data, distro, environment)
     policy, naming = _policy(read)
-    vocabulary, nodl = (tuple(listed(data.get(it, []))) for it in ("vocabulary", "nodl"))
+    definitions, nodl = (tuple(listed(data.get(it, []))) for it in ("definitions", "nodl"))
     documents = nodl_files(nodl, read.places)
     named = (data.get("nodes", ""), data.get("simulator_world", ""), *documents)
     robots = tuple(robot_spec(read, naming, at, release) for at in range(len(data["robots"])))
@@ -97,9 +97,9 @@ def read_fleet(
         data.get("installed", ""),
         data.get("nodes", ""),
         nodl,
-        vocabulary,
+        definitions,
         robots,
-        tuple(filter(None, (*read.files, *named, *vocabulary))),
+        tuple(filter(None, (*read.files, *named, *definitions))),
         _nodes(data, "shared_nodes"),
         data.get("sros2", False),
         data.get("params_style", ""),

@@ -10,8 +10,6 @@ from typing import Any, NamedTuple
 
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import NAMESPACE, Naming
-from multibot_rewrite.companions.named_file import PARAMS
-from multibot_rewrite.companions.rviz.read_config import read_colour
 from multibot_rewrite.description.joining.from_file import part_of, parts_of
 from multibot_rewrite.description.joining.part import Part, files_of
 from multibot_rewrite.description.sources.own_names import filled, name_robot
@@ -26,6 +24,8 @@ from multibot_rewrite.fleet.file.fleet_data import (
 )
 from multibot_rewrite.fleet.fleet import facts_of
 from multibot_rewrite.producers.launch.records import LaunchOrder, launch_order
+from multibot_rewrite.related_files.named_file import PARAMS
+from multibot_rewrite.related_files.rviz.read_config import read_colour
 
 # Description, SRDF and arguments; the robot's name, if the arguments hold a word of it; the model.
 Sources = tuple[str, str, tuple[tuple[str, str], ...], str, str]
@@ -49,7 +49,7 @@ class RobotSpec(NamedTuple):
     """One robot of a fleet file; paths are absolute or relative to the working directory.
 
     ``namespace`` has no leading slash; ``tag`` is the prefix or postfix of its frames and joints;
-    ``pose`` is None if the file has none. ``companions`` maps a kind of ``KINDS`` to files; a kind
+    ``pose`` is None if the file has none. ``related_files`` maps a kind of ``KINDS`` to files; a kind
     without files is not there. ``line``
     is its line in ``file``. ``filled`` are texts of files that are not as on disk, by path: parameters
     in the fleet file itself, parameter files in which a launch replaces something, and what is made of
@@ -73,7 +73,7 @@ class RobotSpec(NamedTuple):
     pose: Pose | None
     colour: str | tuple[int, ...]
     stacks: tuple[str, ...]
-    companions: Mapping[str, tuple[str, ...]]
+    related_files: Mapping[str, tuple[str, ...]]
     file: str
     line: int
     launch: tuple[LaunchOrder, ...] = ()
@@ -94,7 +94,7 @@ class RobotSpec(NamedTuple):
         made = {it for it, _ in self.filled if os.path.dirname(it) == self.file}
         made |= {self.description, *dict(self.filled)} if self.parts else set()
         own = (self.description, self.srdf, self.simulated)
-        beside = (path for paths in self.companions.values() for path in paths)
+        beside = (path for paths in self.related_files.values() for path in paths)
         yield from (it for it in (*own, *beside) if it and (it not in made or it.endswith(LIST)))
         yield from (it for part in self.parts for it in files_of(part))
         yield from (it.file for it in self.launch)
@@ -128,11 +128,11 @@ def robot_spec(read: FleetData, naming: Naming, at: int, release: str) -> RobotS
     description, parts = described(read, at)
     if not description:
         raise InputError(f"{place}: robot {name!r} has no description; name its URDF or xacro")
-    companions = {**data.get("companions", {}), **own.get("companions", {})}
+    related_files = {**data.get("related_files", {}), **own.get("related_files", {})}
     simulator = own.get("simulator", data.get("simulator", ""))
     if simulator == REAL:
-        companions.pop("bridge", None)
-    texts = texts_of(listed(companions.get(PARAMS, [])), file)
+        related_files.pop("bridge", None)
+    texts = texts_of(listed(related_files.get(PARAMS, [])), file)
     stacks = tuple(listed(own.get("stack", data.get("stack", []))))
     try:
         facts_of(stacks, data.get("nodes") or None, release, listed(data.get("nodl", [])))
@@ -153,7 +153,7 @@ def robot_spec(read: FleetData, naming: Naming, at: int, release: str) -> RobotS
     made = iter(texts)
     files = {
         kind: tuple(path if isinstance(path, str) else next(made) for path in listed(it))
-        for kind, it in companions.items()
+        for kind, it in related_files.items()
         if it
     }
     return RobotSpec(

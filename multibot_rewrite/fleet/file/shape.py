@@ -14,11 +14,11 @@ from multibot_rewrite import fleet
 from multibot_rewrite.base.bounded import load_own_yaml
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import make_naming
-from multibot_rewrite.companions.params.sections import raw_sections
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.outputs.output_file import expanded_name, params_of, path_for
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.producers.ends import BRIDGE_FILE
+from multibot_rewrite.related_files.params.sections import raw_sections
 
 REAL, SIMULATED = "real", "simulated"
 DESCRIPTION, SRDF, BRIDGE = "description", "srdf", "bridge"
@@ -88,9 +88,9 @@ def placed(robot: RewrittenRobot, shape: str) -> RewrittenRobot:
     """Return the robot with the places of its outputs, by their names without a shape."""
     if not shape:
         return robot
-    made, companions = {}, robot.spec.companions
+    made, related_files = {}, robot.spec.related_files
     # The files that lie in a vendor's folder already.
-    for source in (*companions.get("params", ()), *companions.get(BRIDGE, ())):
+    for source in (*related_files.get("params", ()), *related_files.get(BRIDGE, ())):
         folder = os.path.dirname(os.path.abspath(source))
         for it in shapes()[shape].keeps:
             if f"{folder}/".endswith(f"/{it}/"):
@@ -114,7 +114,7 @@ def _files_with(robot: RewrittenRobot, what: str) -> Iterator[str]:
     if what in described:
         yield from [expanded_name(described[what])] if described[what] else ()
     elif what == BRIDGE:
-        yield from [BRIDGE_FILE] if spec.companions.get(BRIDGE) else ()
+        yield from [BRIDGE_FILE] if spec.related_files.get(BRIDGE) else ()
     else:
         for path, document in params_of(spec).items():
             with suppress(InputError):

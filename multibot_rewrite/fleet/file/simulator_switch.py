@@ -175,7 +175,7 @@ def with_own_arguments(
 
     @cache
     def found(path: str, given: frozenset[tuple[str, str]]) -> tuple[Argument, ...]:
-        tree, reach = builtin_tree(file.vocabulary, file.distro, ROS_2), Reach(trust=trust)
+        tree, reach = builtin_tree(file.definitions, file.distro, ROS_2), Reach(trust=trust)
         with suppress(InputError):
             return find_arguments(
                 path, dict(given), tree, reach=reach, wanted=names_robots

@@ -23,9 +23,9 @@ from multibot_rewrite.fleet.fleet import expected, known_nodes, make_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.live.diagnose import diagnose
+from multibot_rewrite.planning.plan import read_plan
 from multibot_rewrite.producers.snapshot_file import read_snapshots
 from multibot_rewrite.rules.check import check
-from multibot_rewrite.spelling.plan import read_plan
 from multibot_rewrite.system.environment import settings
 from multibot_rewrite.system.parameters import ANSWER_SECONDS, questions, with_answers
 from multibot_rewrite.system.records import Caveat, System

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.fleet.launch.starts import RobotStarts
-from multibot_rewrite.spelling.start import Start
+from multibot_rewrite.planning.start import Start
 
 FLAG = re.compile(r"-{1,2}[A-Za-z][\w-]*")
 _POSE = {

@@ -47,6 +47,18 @@ from multibot_rewrite.knowledge.programs import (
     started_as,
 )
 from multibot_rewrite.knowledge.records import CARTOGRAPHER, MANAGER, NodeFacts
+from multibot_rewrite.planning.domain_bridge import bridge_name, bridge_path
+from multibot_rewrite.planning.of_runs import placed, target_of
+from multibot_rewrite.planning.start import (
+    File,
+    Parameters,
+    Start,
+    Text,
+    path_of,
+    spawner_of,
+    start_of,
+)
+from multibot_rewrite.planning.ways import COMPONENT, SPAWNER, Started
 from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE
 from multibot_rewrite.producers.launch.bridges import services_in
@@ -59,18 +71,6 @@ from multibot_rewrite.producers.launch.handed_on import (
 )
 from multibot_rewrite.producers.launch.known_node import LUA_FLAGS, STATIC, with_frames
 from multibot_rewrite.producers.launch.records import LaunchedNode
-from multibot_rewrite.spelling.domain_bridge import bridge_name, bridge_path
-from multibot_rewrite.spelling.of_runs import placed, target_of
-from multibot_rewrite.spelling.start import (
-    File,
-    Parameters,
-    Start,
-    Text,
-    path_of,
-    spawner_of,
-    start_of,
-)
-from multibot_rewrite.spelling.ways import COMPONENT, SPAWNER, Started
 from multibot_rewrite.system.records import PUBLISHES, TOPIC
 
 STATE = "robot_state_publisher"
@@ -226,7 +226,7 @@ def _started(given: _Given, name: str) -> Start:
     placing = given.plan.evidence_of(given.robot).placing
     if placing is not None and spawn.is_of_vendor(placing) and made.number == placing.number:
         words = tuple(spawn.placed_at(words, given.robot.spec.pose))
-    lua = given.robot.spec.companions.get("lua", ())
+    lua = given.robot.spec.related_files.get("lua", ())
     if facts.kind == CARTOGRAPHER and (lua or facts.usual):
         folder, file = os.path.split(path_for(given.robot, *lua[:1] or (OPTIONS,)))
         words = (*words, LUA_FLAGS[0], File(folder), LUA_FLAGS[1], file)
@@ -286,7 +286,7 @@ def _with_own(plan: FleetPlan, robot: RewrittenRobot, it: Start, name: str) -> S
 def _processes(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[Start]:
     """Yield the processes of its launch files that are no nodes, with the robot's parameter files
     in the arguments of a launch file."""
-    own = {os.path.realpath(it): it for it in robot.spec.companions.get("params", ())}
+    own = {os.path.realpath(it): it for it in robot.spec.related_files.get("params", ())}
     for it in (one for one in plan.evidence_of(robot).processes if not one.once):
         made = _process(it.node, robot.spec.name, robot.spec.namespace, plan.fleet.naming)
         words = []
@@ -449,7 +449,7 @@ def _readers(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, froz
     others = {os.path.realpath(it.partition(":=")[2]) for it in words}
     others |= {it.source for one in evidence.spawned.values() for it in one.parameters}
     handed = evidence.handed_on
-    for it in robot.spec.companions.get("params", ()) if handed else ():
+    for it in robot.spec.related_files.get("params", ()) if handed else ():
         path = os.path.realpath(it)
         nodes = frozenset(node for node, own in handed.items() if path in own.files)
         if nodes or path in others:
@@ -492,7 +492,7 @@ def controller(plan: FleetPlan, it: Started) -> Start:
     own = next((one for one in evidence.given if one.node == it.node.node), None)
     spawned = evidence.spawned.get(it.node.node)
     sources = {one.source for one in spawned.parameters} if spawned else set[str]()
-    files = robot.spec.companions.get("params", ())
+    files = robot.spec.related_files.get("params", ())
     if own and OWN_TYPE in own.values:
         # Its own section has its type.
         files = tuple(one for one in files if one == own.values[OWN_TYPE].place.file)[:1]
@@ -586,7 +586,7 @@ def _shared(
         program = program_of(facts, plan.file.distro)
         if program is None:
             continue
-        paths = first.spec.companions.get("params", ())
+        paths = first.spec.related_files.get("params", ())
         files: list[Parameters] = [
             File(it, built.get(it, False)) for it in (path_for(first, one) for one in paths)
         ]

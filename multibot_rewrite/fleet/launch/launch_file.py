@@ -17,10 +17,10 @@ from multibot_rewrite.fleet.launch.launch_python import to_python
 from multibot_rewrite.fleet.launch.launched_simulator import launched_simulator
 from multibot_rewrite.fleet.launch.starts import GZ, RVIZ, FleetStarts, RobotStarts, with_switches
 from multibot_rewrite.fleet.outputs import spawn, teleop, world_file
-from multibot_rewrite.fleet.outputs.companion_files import launched_values
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
+from multibot_rewrite.fleet.outputs.related_files import launched_values
+from multibot_rewrite.planning.start import File, Start, shell_line
 from multibot_rewrite.producers.launch.handed_on import for_robot
-from multibot_rewrite.spelling.start import File, Start, shell_line
 
 LAUNCH = "fleet.launch.py"
 # Substitutions of launch that need no argument, and all others.

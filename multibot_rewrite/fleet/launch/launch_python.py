@@ -12,7 +12,7 @@ from textwrap import wrap
 from multibot_rewrite.fleet.launch.each_robot import Function, functions
 from multibot_rewrite.fleet.launch.python_actions import OF_ALL, actions, comment, lines, value
 from multibot_rewrite.fleet.launch.starts import FleetStarts, RobotStarts, launch_arguments
-from multibot_rewrite.spelling.start import in_order
+from multibot_rewrite.planning.start import in_order
 
 # What ament_flake8 allows, and robots of which each has its line to drive.
 WIDTH, _DRIVING = 99, 4

@@ -18,7 +18,6 @@ from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import Policy
 from multibot_rewrite.base.rosnames import expand
-from multibot_rewrite.companions.params.sections import raw_sections
 from multibot_rewrite.fleet.file.fleet_file import BRINGUP, FleetFile
 from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec
 from multibot_rewrite.fleet.launch.launched_robot import launch_of
@@ -29,6 +28,7 @@ from multibot_rewrite.producers.launch.of_robot import is_of_robot
 from multibot_rewrite.producers.launch.programs import once_for_all
 from multibot_rewrite.producers.launch.records import LaunchedNode, ParameterText
 from multibot_rewrite.producers.launch.several_robots import without
+from multibot_rewrite.related_files.params.sections import raw_sections
 from multibot_rewrite.system.records import Place
 
 PARAMS = "params"
@@ -99,13 +99,13 @@ def _bridged(spec: RobotSpec) -> tuple[dict[str, str], tuple[str, ...]]:
 
 def _with_bridges(spec: RobotSpec, found: Mapping[str, str], files: Sequence[str]) -> RobotSpec:
     """Return the robot with what its launch files bridge, and the files that exist of it."""
-    own = spec.companions.get("bridge", ())
+    own = spec.related_files.get("bridge", ())
     there = {os.path.realpath(it) for it in own}
     own = (*own, *(it for it in files if os.path.realpath(it) not in there), *found)
-    if spec.simulator == REAL or own == spec.companions.get("bridge", ()):
+    if spec.simulator == REAL or own == spec.related_files.get("bridge", ()):
         return spec
-    companions = {**spec.companions, "bridge": own}
-    return spec._replace(companions=companions, filled=(*spec.filled, *found.items()))
+    related_files = {**spec.related_files, "bridge": own}
+    return spec._replace(related_files=related_files, filled=(*spec.filled, *found.items()))
 
 
 def _sets_parameters(path: str) -> bool:
@@ -117,9 +117,9 @@ def _sets_parameters(path: str) -> bool:
 
 def _with(spec: RobotSpec, named: Sequence[_Named]) -> tuple[RobotSpec, list[Finding]]:
     """Return the robot with the files that it lacked, and notes of those that are left out."""
-    own, filled, notes = list(spec.companions.get(PARAMS, ())), [], []
+    own, filled, notes = list(spec.related_files.get(PARAMS, ())), [], []
     written = filter(None, (spec.description, spec.srdf, spec.simulated))
-    beside = (path for paths in spec.companions.values() for path in paths)
+    beside = (path for paths in spec.related_files.values() for path in paths)
     taken = {os.path.basename(it): it for it in (*written, *beside)}
     for it in named:
         there = taken.setdefault(os.path.basename(it.path), it.path)
@@ -138,8 +138,8 @@ def _with(spec: RobotSpec, named: Sequence[_Named]) -> tuple[RobotSpec, list[Fin
             message = f"the launch fills {_SUBSTITUTED}...) in {it.path}; it is not rewritten"
             hint = "write it out for one robot without a prefix, and list that file under params"
             notes.append(NOT_REWRITTEN.finding(message, hint, level=WARNING, **where))
-    companions = {**spec.companions, PARAMS: tuple(own)} if own else spec.companions
-    return spec._replace(companions=companions, filled=(*spec.filled, *filled)), notes
+    related_files = {**spec.related_files, PARAMS: tuple(own)} if own else spec.related_files
+    return spec._replace(related_files=related_files, filled=(*spec.filled, *filled)), notes
 
 
 def _is_filled(it: _Named, text: str, spec: RobotSpec) -> bool:
@@ -188,7 +188,7 @@ def with_bridge_namespaces(file: FleetFile) -> FleetFile:
 
 
 def _with_namespaces(spec: RobotSpec, robots: Collection[str]) -> RobotSpec:
-    files = spec.companions.get("bridge", ())
+    files = spec.related_files.get("bridge", ())
     if spec.bridge_namespace or not (files and spec.launch):
         return spec
     values = (value.strip("/") for it in spec.launch for _, value in it.arguments)

@@ -16,6 +16,7 @@ from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.fleet.launch.starts import OWN_ARGUMENTS
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
+from multibot_rewrite.planning.records import Run
 from multibot_rewrite.producers.evidence.nodes import RobotNodes, nodes_of, under_plugin
 from multibot_rewrite.producers.launch.child import launch_graph
 from multibot_rewrite.producers.launch.known_node import with_sources
@@ -23,7 +24,6 @@ from multibot_rewrite.producers.launch.of_robot import Launched, as_launched, wi
 from multibot_rewrite.producers.launch.programs import may_be_off
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder, joined
 from multibot_rewrite.producers.launch.several_robots import of_first_robot, with_extras
-from multibot_rewrite.spelling.records import Run
 
 NOT_SPAWNED = "no spawner of the launch files loads it"
 

@@ -9,7 +9,7 @@ from itertools import groupby
 from typing import Any, NamedTuple
 
 from multibot_rewrite.fleet.launch.each_robot import FLAG, Code
-from multibot_rewrite.spelling.start import (
+from multibot_rewrite.planning.start import (
     EVENTS,
     HOW,
     File,

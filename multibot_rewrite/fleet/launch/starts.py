@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.base.grouping import lists_by_key
-from multibot_rewrite.spelling.start import NOTHING, File, Start, Text, name_in, values_in
+from multibot_rewrite.planning.start import NOTHING, File, Start, Text, name_in, values_in
 
 # The simulators that it can start.
 CLASSIC, GZ = "classic", "gz"

@@ -11,10 +11,6 @@ import yaml
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, declare
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.companions.bridge import BOTH, GZ, MODEL_SLOT, ROS, BridgeFile, rewrite_bridge
-from multibot_rewrite.companions.context import FileTemplate, fill_template
-from multibot_rewrite.companions.rviz.read_config import text_of
-from multibot_rewrite.companions.yaml_text import blocks, cut_out, found_at, items, moved, read_yaml
 from multibot_rewrite.fleet.checks.written_files import wrong_in_file
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import (
@@ -28,12 +24,30 @@ from multibot_rewrite.fleet.outputs.spawn import simulators
 from multibot_rewrite.fleet.robots.member import line_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import group_robots
-from multibot_rewrite.producers.ends import BRIDGE_FILE
-from multibot_rewrite.spelling.bridged_topics import (
+from multibot_rewrite.planning.bridged_topics import (
     BridgedTopic,
     UnbridgedTopic,
     as_yaml,
     bridged_topics,
+)
+from multibot_rewrite.producers.ends import BRIDGE_FILE
+from multibot_rewrite.related_files.bridge import (
+    BOTH,
+    GZ,
+    MODEL_SLOT,
+    ROS,
+    BridgeFile,
+    rewrite_bridge,
+)
+from multibot_rewrite.related_files.context import FileTemplate, fill_template
+from multibot_rewrite.related_files.rviz.read_config import text_of
+from multibot_rewrite.related_files.yaml_text import (
+    blocks,
+    cut_out,
+    found_at,
+    items,
+    moved,
+    read_yaml,
 )
 
 
@@ -51,7 +65,7 @@ def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
         above = spec.bridge_namespace_of
         bridges = {
             it: rewrite_bridge(own_yaml(spec, it), group.context, above=above(it))
-            for it in group.companions.get("bridge", ())
+            for it in group.related_files.get("bridge", ())
         }
         groups.append((group, bridges))
     for group, files in groups:

@@ -6,12 +6,12 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Sequence
 
-from multibot_rewrite.companions.params.sections import PARAMETERS
-from multibot_rewrite.companions.yaml_text import YamlText, pairs, read_yaml
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.fleet.build import folders_of
 from multibot_rewrite.fleet.outputs.params_style import ZONES
 from multibot_rewrite.producers.evidence.parameter_files import named_values
+from multibot_rewrite.related_files.params.sections import PARAMETERS
+from multibot_rewrite.related_files.yaml_text import YamlText, pairs, read_yaml
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import Parameter, System, nodes_by_robot
 

@@ -19,9 +19,9 @@ from multibot_rewrite.fleet.outputs.shape_outputs import vendor_commands
 from multibot_rewrite.fleet.robots.simulators import is_simulated
 from multibot_rewrite.fleet.robots.start_poses import InitialPose, start_poses
 from multibot_rewrite.knowledge.conditions import said
-from multibot_rewrite.spelling.start import Start, shell_line
-from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
-from multibot_rewrite.spelling.ways import SPAWNER, started
+from multibot_rewrite.planning.start import Start, shell_line
+from multibot_rewrite.planning.transforms import STATE_PUBLISHER
+from multibot_rewrite.planning.ways import SPAWNER, started
 
 COMMANDS, START = "commands.md", "start_pose.yaml"
 TAKING = "\nThe vendor's launch files take its files, in the folder of this file:\n\n```sh\n"

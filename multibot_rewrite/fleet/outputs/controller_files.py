@@ -43,7 +43,7 @@ def with_own_controllers(robot: RewrittenRobot, folder: str) -> tuple[bytes, tup
         return robot.description, ()
     source = robot.member.inventory.document.source
     file = robot.spec.simulated or robot.spec.description
-    params = robot.spec.companions.get("params", ())
+    params = robot.spec.related_files.get("params", ())
     edits: list[Edit] = []
     findings: list[Finding] = []
     for path, slot in loaded_files(robot) if params else ():
@@ -126,7 +126,7 @@ def with_loaded_files(robot: RewrittenRobot) -> RewrittenRobot:
     that has the name of a listed file is left out: ``OTHER_CONTROLLER_FILE`` reports it. A real
     robot loads none."""
     spec = robot.spec
-    file, params = spec.simulated or spec.description, spec.companions.get(PARAMS, ())
+    file, params = spec.simulated or spec.description, spec.related_files.get(PARAMS, ())
     more: list[str] = []
     findings: list[Finding] = []
     for path, _ in loaded_files(robot):
@@ -139,9 +139,9 @@ def with_loaded_files(robot: RewrittenRobot) -> RewrittenRobot:
             findings.append(at_robot(NOT_FOLLOWED, robot, message, hint))
         elif not any(named_alike(found, it) for it in more):
             more.append(found)
-    companions = {**spec.companions, PARAMS: (*params, *more)} if more else spec.companions
+    related_files = {**spec.related_files, PARAMS: (*params, *more)} if more else spec.related_files
     said = (*robot.findings, *findings)
-    return robot._replace(spec=spec._replace(companions=companions), findings=said)
+    return robot._replace(spec=spec._replace(related_files=related_files), findings=said)
 
 
 def _found(path: str, description: str) -> Iterator[str]:

@@ -22,23 +22,6 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, decl
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.base.releases import ROS_2, has_release
-from multibot_rewrite.companions.engine import splices_of
-from multibot_rewrite.companions.joined import PartMoveit, joined_moveit
-from multibot_rewrite.companions.moveit.file_kind import (
-    ABOVE,
-    EMPTY,
-    NAMES,
-    OF_SERVO,
-    PLANNING,
-    SIMPLE,
-    entries,
-    file_kind,
-    pipeline_of,
-)
-from multibot_rewrite.companions.names.rename_map import spell
-from multibot_rewrite.companions.rviz.read_config import every, fixed_frame, read_config, targets
-from multibot_rewrite.companions.rviz.rewrite import RvizText
-from multibot_rewrite.companions.yaml_text import YamlText, read_yaml, replaced, spliced
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.fleet.file.domains import MOVE_GROUP, Cell
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
@@ -52,8 +35,25 @@ from multibot_rewrite.fleet.outputs.output_file import (
 from multibot_rewrite.fleet.robots.joined_robots import Arm, joined_arms
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleet.robots.start_poses import world_of
-from multibot_rewrite.spelling.start import File, Start, shell_line
-from multibot_rewrite.spelling.ways import started
+from multibot_rewrite.planning.start import File, Start, shell_line
+from multibot_rewrite.planning.ways import started
+from multibot_rewrite.related_files.engine import splices_of
+from multibot_rewrite.related_files.joined import PartMoveit, joined_moveit
+from multibot_rewrite.related_files.moveit.file_kind import (
+    ABOVE,
+    EMPTY,
+    NAMES,
+    OF_SERVO,
+    PLANNING,
+    SIMPLE,
+    entries,
+    file_kind,
+    pipeline_of,
+)
+from multibot_rewrite.related_files.names.rename_map import spell
+from multibot_rewrite.related_files.rviz.read_config import every, fixed_frame, read_config, targets
+from multibot_rewrite.related_files.rviz.rewrite import RvizText
+from multibot_rewrite.related_files.yaml_text import YamlText, read_yaml, replaced, spliced
 
 FILE = "moveit_parameters.yaml"
 # Package and executable of the nodes that take it, by their names in the stack.
@@ -71,7 +71,7 @@ _OMPL = "ompl"
 
 def has_moveit(robot: RewrittenRobot) -> bool:
     """Return whether the robot has an SRDF and files of MoveIt."""
-    return bool(robot.srdf and robot.spec.companions.get("moveit"))
+    return bool(robot.srdf and robot.spec.related_files.get("moveit"))
 
 
 def moveit_commands(plan: FleetPlan) -> Iterator[Start]:
@@ -79,7 +79,7 @@ def moveit_commands(plan: FleetPlan) -> Iterator[Start]:
     (robot,) = plan.robots
     servo = any(
         file_kind(own_yaml(robot.spec, it)) == OF_SERVO
-        for it in robot.spec.companions.get("moveit", ())
+        for it in robot.spec.related_files.get("moveit", ())
     )
     nodes = PROGRAMS if servo else (_MOVE_GROUP,)
     for it in started(plan.fleet.table) if has_moveit(robot) else ():
@@ -93,7 +93,7 @@ def moveit_parameters(plan: FleetPlan, files: Iterable[OutputFile]) -> Iterator[
     made = {it.path: it.data for it in files}
     for robot in filter(has_moveit, plan.robots):
         values = parameters_of(robot, made, plan.file.distro)
-        sources = (robot.spec.srdf, *robot.spec.companions["moveit"])
+        sources = (robot.spec.srdf, *robot.spec.related_files["moveit"])
         yield OutputFile(path_for(robot, FILE), parameter_file(values), sources)
 
 
@@ -101,7 +101,7 @@ def parameters_of(
     robot: RewrittenRobot, made: Mapping[str, bytes], release: str
 ) -> Mapping[str, Any]:
     """Return the parameters of a robot's MoveIt, by its files that were ``made``, by path."""
-    paths = robot.spec.companions.get("moveit", ())
+    paths = robot.spec.related_files.get("moveit", ())
     texts = {it: made[path_for(robot, it)].decode() for it in paths}
     srdf = made[path_for(robot, expanded_name(robot.spec.srdf))].decode()
     return parameters_from(srdf, texts, release)
@@ -210,7 +210,7 @@ def cell_outputs(plan: FleetPlan, files: Iterable[OutputFile]) -> FilesAndFindin
     if cell is None:
         return
     made = {it.path: it.data for it in files}
-    tree = builtin_tree(plan.file.vocabulary, plan.file.distro, ROS_2)
+    tree = builtin_tree(plan.file.definitions, plan.file.distro, ROS_2)
     world = world_of(plan.file, plan.fleet.naming)
     arms = [
         Arm(spec.name, spec.tag, it.description, it.srdf, spec.pose, f"{spec.file}:{spec.line}")
@@ -229,7 +229,7 @@ def cell_outputs(plan: FleetPlan, files: Iterable[OutputFile]) -> FilesAndFindin
     urdf, srdf = (joined[it].decode() for it in (".urdf", ".srdf"))
     values = {_DESCRIPTION: urdf, **parameters_from(srdf, texts, plan.file.distro)}
     specs = [robot.spec for robot in plan.robots]
-    files_of = ((it.description, it.srdf, *it.companions.get("moveit", ())) for it in specs)
+    files_of = ((it.description, it.srdf, *it.related_files.get("moveit", ())) for it in specs)
     sources = tuple(it for its in files_of for it in its)
     for ending, data in joined.items():
         yield OutputFile(f"{cell.name}/{cell.name}{ending}", data, sources)
@@ -252,7 +252,7 @@ def _moveit(
     plan: FleetPlan, robot: RewrittenRobot, made: Mapping[str, bytes]
 ) -> Iterator[PartMoveit]:
     """Yield an arm's MoveIt files as a move_group for all needs them; servo runs for each arm."""
-    for it in robot.spec.companions.get("moveit", ()):
+    for it in robot.spec.related_files.get("moveit", ()):
         path = path_for(robot, it)
         document = read_yaml(made[path], path)
         kind = file_kind(document)

@@ -11,11 +11,11 @@ from typing import NamedTuple, TypeAlias
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.description.sources.read import JOIN, XACRO, read_file
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.producers.ends import BRIDGE_FILE
+from multibot_rewrite.related_files.yaml_text import YamlText, read_yaml
 
 # The plan of a built fleet.
 PLAN = "plan.yaml"
@@ -55,7 +55,7 @@ def path_for(robot: RewrittenRobot, source: str) -> str:
     """Return where the robot's version of a source file goes: ``robot1/params.yaml``. Files of one
     name go into folders named as theirs, as many as tell them apart: ``robot1/base/params.yaml``. A
     vendor's launch files may want one in a place of its own."""
-    kinds = robot.spec.companions
+    kinds = robot.spec.related_files
     name = name_among(source, (it for its in kinds.values() for it in its))
     kind = next((kind for kind, its in kinds.items() if source in its), "")
     above, last = os.path.split(name)
@@ -101,14 +101,14 @@ def expanded_name(path: str) -> str:
 def params_paths(robot: RewrittenRobot, files: Collection[str]) -> tuple[str, ...]:
     """Return where a robot's parameter files are among the ``files`` of a build; the default one if
     it has no others."""
-    named = robot.spec.companions.get("params", ())
+    named = robot.spec.related_files.get("params", ())
     paths = tuple(path_for(robot, it) for it in named or (DEFAULTS,))
     return tuple(it for it in paths if it in files)
 
 
 def params_of(spec: RobotSpec) -> dict[str, YamlText]:
     """Return a robot's parameter files by path, as a launch fills them; raises as ``read_yaml``."""
-    return {it: own_yaml(spec, it) for it in spec.companions.get("params", ())}
+    return {it: own_yaml(spec, it) for it in spec.related_files.get("params", ())}
 
 
 def text_of(spec: RobotSpec, path: str) -> bytes:

@@ -15,8 +15,6 @@ from types import MappingProxyType
 from multibot_rewrite.base.findings.finding import NOTE, Finding, declare
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, make_naming
-from multibot_rewrite.companions.params.shared_defaults import for_bringup
-from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.fleet.file.fleet_file import BRINGUP, FleetFile
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
@@ -25,6 +23,8 @@ from multibot_rewrite.fleet.outputs.shape_outputs import taken_as_they_are
 from multibot_rewrite.fleet.robots.robot_nodes import stack_nodes
 from multibot_rewrite.fleet.robots.start_poses import start_poses
 from multibot_rewrite.knowledge.stacks import load_stack
+from multibot_rewrite.related_files.params.shared_defaults import for_bringup
+from multibot_rewrite.related_files.yaml_text import read_yaml
 
 # The stacks that are nav2_bringup's launch files.
 _STACKS = ("nav2_composed", "nav2_slam")
@@ -62,7 +62,7 @@ def in_style(plan: FleetPlan, files: Sequence[OutputFile]) -> FilesAndFindings:
     robots = {
         path_for(robot, source): robot.spec
         for robot in plan.robots
-        for source in robot.spec.companions.get("params", ())
+        for source in robot.spec.related_files.get("params", ())
     }
     bringup = plan.file.params_style == BRINGUP
     poses = start_poses(plan).initial if bringup else ()

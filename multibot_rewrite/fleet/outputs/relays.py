@@ -17,14 +17,14 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming
-from multibot_rewrite.companions.rviz.rewrite import world_frame
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
-from multibot_rewrite.spelling.bridged_topics import TF_TYPE
-from multibot_rewrite.spelling.of_runs import placed, target_of
-from multibot_rewrite.spelling.records import Run
-from multibot_rewrite.spelling.start import Start
+from multibot_rewrite.planning.bridged_topics import TF_TYPE
+from multibot_rewrite.planning.of_runs import placed, target_of
+from multibot_rewrite.planning.records import Run
+from multibot_rewrite.planning.start import Start
+from multibot_rewrite.related_files.rviz.rewrite import world_frame
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, Origin, Place
 
 BRIDGE, _WORLD = "tf_namespace_bridge", "bridged_world"

@@ -17,19 +17,6 @@ from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.base.naming import LAYOUTS, PREFIX, TF_TOPICS, find_layout, make_naming
-from multibot_rewrite.companions.names.node_topics import fleet_topics
-from multibot_rewrite.companions.rviz.display_groups import is_for_one, leaves, shown_in
-from multibot_rewrite.companions.rviz.read_config import (
-    TF_PREFIX,
-    TOPIC,
-    RvizRobot,
-    palette,
-    read_config,
-    rviz_data,
-)
-from multibot_rewrite.companions.rviz.rewrite import RvizText, read_for, rewrite_rviz
-from multibot_rewrite.companions.rviz.window_checks import ONE_TF_TOPIC
-from multibot_rewrite.companions.yaml_text import YamlText, found_at, quoted
 from multibot_rewrite.fleet.checks.written_files import wrong_in_file
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.moveit_parameters import (
@@ -48,8 +35,21 @@ from multibot_rewrite.fleet.outputs.output_file import (
 )
 from multibot_rewrite.fleet.robots.robot_groups import split_per_robot
 from multibot_rewrite.fleet.robots.start_poses import world_of
-from multibot_rewrite.spelling.shown import Shown, shown_by_robot, world_of_plan
-from multibot_rewrite.spelling.start import File, Start
+from multibot_rewrite.planning.shown import Shown, shown_by_robot, world_of_plan
+from multibot_rewrite.planning.start import File, Start
+from multibot_rewrite.related_files.names.node_topics import fleet_topics
+from multibot_rewrite.related_files.rviz.display_groups import is_for_one, leaves, shown_in
+from multibot_rewrite.related_files.rviz.read_config import (
+    TF_PREFIX,
+    TOPIC,
+    RvizRobot,
+    palette,
+    read_config,
+    rviz_data,
+)
+from multibot_rewrite.related_files.rviz.rewrite import RvizText, read_for, rewrite_rviz
+from multibot_rewrite.related_files.rviz.window_checks import ONE_TF_TOPIC
+from multibot_rewrite.related_files.yaml_text import YamlText, found_at, quoted
 from multibot_rewrite.system.records import Robot, System
 
 _BEST_EFFORT = {"Reliability Policy": "Best Effort"}
@@ -232,7 +232,7 @@ def rviz_outputs(plan: FleetPlan, each: Iterable[FleetPlan]) -> Iterator[RvizOut
     """Yield the windows by the config they are made from; ``each`` is every robot as its own fleet.
     Raises InputError for a config that cannot be read or rewritten."""
     robots_of = lists_by_key(
-        (path, it) for it in plan.robots for path in it.spec.companions.get("rviz", ())
+        (path, it) for it in plan.robots for path in it.spec.related_files.get("rviz", ())
     )
     own = {it.robots[0].spec.name: it for it in each}
     world = world_of(plan.file, plan.fleet.naming)

@@ -12,13 +12,13 @@ import yaml
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.releases import has_release
-from multibot_rewrite.companions.yaml_text import pairs, replaced, spliced
 from multibot_rewrite.fleet.file.robot_spec import Pose
 from multibot_rewrite.fleet.file.shape import REAL, SIMULATED, TakingCommand, name_of, shapes
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import OutputFile, placed_path, yaml_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.simulators import is_simulated
+from multibot_rewrite.related_files.yaml_text import pairs, replaced, spliced
 
 
 def vendor_commands(plan: FleetPlan) -> Iterator[str]:

@@ -13,17 +13,17 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
 from multibot_rewrite.base.naming import NAMESPACE
-from multibot_rewrite.companions.names.node_topics import NOTHING, fleet_topics, robot_topic
 from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.fleet.file.robot_spec import Pose
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import expanded_name, path_for
 from multibot_rewrite.fleet.robots.rewritten_robots import CLASSIC_PLUGIN, RewrittenRobot, at_robot
 from multibot_rewrite.fleet.robots.simulators import is_simulated, without_mass
+from multibot_rewrite.planning.bridged_topics import bridged_topics, model_name
+from multibot_rewrite.planning.start import File, Start, shell_line
 from multibot_rewrite.producers.launch.programs import program_of, programs
 from multibot_rewrite.producers.launch.records import LaunchedNode
-from multibot_rewrite.spelling.bridged_topics import bridged_topics, model_name
-from multibot_rewrite.spelling.start import File, Start, shell_line
+from multibot_rewrite.related_files.names.node_topics import NOTHING, fleet_topics, robot_topic
 from multibot_rewrite.system.records import PUBLISHES
 
 GZ, CLASSIC = ("ros_gz_sim", "create"), ("gazebo_ros", "spawn_entity.py")

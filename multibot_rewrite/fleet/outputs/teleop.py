@@ -9,15 +9,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.companions.names.node_topics import robot_topic
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import own_yaml
 from multibot_rewrite.fleet.robots.fitting.node_topics import CommandEnd, entry_of, relays_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.knowledge.records import Endpoint
+from multibot_rewrite.planning.bridged_topics import DIRECTIONS, bridged_topics
+from multibot_rewrite.planning.start import Start
 from multibot_rewrite.producers.ends import bridge_ends
-from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, bridged_topics
-from multibot_rewrite.spelling.start import Start
+from multibot_rewrite.related_files.names.node_topics import robot_topic
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 from multibot_rewrite.system.words import PLAIN, STAMPED
 
@@ -104,7 +104,7 @@ def _obeyed(ends: Sequence[CommandEnd]) -> list[str]:
 def _bridged(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, str]]:
     """Yield the topics that go to the simulator, with their types: those of the robot's bridge
     files, then those of the generated bridge."""
-    for path in robot.spec.companions.get("bridge", ()):
+    for path in robot.spec.related_files.get("bridge", ()):
         for end in bridge_ends(own_yaml(robot.spec, path), robot.spec.bridge_namespace_of(path)):
             if end.role == SUBSCRIBES:
                 yield robot_topic(robot.topics, end.name), end.type

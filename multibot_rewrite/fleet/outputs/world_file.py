@@ -25,7 +25,6 @@ from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding, decla
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.base.releases import has_release
-from multibot_rewrite.companions.names.rename_map import is_declared, spell
 from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.description.sources.included_models import model_file
@@ -37,6 +36,7 @@ from multibot_rewrite.fleet.outputs.output_file import FilesAndFindings, OutputF
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.simulators import is_simulated, systems_of
 from multibot_rewrite.knowledge.worlds import DEFAULTS, SENT_BY, SENT_BY_ANY, SYSTEMS
+from multibot_rewrite.related_files.names.rename_map import is_declared, spell
 from multibot_rewrite.rules.facts.simulators import needed_systems
 
 _SCOPE = "::"

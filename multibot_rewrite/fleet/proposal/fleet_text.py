@@ -104,12 +104,14 @@ def _left(it: Proposal, folder: str) -> Iterator[tuple[str, str]]:
     for path, why in {**it.refused, **it.broken}.items():
         yield os.path.relpath(path, folder), why
     taken = {
-        path for member in it.members for path in (*member.looked.files, *member.companions.paths)
+        path
+        for member in it.members
+        for path in (*member.looked.files, *member.related_files.paths)
     }
     packages = {*map(package_of, taken)}
     left = dict.fromkeys(it.others, "another description")
     for member in it.members:
-        left |= member.companions.left
+        left |= member.related_files.left
     for path in left.keys() - taken - it.broken.keys():
         if package_of(path) in packages:
             yield os.path.relpath(path, folder), left[path]
@@ -136,7 +138,7 @@ def _of_member(
     def here(path: str) -> str:
         return os.path.relpath(path, folder)
 
-    looked, beside = member.looked, member.companions
+    looked, beside = member.looked, member.related_files
     yield "description", (here(looked.path), (f"The description has {looked.links} links",))
     if member.is_real:
         yield "simulator", (REAL, ())
@@ -163,7 +165,7 @@ def _of_member(
     }
     whys = ("Files for one robot; the build writes one of each for every robot",)
     if files:
-        yield "companions", (files, whys)
+        yield "related_files", (files, whys)
 
 
 def _launched(it: Bringup, apart: str) -> Iterator[str]:

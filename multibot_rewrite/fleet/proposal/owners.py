@@ -17,7 +17,6 @@ from lxml import etree
 from multibot_rewrite.base.conventions import SENT_FRAMES
 from multibot_rewrite.base.lazy import FILLED_IN
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.description.sources.access import BOUNDED
 from multibot_rewrite.description.sources.expand import expand
 from multibot_rewrite.description.sources.included_by import data_of_file
@@ -25,9 +24,10 @@ from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.fleet.proposal.looking import ANY, Looked, filled_for_any
 from multibot_rewrite.fleet.proposal.searching import Found, Undecided, home_of, text_of
 from multibot_rewrite.knowledge.parameters import KnownNodes, is_called, load_known_nodes
+from multibot_rewrite.planning.records import Run
 from multibot_rewrite.producers.ends import bridge_rows
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
-from multibot_rewrite.spelling.records import Run
+from multibot_rewrite.related_files.yaml_text import read_yaml
 from multibot_rewrite.system.words import last_word
 
 # Descriptions whose names are looked at.
@@ -54,7 +54,7 @@ class _Words(NamedTuple):
 def of_others(robot: Looked, found: Found) -> dict[str, str]:
     """Return the files that belong to another description than the robot's, each with the reason."""
     near = dict(_nearer_to_others(robot.path, found))
-    rest = [path for path in _companions(found) if path not in near]
+    rest = [path for path in _related_files(found) if path not in near]
     return {**near, **dict(_naming_others(robot, found, rest))}
 
 
@@ -62,7 +62,7 @@ def of_other_robots(robots: Sequence[Looked], found: Found, release: str) -> lis
     """Return for each robot of a fleet the files that are of another one: they are in its folders, or
     in folders of both and called like it alone, or it alone has what they name."""
     known = load_known_nodes("", release)
-    owners = {file: _owners(file, robots, known) for file in _companions(found)}
+    owners = {file: _owners(file, robots, known) for file in _related_files(found)}
     return [{file for file, its in owners.items() if robot not in its} for robot in robots]
 
 
@@ -102,7 +102,7 @@ def _is_called_like(file: str, robot: Looked) -> bool:
     return name.startswith(front) and not name[len(front) : len(front) + 1].isalnum()
 
 
-def _companions(found: Found) -> Iterator[str]:
+def _related_files(found: Found) -> Iterator[str]:
     for kind in ("params", "rviz", "bridge", "moveit", "behavior_trees", "srdf"):
         yield from getattr(found, kind)
 
@@ -116,7 +116,7 @@ def _nearer_to_others(robot: str, found: Found) -> Iterator[tuple[str, str]]:
     examples has files of several robots."""
     others = {os.path.dirname(it): it for it in reversed(found.every)}
     own, base = os.path.dirname(robot), home_of(robot)
-    for file in _companions(found):
+    for file in _related_files(found):
         if _near(base, file) == len(os.path.abspath(base)):
             at = max(others, key=lambda it: _near(it, file), default=own)
             if _near(at, file) > _near(own, file):
@@ -235,7 +235,7 @@ def _names_in(path: str) -> frozenset[str]:
 
 def names_of_files(found: Found) -> frozenset[str]:
     """Return the words that descriptions' related files have as values, and specific ones as keys."""
-    words = [_words(it) for it in _companions(found)]
+    words = [_words(it) for it in _related_files(found)]
     keys = (name for it in words for name in it.all if _is_specific(name))
     return frozenset(keys).union(*(it.values for it in words)) - {*SENT_FRAMES}
 

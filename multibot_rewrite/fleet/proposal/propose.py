@@ -15,20 +15,12 @@ from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS, RELEASES
 from multibot_rewrite.base.rosnames import numbered_names
 from multibot_rewrite.base.wording import shorten
-from multibot_rewrite.companions.context import make_context
-from multibot_rewrite.companions.formats import read_named
-from multibot_rewrite.companions.named_file import PARAMS
 from multibot_rewrite.description.checks.shapes import reach_of
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.own_names import ROBOT
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.sources.release_said import SaidRelease, release_said
 from multibot_rewrite.fleet.file.robot_spec import REAL
-from multibot_rewrite.fleet.proposal.companions import (
-    Companions,
-    companions_launched,
-    companions_of,
-)
 from multibot_rewrite.fleet.proposal.launches import (
     Bringup,
     Reading,
@@ -46,8 +38,16 @@ from multibot_rewrite.fleet.proposal.looking import (
     with_controllers,
 )
 from multibot_rewrite.fleet.proposal.owners import of_other_robots
+from multibot_rewrite.fleet.proposal.related_files import (
+    RelatedFiles,
+    related_files_launched,
+    related_files_of,
+)
 from multibot_rewrite.fleet.proposal.searching import Found, without
 from multibot_rewrite.fleet.proposal.seeing import Wanted
+from multibot_rewrite.related_files.context import make_context
+from multibot_rewrite.related_files.formats import read_named
+from multibot_rewrite.related_files.named_file import PARAMS
 from multibot_rewrite.rules.files.plugin_names import classes_of_other_releases
 from multibot_rewrite.rules.files.releases import elsewhere
 
@@ -67,7 +67,7 @@ class Member(NamedTuple):
     its base in metres. ``is_real`` is true for robots that are real among simulated ones."""
 
     looked: Looked
-    companions: Companions
+    related_files: RelatedFiles
     names: tuple[str, ...]
     radius: float
     is_real: bool = False
@@ -110,7 +110,7 @@ def layout_of(members: Sequence[Member]) -> Choice:
     """Return the layout that the files of these robots are made for."""
     if any(it.looked.own_tf for it in members):
         return Choice(PER_ROBOT, "plugins of the description send tf on each robot's own topic")
-    stacks = {name for it in members for name in it.companions.stacks}
+    stacks = {name for it in members for name in it.related_files.stacks}
     launched = {one for it in members if it.bringup for one in it.bringup.graph.packages}
     named = any(ROBOT in value for it in members for _, value in it.looked.arguments)
     if named or "moveit" in stacks or "moveit_ros_move_group" in launched:
@@ -219,7 +219,9 @@ def propose(
     kept = without(found, refused)
     shared_out = [without(kept, its) for its in of_other_robots(robots, kept, release.value)]
     members = [
-        _member(it, _companions(it, own, release.value, wanted), called, Reach(trust=wanted.trust))
+        _member(
+            it, _related_files(it, own, release.value, wanted), called, Reach(trust=wanted.trust)
+        )
         for it, own, called in zip(robots, shared_out, names, strict=True)
     ]
     layout = layout_of(members)
@@ -254,16 +256,16 @@ def propose(
     )
 
 
-def _companions(it: Looked, found: Found, release: str, wanted: Wanted) -> Companions:
+def _related_files(it: Looked, found: Found, release: str, wanted: Wanted) -> RelatedFiles:
     """Return the files that go with a robot: those of its launch file, otherwise of its folders."""
     asked = dict.fromkeys(wanted.stacks, MEANT)
     if it.bringup:
-        return companions_launched(it, it.bringup, found, release, asked)
-    made = companions_of(it, found, release)
+        return related_files_launched(it, it.bringup, found, release, asked)
+    made = related_files_of(it, found, release)
     return made._replace(stacks={**made.stacks, **asked})
 
 
-def _member(it: Looked, beside: Companions, names: tuple[str, ...], reach: Reach) -> Member:
+def _member(it: Looked, beside: RelatedFiles, names: tuple[str, ...], reach: Reach) -> Member:
     own = with_controllers(it, beside.files.get("params", ()), reach)
     assert own.root is not None
     return Member(own, beside, names, reach_of(own.root) or UNKNOWN_RADIUS)

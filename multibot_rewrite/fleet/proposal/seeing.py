@@ -26,7 +26,6 @@ from multibot_rewrite.fleet.proposal.choosing import (
     partner,
     processes_with,
 )
-from multibot_rewrite.fleet.proposal.companions import srdf_of
 from multibot_rewrite.fleet.proposal.launches import Bringup, first_words
 from multibot_rewrite.fleet.proposal.looking import (
     NO_SIMULATOR,
@@ -39,10 +38,11 @@ from multibot_rewrite.fleet.proposal.looking import (
     with_own_arguments,
     with_semantic_arguments,
 )
+from multibot_rewrite.fleet.proposal.related_files import srdf_of
 from multibot_rewrite.fleet.proposal.searching import Found, Undecided, search
+from multibot_rewrite.planning.transforms import STATE_PUBLISHER
 from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.producers.launch.source_packages import ROOTS
-from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 
 # Descriptions of a folder that are looked at.
 MOST = 60

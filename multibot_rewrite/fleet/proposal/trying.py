@@ -146,7 +146,7 @@ def _written(it: Proposal, wanted: Wanted) -> FleetText:
 
 def _blamed(it: Proposal, errors: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
     """Yield the related files that have one of the errors, with it."""
-    paths = (path for member in it.members for path in member.companions.paths)
+    paths = (path for member in it.members for path in member.related_files.paths)
     files = {os.path.abspath(path): path for path in paths}
     for file, line in errors:
         place, _, why = line.partition(": ")

@@ -17,8 +17,6 @@ from multibot_rewrite.base.findings.finding import NOTE, Finding, declare
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
 from multibot_rewrite.base.releases import ROS_2
-from multibot_rewrite.companions.join import Joined, join_plain
-from multibot_rewrite.companions.named_file import MOVEIT, PARAMS, RVIZ
 from multibot_rewrite.description.joining.join import GivenPart, join_texts
 from multibot_rewrite.description.joining.kept import without_marks
 from multibot_rewrite.description.joining.part import Part
@@ -30,6 +28,8 @@ from multibot_rewrite.description.sources.read import JOIN, is_xacro
 from multibot_rewrite.fleet.file.domains import Cell
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import Pose, RobotSpec
+from multibot_rewrite.related_files.join import Joined, join_plain
+from multibot_rewrite.related_files.named_file import MOVEIT, PARAMS, RVIZ
 
 ABOUT_PARTS = declare("MF848", "joined-parts", NOTE, formats=("fleet",))
 
@@ -53,7 +53,7 @@ def with_joined(file: FleetFile, trust: bool) -> tuple[FleetFile, Mapping[str, S
         )
         key = repr(given)
         if key not in found:
-            tree = builtin_tree(file.vocabulary, file.distro, ROS_2)
+            tree = builtin_tree(file.definitions, file.distro, ROS_2)
             found[key] = join_plain(given, f"{it.file}:{it.line}", tree, trust)
             hint = "see what it means for the robot; multibot join shows the files"
             said = (f"robot {it.name!r} is joined of parts: {text}" for text in found[key].notes)
@@ -76,12 +76,12 @@ def _with_files(robot: RobotSpec, made: Joined) -> RobotSpec:
     if made.srdf and not robot.srdf:
         robot = robot._replace(srdf=f"{stem}.srdf")
         texts[robot.srdf] = made.srdf
-    companions = dict(robot.companions)
+    related_files = dict(robot.related_files)
     for kind, more in ((PARAMS, beside), (MOVEIT, moveit), (RVIZ, window)):
         if more:
-            companions[kind] = (*more, *companions.get(kind, ()))
+            related_files[kind] = (*more, *related_files.get(kind, ()))
     filled_in = ((path, data.decode()) for path, data in texts.items())
-    return robot._replace(companions=companions, filled=(*robot.filled, *filled_in))
+    return robot._replace(related_files=related_files, filled=(*robot.filled, *filled_in))
 
 
 # Several arms as one robot: the robots of a cell, as they are written, joined at one world link.

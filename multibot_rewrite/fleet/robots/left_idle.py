@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER
 from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.planning.records import Run
 from multibot_rewrite.rules.declaration import at
 from multibot_rewrite.rules.launch.started import (
     is_managed,
@@ -18,7 +19,6 @@ from multibot_rewrite.rules.launch.started import (
     not_listed,
     said_of_bond,
 )
-from multibot_rewrite.spelling.records import Run
 
 
 def left_idle(

@@ -13,14 +13,6 @@ from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.conventions import SENT_FRAMES
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS
-from multibot_rewrite.companions.names.node_topics import fleet_topics, robot_topic
-from multibot_rewrite.companions.names.rename_map import KINDS, spell
-from multibot_rewrite.companions.params.rcl_parameters import (
-    exact_nodes,
-    node_parameters,
-    parameters_text,
-)
-from multibot_rewrite.companions.yaml_text import YamlText
 from multibot_rewrite.fleet.file.robot_spec import Pose
 from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
@@ -35,7 +27,15 @@ from multibot_rewrite.fleet.robots.robot_nodes import stack_nodes
 from multibot_rewrite.knowledge.programs import Program, started_as
 from multibot_rewrite.knowledge.stacks import is_apart
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
-from multibot_rewrite.spelling.of_runs import placed, target_of
+from multibot_rewrite.planning.of_runs import placed, target_of
+from multibot_rewrite.related_files.names.node_topics import fleet_topics, robot_topic
+from multibot_rewrite.related_files.names.rename_map import KINDS, spell
+from multibot_rewrite.related_files.params.rcl_parameters import (
+    exact_nodes,
+    node_parameters,
+    parameters_text,
+)
+from multibot_rewrite.related_files.yaml_text import YamlText
 from multibot_rewrite.system.parameters import Value
 from multibot_rewrite.system.records import TOPIC
 
@@ -131,9 +131,9 @@ class LoadedRobot:
 
     def to_dict(self) -> dict[str, Any]:
         """Return the parameters of its move_group, as moveit_configs_utils' ``to_dict()`` has them
-        for one robot: description, SRDF and the files of ``companions: moveit``. Raises as
+        for one robot: description, SRDF and the files of ``related_files: moveit``. Raises as
         ``text``."""
-        files = self._robot.spec.companions.get("moveit", ())
+        files = self._robot.spec.related_files.get("moveit", ())
         texts = {it: self.text(it) for it in files}
         return move_group_parameters(self.description, self.srdf, texts)
 

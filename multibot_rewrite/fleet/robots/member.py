@@ -18,8 +18,8 @@ from multibot_rewrite.description.readback.meeting import SHARED_CODES
 from multibot_rewrite.description.readback.nodes import RuntimeName, rules_of
 from multibot_rewrite.description.readback.reading import FRAME, Reading, read
 from multibot_rewrite.description.readback.xml import read_xml
+from multibot_rewrite.description.rewriters.plugin_definitions import Definitions
 from multibot_rewrite.description.rewriters.tree import Tree
-from multibot_rewrite.description.rewriters.vocabulary import Vocabulary
 from multibot_rewrite.description.sources.own_names import NameTexts
 from multibot_rewrite.description.steps.collect import Inventory, collect
 from multibot_rewrite.description.steps.document import Document, read_document
@@ -52,9 +52,9 @@ class Member(NamedTuple):
     published: tuple[RuntimeName, ...] = ()
 
     @property
-    def vocabulary(self) -> Vocabulary:
+    def definitions(self) -> Definitions:
         """What is known of plugins; raises nothing."""
-        return self.tree.vocabulary
+        return self.tree.definitions
 
 
 def member(
@@ -66,7 +66,7 @@ def member(
     document, tree = source.template.inventory.document, source.template.tree
     data = without_simulator(data, document.file) if real else data
     written = collect(read_document(data, document.file), tree)
-    reading = read(data, document.file, tree.vocabulary)
+    reading = read(data, document.file, tree.definitions)
     for node in reading.nodes:
         try:
             bound = bind(node.name, node.namespace, [it.rule for it in node.rules])
@@ -96,7 +96,7 @@ def with_text(it: Member, data: bytes) -> Member:
     file = it.inventory.document.file
     written = collect(read_document(data, file), it.tree)
     described = written if it.described is it.inventory else it.described
-    reading = read(data, file, it.vocabulary)
+    reading = read(data, file, it.definitions)
     return it._replace(described=described, inventory=written, reading=reading)
 
 

@@ -13,7 +13,6 @@ from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import without_comments
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import Naming
-from multibot_rewrite.companions.names.rename_map import CompanionNames, companion_names, with_srdf
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.checks.references import UNREAD
 from multibot_rewrite.description.checks.twice import CARRYING
@@ -37,8 +36,13 @@ from multibot_rewrite.description.steps.collect import NOTHING
 from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec, Sources
 from multibot_rewrite.fleet.robots.member import Member, member, with_text
 from multibot_rewrite.fleet.robots.own_values import Written
+from multibot_rewrite.planning.transforms import links_of, tree_of
+from multibot_rewrite.related_files.names.rename_map import (
+    CompanionNames,
+    related_file_names,
+    with_srdf,
+)
 from multibot_rewrite.rules.files.names import of_another_robot
-from multibot_rewrite.spelling.transforms import links_of, tree_of
 from multibot_rewrite.system.records import Edge
 
 # Kinds that are ROS names and get the namespace; the others get the tag.
@@ -128,7 +132,7 @@ def at_robot(
 def read_jobs(
     robots: Sequence[RobotSpec],
     naming: Naming,
-    vocabulary: Sequence[str],
+    definitions: Sequence[str],
     trust: bool,
     release: str,
 ) -> dict[Sources, Jobs]:
@@ -137,7 +141,7 @@ def read_jobs(
 
     @cache
     def read_in(source: str, urdf: str | None, file: str) -> Reader:
-        return reader(source, naming, urdf, tuple(vocabulary), file, trust, release)
+        return reader(source, naming, urdf, tuple(definitions), file, trust, release)
 
     def read(robot: RobotSpec, path: str, urdf: str = "") -> Reader:
         made = dict(robot.filled)
@@ -238,7 +242,7 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
         simulated_parts = (model or text).template.inventory
         claims, in_full = simulated_parts.claims, simulated_parts.topics_in_full
         more = words_of(claims), in_full, given_topics(claims)
-        names = companion_names(declared, naming, robot.tag, own, *more)
+        names = related_file_names(declared, naming, robot.tag, own, *more)
         yield RewrittenRobot(
             robot,
             data,

@@ -10,12 +10,16 @@ from typing import NamedTuple
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.findings.selection import grouped
 from multibot_rewrite.base.grouping import dicts_by_key, lists_by_key
-from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
-from multibot_rewrite.fleet.robots.robot_nodes import companion_nodes, launched_nodes, stack_nodes
+from multibot_rewrite.fleet.robots.robot_nodes import (
+    launched_nodes,
+    related_file_nodes,
+    stack_nodes,
+)
 from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.related_files.context import Context, make_context
 
 
 class RobotGroup(NamedTuple):
@@ -26,9 +30,9 @@ class RobotGroup(NamedTuple):
     context: Context
 
     @property
-    def companions(self) -> dict[str, tuple[str, ...]]:
+    def related_files(self) -> dict[str, tuple[str, ...]]:
         """The related files that all robots of the group have, by kind."""
-        return dict(self.robots[0].spec.companions)
+        return dict(self.robots[0].spec.related_files)
 
 
 def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
@@ -36,7 +40,7 @@ def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
     for robots in lists_by_key((_key(it.spec), it) for it in plan.robots).values():
         spec = robots[0].spec
         evidence = plan.evidence_of(robots[0])
-        facts = tuple(companion_nodes(evidence.nodes, stack_nodes(spec, plan.file)))
+        facts = tuple(related_file_nodes(evidence.nodes, stack_nodes(spec, plan.file)))
         declared, naming, _, own, words, given = robots[0].names
         context = make_context(declared, naming, facts, plan.file.distro, own, words, given)
         others = launched_nodes(evidence, facts)
@@ -46,7 +50,7 @@ def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
 
 def _key(spec: RobotSpec) -> object:
     """Return a key; robots with equal keys have the same files."""
-    files = tuple(spec.companions.items())
+    files = tuple(spec.related_files.items())
     said = spec.use_sim_time, spec.bridge_namespace, spec.bridges_below
     return spec.sources, spec.stacks, spec.launch, spec.simulator, files, said
 

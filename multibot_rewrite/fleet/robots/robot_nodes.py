@@ -11,8 +11,6 @@ from typing import Any, NamedTuple
 from multibot_rewrite.base.findings.finding import NOTE, Finding, declare
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import did_you_mean_one_of
-from multibot_rewrite.companions.context import NO_FRAMES, Frames
-from multibot_rewrite.companions.lua import lua_values
 from multibot_rewrite.description.readback.nodes import wheels_in
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.description.sources.own_names import ROBOT
@@ -53,6 +51,8 @@ from multibot_rewrite.knowledge.parameters import (
 )
 from multibot_rewrite.knowledge.records import CARTOGRAPHER, MANAGER, MOVE_GROUP, UNKNOWN, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in, load_stack
+from multibot_rewrite.planning.bridged_topics import is_bridged, plugin_libraries
+from multibot_rewrite.planning.records import Run
 from multibot_rewrite.producers.ends import BRIDGE_NODE
 from multibot_rewrite.producers.evidence.hardware import with_hardware
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
@@ -67,8 +67,8 @@ from multibot_rewrite.producers.launch.of_robot import (
 )
 from multibot_rewrite.producers.launch.records import IdleAction, LaunchedNode, LaunchOrder
 from multibot_rewrite.producers.launch.spawners import Spawned
-from multibot_rewrite.spelling.bridged_topics import is_bridged, plugin_libraries
-from multibot_rewrite.spelling.records import Run
+from multibot_rewrite.related_files.context import NO_FRAMES, Frames
+from multibot_rewrite.related_files.lua import lua_values
 from multibot_rewrite.system.records import Edge, Origin, Place
 
 WORLD = "world"
@@ -86,7 +86,7 @@ _HANDED_ON = ("handed_on", "environment", "placing", "idle", "qos")
 def node_sources(spec: RobotSpec) -> NodeSources:
     """Return a key; robots with equal keys run the same nodes."""
     files = tuple(
-        spec.companions.get(it, ()) for it in ("params", "bridge", "rviz", "moveit", "lua")
+        spec.related_files.get(it, ()) for it in ("params", "bridge", "rviz", "moveit", "lua")
     )
     return spec.stacks, files, spec.launch, spec.srdf, spec.simulator, spec.sources
 
@@ -184,7 +184,7 @@ def robot_nodes(
 
 def _of_lua(spec: RobotSpec) -> Iterator[Run]:
     """Yield what the Lua file of a robot sets for its Cartographer."""
-    for path in spec.companions.get("lua", ()):
+    for path in spec.related_files.get("lua", ()):
         run = Run("", CARTOGRAPHER, "", CARTOGRAPHER, (), UNKNOWN._replace(known=CARTOGRAPHER))
         yield run._replace(values=lua_values(text_of(spec, path), path), place=Place(path, 1))
 
@@ -285,7 +285,7 @@ def _is_needed(it: NodeFacts, spec: RobotSpec, member: Member) -> bool:
         loaded = {name.replace("ign_", "gz_", 1) for name in plugin_libraries(member.inventory)}
         return library_key(it.plugin) in loaded
     of_one = it.name == BRIDGE_NODE and not it.shared
-    return not of_one or bool(spec.companions.get("bridge")) or is_bridged(member.inventory)
+    return not of_one or bool(spec.related_files.get("bridge")) or is_bridged(member.inventory)
 
 
 def _of_srdf(
@@ -328,7 +328,9 @@ def _manager_in_plugin(
         yield from [it for it in made if it.name == MANAGER and it.plugin in names][:1]
 
 
-def companion_nodes(nodes: Sequence[NodeFacts], stack: Sequence[NodeFacts]) -> Iterator[NodeFacts]:
+def related_file_nodes(
+    nodes: Sequence[NodeFacts], stack: Sequence[NodeFacts]
+) -> Iterator[NodeFacts]:
     """Yield the nodes for which related files are rewritten, with the names in their code: those in
     parameters are what is rewritten."""
     bare: Mapping[str, NodeFacts] = {it.name: it for it in stack}

@@ -40,8 +40,8 @@ from multibot_rewrite.fleet.robots.member import has_parts_for_simulator, is_for
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot, robot_with_text
 from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence, stack_nodes
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
+from multibot_rewrite.planning.bridged_topics import DIRECTIONS, bridged_topics
 from multibot_rewrite.producers.evidence.semantics import FIXED
-from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, bridged_topics
 from multibot_rewrite.system.words import moves
 
 SIMULATED_OR_REAL = declare("MF828", "simulated-or-real", NOTE, formats=("fleet",))
@@ -109,7 +109,7 @@ def is_simulated(robot: RewrittenRobot) -> bool:
 
 def is_said(robot: RewrittenRobot) -> bool:
     """Return whether the fleet file tells if a robot runs in a simulator."""
-    return bool(robot.spec.simulator or robot.spec.companions.get("bridge"))
+    return bool(robot.spec.simulator or robot.spec.related_files.get("bridge"))
 
 
 def note(robot: RewrittenRobot) -> Finding:
@@ -142,7 +142,7 @@ def unread_drives(robot: RewrittenRobot, hardware: bool) -> Iterator[Finding]:
     asked = {HARDWARE: hardware or (simulated and loads_hardware(root)), PLUGIN: simulated}
     parts = [
         it
-        for it in active_parts(root, robot.member.vocabulary)
+        for it in active_parts(root, robot.member.definitions)
         if asked.get(it.kind) and next(it.element.iterancestors("sensor"), None) is None
     ]
     unread = [it for it in parts if not it.is_known]

@@ -12,8 +12,6 @@ from typing import NamedTuple
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Rule, declare
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.naming import Naming
-from multibot_rewrite.companions.names.rename_map import spell
-from multibot_rewrite.companions.rviz.rewrite import world_frame
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import REAL, Pose
@@ -23,11 +21,13 @@ from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_ro
 from multibot_rewrite.fleet.robots.robot_groups import said_once, split_per_robot
 from multibot_rewrite.fleet.robots.simulators import is_simulated
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
-from multibot_rewrite.spelling.bridge_rows import PLUGINS, rows_of
-from multibot_rewrite.spelling.bridged_topics import TF_ELEMENT, TF_TYPE
-from multibot_rewrite.spelling.of_runs import placed, target_of
-from multibot_rewrite.spelling.start import Start
-from multibot_rewrite.spelling.table import joined, run_of
+from multibot_rewrite.planning.bridge_rows import PLUGINS, rows_of
+from multibot_rewrite.planning.bridged_topics import TF_ELEMENT, TF_TYPE
+from multibot_rewrite.planning.of_runs import placed, target_of
+from multibot_rewrite.planning.start import Start
+from multibot_rewrite.planning.table import joined, run_of
+from multibot_rewrite.related_files.names.rename_map import spell
+from multibot_rewrite.related_files.rviz.rewrite import world_frame
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Edge, edge_of
 
 NODE = "start_pose"

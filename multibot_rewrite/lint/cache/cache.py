@@ -15,7 +15,7 @@ from multibot_rewrite.base.bounded import load_json, read_bytes
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.base.outside import Asked, Question, answer_now, digest
-from multibot_rewrite.description.rewriters.vocabulary.installed import installed
+from multibot_rewrite.description.rewriters.plugin_definitions.installed import installed
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.version import __version__
 
@@ -206,15 +206,15 @@ _HERE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__
 
 
 def identity(settings: Settings) -> str:
-    """Return a digest of program, plugin definitions and settings; raises VocabularyError, OSError."""
+    """Return a digest of program, plugin definitions and settings; raises DefinitionsError, OSError."""
     where = (os.getcwd(), sys.version, os.uname().release, str(os.geteuid()))
     specs = filter(None, map(find_spec, LIBRARIES))
     folders = filter(None, (_HERE, *(os.path.dirname(it.origin or "") for it in specs)))
     programs = sorted(it for folder in folders for it in _states(folder))
-    paths = [*(it.path for it in installed()), *settings.vocabulary]
+    paths = [*(it.path for it in installed()), *settings.definitions]
     # What is read beyond what is built in.
-    vocabulary = [(path, digest(read_bytes(path))) for path in paths]
-    return digest(repr((__version__, where, programs, vocabulary, plain(settings))))
+    definitions = [(path, digest(read_bytes(path))) for path in paths]
+    return digest(repr((__version__, where, programs, definitions, plain(settings))))
 
 
 def plain(value: object) -> object:

@@ -54,8 +54,10 @@ def configured(near: str, file: str | None) -> Configured:
     path = file or next(_above(near), "")
     result = _configured(path, _table(path)) if path else Configured()
     settings = result.settings
-    vocabulary = (*config.configured_vocabulary(near), *settings.vocabulary)
-    return result._replace(settings=settings._replace(vocabulary=tuple(dict.fromkeys(vocabulary))))
+    definitions = (*config.configured_definitions(near), *settings.definitions)
+    return result._replace(
+        settings=settings._replace(definitions=tuple(dict.fromkeys(definitions)))
+    )
 
 
 def _above(near: str) -> Iterator[str]:
@@ -130,7 +132,7 @@ def is_excluded(path: str, it: Configured) -> bool:
 
 def with_options(it: Configured, **given: Any) -> Configured:
     """Return a configuration with the options of the command line; None and empty mean not given.
-    ``ignore``, ``vocabulary``, ``roots`` and ``arguments`` (pairs) add to it; all else replaces it.
+    ``ignore``, ``definitions``, ``roots`` and ``arguments`` (pairs) add to it; all else replaces it.
     Codes in ``select`` are on, whatever the configuration says about exactly these codes."""
     options = {name: value for name, value in given.items() if value not in (None, (), "")}
     naming_options = {name: options.pop(name) for name in NAMING if name in options}
@@ -155,7 +157,7 @@ def with_options(it: Configured, **given: Any) -> Configured:
     if "arguments" in options:
         options["arguments"] = (ArgumentSet(EVERY_FILE, tuple(options["arguments"])),)
     options["readable"] = options.get("roots", ())
-    for name in ("ignore", "vocabulary", "roots", "readable", "arguments"):
+    for name in ("ignore", "definitions", "roots", "readable", "arguments"):
         if name in options:
             options[name] = (*getattr(settings, name), *options[name])
     settings = settings._replace(**options)

@@ -175,7 +175,7 @@ READERS: Mapping[str, Callable[[KeyValue], object]] = {
     "roots": _folders,
     "distro": partial(_one_of, allowed=RELEASES),
     "urdf": _file,
-    "vocabulary": lambda it: listed_files(*it),
+    "definitions": lambda it: listed_files(*it),
     "xacro": _argument_sets,
     "exclude": _excluded,
     "baseline": _path,

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.outside import is_file
-from multibot_rewrite.companions.named_file import is_beside
 from multibot_rewrite.description.checks.links_and_joints import Robot, read_robot
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.tree import builtin_tree
@@ -23,6 +22,7 @@ from multibot_rewrite.description.sources.read import XACRO, is_xacro, read_file
 from multibot_rewrite.description.steps.collect import NOTHING, Inventory, collect
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.lint.files.named import SRDF_MARK, files_like, robot_name
+from multibot_rewrite.related_files.named_file import is_beside
 from multibot_rewrite.rules.settings import Settings, matches
 
 if TYPE_CHECKING:
@@ -107,7 +107,7 @@ def _stem(path: str) -> str:
 
 def _read(path: str, srdf: Inventory, settings: Settings) -> Pair:
     data, name = described(path, settings)
-    tree = builtin_tree(settings.vocabulary, settings.distro, settings.ros)
+    tree = builtin_tree(settings.definitions, settings.distro, settings.ros)
     inventory = collect(read_document(data, name), tree)
     declared = inventory.declared
     known = declared["link"].keys() | declared["joint"].keys()

@@ -107,9 +107,9 @@ def _only_defines(root: _Element) -> bool:
 
 def make_subject(document: Document, settings: Settings) -> Subject:
     """Return the subject of a document."""
-    tree = builtin_tree(settings.vocabulary, settings.distro)
+    tree = builtin_tree(settings.definitions, settings.distro)
     ros = settings.ros or ros_shown(document.source, document.file, tree)
-    tree = builtin_tree(settings.vocabulary, settings.distro, ros)
+    tree = builtin_tree(settings.definitions, settings.distro, ros)
     called = SRDF_MARK in os.path.basename(document.file)
     inventory = collect(document, tree, NO_URDF if called else NOTHING)
     written = subject_of(inventory, tree, settings)

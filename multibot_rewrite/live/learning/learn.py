@@ -31,7 +31,7 @@ from multibot_rewrite.live.learning.choosing import (
     helpers_of,
     namespace_prefix,
 )
-from multibot_rewrite.spelling.bridged_topics import TF_TYPE
+from multibot_rewrite.planning.bridged_topics import TF_TYPE
 from multibot_rewrite.system.records import (
     ACTION,
     PUBLISHES,

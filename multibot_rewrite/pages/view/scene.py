@@ -13,7 +13,6 @@ from typing import NamedTuple
 from multibot_rewrite.base.conventions import WORLD_FRAMES
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import Change
-from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.description.checks.poses import inverse, matrix_of_quaternion, product
 from multibot_rewrite.description.library import Prepared
 from multibot_rewrite.description.steps.apply import Template, list_changes
@@ -21,7 +20,8 @@ from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import GRAPH_KINDS, RewrittenRobot
 from multibot_rewrite.pages.view.models import Joint, Model, load_urdf
 from multibot_rewrite.pages.view.sdf_model import declared, line_of, load_sdf
-from multibot_rewrite.spelling.plan import tf_topic
+from multibot_rewrite.planning.plan import tf_topic
+from multibot_rewrite.related_files.names.rename_map import spell
 from multibot_rewrite.system.records import Edge, System
 from multibot_rewrite.system.tf_copies import tree_topic
 

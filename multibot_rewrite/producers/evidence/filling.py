@@ -15,7 +15,7 @@ from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.rosnames import check_name_in_code
 from multibot_rewrite.knowledge.conditions import ALSO, Values, chosen_type, holds, verdict
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts, SentTransform, made_of
-from multibot_rewrite.spelling.records import Given, Run
+from multibot_rewrite.planning.records import Given, Run
 from multibot_rewrite.system.records import Origin
 
 _ID = re.compile(r"<([a-z_ ]+)>")

@@ -35,7 +35,7 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
     table_of,
     word,
 )
-from multibot_rewrite.spelling.records import Given, Run
+from multibot_rewrite.planning.records import Given, Run
 from multibot_rewrite.system.records import (
     CLAIMS,
     EXPORTS,

@@ -22,9 +22,9 @@ from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.declared import NODE, plugin_bases
 from multibot_rewrite.knowledge.records import UNKNOWN, Claim, NodeFacts
+from multibot_rewrite.planning.records import Run
 from multibot_rewrite.producers.evidence.filling import filled
 from multibot_rewrite.producers.evidence.hardware import claims_of
-from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import COMMAND, STATE, Origin
 
 MANAGER = "controller_manager"

@@ -21,9 +21,12 @@ from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import SLIP, nearest
 from multibot_rewrite.base.rosnames import check_node_name
-from multibot_rewrite.companions.names.placeholders import of_one_robot, without_robot
-from multibot_rewrite.companions.params.rcl_parameters import value_of
-from multibot_rewrite.companions.params.sections import (
+from multibot_rewrite.knowledge.parameters import KnownNodes
+from multibot_rewrite.knowledge.records import UNKNOWN
+from multibot_rewrite.planning.records import Given, Run
+from multibot_rewrite.related_files.names.placeholders import of_one_robot, without_robot
+from multibot_rewrite.related_files.params.rcl_parameters import value_of
+from multibot_rewrite.related_files.params.sections import (
     ANY,
     INNER,
     MANAGER,
@@ -33,10 +36,7 @@ from multibot_rewrite.companions.params.sections import (
     is_for,
     raw_sections,
 )
-from multibot_rewrite.companions.yaml_text import YamlText, line_of, names_below, pairs
-from multibot_rewrite.knowledge.parameters import KnownNodes
-from multibot_rewrite.knowledge.records import UNKNOWN
-from multibot_rewrite.spelling.records import Given, Run
+from multibot_rewrite.related_files.yaml_text import YamlText, line_of, names_below, pairs
 from multibot_rewrite.system.records import Place
 
 OWN_TYPE = "type"

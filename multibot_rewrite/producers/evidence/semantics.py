@@ -17,11 +17,11 @@ from typing import NamedTuple
 import yaml
 from lxml.etree import _Element
 
-from multibot_rewrite.companions.moveit.file_kind import NAMES, SIMPLE
-from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs
 from multibot_rewrite.description.checks.links_and_joints import read_robot
 from multibot_rewrite.description.checks.planning_groups import groups_of, joints_of, text_of
 from multibot_rewrite.knowledge.records import MOVE_GROUP
+from multibot_rewrite.related_files.moveit.file_kind import NAMES, SIMPLE
+from multibot_rewrite.related_files.yaml_text import YamlText, items, line_of, pairs
 from multibot_rewrite.system.records import CLAIMS, EXPORTS, JOINT, Interface, Place, System
 
 FIXED = "fixed"

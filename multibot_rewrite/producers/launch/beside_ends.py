@@ -9,13 +9,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from multibot_rewrite.base.rosnames import BoundNode, expand, resolve_bound
 from multibot_rewrite.description.readback.xml import root_of
 from multibot_rewrite.knowledge.records import MANAGER
+from multibot_rewrite.planning.records import Run
+from multibot_rewrite.planning.transforms import STATE_PUBLISHER, edges_in, sent_by
 from multibot_rewrite.producers.evidence.hardware import claims_of, exported
 from multibot_rewrite.producers.launch.bridges import bridged_by
 from multibot_rewrite.producers.launch.launched import file_of
 from multibot_rewrite.producers.launch.records import LaunchGraph
 from multibot_rewrite.producers.launch.running import DESCRIPTION
-from multibot_rewrite.spelling.records import Run
-from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, edges_in, sent_by
 from multibot_rewrite.system.records import (
     CLAIMS,
     EXPORTS,

@@ -24,12 +24,12 @@ from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.rosnames import expand
-from multibot_rewrite.companions.bridge import BOTH, GZ, ROS, SERVICE as SERVICE_ROW
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.knowledge.records import Endpoint
+from multibot_rewrite.planning.domain_bridge import DOMAIN_BRIDGE
+from multibot_rewrite.planning.records import Run
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchNote
-from multibot_rewrite.spelling.domain_bridge import DOMAIN_BRIDGE
-from multibot_rewrite.spelling.records import Run
+from multibot_rewrite.related_files.bridge import BOTH, GZ, ROS, SERVICE as SERVICE_ROW
 from multibot_rewrite.system.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC, End, Node
 
 _ROW = lazy_compile(

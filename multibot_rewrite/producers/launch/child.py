@@ -27,7 +27,6 @@ from multibot_rewrite.base.child import python, variables
 from multibot_rewrite.base.file_kinds import LAUNCH, refuse_others
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.companions.yaml_text import line_of, pairs, read_yaml
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.producers.launch.failures import started_by
 from multibot_rewrite.producers.launch.kept_paths import FOLDER
@@ -40,6 +39,7 @@ from multibot_rewrite.producers.launch.records import (
     graph_of,
 )
 from multibot_rewrite.producers.launch.spawners import controller_files
+from multibot_rewrite.related_files.yaml_text import line_of, pairs, read_yaml
 from multibot_rewrite.system.records import Place
 
 _HEAD = lazy_compile(rb"^structure:", re.MULTILINE)

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 
 import yaml
 
+from multibot_rewrite.planning.start import Process, Switch
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.producers.launch.failures import (
     failure,
@@ -52,7 +53,6 @@ from multibot_rewrite.producers.launch.spawners import (
     ros_arguments,
 )
 from multibot_rewrite.producers.launch.unknown_modules import STOOD_FOR, UnknownError
-from multibot_rewrite.spelling.start import Process, Switch
 from multibot_rewrite.system.records import Place
 
 SIMULATOR, CLASSIC = "gzserver", "gazebo_ros"

@@ -13,7 +13,7 @@ import yaml
 from lxml import etree
 
 from multibot_rewrite.base.bounded import A_VALUE, compose_yaml, load_yaml
-from multibot_rewrite.companions.yaml_text import line_of
+from multibot_rewrite.related_files.yaml_text import line_of
 
 # What is made of an entity has its line in this attribute, where the maker knows it.
 LINE = "multibot_line"

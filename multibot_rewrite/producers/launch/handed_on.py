@@ -13,12 +13,12 @@ from typing import Any, NamedTuple
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.rosnames import expand
-from multibot_rewrite.companions.names.placeholders import filled
-from multibot_rewrite.companions.params.sections import raw_sections
-from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
+from multibot_rewrite.planning.start import AS_USUAL, Process
 from multibot_rewrite.producers.evidence.parameter_files import values_for
 from multibot_rewrite.producers.launch.records import LaunchedNode, ParameterText
-from multibot_rewrite.spelling.start import AS_USUAL, Process
+from multibot_rewrite.related_files.names.placeholders import filled
+from multibot_rewrite.related_files.params.sections import raw_sections
+from multibot_rewrite.related_files.yaml_text import YamlText, read_yaml
 from multibot_rewrite.system.records import NOWHERE, Place
 
 # The name of a file for what a launch file gives itself.

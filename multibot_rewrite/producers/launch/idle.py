@@ -9,10 +9,10 @@ from collections.abc import Mapping
 from contextlib import suppress
 from typing import Any
 
+from multibot_rewrite.planning.start import Switch, values_in
 from multibot_rewrite.producers.launch.describe import Visit, is_wanted, text
 from multibot_rewrite.producers.launch.includes import path_of
 from multibot_rewrite.producers.launch.records import IdleAction
-from multibot_rewrite.spelling.start import Switch, values_in
 
 
 def wants(action: Any, seen: Visit) -> bool:

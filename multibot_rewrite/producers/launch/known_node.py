@@ -24,15 +24,15 @@ from multibot_rewrite.base.rosnames import (
     propose_token,
     resolve_bound,
 )
-from multibot_rewrite.companions.lua import lua_values
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.knowledge.conditions import ALSO, HEARD, PROGRAM, Condition, settled, words_in
 from multibot_rewrite.knowledge.programs import runs
 from multibot_rewrite.knowledge.records import FrameParameter, NodeFacts, SentTransform
+from multibot_rewrite.planning.records import Given
 from multibot_rewrite.producers.launch.programs import passes, programs
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchOrder
 from multibot_rewrite.producers.launch.source_packages import packages_for
-from multibot_rewrite.spelling.records import Given
+from multibot_rewrite.related_files.lua import lua_values
 from multibot_rewrite.system.records import TOPIC
 
 LUA_FLAGS = ("-configuration_directory", "-configuration_basename")  # node_main.cpp

@@ -22,6 +22,8 @@ from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.planning.bridged_topics import BridgedTopic, bridged_topics
+from multibot_rewrite.planning.records import Run
 from multibot_rewrite.producers.ends import SensorFrame, sensor_frames
 from multibot_rewrite.producers.launch.bridges import BridgedDomains
 from multibot_rewrite.producers.launch.describe import CLASSIC, SIMULATOR
@@ -29,8 +31,6 @@ from multibot_rewrite.producers.launch.models import Model, Models
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchNote
 from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED
 from multibot_rewrite.producers.launch.spawners import Spawned
-from multibot_rewrite.spelling.bridged_topics import BridgedTopic, bridged_topics
-from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import Caveat, Place, System
 
 _WORLDS = (".sdf", ".world", ".model")

@@ -24,7 +24,7 @@ from multibot_rewrite.description.readback.nodes import ReadNode
 from multibot_rewrite.description.readback.parameters import MODEL
 from multibot_rewrite.description.readback.reading import FRAME, Reading, read
 from multibot_rewrite.description.readback.xml import read_xml, values_at
-from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
+from multibot_rewrite.description.rewriters.plugin_definitions import load_definitions
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.producers.launch.programs import program_of, programs
 from multibot_rewrite.producers.launch.records import LaunchedNode, ParameterText
@@ -127,7 +127,7 @@ def _given(words: Mapping[str, str]) -> str:
 
 def _read(name: str, text: str, place: Place, release: str, spawned: bool) -> Model | None:
     try:
-        reading = read(text.encode(), place.file, load_vocabulary((), release, ros=ROS_2))
+        reading = read(text.encode(), place.file, load_definitions((), release, ros=ROS_2))
     except InputError:
         return None
     return Model(name, text, reading, spawned, place)

@@ -19,6 +19,8 @@ from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import UNKNOWN, Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.planning.records import Run
+from multibot_rewrite.planning.transforms import STATE_PUBLISHER, state_publisher_of
 from multibot_rewrite.producers.evidence.nodes import MANAGER, remapped
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.producers.launch.bridges import bridge_rows, passes_topics_on
@@ -59,8 +61,6 @@ from multibot_rewrite.producers.launch.spawners import (
     texts_of,
     under_managers,
 )
-from multibot_rewrite.spelling.records import Run
-from multibot_rewrite.spelling.transforms import STATE_PUBLISHER, state_publisher_of
 from multibot_rewrite.system.records import NO_ORIGIN, TOPIC, Origin, Place
 
 # Packages of launch files alone, and how those of their nodes begin.

@@ -12,8 +12,8 @@ from itertools import takewhile
 from typing import Any, NamedTuple, get_args, get_origin, get_type_hints
 
 from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.planning.start import AS_USUAL, Process
 from multibot_rewrite.producers.launch.source_packages import file_of_package
-from multibot_rewrite.spelling.start import AS_USUAL, Process
 from multibot_rewrite.system.records import Place
 
 # What starts a node that another program has ended before.

@@ -27,6 +27,9 @@ from multibot_rewrite.description.readback.xml import root_of
 from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import MANAGER, UNKNOWN, Endpoint, NodeFacts
+from multibot_rewrite.planning.records import Rules, Run
+from multibot_rewrite.planning.table import plugin_nodes
+from multibot_rewrite.planning.ways import COSTMAP_HAS_RULES_OF_ITS_PARENT
 from multibot_rewrite.producers.evidence.filling import filled
 from multibot_rewrite.producers.evidence.hardware import components, with_hardware
 from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE, given_nodes, values_for
@@ -58,9 +61,6 @@ from multibot_rewrite.producers.launch.records import (
     ParameterText,
 )
 from multibot_rewrite.producers.launch.spawners import Spawned, spawned_in, texts_of
-from multibot_rewrite.spelling.records import Rules, Run
-from multibot_rewrite.spelling.table import plugin_nodes
-from multibot_rewrite.spelling.ways import COSTMAP_HAS_RULES_OF_ITS_PARENT
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Place
 
 DESCRIPTION = "robot_description"

@@ -7,9 +7,9 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.base.grouping import lists_by_key
+from multibot_rewrite.planning.transforms import STATE_PUBLISHER
 from multibot_rewrite.producers.launch.programs import program_of, programs
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph
-from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 
 # How the spawner of a robot gets its description, which somebody publishes.
 _PUBLISHED = frozenset(("-topic", "-param"))

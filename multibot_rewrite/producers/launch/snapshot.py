@@ -17,8 +17,10 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.rosnames import resolve_bound
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten, unique
 from multibot_rewrite.description.readback.xml import root_of
-from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
+from multibot_rewrite.description.rewriters.plugin_definitions import load_definitions
 from multibot_rewrite.knowledge.declared import is_known
+from multibot_rewrite.planning.of_runs import each_once, ends_of, lookups_of, with_names
+from multibot_rewrite.planning.records import Run
 from multibot_rewrite.producers.addresses import of_hardware, of_parameters
 from multibot_rewrite.producers.ends import SensorFrame, sensor_on
 from multibot_rewrite.producers.launch.beside_ends import (
@@ -58,8 +60,6 @@ from multibot_rewrite.producers.launch.running import (
     running_nodes,
 )
 from multibot_rewrite.producers.sources.expressions import or_read
-from multibot_rewrite.spelling.of_runs import each_once, ends_of, lookups_of, with_names
-from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import (
     PUBLISHES,
@@ -186,7 +186,7 @@ def _addresses(it: Run, known: Knowledge, models: Models) -> Iterator[Address]:
     text = it.value(DESCRIPTION)
     root = None if any(one.spawned and one.text == text for one in models.found) else root_of(text)
     if root is not None:
-        yield from of_hardware(root, it.full_name, it.place, load_vocabulary((), known.release))
+        yield from of_hardware(root, it.full_name, it.place, load_definitions((), known.release))
 
 
 def _nodes(running: Iterable[Run], parts: Iterable[_Part]) -> Iterator[Node]:

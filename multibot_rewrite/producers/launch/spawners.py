@@ -18,8 +18,8 @@ from typing import NamedTuple, NoReturn
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, declare
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.rosnames import expand
+from multibot_rewrite.planning.start import AS_USUAL, Process
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchNote, ParameterText
-from multibot_rewrite.spelling.start import AS_USUAL, Process
 from multibot_rewrite.system.records import Place
 
 _RULE, _VALUE, _FILE = ("-r", "--remap"), ("-p", "--param"), "--params-file"

@@ -15,6 +15,7 @@ from linecache import getline
 from types import FunctionType, MethodType
 from typing import Any, NamedTuple
 
+from multibot_rewrite.planning.start import Switch, holds
 from multibot_rewrite.producers.launch.describe import (
     Visit,
     component,
@@ -38,7 +39,6 @@ from multibot_rewrite.producers.launch.programs import may_be_off
 from multibot_rewrite.producers.launch.records import IdleAction
 from multibot_rewrite.producers.launch.stand_in.names import names
 from multibot_rewrite.producers.launch.unknown_modules import is_unknown
-from multibot_rewrite.spelling.start import Switch, holds
 
 _ENDED = "groups and their launch configurations have ended by then"
 _INCLUDE = "IncludeLaunchDescription"

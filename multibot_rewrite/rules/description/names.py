@@ -20,9 +20,9 @@ from multibot_rewrite.base.rosnames import (
     propose_token,
     split_remap,
 )
-from multibot_rewrite.companions.named_file import EVERY
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.steps.document import value_slot
+from multibot_rewrite.related_files.named_file import EVERY
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.facts.simulators import simulated
 from multibot_rewrite.rules.subject import Subject

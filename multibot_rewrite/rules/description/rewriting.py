@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator
 from functools import partial
 
 from multibot_rewrite.base.findings.finding import NOTE, SRDF, URDF, WARNING, rule
-from multibot_rewrite.companions.named_file import EVERY
 from multibot_rewrite.description.checks.audit import other_releases, other_ros
 from multibot_rewrite.description.checks.mentions import (
     MENTIONED,
@@ -20,6 +19,7 @@ from multibot_rewrite.description.checks.unknown import unknown_parts
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.document import slot_values
+from multibot_rewrite.related_files.named_file import EVERY
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject
 
@@ -62,7 +62,7 @@ row_of_another_release = rule(
     "MB905",
     "row-of-another-release",
     NOTE,
-    options={"vocabulary": ["my.vocab"], "distro": "lyrical"},
+    options={"definitions": ["my.vocab"], "distro": "lyrical"},
 )(partial(_audit, other_releases))
 
 included_model = rule("MB906", "included-model", NOTE)(partial(_unknown, "MB906"))

@@ -53,7 +53,7 @@ def _in_blocks(subject: Subject) -> Iterable[Problem]:
 
 def _of_parameters(subject: Subject) -> Iterator[Problem]:
     """Yield the faults in the parameters of plugins and of hardware."""
-    vocabulary, systems = subject.tree.vocabulary, subject.elements.tops("ros2_control")
+    definitions, systems = subject.tree.definitions, subject.elements.tops("ros2_control")
     plugins = simulator_plugins(subject)
     if not plugins and not systems:
         return
@@ -61,6 +61,6 @@ def _of_parameters(subject: Subject) -> Iterator[Problem]:
 
     of_ros_1 = {element for element, section in subject.inventory.served if section.ros == "1"}
     for one in plugins:
-        yield from plugin_faults(one, vocabulary, one in of_ros_1)
+        yield from plugin_faults(one, definitions, one in of_ros_1)
     for hardware in (it for system in systems for it in system.iterchildren("hardware")):
-        yield from hardware_faults(hardware, vocabulary)
+        yield from hardware_faults(hardware, definitions)

@@ -13,7 +13,8 @@ import yaml
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding, rule
 from multibot_rewrite.base.nearest import SLIP, did_you_mean, nearest
-from multibot_rewrite.companions.bridge import (
+from multibot_rewrite.planning.bridge_rows import bridge_data
+from multibot_rewrite.related_files.bridge import (
     BOTH,
     DIRECTIONS,
     GZ,
@@ -26,11 +27,10 @@ from multibot_rewrite.companions.bridge import (
     row_of,
     text_in,
 )
-from multibot_rewrite.companions.named_file import BRIDGE, NamedFile
-from multibot_rewrite.companions.yaml_text import items
+from multibot_rewrite.related_files.named_file import BRIDGE, NamedFile
+from multibot_rewrite.related_files.yaml_text import items
 from multibot_rewrite.rules.declaration import remark_at, robots_rule
 from multibot_rewrite.rules.files.section_facts import did_you_mean_at
-from multibot_rewrite.spelling.bridge_rows import bridge_data
 from multibot_rewrite.system.records import NOWHERE, Place
 
 _BOTH_WAYS, _IN = DIRECTIONS[:2]

@@ -16,18 +16,18 @@ import yaml
 from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding, rule
 from multibot_rewrite.base.nearest import nearest
-from multibot_rewrite.companions.moveit.file_kind import NAMES
-from multibot_rewrite.companions.named_file import MOVEIT, PARAMS, NamedFile
-from multibot_rewrite.companions.yaml_text import pairs
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
+from multibot_rewrite.planning.records import Run
 from multibot_rewrite.producers.evidence.hardware import TYPE, control_system, exported
 from multibot_rewrite.producers.evidence.semantics import JOINTS, controllers_of, listed, managers
+from multibot_rewrite.related_files.moveit.file_kind import NAMES
+from multibot_rewrite.related_files.named_file import MOVEIT, PARAMS, NamedFile
+from multibot_rewrite.related_files.yaml_text import pairs
 from multibot_rewrite.rules.declaration import remark, remark_at
 from multibot_rewrite.rules.description.references.controllers import missing_in
 from multibot_rewrite.rules.files.section_facts import beside, did_you_mean_at, is_in, shown
 from multibot_rewrite.rules.subject import Robots
 from multibot_rewrite.rules.system.states import said_of_missing
-from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import ACTION, SERVES, Place
 
 

@@ -10,12 +10,12 @@ from multibot_rewrite.base.grouping import dicts_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import MISTYPED, Guesses, meant_name, nearest
 from multibot_rewrite.base.releases import RELEASES
-from multibot_rewrite.companions.named_file import NamedFile
-from multibot_rewrite.companions.params.name_sites import params_at
-from multibot_rewrite.companions.params.sections import MANAGER, PARAMETERS
 from multibot_rewrite.description.sources.packages import packages_below, sources_around
 from multibot_rewrite.knowledge.declared import DECLARED, DEMANDED, READ, YAML, Declared, stands_for
 from multibot_rewrite.knowledge.packages import older
+from multibot_rewrite.related_files.named_file import NamedFile
+from multibot_rewrite.related_files.params.name_sites import params_at
+from multibot_rewrite.related_files.params.sections import MANAGER, PARAMETERS
 from multibot_rewrite.rules.declaration import remark_at
 from multibot_rewrite.rules.files.parameter_files import (
     beyond,

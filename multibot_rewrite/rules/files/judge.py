@@ -9,7 +9,7 @@ from typing import Any
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding, Rule
 from multibot_rewrite.base.lazy import lazy_compile
-from multibot_rewrite.companions.named_file import PARAMS, NamedFile
+from multibot_rewrite.related_files.named_file import PARAMS, NamedFile
 from multibot_rewrite.rules import declaration
 from multibot_rewrite.rules.declaration import rules_in
 from multibot_rewrite.rules.description import names as description_names, rewriting

@@ -15,14 +15,14 @@ from multibot_rewrite.base.findings.finding import WARNING, Finding, rule
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.base.nearest import did_you_mean
-from multibot_rewrite.companions.moveit.rewrite import asks_below_root
-from multibot_rewrite.companions.named_file import MOVEIT, PARAMS, NamedFile
-from multibot_rewrite.companions.names.by_kind import is_plain
-from multibot_rewrite.companions.sites import slot_of
 from multibot_rewrite.description.checks.links_and_joints import BOUNDED, Joint
 from multibot_rewrite.description.checks.numbers import value_of
 from multibot_rewrite.description.sources.packages import entries, is_for_ros_1
 from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.related_files.moveit.rewrite import asks_below_root
+from multibot_rewrite.related_files.named_file import MOVEIT, PARAMS, NamedFile
+from multibot_rewrite.related_files.names.by_kind import is_plain
+from multibot_rewrite.related_files.sites import slot_of
 from multibot_rewrite.rules.declaration import remark, remark_at, robots_rule
 from multibot_rewrite.rules.files.section_facts import Section, sections
 from multibot_rewrite.rules.subject import Robots, Subject

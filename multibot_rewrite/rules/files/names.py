@@ -10,8 +10,10 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.naming import TF_TOPICS
 from multibot_rewrite.base.nearest import HINTED, MISTYPED, did_you_mean, meant_name
 from multibot_rewrite.base.rosnames import check_topic_name
-from multibot_rewrite.companions.engine import GRAPH
-from multibot_rewrite.companions.named_file import (
+from multibot_rewrite.description.checks.mentions import mentioned
+from multibot_rewrite.knowledge.parameters import built_in_nodes
+from multibot_rewrite.related_files.engine import GRAPH
+from multibot_rewrite.related_files.named_file import (
     BRIDGE,
     EVERY,
     LUA,
@@ -21,18 +23,16 @@ from multibot_rewrite.companions.named_file import (
     TREE,
     NamedFile,
 )
-from multibot_rewrite.companions.names.by_kind import (
+from multibot_rewrite.related_files.names.by_kind import (
     frames_differ,
     is_component,
     is_plain,
     is_shared_frame,
 )
-from multibot_rewrite.companions.names.rename_map import KINDS, is_declared, spell
-from multibot_rewrite.companions.params.values import in_doubt, is_guessed, renamed
-from multibot_rewrite.companions.sites import Site
-from multibot_rewrite.companions.yaml_text import line_of
-from multibot_rewrite.description.checks.mentions import mentioned
-from multibot_rewrite.knowledge.parameters import built_in_nodes
+from multibot_rewrite.related_files.names.rename_map import KINDS, is_declared, spell
+from multibot_rewrite.related_files.params.values import in_doubt, is_guessed, renamed
+from multibot_rewrite.related_files.sites import Site
+from multibot_rewrite.related_files.yaml_text import line_of
 from multibot_rewrite.rules.declaration import of_robots, remark, robots_rule
 from multibot_rewrite.rules.files.declared import unknown_parameters
 

@@ -23,7 +23,6 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.outside import outside
 from multibot_rewrite.base.releases import has_release
-from multibot_rewrite.companions.yaml_text import pairs
 from multibot_rewrite.description.sources.packages import entries, package_folder
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.knowledge.declared import (
@@ -35,6 +34,7 @@ from multibot_rewrite.knowledge.declared import (
 )
 from multibot_rewrite.knowledge.nodl.lookup import Identity, file_of, find_interfaces, load
 from multibot_rewrite.knowledge.records import NodeParameters
+from multibot_rewrite.related_files.yaml_text import pairs
 
 # The types of parameters; an array may have a length behind it: double_array_fixed_6.
 _TYPES = ("bool", "double", "int", "string", "none")

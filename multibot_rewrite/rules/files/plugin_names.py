@@ -16,14 +16,6 @@ import yaml
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.nearest import MISTYPED, nearest, slip_of
 from multibot_rewrite.base.releases import has_release, releases_with
-from multibot_rewrite.companions.named_file import NamedFile
-from multibot_rewrite.companions.params.sections import (
-    MANAGER,
-    ParamSection,
-    RawSection,
-    controller_types,
-)
-from multibot_rewrite.companions.yaml_text import pairs
 from multibot_rewrite.knowledge.declared import (
     NODE,
     Base,
@@ -34,6 +26,14 @@ from multibot_rewrite.knowledge.declared import (
     plugin_bases,
 )
 from multibot_rewrite.producers.evidence.hardware import TYPE
+from multibot_rewrite.related_files.named_file import NamedFile
+from multibot_rewrite.related_files.params.sections import (
+    MANAGER,
+    ParamSection,
+    RawSection,
+    controller_types,
+)
+from multibot_rewrite.related_files.yaml_text import pairs
 from multibot_rewrite.rules.declaration import remark_at
 from multibot_rewrite.rules.files.demands import Demand, demands, value_of
 from multibot_rewrite.rules.files.parameter_files import of_release

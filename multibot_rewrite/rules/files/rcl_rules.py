@@ -25,9 +25,11 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import nearest, slip_of
 from multibot_rewrite.base.wording import shorten
-from multibot_rewrite.companions.named_file import MOVEIT, PARAMS, NamedFile
-from multibot_rewrite.companions.params.rcl_parameters import typed, value_of
-from multibot_rewrite.companions.params.sections import (
+from multibot_rewrite.knowledge.conditions import word_of
+from multibot_rewrite.planning.records import Given
+from multibot_rewrite.related_files.named_file import MOVEIT, PARAMS, NamedFile
+from multibot_rewrite.related_files.params.rcl_parameters import typed, value_of
+from multibot_rewrite.related_files.params.sections import (
     ANY,
     PARAMETERS,
     ParamSection,
@@ -35,11 +37,9 @@ from multibot_rewrite.companions.params.sections import (
     is_for,
     scalars,
 )
-from multibot_rewrite.companions.yaml_text import line_of, pairs
-from multibot_rewrite.knowledge.conditions import word_of
+from multibot_rewrite.related_files.yaml_text import line_of, pairs
 from multibot_rewrite.rules.declaration import remark, remark_at
 from multibot_rewrite.rules.files.section_facts import did_you_mean_at, given_in, is_in
-from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.system.records import Place
 
 _PLACE = lazy_compile(r"^.*?:\d+(?::\d+)?: ")

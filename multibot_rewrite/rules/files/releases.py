@@ -9,11 +9,11 @@ import yaml
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding, rule
 from multibot_rewrite.base.releases import has_release, releases_with
-from multibot_rewrite.companions.named_file import PARAMS, NamedFile
-from multibot_rewrite.companions.params.name_sites import params_at
-from multibot_rewrite.companions.params.sections import flattened, scalars
-from multibot_rewrite.companions.yaml_text import items, pairs
 from multibot_rewrite.knowledge.records import NodeParameters, Param
+from multibot_rewrite.related_files.named_file import PARAMS, NamedFile
+from multibot_rewrite.related_files.params.name_sites import params_at
+from multibot_rewrite.related_files.params.sections import flattened, scalars
+from multibot_rewrite.related_files.yaml_text import items, pairs
 from multibot_rewrite.rules.declaration import remark_at
 from multibot_rewrite.rules.files.declared import of_other_releases
 

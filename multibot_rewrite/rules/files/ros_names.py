@@ -14,14 +14,14 @@ from multibot_rewrite.base.conventions import PARTS, USUAL_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, rule
 from multibot_rewrite.base.lazy import IN_SUBSTITUTION, lazy_compile
 from multibot_rewrite.base.rosnames import check_name_in_code, check_node_name
-from multibot_rewrite.companions.engine import GRAPH
-from multibot_rewrite.companions.named_file import EVERY, MOVEIT, PARAMS, RVIZ, NamedFile
-from multibot_rewrite.companions.names.by_kind import SPELLERS, is_filled, is_plain
-from multibot_rewrite.companions.names.placeholders import is_robot
-from multibot_rewrite.companions.sites import GZ_TOPIC, SECTION, Site
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.twice import BETWEEN
 from multibot_rewrite.knowledge.node_entries import RUN_TIME
+from multibot_rewrite.related_files.engine import GRAPH
+from multibot_rewrite.related_files.named_file import EVERY, MOVEIT, PARAMS, RVIZ, NamedFile
+from multibot_rewrite.related_files.names.by_kind import SPELLERS, is_filled, is_plain
+from multibot_rewrite.related_files.names.placeholders import is_robot
+from multibot_rewrite.related_files.sites import GZ_TOPIC, SECTION, Site
 from multibot_rewrite.rules.declaration import OF_TWO, remark
 from multibot_rewrite.rules.subject import Robots
 

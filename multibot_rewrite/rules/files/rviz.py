@@ -6,9 +6,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding, rule
-from multibot_rewrite.companions.named_file import RVIZ, NamedFile
-from multibot_rewrite.companions.rviz.read_config import rviz_data, text_of, value
-from multibot_rewrite.companions.yaml_text import pairs
+from multibot_rewrite.related_files.named_file import RVIZ, NamedFile
+from multibot_rewrite.related_files.rviz.read_config import rviz_data, text_of, value
+from multibot_rewrite.related_files.yaml_text import pairs
 from multibot_rewrite.rules.declaration import remark_at, robots_rule
 
 

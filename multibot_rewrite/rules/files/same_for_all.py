@@ -9,23 +9,23 @@ from collections.abc import Iterator
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, rule
 from multibot_rewrite.base.naming import NAMESPACE
-from multibot_rewrite.companions.context import Context
-from multibot_rewrite.companions.named_file import MOVEIT, PARAMS, RVIZ, NamedFile
-from multibot_rewrite.companions.names.by_kind import expressible, frames_differ, is_plain
-from multibot_rewrite.companions.names.placeholders import filled, is_robot
-from multibot_rewrite.companions.names.rename_map import is_declared
-from multibot_rewrite.companions.params.sections import ANY, ParamSection, flattened, scalars
-from multibot_rewrite.companions.rviz.read_config import (
+from multibot_rewrite.knowledge.node_entries import OWN_KINDS, PORT, RUN_TIME
+from multibot_rewrite.knowledge.parameters import is_absolute
+from multibot_rewrite.producers.addresses import held_by
+from multibot_rewrite.related_files.context import Context
+from multibot_rewrite.related_files.named_file import MOVEIT, PARAMS, RVIZ, NamedFile
+from multibot_rewrite.related_files.names.by_kind import expressible, frames_differ, is_plain
+from multibot_rewrite.related_files.names.placeholders import filled, is_robot
+from multibot_rewrite.related_files.names.rename_map import is_declared
+from multibot_rewrite.related_files.params.sections import ANY, ParamSection, flattened, scalars
+from multibot_rewrite.related_files.rviz.read_config import (
     GRAPH_NAMESPACE,
     LINK,
     TF_PREFIX,
     RvizItem,
     text_of,
 )
-from multibot_rewrite.companions.sites import Site
-from multibot_rewrite.knowledge.node_entries import OWN_KINDS, PORT, RUN_TIME
-from multibot_rewrite.knowledge.parameters import is_absolute
-from multibot_rewrite.producers.addresses import held_by
+from multibot_rewrite.related_files.sites import Site
 from multibot_rewrite.rules.declaration import TWO, of_robots, remark, remark_at, robots_rule
 from multibot_rewrite.rules.files.section_facts import given_in
 from multibot_rewrite.system.records import COMPUTER

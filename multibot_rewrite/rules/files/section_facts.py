@@ -14,12 +14,6 @@ from multibot_rewrite.base.bounded import ANGLES
 from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.companions.moveit.file_kind import find_kind, parameter_above
-from multibot_rewrite.companions.moveit.rewrite import node_of
-from multibot_rewrite.companions.named_file import MOVEIT, PARAMS, NamedFile, is_beside, kind_of
-from multibot_rewrite.companions.params.rcl_parameters import value_of
-from multibot_rewrite.companions.params.sections import ANY, RawSection, controller_types, settings
-from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.description.sources.packages import entries, is_for_ros_1
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.sources.trace import alike
@@ -27,10 +21,21 @@ from multibot_rewrite.knowledge.declared import EVERY_NODE, Declared, declared_b
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.records import NodeFacts, NodeParameters
 from multibot_rewrite.knowledge.stacks import load_nodes
+from multibot_rewrite.planning.records import Run
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
+from multibot_rewrite.related_files.moveit.file_kind import find_kind, parameter_above
+from multibot_rewrite.related_files.moveit.rewrite import node_of
+from multibot_rewrite.related_files.named_file import MOVEIT, PARAMS, NamedFile, is_beside, kind_of
+from multibot_rewrite.related_files.params.rcl_parameters import value_of
+from multibot_rewrite.related_files.params.sections import (
+    ANY,
+    RawSection,
+    controller_types,
+    settings,
+)
+from multibot_rewrite.related_files.yaml_text import YamlText, read_yaml
 from multibot_rewrite.rules.files.parameter_files import facts_of_node
 from multibot_rewrite.rules.files.plugins import plugins_in
-from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.parameters import Value
 from multibot_rewrite.system.records import NOWHERE, Place
 from multibot_rewrite.system.words import last_word

@@ -15,7 +15,7 @@ from collections.abc import Iterator, Mapping
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, rule
 from multibot_rewrite.base.grouping import dicts_by_key
-from multibot_rewrite.companions.named_file import PARAMS, NamedFile
+from multibot_rewrite.related_files.named_file import PARAMS, NamedFile
 from multibot_rewrite.rules.declaration import remark_at
 from multibot_rewrite.rules.files.plugins import FILTER
 from multibot_rewrite.rules.files.section_facts import Section, Setting, sections

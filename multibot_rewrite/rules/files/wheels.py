@@ -18,12 +18,12 @@ from typing import NamedTuple
 import yaml
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding, rule
-from multibot_rewrite.companions.named_file import MOVEIT, PARAMS, NamedFile
 from multibot_rewrite.description.checks.shapes import reach_of
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import Document
 from multibot_rewrite.knowledge.declared import canonical
+from multibot_rewrite.related_files.named_file import MOVEIT, PARAMS, NamedFile
 from multibot_rewrite.rules.declaration import remark_at
 from multibot_rewrite.rules.facts.drives import (
     Wheel,

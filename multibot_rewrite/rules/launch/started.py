@@ -26,6 +26,8 @@ from multibot_rewrite.description.checks.numbers import number
 from multibot_rewrite.knowledge.controller_ways import names_its_process
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, NAV2
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
+from multibot_rewrite.planning.records import Run
+from multibot_rewrite.planning.transforms import STATE_PUBLISHER
 from multibot_rewrite.producers.evidence.hardware import COMMAND, claims_of
 from multibot_rewrite.producers.launch import spawners
 from multibot_rewrite.producers.launch.bridges import refused_rows
@@ -33,8 +35,6 @@ from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.running import SIMULATED, UNTYPED, bound_of
 from multibot_rewrite.rules.declaration import LAUNCH, at, launch_rule
-from multibot_rewrite.spelling.records import Run
-from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 from multibot_rewrite.system.records import PUBLISHES, RUNS, SERVICE, SUBSCRIBES
 from multibot_rewrite.system.words import last_word
 

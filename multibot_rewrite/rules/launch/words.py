@@ -22,20 +22,20 @@ from multibot_rewrite.base.lazy import IN_SUBSTITUTION, lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.nearest import SLIP, differ_in_numbers, nearest
 from multibot_rewrite.base.wording import shorten
-from multibot_rewrite.companions.params.sections import is_for, meant_for, raw_sections
-from multibot_rewrite.companions.yaml_text import line_of
 from multibot_rewrite.description.checks.numbers import number
 from multibot_rewrite.description.sources.packages import packages_below, sources_around
 from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.planning.records import Run
+from multibot_rewrite.planning.way_checks import RULE_WITHOUT_NAME
 from multibot_rewrite.producers.launch.handed_on import document_of
 from multibot_rewrite.producers.launch.known_node import STATIC
 from multibot_rewrite.producers.launch.launched import Launched, world_files
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import LaunchedNode
+from multibot_rewrite.related_files.params.sections import is_for, meant_for, raw_sections
+from multibot_rewrite.related_files.yaml_text import line_of
 from multibot_rewrite.rules.declaration import LAUNCH, OF_NO_NODE, at, launch_rule, said_of_section
 from multibot_rewrite.rules.description.files import reading
-from multibot_rewrite.spelling.records import Run
-from multibot_rewrite.spelling.way_checks import RULE_WITHOUT_NAME
 from multibot_rewrite.system.records import Place
 from multibot_rewrite.system.words import last_word
 

@@ -16,9 +16,9 @@ from multibot_rewrite.base.findings.finding import WARNING
 from multibot_rewrite.base.nearest import fold, nearest, slip_of
 from multibot_rewrite.base.releases import has_release, releases_with
 from multibot_rewrite.description.checks.problem import Problem, fault
+from multibot_rewrite.description.rewriters.plugin_definitions import Definitions, Value, Values
 from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.rewriters.tree import values_of_plugin
-from multibot_rewrite.description.rewriters.vocabulary import Value, Values, Vocabulary
 from multibot_rewrite.rules.schema.sdf_values import TURN, misread, number_in
 from multibot_rewrite.rules.schema.sections import is_own, shortened
 
@@ -28,51 +28,51 @@ CLASSIC = "Plugin"
 
 
 def plugin_faults(
-    element: _Element, vocabulary: Vocabulary, of_ros_1: bool = False
+    element: _Element, definitions: Definitions, of_ros_1: bool = False
 ) -> Iterator[Problem]:
     """Yield the faults of a plugin's parameters; nothing for an unknown plugin."""
-    section = values_of_plugin(element, vocabulary, of_ros_1)
+    section = values_of_plugin(element, definitions, of_ros_1)
     if section is None:
         return
-    yield from _children(element, "", section, vocabulary)
+    yield from _children(element, "", section, definitions)
     given = {str(it.tag) for it in element}
-    yield from _missing(element, section, given, vocabulary.release)
+    yield from _missing(element, section, given, definitions.release)
 
 
 def _children(
-    element: _Element, above: str, section: Values, vocabulary: Vocabulary
+    element: _Element, above: str, section: Values, definitions: Definitions
 ) -> Iterator[Problem]:
     """Yield the faults of what is in a plugin, or in its parameter ``above``."""
     for child in element.iterchildren("*"):
         if not is_own(child.tag):
             continue
         path = f"{above}{child.tag}"
-        yield from _parameter(child, path, text_of(child), section, vocabulary)
+        yield from _parameter(child, path, text_of(child), section, definitions)
         if path in section.blocks:
-            yield from _children(child, f"{path}/", section, vocabulary)
+            yield from _children(child, f"{path}/", section, definitions)
 
 
-def hardware_faults(hardware: _Element, vocabulary: Vocabulary) -> Iterator[Problem]:
+def hardware_faults(hardware: _Element, definitions: Definitions) -> Iterator[Problem]:
     """Yield the faults of the parameters in a ``<hardware>``."""
-    section = vocabulary.values(text_at(hardware, "plugin"))
+    section = definitions.values(text_at(hardware, "plugin"))
     if section is None:
         return
     given: dict[str, _Element] = {}
     for child in hardware.iterchildren("param"):
         name = child.get("name", "")
         given.setdefault(name, child)
-        yield from _parameter(child, name, text_of(child), section, vocabulary)
-    yield from _missing(hardware, section, given, vocabulary.release)
+        yield from _parameter(child, name, text_of(child), section, definitions)
+    yield from _missing(hardware, section, given, definitions.release)
 
 
 def _parameter(
-    child: _Element, name: str, text: str, section: Values, vocabulary: Vocabulary
+    child: _Element, name: str, text: str, section: Values, definitions: Definitions
 ) -> Iterator[Problem]:
-    row, release = section.rows.get(name), vocabulary.release
+    row, release = section.rows.get(name), definitions.release
     above, _, own = name.rpartition("/")
     if row is None:
         if not section.is_open and f"{above}/*" not in section.rows:
-            yield from _unread(child, above, own, section, vocabulary)
+            yield from _unread(child, above, own, section, definitions)
     elif not has_release(row.releases, release):
         message = f"{title(section)} of {release} does not read {name!r}"
         hint = f"that of {', '.join(releases_with(row.releases))} does"
@@ -112,13 +112,13 @@ def _measure(child: _Element, row: Value, text: str, where: str) -> Iterator[Pro
 
 
 def _unread(
-    child: _Element, above: str, name: str, section: Values, vocabulary: Vocabulary
+    child: _Element, above: str, name: str, section: Values, definitions: Definitions
 ) -> Iterator[Problem]:
     """Yield a fault for a parameter that is not read where it is. Code may read it by a function
     that gets an element, so one read anywhere is fine, unless its block is there."""
     blocks = section.blocks_of.get(name)
     if blocks is None:
-        yield from _unknown(child, above, name, section, vocabulary)
+        yield from _unknown(child, above, name, section, definitions)
         return
     parent = child.getparent()
     there = (it for it in blocks if it and parent is not None and parent.find(it) is not None)
@@ -128,14 +128,14 @@ def _unread(
 
 
 def _unknown(
-    child: _Element, above: str, name: str, section: Values, vocabulary: Vocabulary
+    child: _Element, above: str, name: str, section: Values, definitions: Definitions
 ) -> Iterator[Problem]:
     inside = f" in <{above}>" if above else ""
     message = f"{title(section)} does not read {name!r}{inside}"
     parent, near = child.getparent(), slip_of(name, section.blocks[above])
     if parent is not None and near and parent.find(near) is not None:
         near = ""  # that one is there already
-    other = "" if above else _of_another(name, section, vocabulary)
+    other = "" if above else _of_another(name, section, definitions)
     if other:
         hint = f"{other} does; did you mean {near!r}?" if near else f"{other} does"
         yield fault("simulator", child, None, message, hint)
@@ -146,10 +146,10 @@ def _unknown(
         yield fault("not-read", child, None, message)
 
 
-def _of_another(name: str, section: Values, vocabulary: Vocabulary) -> str:
+def _of_another(name: str, section: Values, definitions: Definitions) -> str:
     """Return the counterpart for the other ROS or simulator that has this parameter, or empty."""
-    for other, of_ros_1 in _counterparts(section.names[0], section.of_ros_1, vocabulary):
-        found = vocabulary.values(other, of_ros_1)
+    for other, of_ros_1 in _counterparts(section.names[0], section.of_ros_1, definitions):
+        found = definitions.values(other, of_ros_1)
         # A block is no parameter that was taken from there: <imu> is an element of SDF as well.
         if found and name in found.rows and name not in found.blocks:
             return title(found)
@@ -158,7 +158,7 @@ def _of_another(name: str, section: Values, vocabulary: Vocabulary) -> str:
 
 @lru_cache
 def _counterparts(
-    library: str, of_ros_1: bool, vocabulary: Vocabulary
+    library: str, of_ros_1: bool, definitions: Definitions
 ) -> tuple[tuple[str, bool], ...]:
     """Return those of the same name or subject: in the other ROS, in Gazebo for one of Classic, and
     the reverse."""
@@ -167,7 +167,7 @@ def _counterparts(
     start = GAZEBO_ROS if of_gz else GZ
     found = [
         (of, it)
-        for it, of in vocabulary.valued()
+        for it, of in definitions.valued()
         if (it.startswith(start) or (of_gz and it.endswith(CLASSIC))) and "::" not in it
     ]
     same = sorted((of, it) for of, it in found if own and _topic_of_library(it) == own)

@@ -17,8 +17,8 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import CHOICE, COMPARED, MISTYPED, nearest
 from multibot_rewrite.base.rosnames import check_topic_name, expand
 from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.planning.ways import COMPONENT, HOST, PLUGIN, SPAWNER
 from multibot_rewrite.rules.system.instead import COMMON
-from multibot_rewrite.spelling.ways import COMPONENT, HOST, PLUGIN, SPAWNER
 from multibot_rewrite.system.index import Index
 from multibot_rewrite.system.records import ACTION, End
 

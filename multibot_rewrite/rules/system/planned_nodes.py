@@ -13,10 +13,10 @@ from multibot_rewrite.base.conventions import EVERYBODYS
 from multibot_rewrite.base.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding, Setting
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import SEVERAL, shorten, unique
+from multibot_rewrite.planning.enclaves import enclave_of
 from multibot_rewrite.rules.declaration import planned_rule, system_rule
 from multibot_rewrite.rules.system.causes import DOES, Cause, caused, plugin_of, why_other_name
 from multibot_rewrite.rules.system.planned_ends import matches, unplanned_nodes
-from multibot_rewrite.spelling.enclaves import enclave_of
 from multibot_rewrite.system.environment import Machines, hidden_from_here, machines, why_not_seen
 from multibot_rewrite.system.index import Index, at_work, ends_of, once
 from multibot_rewrite.system.records import (

@@ -11,8 +11,8 @@ from collections.abc import Iterator, Mapping, Sequence, Set
 from multibot_rewrite.base.grouping import chain_ends, lists_by_key
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import shorten, unique
+from multibot_rewrite.planning.transforms import STATE_PUBLISHER
 from multibot_rewrite.rules.system.causes import Cause, caused
-from multibot_rewrite.spelling.transforms import STATE_PUBLISHER
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Index, Sent, Tree, ends_of, once
 from multibot_rewrite.system.records import OFF, PUBLISHES, SUBSCRIBES, TOPIC, Edge, Robot

@@ -5,7 +5,7 @@ complete -c urdf-lint -l changed-since -r -d 'only files that changed since a gi
 complete -c urdf-lint -l no-default-excludes -d 'in folders, also read build/, install/, log/, folders with COLCON_IGNORE or AMENT_IGNORE, and files that git ignores'
 complete -c urdf-lint -l roots -r -d 'folders to search for packages, in addition to the installed ones'
 complete -c urdf-lint -l urdf -r -d 'the URDF that an SRDF or another related file is for'
-complete -c urdf-lint -l vocabulary -r -d 'file with more plugin definitions: which parameters are names (docs/add-a-plugin.md)'
+complete -c urdf-lint -l definitions -r -d 'file with more plugin definitions: which parameters are names (docs/add-a-plugin.md)'
 complete -c urdf-lint -l distro -r -f -a 'humble jazzy kilted lyrical rolling' -d 'the ROS 2 release that the robots run: humble, jazzy, kilted, lyrical, rolling'
 complete -c urdf-lint -l trust -d 'run xacro and launch files without the sandbox'
 complete -c urdf-lint -s o -l output -r -d 'write the findings there, not to standard output'

@@ -129,7 +129,7 @@ ROWS = (
         "MB902",
         "opens: nothing",
         WINCH,
-        {"vocabulary": "[plugin acme_winch]\nopens: nothing\n"},
+        {"definitions": "[plugin acme_winch]\nopens: nothing\n"},
     ),
     Followed(
         ARM,
@@ -138,7 +138,7 @@ ROWS = (
         "MB903",
         "opens: nothing",
         ARM,
-        {"vocabulary": "[hardware acme/Arm]\nopens: nothing\n"},
+        {"definitions": "[hardware acme/Arm]\nopens: nothing\n"},
     ),
     Followed(
         MARK,
@@ -147,7 +147,7 @@ ROWS = (
         "MB901",
         "add a line to a file of plugin definitions: uses or declares",
         MARK,
-        {"vocabulary": "[element acme]\nat: robot\n@at uses link\n"},
+        {"definitions": "[element acme]\nat: robot\n@at uses link\n"},
     ),
     Followed(
         SAWYER,
@@ -223,10 +223,10 @@ def test_what_the_hint_says_ends_in_proved(row: Followed, tmp_path: Path) -> Non
     assert before.not_verified
     assert [it.hint for it in before.findings if it.code == row.code and row.hint in it.hint]
     options = {"layout": row.layout, "distro": row.distro, **row.options}
-    if "vocabulary" in options:
+    if "definitions" in options:
         file = tmp_path / "acme.vocab"
-        file.write_text(options["vocabulary"])
-        options["vocabulary"] = [str(file)]
+        file.write_text(options["definitions"])
+        options["definitions"] = [str(file)]
     assert rewrite(ROVER.format(row.after), "robot1", **options).not_verified == ()
 
 

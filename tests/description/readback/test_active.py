@@ -14,7 +14,7 @@ from multibot_rewrite.description.readback.meeting import NOT_TAKEN
 from multibot_rewrite.description.readback.other_topics import as_valid_topic
 from multibot_rewrite.description.readback.reading import read
 from multibot_rewrite.description.readback.xml import read_xml
-from multibot_rewrite.description.rewriters.vocabulary import load_vocabulary
+from multibot_rewrite.description.rewriters.plugin_definitions import load_definitions
 
 ROBOT = (
     '<robot name="r"><link name="world"/><link name="a"/><joint name="j" type="revolute">'
@@ -345,7 +345,7 @@ def test_a_node_without_rules_gets_a_namespace_in_every_layout() -> None:
     assert "<remapping>controller_manager_robot1:__ns:=/</remapping>" in made.text
     found = [
         it.name
-        for it in read(made.data, "", load_vocabulary((), "jazzy")).names
+        for it in read(made.data, "", load_definitions((), "jazzy")).names
         if it.kind == "node"
     ]
     assert found == ["/controller_manager_robot1", "/robot1/gz_ros_control"]
@@ -357,7 +357,7 @@ def test_a_namespace_of_the_file_is_the_helpers_alone() -> None:
     ros = "</parameters><ros><namespace>/x</namespace></ros>"
     text = simulated("velocity").replace("</parameters>", ros)
     made = rewrite(text, "robot1", distro="jazzy")
-    found = [it.name for it in read(made.data, "", load_vocabulary((), "jazzy")).names]
+    found = [it.name for it in read(made.data, "", load_definitions((), "jazzy")).names]
     assert {"/x/controller_manager_robot1", "/x_robot1/gz_ros_control"} < set(found)
     assert made.not_verified == ()
     assert strip(made.data, "robot1", distro="jazzy") == text.encode()
@@ -402,11 +402,11 @@ LEFT = {"plugin": 11, "hardware": 8, "sensor": 0}
 
 @pytest.mark.more
 def test_what_is_not_known_is_counted() -> None:
-    vocabulary = load_vocabulary((), NEWEST_LTS)
+    definitions = load_definitions((), NEWEST_LTS)
     for type_, most in LEFT.items():
         sections = [
             it
-            for it in vocabulary.sections(type_)
+            for it in definitions.sections(type_)
             if it.names[0] != "any_with_ros" and not says_what_it_opens(it)
         ]
         assert len(sections) <= most, [it.name for it in sections]
@@ -424,5 +424,5 @@ def test_what_is_not_known_is_counted() -> None:
 def test_a_class_of_gz_sim_is_no_plugin_of_classic(name: str, library: str, known: bool) -> None:
     inside = f'<gazebo><plugin name="{name}" filename="{library}"/></gazebo>'
     root = read_xml(robot(inside).encode(), "r.urdf")
-    (part,) = active_parts(root, load_vocabulary((), NEWEST_LTS))
+    (part,) = active_parts(root, load_definitions((), NEWEST_LTS))
     assert part.is_known == known

@@ -2,7 +2,7 @@
 """The rewrite misses something wherever it looks, so its own proof holds: the second reading says so.
 
 Each fault is put into the code that both passes of the rewrite share. The second reading shares the
-vocabulary with them and nothing else.
+definitions with them and nothing else.
 """
 
 from __future__ import annotations

@@ -21,8 +21,8 @@ def force(*rules: str, namespace: str = "") -> bytes:
 
 
 def lost(before: bytes, after: bytes) -> list[LostRule]:
-    vocabulary = builtin_tree((), NEWEST_LTS).vocabulary
-    return list(lost_rules(*(read(it, "r.urdf", vocabulary) for it in (before, after))))
+    definitions = builtin_tree((), NEWEST_LTS).definitions
+    return list(lost_rules(*(read(it, "r.urdf", definitions) for it in (before, after))))
 
 
 @pytest.mark.parametrize(

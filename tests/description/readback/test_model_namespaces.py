@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from itertools import combinations
 
 import pytest
-from description_calls import BELOW, LAYOUTS, TOPIC, load_vocabulary, make_naming, meetings, read
+from description_calls import BELOW, LAYOUTS, TOPIC, load_definitions, make_naming, meetings, read
 
 from multibot_rewrite import rewrite, rewrite_all
 
@@ -25,7 +25,7 @@ def model(attributes: str, inside: str = DRIVE.format("cmd_vel")) -> str:
 
 
 def topics(text: bytes, release: str, path: str = "topic") -> list[str]:
-    found = read(text, "m.sdf", load_vocabulary((), release)).names
+    found = read(text, "m.sdf", load_definitions((), release)).names
     return [it.name for it in found if it.kind in (TOPIC, BELOW) and it.path == path]
 
 
@@ -89,9 +89,9 @@ SOURCES = [
 @pytest.mark.parametrize("release", [*RELEASED, MAIN])
 @pytest.mark.parametrize("source", SOURCES)
 def test_two_robots_do_not_meet(source: str, release: str, layout: str) -> None:
-    vocabulary = load_vocabulary((), release)
+    definitions = load_definitions((), release)
     texts = dict(written(source, layout, release))
-    readings = {robot: read(text, robot, vocabulary) for robot, text in texts.items()}
+    readings = {robot: read(text, robot, definitions) for robot, text in texts.items()}
     named = {robot: it.names for robot, it in readings.items()}
     assert [it.name.name for it in meetings(named, make_naming(layout))] == []
     assert all(len(readings[a].names) == len(readings[b].names) for a, b in combinations(texts, 2))

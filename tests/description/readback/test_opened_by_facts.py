@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files that are called verified, judged by a reader that knows neither the vocabulary nor the second
+"""Files that are called verified, judged by a reader that knows neither our definitions nor the second
 reading: facts from the consumers' sources say what each plugin opens. No two robots meet."""
 
 from __future__ import annotations

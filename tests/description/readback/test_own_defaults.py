@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 import pytest
-from description_calls import load_vocabulary, read
+from description_calls import load_definitions, read
 
 from multibot_rewrite import ProofError, rewrite
 from multibot_rewrite.description.rewriters import insert
-from multibot_rewrite.description.rewriters.vocabulary.grammar import SPAWNED
+from multibot_rewrite.description.rewriters.plugin_definitions.grammar import SPAWNED
 
 DRIVE = '<plugin name="gz::sim::systems::DiffDrive" filename="gz-sim-diff-drive-system">{}</plugin>'
 ODOMETRY = (
@@ -27,7 +27,7 @@ SDF = """<sdf version="1.9"><model name="m"{}><link name="a"/><link name="b"/>{}
 
 
 def missed(text: str, release: str = "jazzy") -> list[str]:
-    missed = read(text.encode(), "f", load_vocabulary((), release)).missed
+    missed = read(text.encode(), "f", load_definitions((), release)).missed
     return [it.name.replace(SPAWNED, "{model}/") for it in missed]
 
 

@@ -4,13 +4,13 @@
 from __future__ import annotations
 
 import pytest
-from description_calls import NEWEST_LTS, Reading, load_vocabulary, read, wheels_in
+from description_calls import NEWEST_LTS, Reading, load_definitions, read, wheels_in
 from lxml.etree import fromstring
 
 
 def reading(inside: str, root: str = "robot", release: str = NEWEST_LTS) -> Reading:
     text = f"<{root} name='r'>{inside}</{root}>"
-    return read(text.encode(), "r.urdf", load_vocabulary((), release))
+    return read(text.encode(), "r.urdf", load_definitions((), release))
 
 
 def names(inside: str, *kinds: str, release: str = NEWEST_LTS) -> list[str]:

@@ -7,7 +7,7 @@ Sources: ros-simulation/gazebo_ros_pkgs ros2 gazebo_plugins/src, unless a line s
 from __future__ import annotations
 
 import pytest
-from description_calls import NEWEST_LTS, RuntimeName, check_vocabulary, load_vocabulary, read
+from description_calls import NEWEST_LTS, RuntimeName, check_definitions, load_definitions, read
 
 ODOM, TWIST, TF = "nav_msgs/msg/Odometry", "geometry_msgs/msg/Twist", "tf2_msgs/msg/TFMessage"
 IMAGE, INFO, CLOUD = (f"sensor_msgs/msg/{it}" for it in ("Image", "CameraInfo", "PointCloud2"))
@@ -26,7 +26,7 @@ def endpoints(
     if sensor:
         plugin = f'<sensor name="s" type="{sensor}">{more}{plugin}</sensor>'
     text = f"<robot name='r'><gazebo>{plugin}</gazebo></robot>"
-    (node,) = read(text.encode(), "r.urdf", load_vocabulary((), NEWEST_LTS)).nodes
+    (node,) = read(text.encode(), "r.urdf", load_definitions((), NEWEST_LTS)).nodes
     return [it for it in node.endpoints if not it.off]
 
 
@@ -200,7 +200,7 @@ UNTYPED = {*PID, "pid/articulation_joint", "collisions", "cmd_drive"}
 
 @pytest.mark.slow
 def test_every_topic_of_a_plugin_that_is_a_node_has_a_type() -> None:
-    sections = check_vocabulary(load_vocabulary((), NEWEST_LTS, packages=False))
+    sections = check_definitions(load_definitions((), NEWEST_LTS, packages=False))
     nodes = [it for it in sections if any(site.path == "ros/namespace" for site in it.sites)]
     missing = {it.name for section in nodes for it in section.wired if not it.type}
     assert missing == UNTYPED
@@ -211,5 +211,5 @@ def test_what_is_below_a_stem_is_one_name_where_robots_may_meet() -> None:
     text = (
         f"<robot name='r'><gazebo><sensor name='s' type='camera'>{plugin}</sensor></gazebo></robot>"
     )
-    found = read(text.encode(), "r.urdf", load_vocabulary((), NEWEST_LTS)).names
+    found = read(text.encode(), "r.urdf", load_definitions((), NEWEST_LTS)).names
     assert [it.name for it in found if it.kind == "topics below"] == ["/s"]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What stands for names in the vocabulary may be written by a user: then it is a text as any other."""
+"""A user may write what stands for names in plugin definitions: then it is text like any other."""
 
 from __future__ import annotations
 

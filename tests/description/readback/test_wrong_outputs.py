@@ -4,7 +4,14 @@
 from __future__ import annotations
 
 import pytest
-from description_calls import NEWEST_LTS, load_vocabulary, make_naming, meetings, read, same_for_all
+from description_calls import (
+    NEWEST_LTS,
+    load_definitions,
+    make_naming,
+    meetings,
+    read,
+    same_for_all,
+)
 from paths import FIXTURES, fixture_text
 from proof_faults import Fault, read_faults
 
@@ -21,15 +28,15 @@ def named(kind: str, name: str) -> str:
 
 def shared(text: bytes, layout: str) -> set[str]:
     """What all robots would have of one robot's text."""
-    reading = read(text, "rover", load_vocabulary((), NEWEST_LTS))
+    reading = read(text, "rover", load_definitions((), NEWEST_LTS))
     found = same_for_all(reading.names, "robot1", make_naming(layout))
     return {named(it.kind, it.name) for it in found}
 
 
 def met(texts: dict[str, bytes], layout: str) -> set[str]:
     """Where robots meet, by their texts."""
-    vocabulary = load_vocabulary((), NEWEST_LTS)
-    names = {robot: read(text, robot, vocabulary).names for robot, text in texts.items()}
+    definitions = load_definitions((), NEWEST_LTS)
+    names = {robot: read(text, robot, definitions).names for robot, text in texts.items()}
     found = meetings(names, make_naming(layout))
     return {named(it.name.kind, it.name.name) for it in found}
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A suggested vocabulary: what is guessed from what, and that it loads and leaves nothing unknown."""
+"""Suggested plugin definitions: what is guessed from what; they load and leave nothing unknown."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.checks.unknown import is_unknown
 from multibot_rewrite.description.reports.suggest import (
     SuggestedSection,
+    definitions_text,
     suggest,
     tag_kind,
-    vocabulary_text,
 )
+from multibot_rewrite.description.rewriters.plugin_definitions import Definitions, load_definitions
 from multibot_rewrite.description.rewriters.tree import Tree, builtin_tree
-from multibot_rewrite.description.rewriters.vocabulary import Vocabulary, load_vocabulary
 from multibot_rewrite.description.steps.collect import Inventory, collect
 from multibot_rewrite.description.steps.document import read_document
 
-HERE = Path(multibot_rewrite.__file__).parent / "description" / "rewriters" / "vocabulary"
+HERE = Path(multibot_rewrite.__file__).parent / "description" / "rewriters" / "definitions"
 ROBOT = """<robot name="bot"><link name="base"/><link name="arm"/><link name="both"/>
 <joint name="hip" type="fixed"><parent link="base"/><child link="arm"/></joint>
 <joint name="knee" type="fixed"><parent link="base"/><child link="both"/></joint>
@@ -50,7 +50,7 @@ def suggested(body: str) -> list[SuggestedSection]:
 
 
 def text_for(body: str) -> str:
-    return vocabulary_text(suggested(body), "bot.urdf")
+    return definitions_text(suggested(body), "bot.urdf")
 
 
 def line_for(body: str) -> str:
@@ -64,7 +64,7 @@ def line_for(body: str) -> str:
 
 def loaded(text: str, folder: Path) -> Tree:
     (folder / "new.vocab").write_text(text)
-    return Tree(load_vocabulary((str(folder / "new.vocab"),), NEWEST_LTS))
+    return Tree(load_definitions((str(folder / "new.vocab"),), NEWEST_LTS))
 
 
 # ---------------------------------------------------------------- what is guessed
@@ -222,7 +222,7 @@ def _unknown(rewriter: object) -> bool:
 def test_the_rows_do_what_they_say(tmp_path: Path) -> None:
     body = plugin("<x>hip, knee</x><y>bot::arm</y><topic>go</topic><n>3</n>")
     (tmp_path / "new.vocab").write_text(text_for(body))
-    done = rewrite(ROBOT.format(body), "r1", vocabulary=[str(tmp_path / "new.vocab")])
+    done = rewrite(ROBOT.format(body), "r1", definitions=[str(tmp_path / "new.vocab")])
     assert "<x>hip_r1, knee_r1</x><y>bot_r1::arm/r1</y><topic>go/r1</topic><n>3</n>" in done.text
     assert "MB902" not in {finding.code for finding in done.findings}
 
@@ -230,7 +230,7 @@ def test_the_rows_do_what_they_say(tmp_path: Path) -> None:
 def test_a_plugin_that_is_a_ros_node_stays_one(tmp_path: Path) -> None:
     body = plugin("<ros><remapping>a:=go</remapping></ros><x>hip</x>")
     (tmp_path / "new.vocab").write_text(text_for(body))
-    done = rewrite(ROBOT.format(body), "r1", vocabulary=[str(tmp_path / "new.vocab")])
+    done = rewrite(ROBOT.format(body), "r1", definitions=[str(tmp_path / "new.vocab")])
     assert 'name="p_r1"' in done.text
     assert "<remapping>a:=go/r1</remapping>" in done.text
     assert "<x>hip_r1</x>" in done.text
@@ -251,31 +251,31 @@ def test_odd_values_become_comments_and_stay_on_their_line() -> None:
 
 
 @pytest.mark.more
-def test_what_a_small_vocabulary_lacks_can_be_suggested(corpus: dict[str, Path]) -> None:
+def test_what_a_small_definitions_lacks_can_be_suggested(corpus: dict[str, Path]) -> None:
     """With the elements alone every plugin and hardware class of the corpus is unknown."""
     texts = {name: (HERE / name).read_text() for name in ("urdf.vocab", "sdf.vocab")}
-    bare = Tree(Vocabulary(texts, NEWEST_LTS))
+    bare = Tree(Definitions(texts, NEWEST_LTS))
     guessed = set()
     for path in list(corpus.values())[::6]:
         document = read_document(path.read_bytes(), path.name)
         sections = suggest(collect(document, bare))
-        text = vocabulary_text(sections, path.name)
-        tree = Tree(Vocabulary(texts | {"new.vocab": text}, NEWEST_LTS))
+        text = definitions_text(sections, path.name)
+        tree = Tree(Definitions(texts | {"new.vocab": text}, NEWEST_LTS))
         there = collect(document, tree)
         assert not any(is_unknown(h.node.section) for h in there.hosts if h.node.section), path
-        assert len(tree.vocabulary.sections("plugin", "hardware")) == text.count("\n["), path
-        guessed |= _guessed(sections, tree.vocabulary)
+        assert len(tree.definitions.sections("plugin", "hardware")) == text.count("\n["), path
+        guessed |= _guessed(sections, tree.definitions)
     assert len(guessed) > 50
     assert {kind for _, kinds in guessed for kind in kinds} >= {"joint", "link", "frame", "topic"}
 
 
 def _guessed(
-    sections: list[SuggestedSection], vocabulary: Vocabulary
+    sections: list[SuggestedSection], definitions: Definitions
 ) -> set[tuple[str, tuple[str, ...]]]:
-    """Path and kinds of every guessed row, as the vocabulary has read it."""
+    """Path and kinds of every guessed row, as the plugin definitions has read it."""
     found = set()
     for section in sections:
-        (rewriter,) = vocabulary.find(section.type, section.name)
+        (rewriter,) = definitions.find(section.type, section.name)
         kinds = {site.path: site.kinds for site in rewriter.sites}
         for row in section.rows:
             if row.guess is not None:

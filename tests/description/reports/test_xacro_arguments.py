@@ -134,7 +134,7 @@ def test_a_file_without_such_an_argument(write: Path, capfd: pytest.CaptureFixtu
 
 
 def test_json(capfd: pytest.CaptureFixture[str]) -> None:
-    assert main(["inspect", str(XACROS / "base.urdf.xacro"), "--form", "json"]) == 0
+    assert main(["inspect", str(XACROS / "base.urdf.xacro"), "--output-kind", "json"]) == 0
     made = json.loads(capfd.readouterr().out)["xacro"]
     assert made["for_robots"] == ["namespace:={robot}"]
     first, second = made["arguments"]

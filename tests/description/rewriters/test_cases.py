@@ -25,8 +25,11 @@ from multibot_rewrite.description.checks.meeting import SAME_TEXT
 from multibot_rewrite.description.library import rewrite_all
 from multibot_rewrite.description.readback.meeting import LOOKUP, SHARED_CODES
 from multibot_rewrite.description.rewriters.forms import IN_FRONT, Declared
+from multibot_rewrite.description.rewriters.plugin_definitions import (
+    PluginDefinition,
+    load_definitions,
+)
 from multibot_rewrite.description.rewriters.tree import builtin_tree
-from multibot_rewrite.description.rewriters.vocabulary import VocabularySection, load_vocabulary
 from multibot_rewrite.description.steps.apply import fill
 from multibot_rewrite.description.steps.collect import declarations
 
@@ -39,12 +42,12 @@ REFUSED = [case for case in CASES if case.expect == "refused"]
 # An element that holds others and no name of its own has nothing to show.
 REWRITERS = [
     rewriter
-    for rewriter in load_vocabulary((), NEWEST_LTS).sections(
+    for rewriter in load_definitions((), NEWEST_LTS).sections(
         "element", "plugin", "hardware", "sensor"
     )
     if rewriter.type != "element" or any(site.role != "keep" for site in rewriter.sites)
 ]
-BLOCKS = load_vocabulary((), NEWEST_LTS).sections("block")
+BLOCKS = load_definitions((), NEWEST_LTS).sections("block")
 LEAST_CASES = 1050
 LEAST_REFEREED = 980
 # Not a word of rewrite's naming policy.
@@ -53,11 +56,11 @@ FRAMES_LEFT_OUT = re.compile(
     rb"gz-sim-(?:diff-drive|mecanum-drive|ackermann-steering|tracked-vehicle|odometry-publisher)-system"
 )
 NO_POLICY = ("again", "file", "urdf", "distro")
-# Rows of the vocabulary, by section and path, at which no case renames anything.
+# Rows of the plugin definitions, by section and path, at which no case renames anything.
 UNEXERCISED: set[tuple[str, str]] = set()
 # A plugin's parameter may be called <joint> or <link> too.
 NAMELESS = {("model", ""), ("link", ""), ("joint", "")}
-# A row of the vocabulary: its section, path and line.
+# A row of the plugin definitions: its section, path and line.
 Row = tuple[str, str, int]
 
 
@@ -263,14 +266,14 @@ def test_every_rewriter_has_a_changed_and_a_same_case() -> None:
     assert {name: left for name, left in lacking.items() if left} == {}
 
 
-def wanted(rewriter: VocabularySection) -> set[str]:
+def wanted(rewriter: PluginDefinition) -> set[str]:
     if not rewriter.sites:  # what it opens is for the second reading
         return set()
     renames = any(site.role != "keep" for site in rewriter.sites)
     return {"changed", "same"} if renames else {"same"}
 
 
-def outcomes(rewriter: VocabularySection) -> set[str]:
+def outcomes(rewriter: PluginDefinition) -> set[str]:
     return {case.expect for case in CASES if case.rewriter == rewriter.name}
 
 
@@ -290,12 +293,12 @@ def is_among(default: str, defaults: set[str]) -> bool:
     return any(re.fullmatch(pattern, it) for it in defaults)
 
 
-def inserted(rewriter: VocabularySection) -> set[str]:
+def inserted(rewriter: PluginDefinition) -> set[str]:
     cases = [case for case in REWRITTEN if case.rewriter == rewriter.name]
     return {item.old for case in cases for item in run(case).template.plan.insertions}
 
 
-def literals(rewriter: VocabularySection) -> set[str]:
+def literals(rewriter: PluginDefinition) -> set[str]:
     """What the consumer falls back to or hard-wires, but for private topics, frames of the world, and
     what stands in front of names: no postfix reaches that, and it is reported (MB422)."""
     said = (it for it in rewriter.sites if it.form not in IN_FRONT)
@@ -308,14 +311,14 @@ def literals(rewriter: VocabularySection) -> set[str]:
 
 
 @pytest.mark.slow
-def test_every_row_of_the_vocabulary_renames_something() -> None:
+def test_every_row_of_the_definitions_renames_something() -> None:
     touched = {row for case in CHANGED for row in touched_rows(case)}
     wanted = {place(site): site for rewriter in REWRITERS + BLOCKS for site in rows(rewriter)}
     left = {(site.section, site.path) for row, site in wanted.items() if row not in touched}
     assert left == UNEXERCISED
 
 
-def rows(rewriter: VocabularySection) -> list[SiteRow]:
+def rows(rewriter: PluginDefinition) -> list[SiteRow]:
     """The rows of its own section at which something may be renamed."""
     own = f"{rewriter.type} {rewriter.names[0]}"
     return [site for site in rewriter.sites if site.role != "keep" and site.section == own]
@@ -332,7 +335,7 @@ def touched_rows(case: Case) -> Iterator[Row]:
 
 
 def place(site: SiteRow) -> Row:
-    """Where the vocabulary has this site; two flavours of a plugin share section and path."""
+    """Where the plugin definitions has this site; two flavours of a plugin share section and path."""
     return site.section, site.path, site.line
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The names inside a value, by the form that its row of the vocabulary says."""
+"""The names inside a value, by the form that its row of the plugin definitions says."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from lxml import etree
 from multibot_rewrite.base.model import Claim
 from multibot_rewrite.description.readback.parameters import default_of
 from multibot_rewrite.description.rewriters.forms import FORMS, IN_FRONT, LONGEST
-from multibot_rewrite.description.rewriters.vocabulary.grammar import SPAWNED
+from multibot_rewrite.description.rewriters.plugin_definitions.grammar import SPAWNED
 
 
 def claim(attribute: str) -> Any:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Vocabulary of installed packages: found, used and undone; a broken package stops everything."""
+"""Plugin definitions of installed packages: found, used, undone; a broken package is refused."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from pathlib import Path
 
 import pytest
 from case_files import read_case
-from description_calls import NEWEST_LTS, builtin_tree, load_vocabulary
+from description_calls import NEWEST_LTS, builtin_tree, load_definitions
 from paths import FIXTURES
 
-from multibot_rewrite import VocabularyError, rewrite, strip
-from multibot_rewrite.description.rewriters.vocabulary.installed import (
+from multibot_rewrite import DefinitionsError, rewrite, strip
+from multibot_rewrite.description.rewriters.plugin_definitions.installed import (
     advice,
+    definitions_files,
     installed,
-    vocabulary_files,
 )
 from tools.pages.plugins import pages
 
@@ -42,7 +42,7 @@ def acme(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder that pip installed the third-party package into."""
     source = tmp_path_factory.mktemp("source") / "acme"
     shutil.copytree(ACME, source)
-    # Reading its vocabulary must not run its code.
+    # Reading its plugin definitions must not run its code.
     (source / "acme_robots" / "__init__.py").write_text("raise ImportError\n")
     target = tmp_path_factory.mktemp("target")
     words = [*PIP, *OFFLINE, "--no-compile", "--target", str(target), str(source)]
@@ -59,8 +59,8 @@ def broken(acme: Path, tmp_path: Path) -> Path:
 
 @pytest.fixture
 def make(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Make]:
-    """Lay down a distribution with one package of one vocabulary file, first on sys.path."""
-    caches = (installed, load_vocabulary, builtin_tree)
+    """Lay down a distribution with one package of one definition file, first on sys.path."""
+    caches = (installed, load_definitions, builtin_tree)
 
     def distribution(
         name: str,
@@ -80,7 +80,7 @@ def make(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Make]:
         folder.mkdir()
         about = f"Metadata-Version: 2.1\nName: {name}\nVersion: {version}\n"
         (folder / ("PKG-INFO" if end else "METADATA")).write_text(about)
-        points = f"[multibot_rewrite.vocabulary]\nit = {value or package.name}\n"
+        points = f"[multibot_rewrite.plugin_definitions]\nit = {value or package.name}\n"
         (folder / "entry_points.txt").write_text(points)
         monkeypatch.syspath_prepend(str(home))
         for cache in caches:
@@ -111,7 +111,7 @@ def _path() -> list[str]:
 
 def complaint() -> str:
     """What every call says now; always one line."""
-    with pytest.raises(VocabularyError) as caught:
+    with pytest.raises(DefinitionsError) as caught:
         rewrite('<robot name="a"><link name="none of it is needed"/></robot>', "r1")
     assert "\n" not in str(caught.value)
     return str(caught.value)
@@ -206,15 +206,15 @@ def test_files_come_by_distribution_whatever_the_path(make: Make) -> None:
     assert advice("mine.vocab:3: wrong") == ""
 
 
-def test_every_vocabulary_file_right_in_a_package_is_read(make: Make) -> None:
+def test_every_definitions_file_right_in_a_package_is_read(make: Make) -> None:
     home = make("aa", "", end=".egg-info")
     for name in ("b.vocab", "a.vocab", "readme.txt"):
         (home / "aa" / name).write_text("")
     (home / "aa" / "below").mkdir()
     (home / "aa" / "below" / "c.vocab").write_text("")
-    files = vocabulary_files("aa")
+    files = definitions_files("aa")
     assert [os.path.basename(it) for it in files] == ["a.vocab", "b.vocab", "it.vocab"]
-    assert [os.path.basename(it) for it in vocabulary_files("aa.below")] == ["c.vocab"]
+    assert [os.path.basename(it) for it in definitions_files("aa.below")] == ["c.vocab"]
     assert [it.path for it in installed()] == files
 
 
@@ -235,7 +235,7 @@ def test_the_first_of_a_distribution_that_is_there_twice_counts(make: Make) -> N
     assert (my_frame("new"), my_frame("old")) == ("base/r1", "base")
 
 
-def test_a_newer_one_without_vocabulary_hides_an_older_one(make: Make) -> None:
+def test_a_newer_one_without_definitions_hides_an_older_one(make: Make) -> None:
     make("aa", SECTION.format(name="old"), version="1.0", site="second")
     home = make("aa", "", version="2.0", site="first")
     (home / "aa-2.0.dist-info" / "entry_points.txt").unlink()
@@ -254,7 +254,7 @@ def test_two_entry_points_for_one_package_read_it_once(make: Make) -> None:
 @pytest.mark.slow
 def test_a_file_that_is_installed_and_named_too_is_read_once(make: Make) -> None:
     path = str(make("aa", SECTION.format(name="aa")) / "aa" / "it.vocab")
-    text = rewrite(ROBOT.format(name="aa"), "r1", vocabulary=[path]).text
+    text = rewrite(ROBOT.format(name="aa"), "r1", definitions=[path]).text
     assert "<my_frame>base/r1</my_frame>" in text
 
 
@@ -291,7 +291,7 @@ def test_every_call_refuses_a_wrong_entry_point(make: Make, value: str, words: s
 @WRONG_POINTS
 def test_a_wrong_entry_point_is_refused(make: Make, value: str, words: str) -> None:
     make("aa", SECTION.format(name="aa"), value=value)
-    with pytest.raises(VocabularyError) as caught:
+    with pytest.raises(DefinitionsError) as caught:
         installed()
     message = str(caught.value)
     assert message.startswith("aa 1.0: ")
@@ -355,8 +355,8 @@ def test_a_mistake_of_the_user_is_not_blamed_on_a_package(make: Make, tmp_path: 
     make("aa", SECTION.format(name="aa"))
     mine = tmp_path / "mine.vocab"
     mine.write_text(SECTION.format(name="aa"))
-    with pytest.raises(VocabularyError) as caught:
-        rewrite(ROBOT.format(name="aa"), "r1", vocabulary=[str(mine)])
+    with pytest.raises(DefinitionsError) as caught:
+        rewrite(ROBOT.format(name="aa"), "r1", definitions=[str(mine)])
     assert str(caught.value).startswith(f"{mine}:3: my_frame is there already, in aa 1.0: ")
     assert "uninstall" not in str(caught.value)
 
@@ -367,18 +367,18 @@ def test_a_user_file_called_like_a_built_in_one_hides_nothing(
 ) -> None:
     (tmp_path / "hardware.vocab").write_text(SECTION.format(name="aa"))
     monkeypatch.chdir(tmp_path)
-    builtin = list(load_vocabulary((), NEWEST_LTS, packages=False).names("hardware"))
-    vocabulary = load_vocabulary(("hardware.vocab",), NEWEST_LTS, packages=False)
-    assert list(vocabulary.names("hardware")) == builtin
-    assert [found.file for found in vocabulary.find("plugin", "aa")] == ["./hardware.vocab"]
+    builtin = list(load_definitions((), NEWEST_LTS, packages=False).names("hardware"))
+    definitions = load_definitions(("hardware.vocab",), NEWEST_LTS, packages=False)
+    assert list(definitions.names("hardware")) == builtin
+    assert [found.file for found in definitions.find("plugin", "aa")] == ["./hardware.vocab"]
 
 
 @pytest.mark.slow
 def test_one_user_file_costs_no_parsing_of_the_rest(tmp_path: Path) -> None:
     mine = tmp_path / "mine.vocab"
     mine.write_text(SECTION.format(name="gazebo_ros_p3d") + "[block ros]\nextra uses link\n")
-    vocabulary = load_vocabulary((str(mine),), NEWEST_LTS, packages=False)
-    parsed = {section.name for found in vocabulary._found.values() for section in found}
+    definitions = load_definitions((str(mine),), NEWEST_LTS, packages=False)
+    parsed = {section.name for found in definitions._found.values() for section in found}
     assert {"plugin gazebo_ros_p3d (ROS 2)", "block ros"} <= parsed
     assert len(parsed) < 6
 

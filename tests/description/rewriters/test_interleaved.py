@@ -15,16 +15,16 @@ from types import FrameType
 from typing import Any
 
 import pytest
-from description_calls import NEWEST_LTS, Template, Vocabulary, library, make_naming
+from description_calls import NEWEST_LTS, Definitions, Template, library, make_naming
 from paths import fixture_text
 
-from multibot_rewrite import VocabularyError
+from multibot_rewrite import DefinitionsError
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.rewriters import tree as trees
 from multibot_rewrite.description.rewriters.tree import Tree
 
 FILES = (trees.__file__, library.__file__)
-# What a rover needs of the vocabulary: a section in a section, a block, a chosen plugin, a keep.
+# The plugin definitions of a rover: a section in a section, a block, a chosen plugin, a keep.
 TEXT = fixture_text("interleaved_text.txt")
 ROBOT = b"""\
 <robot name="r"><link name="a"/><link name="b"/>
@@ -43,7 +43,7 @@ Spot = tuple[str, int]
 
 def cold() -> Tree:
     """A tree that nothing has asked for anything yet."""
-    return Tree(Vocabulary({"test.vocab": TEXT}, NEWEST_LTS))
+    return Tree(Definitions({"test.vocab": TEXT}, NEWEST_LTS))
 
 
 def prepared(tree: Tree) -> Template:
@@ -85,7 +85,7 @@ def traced(trace: Callable[..., Any], work: Callable[[], bytes]) -> bytes:
 
 
 def lines_run() -> Counter[Spot]:
-    """How often each line of the tree and the vocabulary runs in a cold rewrite."""
+    """How often each line of the tree and the plugin definitions runs in a cold rewrite."""
     found: Counter[Spot] = Counter()
 
     def trace(frame: FrameType, event: str, _: object) -> Any:
@@ -143,9 +143,9 @@ def test_another_thread_comes_whenever_a_line_runs() -> None:
 BROKEN = TEXT.replace("child@link uses link", "child@link loves link")
 
 
-def test_a_mistake_in_the_vocabulary_is_raised_again() -> None:
+def test_a_mistake_in_the_definitions_is_raised_again() -> None:
     """What could not be made whole is not there: it is no section without rows for the next."""
-    tree = Tree(Vocabulary({"test.vocab": BROKEN}, NEWEST_LTS))
+    tree = Tree(Definitions({"test.vocab": BROKEN}, NEWEST_LTS))
     for _ in range(2):
-        with pytest.raises(VocabularyError, match=r"test\.vocab:13"):
+        with pytest.raises(DefinitionsError, match=r"test\.vocab:13"):
             rewritten(tree)

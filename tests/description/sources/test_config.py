@@ -11,10 +11,10 @@ from types import SimpleNamespace
 import pytest
 
 from multibot_rewrite import UsageError
-from multibot_rewrite.base.config import configured_vocabulary
+from multibot_rewrite.base.config import configured_definitions
 from multibot_rewrite.cli.urdf_postfix import main
 
-TABLE = '[tool.multibot-rewrite]\nvocabulary = ["data/mine.vocab"]\n'
+TABLE = '[tool.multibot-rewrite]\ndefinitions = ["data/mine.vocab"]\n'
 SECTION = "[plugin mine]\nopens: nothing\nmy_frame uses link frame\n"
 ROBOT = (
     '<robot name="a">\n<link name="base"/>\n<gazebo><plugin name="p" filename="libmine.so">'
@@ -24,7 +24,7 @@ ROBOT = (
 
 @pytest.fixture
 def project(tmp_path: Path) -> Path:
-    """A project with one vocabulary file and a robot two folders down."""
+    """A project with one definition file and a robot two folders down."""
     (tmp_path / "data").mkdir()
     (tmp_path / "data" / "mine.vocab").write_text(SECTION)
     (tmp_path / "pyproject.toml").write_text(TABLE)
@@ -38,7 +38,7 @@ def complaint(project: Path, text: str | bytes) -> str:
     path = project / "pyproject.toml"
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
     with pytest.raises(UsageError) as caught:
-        configured_vocabulary(str(project / "robots" / "crane" / "in.urdf"))
+        configured_definitions(str(project / "robots" / "crane" / "in.urdf"))
     message = str(caught.value)
     assert message.startswith(f"{path}:")
     assert "\n" not in message
@@ -49,18 +49,18 @@ def complaint(project: Path, text: str | bytes) -> str:
     "text",
     [
         pytest.param(
-            '[tool]\nmultibot-rewrite = {vocabulary = ["data/mine.vocab"]}\n', id="inline"
+            '[tool]\nmultibot-rewrite = {definitions = ["data/mine.vocab"]}\n', id="inline"
         ),
         pytest.param(
-            '[tool . "multibot-rewrite"]\nvocabulary = ["data/mine.vocab"]\n', id="quoted"
+            '[tool . "multibot-rewrite"]\ndefinitions = ["data/mine.vocab"]\n', id="quoted"
         ),
-        pytest.param('tool.multibot-rewrite.vocabulary = ["data/mine.vocab"]\n', id="dotted"),
+        pytest.param('tool.multibot-rewrite.definitions = ["data/mine.vocab"]\n', id="dotted"),
         pytest.param(f'[project]\nname = "é"\n\n{TABLE}'.replace("\n", "\r\n"), id="crlf"),
     ],
 )
 def test_every_spelling_of_the_table_is_seen(project: Path, text: str) -> None:
     (project / "pyproject.toml").write_text(text, encoding="utf-8", newline="")
-    assert len(configured_vocabulary(str(project / "in.urdf"))) == 1
+    assert len(configured_definitions(str(project / "in.urdf"))) == 1
 
 
 @pytest.mark.parametrize(
@@ -71,7 +71,9 @@ def test_every_spelling_of_the_table_is_seen(project: Path, text: str) -> None:
         pytest.param(TABLE + TABLE, "broken TOML", id="table-twice"),
         pytest.param(b"# multibot-rewrite\na = '\xff'\n", "2: it is not UTF-8", id="latin-1"),
         pytest.param(
-            "[tool.multibot-rewrite]\nvocab = []\n", "unknown key 'vocab', use vocabulary", id="key"
+            "[tool.multibot-rewrite]\nvocab = []\n",
+            "unknown key 'vocab', use definitions",
+            id="key",
         ),
         pytest.param(
             TABLE.replace("-", "_"), "write [tool.multibot-rewrite]", id="underscore-in-the-name"
@@ -80,7 +82,9 @@ def test_every_spelling_of_the_table_is_seen(project: Path, text: str) -> None:
         pytest.param("[[tool.multibot-rewrite]]\n", "is a list, write a table", id="tables"),
         *(
             pytest.param(
-                f"[tool.multibot-rewrite]\nvocabulary = {value}\n", f"vocabulary is {what}", id=what
+                f"[tool.multibot-rewrite]\ndefinitions = {value}\n",
+                f"definitions is {what}",
+                id=what,
             )
             for value, what in (
                 ('"data/mine.vocab"', "a string"),
@@ -91,8 +95,8 @@ def test_every_spelling_of_the_table_is_seen(project: Path, text: str) -> None:
             )
         ),
         pytest.param(
-            '[tool.multibot-rewrite]\nvocabulary = ["data/mine.vocab", 3]\n',
-            "vocabulary holds a number, write paths in quotes",
+            '[tool.multibot-rewrite]\ndefinitions = ["data/mine.vocab", 3]\n',
+            "definitions holds a number, write paths in quotes",
             id="list-of-others",
         ),
         *(
@@ -120,7 +124,7 @@ def test_a_project_without_the_table_pays_no_parser(tmp_path: Path, text: str | 
     if text is not None:
         (tmp_path / "pyproject.toml").write_text(text)
     code = (
-        "import sys; from multibot_rewrite.base.config import configured_vocabulary as c;"
+        "import sys; from multibot_rewrite.base.config import configured_definitions as c;"
         f"assert c({str(tmp_path / 'in.urdf')!r}) == (); print('tomllib' in sys.modules)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -143,15 +147,15 @@ def test_the_parser_of_ubuntu_22_04_is_taken_where_python_has_none(
     def fails(_: str) -> None:
         raise TomlDecodeError("Empty value is invalid (line 2 column 1 char 8)")
 
-    told = {"tool": {"multibot-rewrite": {"vocabulary": ["a.vocab"]}}}
+    told = {"tool": {"multibot-rewrite": {"definitions": ["a.vocab"]}}}
     (tmp_path / "pyproject.toml").write_text(TABLE)
     (tmp_path / "a.vocab").write_text("")
     parser = SimpleNamespace(loads=lambda _: told, TomlDecodeError=TomlDecodeError)
     without_parsers(monkeypatch, parser)
-    assert configured_vocabulary(str(tmp_path)) == (str(tmp_path / "a.vocab"),)
+    assert configured_definitions(str(tmp_path)) == (str(tmp_path / "a.vocab"),)
     parser.loads = fails
     with pytest.raises(UsageError, match=r"toml:2:1: broken TOML, correct it: Empty value is"):
-        configured_vocabulary(str(tmp_path))
+        configured_definitions(str(tmp_path))
 
 
 def test_a_python_without_any_parser_is_told_what_to_install(
@@ -160,4 +164,4 @@ def test_a_python_without_any_parser_is_told_what_to_install(
     (tmp_path / "pyproject.toml").write_text(TABLE)
     without_parsers(monkeypatch, None)
     with pytest.raises(UsageError, match=r"pip install tomli, or sudo apt install python3-toml"):
-        configured_vocabulary(str(tmp_path))
+        configured_definitions(str(tmp_path))

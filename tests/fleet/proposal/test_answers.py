@@ -101,13 +101,15 @@ PATHS = ["a.yaml", "b.rviz", "c.srdf"]
 def test_files_are_left_out_by_number(answers: list[str], left: list[str], asked: Any) -> None:
     asked(*answers)
     # Two robots with one file: it is asked for once.
-    members = [SimpleNamespace(companions=SimpleNamespace(paths=it)) for it in (PATHS, PATHS[:1])]
+    members = [
+        SimpleNamespace(related_files=SimpleNamespace(paths=it)) for it in (PATHS, PATHS[:1])
+    ]
     made: Any = SimpleNamespace(members=members)
     assert init._left_out(made) == left
 
 
 def test_where_nothing_is_beside_nothing_is_asked(asked: Any) -> None:
-    none = SimpleNamespace(companions=SimpleNamespace(paths=()))
+    none = SimpleNamespace(related_files=SimpleNamespace(paths=()))
     made: Any = SimpleNamespace(members=[none])
     assert (init._left_out(made), asked()) == ([], [])
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.proposal.companions import companions_of
 from multibot_rewrite.fleet.proposal.looking import NO_SIMULATOR, Looked
+from multibot_rewrite.fleet.proposal.related_files import related_files_of
 from multibot_rewrite.fleet.proposal.searching import Found
 
 
@@ -28,7 +28,7 @@ def test_of_two_files_for_one_node_the_first_is_taken(tmp_path: Path) -> None:
     taken = params(tmp_path, "a.yaml", "zeta", "omega", "alpha", "mid")
     left = params(tmp_path, "b.yaml", "mid", "other", "omega", "alpha", "zeta")
     alone = params(tmp_path, "c.yaml", "other")
-    made = companions_of(looked(tmp_path), Found(params=(alone, left, taken)), "jazzy")
+    made = related_files_of(looked(tmp_path), Found(params=(alone, left, taken)), "jazzy")
     assert made.files["params"] == (taken, alone)
     assert made.left == {left: "a.yaml has parameters of alpha, too"}
 
@@ -57,9 +57,9 @@ EKF = ("ekf_filter_node_odom", "ekf_filter_node_map", "navsat_transform")
 )  # fmt: skip
 def test_sections_say_the_stacks(nodes: str, stacks: list[str], tmp_path: Path) -> None:
     file = params(tmp_path, "p.yaml", *nodes.split())
-    made = companions_of(looked(tmp_path), Found(params=(file,)), "jazzy")
+    made = related_files_of(looked(tmp_path), Found(params=(file,)), "jazzy")
     # Besides those that the description itself says.
-    bare = companions_of(looked(tmp_path), Found(), "jazzy").stacks
+    bare = related_files_of(looked(tmp_path), Found(), "jazzy").stacks
     said = {it: f"p.yaml has parameters of {by}" for it, by in (it.split(": ") for it in stacks)}
     assert {it: why for it, why in made.stacks.items() if it not in bare} == said
 
@@ -84,7 +84,7 @@ def test_files_of_nodes_that_are_not_started(
         at.mkdir(exist_ok=True)
         (at / "package.xml").write_text(f"<package><name>{at.name}</name></package>")
     file = params(tmp_path / package, "p.yaml", node)
-    made = companions_of(looked(tmp_path), Found(params=(file,)), "jazzy")
+    made = related_files_of(looked(tmp_path), Found(params=(file,)), "jazzy")
     assert bool(made.files.get("params")) == (not why)
     assert made.left.get(file, "").startswith(why)
 

@@ -277,14 +277,14 @@ def test_only_files_that_a_node_reads_are_taken(package: Path) -> None:
     """The parameter files of nodes are in the build without a word in the fleet file."""
     other = SHOWN.replace("rover.rviz", "a.rviz")
     write(package / "launch", {"up": f"{PUBLISHER}; {GZ}; {SHOWN}; {other}; {SHOWN}"})
-    windows = fleet_of(package)["companions"]["rviz"]
+    windows = fleet_of(package)["related_files"]["rviz"]
     assert sorted(windows) == ["rover/rviz/a.rviz", "rover/rviz/rover.rviz"]
     text = (package.parent / "out/fleet.launch.py").read_text()
     assert text.count("executable='rviz2'") == 2
     write(package / "launch", {"up": f"{PUBLISHER}; {GZ}; {SHOWN}; {BRIDGED}; {CONTROLLED}"})
     fleet = fleet_of(package)
     assert "stack" not in fleet
-    assert fleet["companions"] == {
+    assert fleet["related_files"] == {
         "rviz": "rover/rviz/rover.rviz",
         "bridge": ["rover/config/bridge.yaml"],
     }
@@ -363,7 +363,7 @@ def test_a_file_that_goes_to_what_is_not_installed_is_taken(package: Path) -> No
     write(package / "launch", {"up": f"{PUBLISHER}; {DRIVER}; {NAV2}"})
     fleet = fleet_of(package, "--simulator", "none")
     assert "stack" not in fleet
-    assert fleet["companions"] == {"params": ["rover/config/unread.yaml"]}
+    assert fleet["related_files"] == {"params": ["rover/config/unread.yaml"]}
 
 
 SRDF = '<robot name="rover"><group name="arm"><joint name="j"/></group></robot>'
@@ -381,7 +381,7 @@ def test_moveit_has_its_files_where_it_is_started(
     fleet = fleet_of(package, "--simulator", "none")
     assert fleet.get("stack") == stack
     files = {"moveit": ["rover/config/kinematics.yaml"]} if starts != LIDAR else None
-    assert fleet.get("companions") == files
+    assert fleet.get("related_files") == files
     assert fleet.get("srdf") == (files and "rover/config/rover.srdf")
 
 
@@ -389,7 +389,7 @@ def test_a_stack_that_is_asked_for_is_beside_the_launch_file(package: Path) -> N
     write(package / "launch", {"up": f"{PUBLISHER}; {DRIVER}"})
     fleet = fleet_of(package, "--stack", "localization")
     assert fleet["launch"] and fleet["stack"] == ["localization"]
-    assert fleet["companions"]["params"] == ["rover/config/unread.yaml"]
+    assert fleet["related_files"]["params"] == ["rover/config/unread.yaml"]
     assert "simulator: none" in (package.parent / "fleet.yaml").read_text()
 
 

@@ -20,7 +20,7 @@ from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.owners import Fitting, fitting
 from multibot_rewrite.fleet.proposal.searching import Found
 from multibot_rewrite.knowledge.parameters import load_known_nodes
-from multibot_rewrite.spelling.records import Given
+from multibot_rewrite.planning.records import Given
 from multibot_rewrite.system.records import NOWHERE
 
 
@@ -81,7 +81,7 @@ def test_of_two_files_that_fit_alike_neither_is_taken(two: Path, capsys: Any) ->
     assert f"{files[0]} (a_base), {files[1]} (b_base)" in said
     command = said.strip().rpartition("name one: multibot init ")[2]
     assert shlex.split(command) == [*map(str, (two / "more", two / "digger.urdf", files[0]))]
-    assert taken(two, str(two / "digger.urdf"), str(files[0]))["companions"]["params"] == [
+    assert taken(two, str(two / "digger.urdf"), str(files[0]))["related_files"]["params"] == [
         "more/a file.yaml"
     ]
 
@@ -244,7 +244,7 @@ def test_rviz_and_srdf_of_another_robot_are_not_taken(two: Path) -> None:
     for name, joint in (("a", "elbow"), ("z", "dig_left")):
         (two / f"{name}.srdf").write_text(f'<robot name="digger">{group.format(joint)}</robot>')
     fleet = taken(two)
-    assert (fleet["companions"]["rviz"], fleet["srdf"]) == ("z.rviz", "z.srdf")
+    assert (fleet["related_files"]["rviz"], fleet["srdf"]) == ("z.rviz", "z.srdf")
     assert "#   a.rviz: of its links and joints 0 in a hundred" in (two / "fleet.yaml").read_text()
 
 
@@ -305,7 +305,7 @@ def test_srdfs_and_moveit_files_are_known_by_what_macros_make(tmp_path: Path) ->
         (tmp_path / name / "joint_limits.yaml").write_text(limits)
     fleet = taken(tmp_path)
     assert fleet["srdf"] == "one.srdf.xacro"
-    assert fleet["companions"]["moveit"] in ("b/joint_limits.yaml", ["b/joint_limits.yaml"])
+    assert fleet["related_files"]["moveit"] in ("b/joint_limits.yaml", ["b/joint_limits.yaml"])
 
 
 @pytest.mark.more

@@ -9,12 +9,12 @@ import pytest
 import yaml
 
 from multibot_rewrite.base.naming import LAYOUTS
-from multibot_rewrite.fleet.proposal.companions import Companions
 from multibot_rewrite.fleet.proposal.fleet_text import text_of
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.propose import Choice, Member, Proposal
+from multibot_rewrite.fleet.proposal.related_files import RelatedFiles
 
-BESIDE = Companions(
+BESIDE = RelatedFiles(
     {"params": ("w/p.yaml", "w/q.yaml"), "rviz": ("w/v.rviz",)},
     "w/r.srdf",
     {"nav2": "p.yaml has parameters of amcl", "moveit": "there is r.srdf"},
@@ -44,7 +44,7 @@ COMMON: dict[str, Any] = {
     "arguments": {"prefix": "{robot}_", "x": "1", "sim": "on"},
     "srdf": "r.srdf",
     "stack": ["nav2", "moveit"],
-    "companions": {"params": ["p.yaml", "q.yaml"], "rviz": "v.rviz"},
+    "related_files": {"params": ["p.yaml", "q.yaml"], "rviz": "v.rviz"},
 }
 OTHERS = "".join(f"#   {it.name}: {it.about}\n" for it in LAYOUTS if it.name != "tf-per-robot")
 TEXT = f"""\
@@ -83,7 +83,7 @@ srdf: r.srdf
 stack: [nav2, moveit]
 
 # Files for one robot; the build writes one of each for every robot
-companions:
+related_files:
   params: [p.yaml, q.yaml]
   rviz: v.rviz
 
@@ -119,7 +119,7 @@ def test_the_whole_text_of_one_description() -> None:
 @pytest.mark.parametrize(("count", "more"), [(10, ""), (12, "#   and 2 more\n")])
 def test_of_many_that_are_left_ten_are_named(count: int, more: str) -> None:
     many = ONE._replace(others=tuple(f"w/o{at:02}.urdf" for at in range(count)), refused={})
-    none = [it._replace(companions=BESIDE._replace(left={})) for it in ONE.members]
+    none = [it._replace(related_files=BESIDE._replace(left={})) for it in ONE.members]
     text = text_of(many._replace(members=none), "w/f")
     rows = "".join(f"#   o{at:02}.urdf: another description\n" for at in range(10))
     assert f"not taken:\n{rows}{more}\n" in text

@@ -59,7 +59,7 @@ def test_files_of_another_robot_of_the_package_are_its_own(tmp_path: Path) -> No
     (tmp_path / "config").mkdir()
     (tmp_path / "config" / "all.yaml").write_text("every_node: {ros__parameters: {rate: 1}}\n")
     fleet = made(tmp_path, tmp_path / "left" / "left.urdf")
-    assert set(fleet["companions"]["params"]) == {"config/all.yaml", "left/config/left.yaml"}
+    assert set(fleet["related_files"]["params"]) == {"config/all.yaml", "left/config/left.yaml"}
 
 
 @pytest.mark.more
@@ -71,7 +71,7 @@ def test_a_robot_of_the_examples_has_the_files_of_its_folder(name: str, tmp_path
     fleet = made(tmp_path, ROOT / "examples" / name)
     files = [
         it
-        for its in fleet["companions"].values()
+        for its in fleet["related_files"].values()
         for it in ([its] if isinstance(its, str) else its)
     ]
     assert files and all(f"examples/{Path(name).parent}/" in it for it in files)
@@ -140,7 +140,11 @@ def test_a_real_arm_on_the_world_gets_a_world_of_its_own(plugin: str, tmp_path: 
 def test_an_error_names_the_file_and_no_line_of_the_proposal(tmp_path: Path) -> None:
     rover = str(ROBOTS / "rover.urdf")
     lacking = str(tmp_path / "nav.yaml")
-    fleet = {"description": rover, "robots": [{"name": "a"}], "companions": {"params": [lacking]}}
+    fleet = {
+        "description": rover,
+        "robots": [{"name": "a"}],
+        "related_files": {"params": [lacking]},
+    }
     assert trying.errors_of(fleet) == [("", f"{lacking} does not exist; correct the path")]
 
 
@@ -163,7 +167,7 @@ def test_a_file_that_does_not_go_with_the_robot_is_left_out(tmp_path: Path) -> N
     old = "Visualization Manager:\n  Displays:\n    - Class: rviz/Grid\n"
     (tmp_path / "old.rviz").write_text(old)
     fleet = made(tmp_path, tmp_path)
-    assert "rviz" not in fleet.get("companions", {})
+    assert "rviz" not in fleet.get("related_files", {})
     assert "#   old.rviz: this is a ROS 1 config" in (tmp_path / "fleet.yaml").read_text()
 
 
@@ -355,7 +359,7 @@ def params_of(yard: Path, **values: object) -> list[str]:
     for name, value in values.items():
         text = yaml.safe_dump({f"{name}_node": {"ros__parameters": {"it": value}}})
         (yard / "config" / f"{name}.yaml").write_text(text)
-    taken = made(yard, yard / "urdf" / "rover.urdf").get("companions", {}).get("params", [])
+    taken = made(yard, yard / "urdf" / "rover.urdf").get("related_files", {}).get("params", [])
     return [Path(it).stem for it in taken]
 
 
@@ -391,7 +395,7 @@ def test_files_of_moveit_go_with_the_nearest_srdf(yard: Path) -> None:
     limits = "joint_limits: {lift_joint: {has_velocity_limits: true, max_velocity: 1.0}}\n"
     (yard / "crane_config" / "joint_limits.yaml").write_text(limits)
     fleet = made(yard, yard / "urdf" / "rover.urdf")
-    assert (fleet["srdf"], fleet.get("companions", {})) == ("urdf/rover.srdf", {})
+    assert (fleet["srdf"], fleet.get("related_files", {})) == ("urdf/rover.srdf", {})
 
 
 @pytest.mark.more
@@ -442,7 +446,7 @@ def steered(folder: Path, rule: str = "") -> dict[str, Any]:
         "simulator": "gazebo",
         "stack": "gz_ros2_control",
         "description": str(folder / "car.urdf"),
-        "companions": {"params": [str(folder / "control.yaml")]},
+        "related_files": {"params": [str(folder / "control.yaml")]},
         "robots": [{"name": "robot1"}, {"name": "robot2"}],
     }
 

@@ -13,8 +13,8 @@ from small_robots import PACKAGE, init, loads, robot, taken
 from multibot_rewrite.base.editors import FLEET, schema_name, schema_text
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.proposal.choosing import is_srdf_launched, names_its_package
-from multibot_rewrite.fleet.proposal.companions import srdf_of
 from multibot_rewrite.fleet.proposal.looking import Looked
+from multibot_rewrite.fleet.proposal.related_files import srdf_of
 from multibot_rewrite.fleet.proposal.searching import search, text_of
 
 WIKI = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
@@ -107,7 +107,7 @@ def test_an_rviz_config_of_the_robots_packages_goes_first(tmp_path: Path) -> Non
             (tmp_path / name / "car.rviz").write_text(shown)
     (tmp_path / "car_description/car.urdf").write_text(robot("car", "wheel"))
     (tmp_path / "car_bringup/up.launch.py").write_text(loads("../car_description/car.urdf"))
-    assert taken(tmp_path)["companions"]["rviz"] == "car_bringup/car.rviz"
+    assert taken(tmp_path)["related_files"]["rviz"] == "car_bringup/car.rviz"
 
 
 BROKEN = {

@@ -40,7 +40,7 @@ def test_the_offer_is_what_is_written(
     said = "".join(f'<xacro:arg name="{it}" default="{arguments[it]}"/>' for it in arguments)
     file = tmp_path / "arm.urdf.xacro"
     file.write_text(ARM.replace("ARGUMENTS", said).replace("PREFIX", prefix))
-    assert main(["inspect", str(file), "--form", "json"]) == 0
+    assert main(["inspect", str(file), "--output-kind", "json"]) == 0
     found = json.loads(capsys.readouterr().out)["xacro"]
     offered = dict(it.split(":=") for it in found["for_robots"])
     assert main(["init", str(file), "--yes", "-o", str(tmp_path / "fleet.yaml")]) == 0

@@ -69,7 +69,7 @@ def package(tmp_path: Path) -> Path:
 def test_the_file_whose_names_the_robot_has_is_taken(package: Path) -> None:
     (package / "a_husky.yaml").write_text(AMCL.format("husky_base", "scan"))
     (package / "rover.yaml").write_text(AMCL.format("base_link", "scan"))
-    assert made(package, "rover.urdf")["companions"]["params"] == ["rover.yaml"]
+    assert made(package, "rover.urdf")["related_files"]["params"] == ["rover.yaml"]
 
 
 def test_without_a_winner_one_is_named(package: Path, capsys: Any) -> None:
@@ -83,5 +83,5 @@ def test_without_a_winner_one_is_named(package: Path, capsys: Any) -> None:
     (package / "sim.launch.py").unlink()
     (package / "nav.launch.py").write_text(GIVES)
     launched = made(package, "rover.urdf", launched=True)
-    assert launched["launch"] == "nav.launch.py" and "companions" not in launched
-    assert made(package, "rover.urdf", "husky.yaml")["companions"]["params"] == ["husky.yaml"]
+    assert launched["launch"] == "nav.launch.py" and "related_files" not in launched
+    assert made(package, "rover.urdf", "husky.yaml")["related_files"]["params"] == ["husky.yaml"]

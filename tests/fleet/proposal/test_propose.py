@@ -12,9 +12,9 @@ from lxml import etree
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.fleet.proposal import launches, propose, seeing, trying
-from multibot_rewrite.fleet.proposal.companions import Companions
 from multibot_rewrite.fleet.proposal.looking import Looked
 from multibot_rewrite.fleet.proposal.propose import Member, Proposal
+from multibot_rewrite.fleet.proposal.related_files import RelatedFiles
 from multibot_rewrite.fleet.proposal.searching import search
 from multibot_rewrite.fleet.proposal.seeing import Wanted
 
@@ -22,7 +22,7 @@ OF_NAV2 = ("nav2", "nav2_slam", "navigation", "localization", "slam_toolbox")
 
 
 def member(*stacks: str, radius: float = 0.5, names: tuple[str, ...] = (), **looked: Any) -> Member:
-    beside = Companions({}, "", dict.fromkeys(stacks, ""), {})
+    beside = RelatedFiles({}, "", dict.fromkeys(stacks, ""), {})
     return Member(Looked("/p/a.urdf", **looked), beside, names, radius)
 
 
@@ -117,7 +117,7 @@ def test_the_release_is_asked_for_or_that_of_the_simulator() -> None:
 
 # Which file keeps a proposed fleet from building, and what of a launch file is shown; by hand.
 
-BESIDE = Companions({"params": ("w/p.yaml", "w/q.yaml"), "rviz": ("v.rviz",)}, "w/r.srdf", {}, {})
+BESIDE = RelatedFiles({"params": ("w/p.yaml", "w/q.yaml"), "rviz": ("v.rviz",)}, "w/r.srdf", {}, {})
 MADE = Proposal({}, [Member(Looked("w/r.urdf"), BESIDE, ("robot1",), 0.5)], {})
 
 

@@ -86,7 +86,7 @@ def test_answers_are_taken_and_wrong_ones_asked_for_again(folder: Path) -> None:
     assert "'wide' does not fit" in shown
     assert {it["name"]: it["pose"]["y"] for it in fleet["robots"]} == {"scout": 0.0, "carrier": 3.5}
     assert (fleet["distro"], fleet["layout"], fleet["simulator"]) == ("jazzy", "both", "none")
-    assert "companions" not in fleet
+    assert "related_files" not in fleet
 
 
 def test_what_options_say_is_not_asked(folder: Path) -> None:
@@ -113,7 +113,7 @@ def test_of_two_files_that_fit_alike_one_is_asked_for(
     shown, fleet = talked(folder, ["", "", answer, *[""] * 4], "rover.urdf")
     assert "2 files have parameters of amcl, and names that the robot has not" in shown
     assert "1: a.yaml (a_base)" in shown and "The one that is meant [1/2/none] (none)" in shown
-    assert fleet["companions"].get("params", []) == taken
+    assert fleet["related_files"].get("params", []) == taken
 
 
 NODES = """\

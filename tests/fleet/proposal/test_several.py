@@ -80,7 +80,7 @@ def test_a_file_is_of_the_robot_in_whose_folder_it_is(tmp_path: Path) -> None:
         )
     paths = [str(tmp_path / f"{it}_description/urdf/robot.urdf") for it in ("left", "right")]
     made = fleet_of(tmp_path, *paths, "-n", "1")
-    own = {it["name"]: it["companions"]["params"] for it in made["robots"]}
+    own = {it["name"]: it["related_files"]["params"] for it in made["robots"]}
     assert own == {f"{it}1": [f"../{it}_description/config/own.yaml"] for it in ("left", "right")}
 
 
@@ -145,7 +145,7 @@ def test_what_another_robot_of_the_fleet_has_is_not_left_over(tmp_path: Path) ->
     files(tmp_path, **{"config.yaml": yaml.safe_dump(joints)})
     paths = [str(tmp_path / it) for it in ("arm.urdf", "rover.urdf")]
     made = fleet_of(tmp_path, *paths, "-n", "1")
-    assert made["robots"][0]["companions"] == {"params": ["../config.yaml"]}
+    assert made["robots"][0]["related_files"] == {"params": ["../config.yaml"]}
     assert "config.yaml: it is for" not in (tmp_path / "made/fleet.yaml").read_text()
 
 

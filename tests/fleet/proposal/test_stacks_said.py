@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from lxml import etree
 
-from multibot_rewrite.fleet.proposal import companions
+from multibot_rewrite.fleet.proposal import related_files
 from multibot_rewrite.fleet.proposal.looking import Looked
 
 STATE = ("robot_state", "joint_state_publisher sends the joints until a driver does")
@@ -29,9 +29,9 @@ def test_the_stacks_that_a_description_says(
 ) -> None:
     robot = Looked("r.urdf", simulator=simulator, control=control)
     nodes = {"controller_manager": "p/c.yaml"} if manager else {}
-    assert list(companions._stacks(robot, nodes, "")) == found
+    assert list(related_files._stacks(robot, nodes, "")) == found
     moveit = ("moveit", "there is r.srdf")
-    assert list(companions._stacks(robot, nodes, "p/r.srdf")) == [*found, moveit]
+    assert list(related_files._stacks(robot, nodes, "p/r.srdf")) == [*found, moveit]
 
 
 def test_the_nearest_file_is_the_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -50,6 +50,6 @@ def test_the_nearest_file_is_the_first(tmp_path: Path, monkeypatch: pytest.Monke
         "zzz/rover.yaml", "zzz/a.yaml", "zzz/b.yaml", "zzz/named.yaml", "zzz/a_more_words.yaml",
     ]  # fmt: skip
     robot = Looked("own/rover.urdf", root=root)
-    assert companions._nearest(robot, sorted(wanted, reverse=True)) == wanted
-    bare = companions._nearest(Looked("own/rover.urdf"), sorted(wanted))
+    assert related_files._nearest(robot, sorted(wanted, reverse=True)) == wanted
+    bare = related_files._nearest(Looked("own/rover.urdf"), sorted(wanted))
     assert bare[:3] == ["own/rover.yaml", "own/named.yaml", "own/a_b_c.yaml"]

@@ -27,10 +27,10 @@ from zenoh_robots import (
 )
 
 from multibot_rewrite.fleet.outputs.zenoh_configuration import Setup, configurations
+from multibot_rewrite.planning.domain_bridge import with_bridges
+from multibot_rewrite.planning.plan import read_plan as plan_in
 from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.producers.zenoh.observe import Router, look
-from multibot_rewrite.spelling.domain_bridge import with_bridges
-from multibot_rewrite.spelling.plan import read_plan as plan_in
 from multibot_rewrite.system.records import Domain, System
 
 zenoh = pytest.importorskip("zenoh", reason="no zenoh: pip install '.[zenoh]'")

@@ -20,7 +20,7 @@ from multibot_rewrite.fleet.outputs.zenoh_access import (
     robot_rules,
 )
 from multibot_rewrite.fleet.outputs.zenoh_configuration import Setup, configurations
-from multibot_rewrite.spelling.domain_bridge import with_bridges
+from multibot_rewrite.planning.domain_bridge import with_bridges
 from multibot_rewrite.system.records import Domain, End, Node, System
 
 

@@ -15,7 +15,7 @@ from paths import ROBOTS
 from multibot_rewrite.base.model import Unusable
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.pages.view import models, page, scene
-from multibot_rewrite.spelling.plan import read_plan
+from multibot_rewrite.planning.plan import read_plan
 from multibot_rewrite.system.json import to_json
 
 

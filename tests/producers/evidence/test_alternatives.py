@@ -6,8 +6,8 @@ from __future__ import annotations
 import pytest
 from given_parameters import run_given
 
+from multibot_rewrite.planning.records import Given, Run
 from multibot_rewrite.producers.evidence.nodes import alternatives
-from multibot_rewrite.spelling.records import Given, Run
 from multibot_rewrite.system.records import Place
 
 HERE = Place("c.yaml", 3)

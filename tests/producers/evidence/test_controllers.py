@@ -19,11 +19,11 @@ from named_ends import named_ends
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.fleet.build import Outputs
 from multibot_rewrite.knowledge.stacks import load_nodes, load_stack
+from multibot_rewrite.planning.records import Table
+from multibot_rewrite.planning.transforms import sent_by
+from multibot_rewrite.planning.ways import HOST, deliveries, started
 from multibot_rewrite.producers.evidence.hardware import exported
 from multibot_rewrite.producers.evidence.nodes import nodes_of
-from multibot_rewrite.spelling.records import Table
-from multibot_rewrite.spelling.transforms import sent_by
-from multibot_rewrite.spelling.ways import HOST, deliveries, started
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 ARM = """\
@@ -85,7 +85,7 @@ def made(folder: Path, arm: str, controllers: str, layout: str, more: str = "") 
     fleet = folder / "fleet.yaml"
     fleet.write_text(
         f"layout: {layout}\naffix: prefix\ndistro: jazzy\n{more}description: arm.urdf\n"
-        "robots: [{name: left}, {name: right}]\ncompanions: {params: [controllers.yaml]}\n"
+        "robots: [{name: left}, {name: right}]\nrelated_files: {params: [controllers.yaml]}\n"
     )
     return built_fleet(fleet)
 
@@ -262,7 +262,7 @@ def nodes_with(folder: Path, arm: str, layout: str, more: str = "") -> Table:
     return planned_fleet(fleet).fleet.table
 
 
-MANAGED = "stack: ros2_control\ncompanions: {params: [controllers.yaml]}\n"
+MANAGED = "stack: ros2_control\nrelated_files: {params: [controllers.yaml]}\n"
 
 
 def test_nodes_that_hardware_makes(tmp_path: Path) -> None:

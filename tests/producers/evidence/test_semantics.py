@@ -61,7 +61,7 @@ def planned(
     (folder / "m.yaml").write_text(MOVEIT.replace("JOINTS", joints))
     (folder / "fleet.yaml").write_text(
         f"layout: frames-per-robot\ndescription: arm.urdf\nsrdf: arm.srdf\n{more}"
-        "companions: {moveit: [m.yaml]}\nrobots: [{name: robot1}, {name: robot2}]\n"
+        "related_files: {moveit: [m.yaml]}\nrobots: [{name: robot1}, {name: robot2}]\n"
     )
     plan = planned_fleet(folder / "fleet.yaml")
     found = make_outputs(plan).findings

@@ -6,8 +6,8 @@ from __future__ import annotations
 import pytest
 
 from multibot_rewrite.knowledge.records import Claim
+from multibot_rewrite.planning.records import Given
 from multibot_rewrite.producers.evidence.hardware import claimed
-from multibot_rewrite.spelling.records import Given
 from multibot_rewrite.system.records import Place
 
 JOINTS, KINDS = Place("c.yaml", 3), Place("c.yaml", 4)

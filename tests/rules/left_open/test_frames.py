@@ -18,9 +18,9 @@ from multibot_rewrite.fleet.checks.robot_system import DRIVERS
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.knowledge.stacks import load_nodes
+from multibot_rewrite.planning.records import Given, Run
 from multibot_rewrite.producers.ends import edge, edges_off
 from multibot_rewrite.rules.system.tf_pieces import tf_tree_in_pieces
-from multibot_rewrite.spelling.records import Given, Run
 from multibot_rewrite.system.index import index
 from multibot_rewrite.system.ownership import ALONE
 from multibot_rewrite.system.records import Edge, Place, System, edge_of
@@ -113,7 +113,7 @@ SIMULATED = """\
 description: r.urdf
 simulator: gazebo
 stack: [navigation]
-companions: {params: [p.yaml]}
+related_files: {params: [p.yaml]}
 robots: [{name: r1}, {name: r2}]
 """
 

@@ -10,13 +10,13 @@ from open_findings import found
 from paths import fixture_text
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.stacks import load_nodes
+from multibot_rewrite.planning.records import Run
 from multibot_rewrite.producers.evidence.hardware import Exported, control_system
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
+from multibot_rewrite.related_files.yaml_text import read_yaml
 from multibot_rewrite.rules.system.states import claims_any, interface_commanded_twice
-from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.index import index
 from multibot_rewrite.system.ownership import ALONE
 from multibot_rewrite.system.records import Place
@@ -89,7 +89,7 @@ force:
 FLEET = """\
 distro: jazzy
 description: ur.urdf
-companions: {params: controllers.yaml}
+related_files: {params: controllers.yaml}
 affix: AFFIX
 robots: [{name: robot1}, {name: robot2}]
 """

@@ -26,9 +26,9 @@ from multibot_rewrite.fleet.robots.fitting.node_topics import (
 )
 from multibot_rewrite.knowledge.conditions import chosen_type, parse_condition
 from multibot_rewrite.knowledge.records import TWIST_MUX, Endpoint, NodeFacts
+from multibot_rewrite.planning.records import Run
 from multibot_rewrite.producers.ends import bridge_ends
 from multibot_rewrite.producers.evidence.filling import lookup
-from multibot_rewrite.spelling.records import Run
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 from multibot_rewrite.system.words import PLAIN
 
@@ -148,7 +148,7 @@ def _wanted(
     said = [it.type for it in choices if it.is_set]
     rows = [
         end.type
-        for path in spec.companions.get("bridge", ())
+        for path in spec.related_files.get("bridge", ())
         for end in bridge_ends(own_yaml(spec, path))
         if end.role == SUBSCRIBES
     ]

@@ -38,11 +38,11 @@ from multibot_rewrite.fleet.robots.fitting.sensors import (
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.knowledge.conditions import parse_condition
 from multibot_rewrite.knowledge.records import MOVE_GROUP, TWIST_MUX, NodeFacts
+from multibot_rewrite.planning.bridged_topics import TF_ELEMENT, TF_TYPE
+from multibot_rewrite.planning.records import Given, Run
+from multibot_rewrite.planning.transforms import edges_in, sent_by
 from multibot_rewrite.producers.ends import bridge_rows
 from multibot_rewrite.producers.evidence.filling import sent_with
-from multibot_rewrite.spelling.bridged_topics import TF_ELEMENT, TF_TYPE
-from multibot_rewrite.spelling.records import Given, Run
-from multibot_rewrite.spelling.transforms import edges_in, sent_by
 from multibot_rewrite.system.records import NOWHERE, SUBSCRIBES, Edge, edge_of
 from multibot_rewrite.system.words import last_word
 
@@ -78,7 +78,7 @@ def _sent_by_systems(member: Member) -> Iterator[tuple[str, Edge]]:
 
 def brings_transforms(spec: RobotSpec) -> bool:
     """Return whether a bridge file of the robot or of its launch files has a row with transforms."""
-    paths = spec.companions.get("bridge", ())
+    paths = spec.related_files.get("bridge", ())
     return any(it.end.type == TF_TYPE for path in paths for it in bridge_rows(own_yaml(spec, path)))
 
 
@@ -86,7 +86,7 @@ def _led_elsewhere(spec: RobotSpec) -> set[str]:
     """Return the last words of the simulator's topics with transforms that bridge files of the robot
     have on no tf."""
     led: dict[str, set[str]] = defaultdict(set)
-    for path in spec.companions.get("bridge", ()):
+    for path in spec.related_files.get("bridge", ()):
         for it in bridge_rows(own_yaml(spec, path)):
             if it.end.type == TF_TYPE and it.end.role != SUBSCRIBES:
                 led[last_word(it.inside)].add(last_word(it.end.name))
@@ -267,9 +267,9 @@ def _as_listed(node: NodeFacts, spec: RobotSpec) -> NodeFacts:
     """Return the node without the names that it makes of a list which no file gives it: they may come,
     if a file is added. So may those of the panels and displays that RViz has in its usual file, where
     the robot has another one."""
-    if node.kind == MOVE_GROUP and spec.companions.get("moveit"):
+    if node.kind == MOVE_GROUP and spec.related_files.get("moveit"):
         return node
-    shows = node.kind == RVIZ and bool(spec.companions.get("rviz"))
+    shows = node.kind == RVIZ and bool(spec.related_files.get("rviz"))
     ends = []
     for it in node.endpoints:
         # It is made at run time, in the namespace of its robot; an absolute one all would share.

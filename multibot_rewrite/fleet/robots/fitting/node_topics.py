@@ -10,9 +10,9 @@ from typing import NamedTuple
 from multibot_rewrite.description.readback.reading import read
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
-from multibot_rewrite.spelling.of_runs import asked_alone, with_names
-from multibot_rewrite.spelling.records import Given
-from multibot_rewrite.spelling.table import plugin_nodes
+from multibot_rewrite.planning.of_runs import asked_alone, with_names
+from multibot_rewrite.planning.records import Given
+from multibot_rewrite.planning.table import plugin_nodes
 from multibot_rewrite.system.records import NOWHERE, PUBLISHES, SUBSCRIBES
 from multibot_rewrite.system.words import PLAIN, STAMPED
 
@@ -61,7 +61,7 @@ def with_rules(node: NodeFacts, targets: Mapping[Endpoint, str]) -> NodeFacts:
 
 def plugins(member: Member) -> Iterator[NodeFacts]:
     """Yield the nodes that plugins of the description are, with the names that they have alone."""
-    reading = read(member.source.source, member.source.file, member.vocabulary)
+    reading = read(member.source.source, member.source.file, member.definitions)
     for run in map(with_names, plugin_nodes(reading, "")):
         yield run.fact._replace(
             endpoints=tuple(it._replace(remapped=name) for it, name in run.names)

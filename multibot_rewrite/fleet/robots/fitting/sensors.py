@@ -19,8 +19,8 @@ from multibot_rewrite.fleet.robots.fitting.node_topics import (
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.knowledge.conditions import HEARD, holds, parse_condition, verdict
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
+from multibot_rewrite.planning.bridged_topics import DIRECTIONS, bridged_topics
 from multibot_rewrite.producers.evidence.filling import lookup
-from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, bridged_topics
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 from multibot_rewrite.system.words import ODOMETRY
 

@@ -22,11 +22,11 @@ from multibot_rewrite.base.findings.finding import (
 from multibot_rewrite.base.lazy import ATTRIBUTES, lazy_compile
 from multibot_rewrite.base.model import Edit
 from multibot_rewrite.base.nearest import did_you_mean_one_of
-from multibot_rewrite.companions.named_file import EVERY
 from multibot_rewrite.description.checks.audit import leftover_xacro, loosely_written, worlds
 from multibot_rewrite.description.checks.mentions import is_macro_call
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.twice import already_rewritten
+from multibot_rewrite.related_files.named_file import EVERY
 from multibot_rewrite.rules.declaration import OF_TWO
 from multibot_rewrite.rules.settings import EVERY_FILE, ArgumentSet
 from multibot_rewrite.rules.subject import Subject

@@ -13,13 +13,13 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, SRDF, URDF, WARNING, rule
 from multibot_rewrite.base.nearest import nearest, slip_of
-from multibot_rewrite.companions.named_file import MOVEIT, PARAMS
 from multibot_rewrite.description.checks.numbers import number
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.unknown import is_unknown
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.description.sources import packages
+from multibot_rewrite.related_files.named_file import MOVEIT, PARAMS
 from multibot_rewrite.rules.description.references import duplicates
 from multibot_rewrite.rules.description.references.control import misspelt_interfaces
 from multibot_rewrite.rules.description.structure import joints
@@ -197,7 +197,7 @@ def class_not_in_library(subject: Subject) -> Iterator[Problem]:
         yield from _misspelt_library(subject, it, library, name)
         if not name or "$" in name or not library.startswith(FAMILIES[0][0]):
             continue
-        section = subject.tree.vocabulary.values(library)
+        section = subject.tree.definitions.values(library)
         classes = [known for known in section.names if "::" in known] if section else []
         if classes and name not in classes:
             message = f"{it.get('name', '').strip()!r} is no class of {library}"
@@ -210,10 +210,10 @@ def _misspelt_library(
 ) -> Iterator[Problem]:
     """Yield a library that is not known, of a class that is: that of another one, nearly spelt so. A
     library that is not called as those of Gazebo may be anybody's."""
-    vocabulary = subject.tree.vocabulary
-    if "::" not in name or vocabulary.values(library) or vocabulary.find("plugin", library):
+    definitions = subject.tree.definitions
+    if "::" not in name or definitions.values(library) or definitions.find("plugin", library):
         return
-    section = vocabulary.values(name)
+    section = definitions.values(name)
     near = nearest(library, [it for it in section.names if "::" not in it] if section else [])
     if near and near != library:
         message = f"no library of Gazebo is called {library!r}; {name} is in another one"
@@ -228,7 +228,7 @@ def misspelt_libraries(subject: Subject) -> Iterator[Problem]:
         if host.element.tag != "plugin" or not section or not is_unknown(section) or not name:
             continue
         key = library_key(name.rpartition("/")[2])
-        if near := _slip_of_library(key, subject.tree.vocabulary.names("plugin")):
+        if near := _slip_of_library(key, subject.tree.definitions.names("plugin")):
             message = f"no known plugin is called {name!r}"
             level = "" if key.startswith(tuple(start for start, _ in FAMILIES)) else NOTE
             yield Problem(host.element, message, "filename", f"did you mean {near!r}?", level=level)
@@ -240,7 +240,7 @@ def misspelt_hardware(subject: Subject) -> Iterator[Problem]:
     for system in subject.elements.tops("ros2_control"):
         for it in system.iterfind("hardware/plugin"):
             name = text_of(it)
-            known = [*subject.tree.vocabulary.names("hardware")]
+            known = [*subject.tree.definitions.names("hardware")]
             near = "" if name in known or "$" in name else _slip(name, known)
             package = name.partition("/")[0]
             level = "" if any(it.startswith(f"{package}/") for it in known) else NOTE

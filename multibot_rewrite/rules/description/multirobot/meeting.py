@@ -10,12 +10,12 @@ from multibot_rewrite.base.conventions import SHARED_TOPICS
 from multibot_rewrite.base.findings.finding import ERROR, URDF, WARNING, Rule, declare
 from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.description.checks.problem import Problem
+from multibot_rewrite.planning import way_checks
 from multibot_rewrite.rules.declaration import TWO
 from multibot_rewrite.rules.description.multirobot.topics import APART, AS_WRITTEN
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject
 from multibot_rewrite.rules.system import commands, names, sharing, states, transforms
-from multibot_rewrite.spelling import way_checks
 
 ODOMETRY_APART = make_naming("tf-per-robot", shared_topics=[*SHARED_TOPICS, "tf_static"])
 
@@ -41,7 +41,7 @@ def _shared(subject: Subject) -> tuple[Problem, ...]:
     if any(it.level == ERROR for it in plan.findings):
         return ()
     pieces = cut(document.source, plan.edits)
-    found = shared_by_all(document, pieces, naming, subject.tree.vocabulary)
+    found = shared_by_all(document, pieces, naming, subject.tree.definitions)
     return tuple(said_of(subject.settings.robots[0], found))
 
 

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, SRDF, URDF, WARNING, rule
 from multibot_rewrite.base.naming import Naming, make_naming, overlap
-from multibot_rewrite.companions.named_file import MOVEIT, PARAMS
 from multibot_rewrite.description.checks import hazards
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.description.rewriters.spelling import ROBOT_SLOT
+from multibot_rewrite.description.rewriters.renaming import ROBOT_SLOT
 from multibot_rewrite.description.steps.collect import Inventory
+from multibot_rewrite.related_files.named_file import MOVEIT, PARAMS
 from multibot_rewrite.rules import declaration
 from multibot_rewrite.rules.declaration import OF_TWO, TWO
 from multibot_rewrite.rules.description.multirobot.topics import (
@@ -165,7 +165,7 @@ def _one_device(subject: Subject) -> Iterator[Problem]:
 
     starts = starts_of(subject, params)
     held = {(it.get("name", ""), (it.text or "").strip()): it for it in params}
-    for it in of_hardware(root, "", NOWHERE, subject.tree.vocabulary, of_networks=True):
+    for it in of_hardware(root, "", NOWHERE, subject.tree.definitions, of_networks=True):
         element = held.get((it.name, it.value))
         if element is None:
             message = f"{it.name} is not given: it is {it.value!r} for every robot"

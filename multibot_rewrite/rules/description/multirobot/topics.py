@@ -152,7 +152,7 @@ def _is_gz(claim: Claim) -> bool:
 
 def _is_classic(subject: Subject) -> bool:
     """Return whether it is for Gazebo Classic, which puts the model's name before sensor topics."""
-    from multibot_rewrite.spelling.bridged_topics import GZ_LIBRARIES, plugin_libraries
+    from multibot_rewrite.planning.bridged_topics import GZ_LIBRARIES, plugin_libraries
 
     keys = plugin_libraries(subject.inventory)
     return bool(keys) and not any(key.startswith(GZ_LIBRARIES) for key in keys)

@@ -86,11 +86,11 @@ def _of_no_node(subject: Subject) -> Iterator[Problem]:
     files = [it for it in (_files(subject, systems[0]) if systems else ()) if _place(it[0]) == ""]
     if not files:
         return
-    from multibot_rewrite.companions.params.sections import meant_for, raw_sections
-    from multibot_rewrite.companions.yaml_text import read_yaml
+    from multibot_rewrite.related_files.params.sections import meant_for, raw_sections
+    from multibot_rewrite.related_files.yaml_text import read_yaml
 
     plugins = list(subject.document.root.iter("plugin"))
-    nodes = read_tree(subject.document.root, subject.tree.vocabulary).nodes
+    nodes = read_tree(subject.document.root, subject.tree.definitions).nodes
     managers = {plugins[it.number]: it.manager for it in nodes if it.manager}
     for element, path, _ in files:
         plugin = element.getparent()
@@ -209,11 +209,11 @@ def _resolved_path(subject: Subject, text: str) -> str:
 def _interfaces(subject: Subject, path: str, is_sure: bool) -> tuple[Interface, ...]:
     """Return the interfaces exported, and claimed by a file's controllers; none of another robot."""
     # Most descriptions have no such file, and a lint of them loads nothing of this.
-    from multibot_rewrite.companions.yaml_text import read_yaml
     from multibot_rewrite.knowledge.parameters import load_known_nodes
     from multibot_rewrite.knowledge.stacks import load_nodes
     from multibot_rewrite.producers.evidence.hardware import control_system, exported
     from multibot_rewrite.producers.evidence.parameter_files import given_nodes
+    from multibot_rewrite.related_files.yaml_text import read_yaml
     from multibot_rewrite.rules.system.states import claims_any
 
     release, document = subject.settings.distro, subject.document

@@ -90,7 +90,7 @@ def duplicate_sensor(subject: Subject) -> Iterator[Problem]:
         if block.get("reference") and name_of(it)
     )
     for it in _repeated(sensors):
-        from multibot_rewrite.spelling.bridged_topics import is_for_classic
+        from multibot_rewrite.planning.bridged_topics import is_for_classic
 
         link = it.getparent().get("reference", "")  # type: ignore[union-attr]
         body = bodies.get(link, link)
@@ -240,7 +240,7 @@ def topic_of_two_systems(subject: Subject) -> Iterator[Problem]:
     if sum("::" in it.get("name", "") for it in subject.elements.every("plugin")) < 2:
         return
     from multibot_rewrite.base.naming import make_naming
-    from multibot_rewrite.spelling.bridged_topics import DIRECTIONS, model_name, plugin_topics
+    from multibot_rewrite.planning.bridged_topics import DIRECTIONS, model_name, plugin_topics
 
     inventory = subject.inventory
     model = model_name(inventory) or "MODEL"

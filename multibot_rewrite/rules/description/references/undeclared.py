@@ -28,7 +28,7 @@ from multibot_rewrite.description.checks.references import (
     where,
 )
 from multibot_rewrite.description.rewriters.own_defaults import frame_sites
-from multibot_rewrite.description.rewriters.spelling import must_be_declared, names_in
+from multibot_rewrite.description.rewriters.renaming import must_be_declared, names_in
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.rules.facts.memo import lacking, level_of_absence, memoized, since_jazzy
@@ -145,7 +145,7 @@ def _sent(subject: Subject) -> Iterator[tuple[_Element, str, str]]:
         # Most descriptions need none of it.
         from multibot_rewrite.description.readback.reading import transforms_sent
 
-        yield from transforms_sent(root, subject.tree.vocabulary)
+        yield from transforms_sent(root, subject.tree.definitions)
 
 
 @rule("MB217", "frame-not-a-link", WARNING)
