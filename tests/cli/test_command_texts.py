@@ -433,8 +433,7 @@ def test_headings_and_names_are_painted() -> None:
     [
         (["--quite"], "unknown option --quite; did you mean '--quiet'?"),
         (["--from=a"],
-         "unknown option --from; multibot check, multibot snapshot, multibot view take it;"
-         " did you mean '--output-kind'?"),
+         "unknown option --from; multibot check, multibot snapshot, multibot view take it"),
         (["--changed"], "unknown option --changed"),
         (["--dry-run"],
          "unknown option --dry-run; --diff does that,"
@@ -444,9 +443,10 @@ def test_headings_and_names_are_painted() -> None:
          "unknown option --github; --format does that,"
          " which urdf-postfix, urdf-lint, multibot build and 5 more take"),
         # Dashes are not counted.
-        (["--fxxrm"], "unknown option --fxxrm; did you mean '--output-kind'?"),
+        (["--oxtput-kxnd"], "unknown option --oxtput-kxnd; did you mean '--output-kind'?"),
         (["a", "b"], "unexpected b"),
         # A part of it says what it is, another first letter does not.
+        (["--form", "b"], "unknown option --form; use --output-kind KIND"),
         (["--output-form", "b"], "unknown option --output-form; did you mean '--output-kind'?"),
         (["--norm"], "unknown option --norm"),
         # A short option, alone or with its value; what is no option is a value.
