@@ -10,7 +10,7 @@ from typing import NamedTuple
 from multibot_rewrite.base.conventions import EVERYBODYS, chooses, is_from_outside, team
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Remap, Setting
 from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
-from multibot_rewrite.base.nearest import MISTYPED, nearest
+from multibot_rewrite.base.nearest import MISTYPED, meant_name, nearest
 from multibot_rewrite.base.wording import and_then, shorten, unique
 from multibot_rewrite.rules.declaration import see, system_rule, where
 from multibot_rewrite.rules.system.causes import ACTION_PARTS, NONE, Cause, Spelled, alike
@@ -328,7 +328,9 @@ def _unserved(seen: Index, end: End, served: _Served) -> Iterator[Finding]:
         # A node that runs and is called nearly so: a letter wrong, or without the namespace.
         space, _, last = listed.rpartition("/")
         others = {last_word(it): it for it in seen.nodes if it.rpartition("/")[0] == space}
-        meant = outside or others.get(nearest(last, others, MISTYPED), "")
+        meant = outside or others.get(
+            meant_name(last, others) or nearest(last, others, MISTYPED), ""
+        )
         instead = f"; {meant} runs" if meant else ""
         wait = f"it waits for {listed} and activates nothing after it: start it"
         cause = not_managed(seen, end.node, [listed], f"{wait}, or ")
