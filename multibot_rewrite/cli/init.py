@@ -106,6 +106,10 @@ def _quietly(wanted: Wanted, call: Callable[[Wanted], _T]) -> _T:
 
 def _wanted(options: argparse.Namespace) -> Wanted:
     """Return the options as ``Wanted``."""
+    if options.launch and os.path.isfile(options.launch[0]):
+        # What follows a launch file is its arguments, or a description again.
+        options.words += [it for it in options.launch[1:] if ":=" not in it]
+        options.launch = [options.launch[0], *(it for it in options.launch[1:] if ":=" in it)]
     wanted = Wanted(
         tuple(plain_words(options)) or (os.curdir,),
         len(options.robots) or options.count or 0,

@@ -568,7 +568,7 @@ def test_the_launch_file_that_is_named_says_which_description(
     """No other one is looked at: one that cannot be read stops nothing, and none is offered."""
     (file,) = write(robots / "rover/launch", {"up": f"{actions}; {DRIVER}"})
     out = robots / "fleet.yaml"
-    assert main(["init", str(robots), "--launch", file, "--yes", "-o", str(out)]) == 0
+    assert main(["init", "--launch", file, str(robots), "--yes", "-o", str(out)]) == 0
     fleet = yaml.safe_load(out.read_text())
     assert (fleet["description"], fleet["launch"]) == (description, "rover/launch/up.launch.py")
     assert "descriptions" not in capsys.readouterr().err
