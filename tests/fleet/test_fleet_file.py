@@ -32,13 +32,16 @@ PAGE = (ROOT / "docs" / "fleet-file.md").read_text()
 KEYS = fleet_keys.page()
 
 
+def with_keys(keys: str) -> str:
+    return f"robots:\n  - {{name: a, description: rover.urdf{keys and ', '}{keys}}}\n"
+
+
 def read(folder: Path, text: str, **files: str) -> FleetFile:
     return read_fleet(str(fleet_folder(folder, text, **files)), "", {})
 
 
 def robot(folder: Path, keys: str, above: str = "") -> RobotSpec:
-    text = f"{above}robots:\n  - {{name: a, description: rover.urdf{keys and ', '}{keys}}}\n"
-    return read(folder, text).robots[0]
+    return read(folder, above + with_keys(keys)).robots[0]
 
 
 # ---------------------------------------------------------------- what it means
@@ -158,7 +161,7 @@ BAD: dict[str, tuple[str, ...]] = {
         "3: related_files: unknown key 'parms'; did you mean 'params'?",
     ),
     "unknown-pose-key": (
-        "robots:\n  - {name: a, description: rover.urdf, pose: {yow: 1}}\n",
+        with_keys("pose: {yow: 1}"),
         "2: robots[0].pose: unknown key 'yow'; did you mean 'yaw'?",
     ),
     "related-file-at-the-top": (
@@ -270,10 +273,7 @@ BAD: dict[str, tuple[str, ...]] = {
     "affix": (f"affix: suffix\n{ONE}", "1: affix: 'suffix' is not known; did you mean 'postfix'?"),
     "distro": (f"distro: iron\n{ONE}", "1: distro: 'iron' is not known; known are humble, jazzy"),
     "stack": (f"stack: nav3\n{ONE}", "1: stack 'nav3' is not known; did you mean 'nav2'?"),
-    "robots-stack": (
-        "robots:\n  - {name: a, description: rover.urdf, stack: nav3}\n",
-        "2: stack 'nav3' is not known",
-    ),
+    "robots-stack": (with_keys("stack: nav3"), "2: stack 'nav3' is not known"),
     "separator": (f"separators: {{link: '%'}}\n{ONE}", "1: separator link='%': use one of / _ __"),
     "separator-kind": (f"separators: {{lnk: /}}\n{ONE}", "1: separator kind 'lnk' is not known"),
     "world": (
@@ -281,28 +281,22 @@ BAD: dict[str, tuple[str, ...]] = {
         "1: world 'odom' is not a shared frame (earth, map, utm, world); add it to shared_frames",
     ),
     "pose-word": (
-        "robots:\n  - {name: a, description: rover.urdf, pose: {x: one}}\n",
+        with_keys("pose: {x: one}"),
         "2: robots[0].pose.x: 'one' is not valid; write a number",
     ),
-    "pose-nan": (
-        "robots:\n  - {name: a, description: rover.urdf, pose: {x: .nan}}\n",
-        "2: 'a': pose x is nan; write a number",
-    ),
+    "pose-nan": (with_keys("pose: {x: .nan}"), "2: 'a': pose x is nan; write a number"),
     "colour": (
-        "robots:\n  - {name: a, description: rover.urdf, colour: gren}\n",
+        with_keys("colour: gren"),
         "2: 'a': colour 'gren' is not known; did you mean 'green'?",
     ),
-    "colour-two": (
-        "robots:\n  - {name: a, description: rover.urdf, colour: [1, 2]}\n",
-        "2: robots[0].colour: [1, 2] is not valid; write",
-    ),
+    "colour-two": (with_keys("colour: [1, 2]"), "2: robots[0].colour: [1, 2] is not valid; write"),
     "other-affix": (
         "affix: prefix\nrobots:\n  - {name: a, description: rover.urdf, postfix: b}\n",
         "3: 'a' has a postfix, but the fleet's affix is prefix; write prefix: instead",
     ),
     "no-description": ("robots:\n  - {name: a}\n", "2: robot 'a' has no description; name its"),
     "arguments-without-xacro": (
-        "robots:\n  - {name: a, description: rover.urdf, arguments: {x: 1}}\n",
+        with_keys("arguments: {x: 1}"),
         "2: 'a' has arguments but no xacro file; remove them, or give a xacro",
     ),
     "arguments-list": (f"{ONE}arguments: [a]\n", "3: arguments: ['a'] is not valid; write keys"),
@@ -334,7 +328,7 @@ BAD: dict[str, tuple[str, ...]] = {
         "Visualization Manager: {Displays: [{Class: rviz/Grid}]}\n",
     ),
     "srdf-of-yaml": (
-        "robots:\n  - {name: a, description: rover.urdf, srdf: params.yaml}\n",
+        with_keys("srdf: params.yaml"),
         "@params.yaml: a parameter file; rewrite it with urdf-postfix, or name it in",
     ),
     "moveit-of-rviz": (

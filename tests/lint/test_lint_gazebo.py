@@ -40,7 +40,7 @@ def linted(inside: str, _folder: Path) -> set[str]:
 
 def defects() -> Iterator[tuple[str, str, str]]:
     """Each planted defect, the same without it, and its code."""
-    return ((text, "", code) for text, code in PLANTED.values())
+    return ((it, "", code) for code, texts in PLANTED.items() for it in texts.values())
 
 
 def in_link(inside: str) -> str:
@@ -81,228 +81,198 @@ CONTROL = (
     '<plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" filename="gz_ros2_control-system">'
     "<parameters>a.yaml</parameters>"
 )
-PLANTED = {
-    "type of a sensor": (sensor("camra"), "MB124"),
-    "type in capitals": (sensor("Camera"), "MB124"),
-    "field of view in degrees": (camera("<horizontal_fov>60</horizontal_fov>"), "MB125"),
-    "image format": (camera("<image><format>R8G8B</format></image>"), "MB124"),
-    "image format of ROS": (camera("<image><format>rgb8</format></image>"), "MB124"),
-    "rate in words": (sensor("imu", "<update_rate>fast</update_rate>"), "MB120"),
-    "rate with a decimal comma": (sensor("imu", "<update_rate>0,5</update_rate>"), "MB120"),
-    "rate with a unit": (sensor("imu", "<update_rate>30 Hz</update_rate>"), "MB120"),
-    "yes for true": (sensor("imu", "<always_on>yes</always_on>"), "MB120"),
-    "1.0 for true": (sensor("imu", "<visualize>1.0</visualize>"), "MB120"),
-    "five numbers in a pose": (sensor("imu", "<pose>0 0 0 0 0</pose>"), "MB120"),
-    "two numbers in a direction": (
-        in_link('<light name="l" type="spot"><direction>1 0</direction></light>'),
-        "MB120",
-    ),
-    "a colour of 255": (
-        in_link('<light name="l" type="spot"><diffuse>255 0 0 1</diffuse></light>'),
-        "MB120",
-    ),
-    "type of a light": (in_link('<light name="l" type="spott"/>'), "MB124"),
-    "type of a noise": (camera("<noise><type>gausian</type></noise>"), "MB124"),
-    "friction in words": (in_link("<mu1>high</mu1>"), "MB120"),
-    "self collision": (in_link("<selfCollide>maybe</selfCollide>"), "MB120"),
-    "gravity off": (in_link("<gravity>off</gravity>"), "MB120"),
-    "a pixel and a half": (camera("<image><width>640.5</width></image>"), "MB120"),
-    "negative samples": (
-        sensor("ray", "<ray><scan><horizontal><samples>-5</samples></horizontal></scan></ray>"),
-        "MB120",
-    ),
-    "a negative deviation": (
-        sensor("air_pressure", '<air_pressure><pressure><noise type="gaussian">'
-               "<stddev>-1</stddev></noise></pressure></air_pressure>"),
-        "MB125",
-    ),
-    "a sensor without name": (in_link('<sensor type="imu"/>'), "MB115"),
-    "a sensor with an empty name": (in_link('<sensor name="" type="imu"/>'), "MB115"),
-    "a sensor without type": (in_link('<sensor name="s"/>'), "MB115"),
-    "updateRate": (sensor("imu", "<updateRate>9</updateRate>"), "MB110"),
-    "horizontal_fow": (camera("<horizontal_fow>1</horizontal_fow>"), "MB110"),
-    "provide_feedback of a joint": (
-        '<gazebo reference="j"><provide_feedback>true</provide_feedback></gazebo>',
-        "MB110",
-    ),
-    "max_contacts of a link": (in_link("<max_contacts>9</max_contacts>"), "MB110"),
-    "rate in the camera": (camera("<update_rate>9</update_rate>"), "MB112"),
-    "friction without reference": ("<gazebo><mu1>1</mu1></gazebo>", "MB112"),
-    "friction of a joint": ('<gazebo reference="j"><mu1>1</mu1></gazebo>', "MB112"),
-    "feedback of a link": (in_link("<provideFeedback>true</provideFeedback>"), "MB112"),
-    "a plugin without library": ('<gazebo><plugin name="p"/></gazebo>', "MB115"),
-    "a scan in degrees": (
-        sensor("ray", "<ray><scan><horizontal><max_angle>180</max_angle></horizontal></scan></ray>"),
-        "MB170",
-    ),
-    "a pose in degrees": (sensor("imu", "<pose>0 0 0 0 0 -90</pose>"), "MB170"),
-    "a class in capitals": (system("imu", "IMU"), "MB160"),
-    "a class of another library": (system("imu", "DiffDrive"), "MB160"),
-    "a class for a library": (
-        '<gazebo><plugin name="gz-sim-imu-system" filename="gz::sim::systems::Imu"/></gazebo>',
-        "MB160",
-    ),
-    "a label for a class": (
-        '<gazebo><plugin name="drive" filename="gz-sim-diff-drive-system"/></gazebo>',
-        "MB160",
-    ),
-    "a library": (
-        '<gazebo><plugin name="gz::sim::systems::X" filename="gz-sim-dif-drive-system"/></gazebo>',
-        "MB110",
-    ),
-    "a library of Classic": (classic("gazebo_ros_dif_drive"), "MB110"),
-    "a class of hardware": (hardware("mock_components/GenericSytem"), "MB110"),
-    "hardware with another case": (hardware("gz_ros2_control/GazeboSimsystem"), "MB110"),
-    "a parameter": (system(*DRIVE, "<wheel_seperation>1</wheel_seperation>"), "MB110"),
-    "a parameter in camel case": (
-        system("thruster", "Thruster", "<joint_name>j</joint_name><fluidDensity>1</fluidDensity>"),
-        "MB110",
-    ),
-    "a parameter of ROS 1": (
-        classic("gazebo_ros_diff_drive", "<ros/><robotBaseFrame>a</robotBaseFrame>"),
-        "MB163",
-    ),
-    "a parameter of ROS 2 in ROS 1": (
-        classic("gazebo_ros_p3d", f"{OF_ROS_1}<update_rate>9</update_rate>"),
-        "MB163",
-    ),
-    "a parameter of a plugin of ROS 1": (
-        classic("gazebo_ros_p3d", f"{OF_ROS_1}<xyzOffsets>0 0 0</xyzOffsets>"),
-        "MB110",
-    ),
-    "a parameter no node reads in ROS 1": (
-        classic("gazebo_ros_p3d", f"{OF_ROS_1}<alwaysOn>true</alwaysOn>"),
-        "MB111",
-    ),
-    "an element of the sensor in a plugin of ROS 1": (
-        classic("gazebo_ros_imu", f"{OF_ROS_1}<imu/>"),
-        "MB111",
-    ),
-    "no topic of p3d in ROS 1": (
-        classic("gazebo_ros_p3d", "<robotNamespace>a</robotNamespace><bodyName>a</bodyName>"),
-        "MB115",
-    ),
-    "a rate in words in ROS 1": (
-        classic("gazebo_ros_p3d", f"{OF_ROS_1}<updateRate>fast</updateRate>"),
-        "MB120",
-    ),
-    "a parameter of a sensor's plugin": (
-        sensor("ray", classic("gazebo_ros_ray_sensor", "<ros/><output_typ>a</output_typ>")[8:-9]),
-        "MB110",
-    ),
-    "a parameter of hardware": (
-        hardware("kortex_driver/KortexMultiInterfaceHardware", '<param name="robot_ipp">1</param>'),
-        "MB110",
-    ),
-    "a parameter of a block": (
-        system("wheel-slip", "WheelSlip", '<wheel link_name="a"><wheel_radus>1</wheel_radus></wheel>'),
-        "MB110",
-    ),
-    "a block of a block": (
-        classic("gazebo_ros_p3d", "<body_name>a</body_name><ros><namespac>a</namespac></ros>"),
-        "MB110",
-    ),
-    "a remapping beside its block": (
-        f"<gazebo>{CONTROL}<ros><namespace>a</namespace></ros>"
-        "<remapping>a:=b</remapping></plugin></gazebo>",
-        "MB112",
-    ),
-    "a namespace beside its block": (
-        classic("gazebo_ros_p3d", "<ros/><body_name>a</body_name><namespace>a</namespace>"),
-        "MB112",
-    ),
-    "a name of a block that no node reads": (
-        f"<gazebo>{CONTROL}<ros><controlPeriod>1</controlPeriod></ros></plugin></gazebo>",
-        "MB111",
-    ),
-    "a radius of a block in words": (
-        system("wheel-slip", "WheelSlip",
-               '<wheel link_name="a"><wheel_radius>ten</wheel_radius></wheel>'),
-        "MB120",
-    ),
-    "Classic's parameter in gz": (system(*DRIVE, "<wheel_diameter>1</wheel_diameter>"), "MB163"),
-    "gz's parameter in Classic": (
-        classic("gazebo_ros_diff_drive", "<ros/><wheel_radius>1</wheel_radius>"),
-        "MB163",
-    ),
-    "a parameter no node reads": (system(*DRIVE, "<use_sim_time>true</use_sim_time>"), "MB111"),
-    "no joint of a thruster": (system("thruster", "Thruster"), "MB115"),
-    "no link of p3d": (classic("gazebo_ros_p3d", "<ros/>"), "MB115"),
-    "a radius in words": (system(*DRIVE, "<wheel_radius>ten cm</wheel_radius>"), "MB120"),
-    "a radius with a comma": (system(*DRIVE, "<wheel_radius>0,1</wheel_radius>"), "MB120"),
-    "on for true": (
-        classic("gazebo_ros_diff_drive", "<ros/><publish_odom>on</publish_odom>"),
-        "MB120",
-    ),
-    "a turning direction": (
-        system("multicopter-motor-model", "MulticopterMotorModel",
-               "<turningDirection>ccww</turningDirection>"),
-        "MB124",
-    ),
-    "no radius": (system(*DRIVE, "<wheel_radius>0</wheel_radius>"), "MB125"),
-    "a negative rate": (
-        system(*DRIVE, "<odom_publish_frequency>-1</odom_publish_frequency>"),
-        "MB125",
-    ),
-    "a label above 255": (system("label", "Label", "<label>256</label>"), "MB125"),
-    "a steering limit in degrees": (
-        system("ackermann-steering", "AckermannSteering", "<steering_limit>30</steering_limit>"),
-        "MB170",
-    ),
-    "a parameter of Classic's own plugin": (
-        classic("LiftDragPlugin", "<alpha_stal>0.3</alpha_stal>"),
-        "MB110",
-    ),
-    "a block of Classic's own plugin": (
-        classic("LinkPlot3DPlugin", "<plot><lnk>a</lnk></plot>"),
-        "MB110",
-    ),
-    "gz's parameter in Classic's own plugin": (
-        classic("DiffDrivePlugin", "<left_joint>j</left_joint><wheel_separation>1</wheel_separation>"),
-        "MB163",
-    ),
-    "the parameter of Classic's own plugin in gz": (
-        system("elevator", "Elevator", "<lift_joint>j</lift_joint>"),
-        "MB163",
-    ),
-    "no link of Classic's battery": (
-        classic("LinearBatteryPlugin", "<battery_name>b</battery_name>"),
-        "MB115",
-    ),
-    "two numbers of a centre of pressure": (classic("LiftDragPlugin", "<cp>1 2</cp>"), "MB120"),
-    "a stall in degrees": (classic("LiftDragPlugin", "<alpha_stall>15</alpha_stall>"), "MB170"),
-    "a turning direction of Classic": (
-        classic("ArduCopterPlugin", "<rotor><turningDirection>ccww</turningDirection></rotor>"),
-        "MB124",
-    ),
-    "a parameter that a helper reads": (
-        classic("hector_gazebo_ros_imu", "<rateGausianNoise>0 0 0</rateGausianNoise>"),
-        "MB110",
-    ),
-    "one number for three axes": (
-        classic("hector_gazebo_ros_imu", f"{ROS_1_SPACE}<accelDrift>0.5</accelDrift>"),
-        "MB120",
-    ),
-    "a rate of hector in words": (
-        classic("hector_gazebo_ros_sonar", f"{ROS_1_SPACE}<updateRate>ten</updateRate>"),
-        "MB120",
-    ),
-    "a latitude beyond the pole": (
-        classic("hector_gazebo_ros_gps", "<referenceLatitude>151.2</referenceLatitude>"),
-        "MB125",
-    ),
-    "a parameter of one joint of a trajectory": (
-        system("joint-trajectory-controller", "JointTrajectoryController",
-               "<position_p_gain>high</position_p_gain>"),
-        "MB120",
-    ),
-}  # fmt: skip
+PLANTED: dict[str, dict[str, str]] = {
+    "MB124": {
+        "type of a sensor": sensor("camra"),
+        "type in capitals": sensor("Camera"),
+        "image format": camera("<image><format>R8G8B</format></image>"),
+        "image format of ROS": camera("<image><format>rgb8</format></image>"),
+        "type of a light": in_link('<light name="l" type="spott"/>'),
+        "type of a noise": camera("<noise><type>gausian</type></noise>"),
+        "a turning direction": system(
+            "multicopter-motor-model",
+            "MulticopterMotorModel",
+            "<turningDirection>ccww</turningDirection>",
+        ),
+        "a turning direction of Classic": classic(
+            "ArduCopterPlugin", "<rotor><turningDirection>ccww</turningDirection></rotor>"
+        ),
+    },
+    "MB125": {
+        "field of view in degrees": camera("<horizontal_fov>60</horizontal_fov>"),
+        "a negative deviation": sensor(
+            "air_pressure",
+            '<air_pressure><pressure><noise type="gaussian">'
+            "<stddev>-1</stddev></noise></pressure></air_pressure>",
+        ),
+        "no radius": system(*DRIVE, "<wheel_radius>0</wheel_radius>"),
+        "a negative rate": system(*DRIVE, "<odom_publish_frequency>-1</odom_publish_frequency>"),
+        "a label above 255": system("label", "Label", "<label>256</label>"),
+        "a latitude beyond the pole": classic(
+            "hector_gazebo_ros_gps", "<referenceLatitude>151.2</referenceLatitude>"
+        ),
+    },
+    "MB120": {
+        "rate in words": sensor("imu", "<update_rate>fast</update_rate>"),
+        "rate with a decimal comma": sensor("imu", "<update_rate>0,5</update_rate>"),
+        "rate with a unit": sensor("imu", "<update_rate>30 Hz</update_rate>"),
+        "yes for true": sensor("imu", "<always_on>yes</always_on>"),
+        "1.0 for true": sensor("imu", "<visualize>1.0</visualize>"),
+        "five numbers in a pose": sensor("imu", "<pose>0 0 0 0 0</pose>"),
+        "two numbers in a direction": in_link(
+            '<light name="l" type="spot"><direction>1 0</direction></light>'
+        ),
+        "a colour of 255": in_link(
+            '<light name="l" type="spot"><diffuse>255 0 0 1</diffuse></light>'
+        ),
+        "friction in words": in_link("<mu1>high</mu1>"),
+        "self collision": in_link("<selfCollide>maybe</selfCollide>"),
+        "gravity off": in_link("<gravity>off</gravity>"),
+        "a pixel and a half": camera("<image><width>640.5</width></image>"),
+        "negative samples": sensor(
+            "ray", "<ray><scan><horizontal><samples>-5</samples></horizontal></scan></ray>"
+        ),
+        "a rate in words in ROS 1": classic(
+            "gazebo_ros_p3d", f"{OF_ROS_1}<updateRate>fast</updateRate>"
+        ),
+        "a radius of a block in words": system(
+            "wheel-slip",
+            "WheelSlip",
+            '<wheel link_name="a"><wheel_radius>ten</wheel_radius></wheel>',
+        ),
+        "a radius in words": system(*DRIVE, "<wheel_radius>ten cm</wheel_radius>"),
+        "a radius with a comma": system(*DRIVE, "<wheel_radius>0,1</wheel_radius>"),
+        "on for true": classic("gazebo_ros_diff_drive", "<ros/><publish_odom>on</publish_odom>"),
+        "two numbers of a centre of pressure": classic("LiftDragPlugin", "<cp>1 2</cp>"),
+        "one number for three axes": classic(
+            "hector_gazebo_ros_imu", f"{ROS_1_SPACE}<accelDrift>0.5</accelDrift>"
+        ),
+        "a rate of hector in words": classic(
+            "hector_gazebo_ros_sonar", f"{ROS_1_SPACE}<updateRate>ten</updateRate>"
+        ),
+        "a parameter of one joint of a trajectory": system(
+            "joint-trajectory-controller",
+            "JointTrajectoryController",
+            "<position_p_gain>high</position_p_gain>",
+        ),
+    },
+    "MB115": {
+        "a sensor without name": in_link('<sensor type="imu"/>'),
+        "a sensor with an empty name": in_link('<sensor name="" type="imu"/>'),
+        "a sensor without type": in_link('<sensor name="s"/>'),
+        "a plugin without library": '<gazebo><plugin name="p"/></gazebo>',
+        "no topic of p3d in ROS 1": classic(
+            "gazebo_ros_p3d", "<robotNamespace>a</robotNamespace><bodyName>a</bodyName>"
+        ),
+        "no joint of a thruster": system("thruster", "Thruster"),
+        "no link of p3d": classic("gazebo_ros_p3d", "<ros/>"),
+        "no link of Classic's battery": classic(
+            "LinearBatteryPlugin", "<battery_name>b</battery_name>"
+        ),
+    },
+    "MB110": {
+        "updateRate": sensor("imu", "<updateRate>9</updateRate>"),
+        "horizontal_fow": camera("<horizontal_fow>1</horizontal_fow>"),
+        "provide_feedback of a joint": (
+            '<gazebo reference="j"><provide_feedback>true</provide_feedback></gazebo>'
+        ),
+        "max_contacts of a link": in_link("<max_contacts>9</max_contacts>"),
+        "a library": a_plugin("gz::sim::systems::X", "gz-sim-dif-drive-system"),
+        "a library of Classic": classic("gazebo_ros_dif_drive"),
+        "a class of hardware": hardware("mock_components/GenericSytem"),
+        "hardware with another case": hardware("gz_ros2_control/GazeboSimsystem"),
+        "a parameter": system(*DRIVE, "<wheel_seperation>1</wheel_seperation>"),
+        "a parameter in camel case": system(
+            "thruster", "Thruster", "<joint_name>j</joint_name><fluidDensity>1</fluidDensity>"
+        ),
+        "a parameter of a plugin of ROS 1": classic(
+            "gazebo_ros_p3d", f"{OF_ROS_1}<xyzOffsets>0 0 0</xyzOffsets>"
+        ),
+        "a parameter of a sensor's plugin": sensor(
+            "ray", classic("gazebo_ros_ray_sensor", "<ros/><output_typ>a</output_typ>")[8:-9]
+        ),
+        "a parameter of hardware": hardware(
+            "kortex_driver/KortexMultiInterfaceHardware", '<param name="robot_ipp">1</param>'
+        ),
+        "a parameter of a block": system(
+            "wheel-slip", "WheelSlip", '<wheel link_name="a"><wheel_radus>1</wheel_radus></wheel>'
+        ),
+        "a block of a block": classic(
+            "gazebo_ros_p3d", "<body_name>a</body_name><ros><namespac>a</namespac></ros>"
+        ),
+        "a parameter of Classic's own plugin": classic(
+            "LiftDragPlugin", "<alpha_stal>0.3</alpha_stal>"
+        ),
+        "a block of Classic's own plugin": classic("LinkPlot3DPlugin", "<plot><lnk>a</lnk></plot>"),
+        "a parameter that a helper reads": classic(
+            "hector_gazebo_ros_imu", "<rateGausianNoise>0 0 0</rateGausianNoise>"
+        ),
+    },
+    "MB112": {
+        "rate in the camera": camera("<update_rate>9</update_rate>"),
+        "friction without reference": "<gazebo><mu1>1</mu1></gazebo>",
+        "friction of a joint": '<gazebo reference="j"><mu1>1</mu1></gazebo>',
+        "feedback of a link": in_link("<provideFeedback>true</provideFeedback>"),
+        "a remapping beside its block": (
+            f"<gazebo>{CONTROL}<ros><namespace>a</namespace></ros>"
+            "<remapping>a:=b</remapping></plugin></gazebo>"
+        ),
+        "a namespace beside its block": classic(
+            "gazebo_ros_p3d", "<ros/><body_name>a</body_name><namespace>a</namespace>"
+        ),
+    },
+    "MB170": {
+        "a scan in degrees": sensor(
+            "ray", "<ray><scan><horizontal><max_angle>180</max_angle></horizontal></scan></ray>"
+        ),
+        "a pose in degrees": sensor("imu", "<pose>0 0 0 0 0 -90</pose>"),
+        "a steering limit in degrees": system(
+            "ackermann-steering", "AckermannSteering", "<steering_limit>30</steering_limit>"
+        ),
+        "a stall in degrees": classic("LiftDragPlugin", "<alpha_stall>15</alpha_stall>"),
+    },
+    "MB160": {
+        "a class in capitals": system("imu", "IMU"),
+        "a class of another library": system("imu", "DiffDrive"),
+        "a class for a library": a_plugin("gz-sim-imu-system", "gz::sim::systems::Imu"),
+        "a label for a class": a_plugin("drive", "gz-sim-diff-drive-system"),
+    },
+    "MB163": {
+        "a parameter of ROS 1": classic(
+            "gazebo_ros_diff_drive", "<ros/><robotBaseFrame>a</robotBaseFrame>"
+        ),
+        "a parameter of ROS 2 in ROS 1": classic(
+            "gazebo_ros_p3d", f"{OF_ROS_1}<update_rate>9</update_rate>"
+        ),
+        "Classic's parameter in gz": system(*DRIVE, "<wheel_diameter>1</wheel_diameter>"),
+        "gz's parameter in Classic": classic(
+            "gazebo_ros_diff_drive", "<ros/><wheel_radius>1</wheel_radius>"
+        ),
+        "gz's parameter in Classic's own plugin": classic(
+            "DiffDrivePlugin", "<left_joint>j</left_joint><wheel_separation>1</wheel_separation>"
+        ),
+        "the parameter of Classic's own plugin in gz": system(
+            "elevator", "Elevator", "<lift_joint>j</lift_joint>"
+        ),
+    },
+    "MB111": {
+        "a parameter no node reads in ROS 1": classic(
+            "gazebo_ros_p3d", f"{OF_ROS_1}<alwaysOn>true</alwaysOn>"
+        ),
+        "an element of the sensor in a plugin of ROS 1": classic(
+            "gazebo_ros_imu", f"{OF_ROS_1}<imu/>"
+        ),
+        "a name of a block that no node reads": (
+            f"<gazebo>{CONTROL}<ros><controlPeriod>1</controlPeriod></ros></plugin></gazebo>"
+        ),
+        "a parameter no node reads": system(*DRIVE, "<use_sim_time>true</use_sim_time>"),
+    },
+}
 
 
-@pytest.mark.parametrize("defect", PLANTED)
-def test_a_planted_defect_is_found_by_its_rule_alone(defect: str) -> None:
-    text, code = PLANTED[defect]
-    assert codes(text) == [code]
+@pytest.mark.parametrize(("code", "defect"), [(it, name) for it in PLANTED for name in PLANTED[it]])
+def test_a_planted_defect_is_found_by_its_rule_alone(code: str, defect: str) -> None:
+    assert codes(PLANTED[code][defect]) == [code]
 
 
 HEALTHY = {

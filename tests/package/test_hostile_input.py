@@ -52,120 +52,78 @@ MESHES = "".join(
     for at in range(200)
 )
 
-# File -> its text, the command, how it ends, words of its last line.
-CASES: dict[str, tuple[str | bytes, tuple[str, ...], int, str]] = {
-    "includes": ("<xacro:include " * (MANY // 15), (LINT, "in.urdf.xacro"), 1, "1 error"),
-    "includes-in-quotes": (
-        '<xacro:include filename="' * (MANY // 25),
-        (LINT, "in.urdf.xacro"),
-        1,
-        "1 error",
-    ),
-    "includes-unchanged": (
-        "<xacro:include 'a' " * (MANY // 15),
-        (LINT, "in.urdf.xacro", "good.urdf"),
-        1,
-        "2 files",
-    ),
-    "pattern": (
-        robot(joint("a" * 36) + pattern("(a+)+c")),
-        (POSTFIX, "in.urdf", "r1"),
-        0,
-        "1 joint",
-    ),
-    "brackets": (
-        robot(joint("a") + pattern("[" * 100_000)),
-        (POSTFIX, "in.urdf", "r1"),
-        0,
-        "1 joint",
-    ),
-    "attributes": (
-        robot(f'<link name="a" {ATTRIBUTES}/>'),
-        (POSTFIX, "in.urdf", "r1"),
-        2,
-        "an element has 300,001 attributes, over the limit of 1,000",
-    ),
-    "namespaces": (f"<robot {NAMESPACES}/>", (LINT, "in.urdf"), 1, "1 error"),
-    "scopes": (
-        '<sdf version="1.9"><model name="m"><link name="l"/><joint name="j" type="fixed">'
-        f"<parent>{SCOPES}l</parent><child>l</child></joint></model></sdf>",
-        (POSTFIX, "in.sdf", "r1"),
-        0,
-        "1 joint",
-    ),
-    "long-values": (
-        robot(
-            f'<link name="a"/><gazebo><plugin name="p" filename="{DIFF_DRIVE}">'
-            f"<left_joint>{'a,' * 100_000}</left_joint></plugin></gazebo>"
+# Command -> files with their text, how it ends, words of its last line.
+CASES: dict[str, dict[str, tuple[str | bytes, int, str]]] = {
+    "urdf_lint in.urdf.xacro": {
+        "includes": ("<xacro:include " * (MANY // 15), 1, "1 error"),
+        "includes-in-quotes": ('<xacro:include filename="' * (MANY // 25), 1, "1 error"),
+    },
+    "urdf_lint in.urdf.xacro good.urdf": {
+        "includes-unchanged": ("<xacro:include 'a' " * (MANY // 15), 1, "2 files"),
+    },
+    "urdf_postfix in.urdf r1": {
+        "pattern": (robot(joint("a" * 36) + pattern("(a+)+c")), 0, "1 joint"),
+        "brackets": (robot(joint("a") + pattern("[" * 100_000)), 0, "1 joint"),
+        "attributes": (
+            robot(f'<link name="a" {ATTRIBUTES}/>'),
+            2,
+            "an element has 300,001 attributes, over the limit of 1,000",
         ),
-        (POSTFIX, "in.urdf", "r1"),
-        0,
-        "1 link",
-    ),
-    "paths": (robot(MESHES), (LINT, "in.urdf"), 1, "1 file"),
-    "deep-elements": (
-        robot("<a>" * 100_000 + "</a>" * 100_000),
-        (LINT, "in.urdf"),
-        1,
-        "1 error",
-    ),
-    "null-bytes": (b"\0" * MANY, (POSTFIX, "in.urdf", "r1"), 2, "the file holds no XML"),
-    "two-marks": (
-        b"\xef\xbb\xbf" * 2 + GOOD.encode(),
-        (POSTFIX, "in.urdf", "r1"),
-        2,
-        "the file is not XML",
-    ),
-    "half-a-character": (
-        GOOD.replace("a", "&#xd800;", 1),
-        (POSTFIX, "in.urdf", "r1"),
-        2,
-        "correct the XML",
-    ),
-    "large-snapshot": (
-        b"",
-        (MULTIBOT, "snapshot", "--output-kind", "nodes", "--from", "/dev/zero"),
-        2,
-        "over the limit of",
-    ),
-    "no-nodes": (
-        fleet("nodes: good.urdf\n"),
-        (MULTIBOT, "build", "in.yaml", "-o", "out"),
-        2,
-        "in.yaml:1: good.urdf:",
-    ),
-    "lua-like-xml": (
-        "<<: 1\n",
-        (MULTIBOT, "build", "fleet.yaml", "-o", "out"),
-        0,
-        "next: ros2 launch out/fleet.launch.py",
-    ),
-    "dotted-keys": (
-        f"a{'.a' * 100_000} = 1\n",
-        (LINT, "good.urdf", "--config", "in.toml"),
-        2,
-        "a line with more than 1000 dots",
-    ),
-    "deep-settings": (
-        f"a = {'[' * 100_000}\n",
-        (LINT, "good.urdf", "--config", "in.toml"),
-        2,
-        "TOML that cannot be read",
-    ),
+        "long-values": (
+            robot(
+                f'<link name="a"/><gazebo><plugin name="p" filename="{DIFF_DRIVE}">'
+                f"<left_joint>{'a,' * 100_000}</left_joint></plugin></gazebo>"
+            ),
+            0,
+            "1 link",
+        ),
+        "null-bytes": (b"\0" * MANY, 2, "the file holds no XML"),
+        "two-marks": (b"\xef\xbb\xbf" * 2 + GOOD.encode(), 2, "the file is not XML"),
+        "half-a-character": (GOOD.replace("a", "&#xd800;", 1), 2, "correct the XML"),
+    },
+    "urdf_lint in.urdf": {
+        "namespaces": (f"<robot {NAMESPACES}/>", 1, "1 error"),
+        "paths": (robot(MESHES), 1, "1 file"),
+        "deep-elements": (robot("<a>" * 100_000 + "</a>" * 100_000), 1, "1 error"),
+    },
+    "urdf_postfix in.sdf r1": {
+        "scopes": (
+            (
+                '<sdf version="1.9"><model name="m"><link name="l"/><joint name="j" type="fixed">'
+                f"<parent>{SCOPES}l</parent><child>l</child></joint></model></sdf>"
+            ),
+            0,
+            "1 joint",
+        ),
+    },
+    "multibot snapshot --output-kind nodes --from /dev/zero": {
+        "large-snapshot": (b"", 2, "over the limit of"),
+    },
+    "multibot build in.yaml -o out": {
+        "no-nodes": (fleet("nodes: good.urdf\n"), 2, "in.yaml:1: good.urdf:"),
+    },
+    "multibot build fleet.yaml -o out": {
+        "lua-like-xml": ("<<: 1\n", 0, "next: ros2 launch out/fleet.launch.py"),
+    },
+    "urdf_lint good.urdf --config in.toml": {
+        "dotted-keys": (f"a{'.a' * 100_000} = 1\n", 2, "a line with more than 1000 dots"),
+        "deep-settings": (f"a = {'[' * 100_000}\n", 2, "TOML that cannot be read"),
+    },
 }
 ENDINGS = (".urdf.xacro", ".urdf", ".sdf", ".yaml", ".json", ".toml")
 
 
 @pytest.mark.sample(4)
-@pytest.mark.parametrize("name", CASES)
-def test_it_ends_with_one_clear_line(name: str, tmp_path: Path) -> None:
-    text, (program, *words), code, said = CASES[name]
+@pytest.mark.parametrize(("words", "name"), [(it, name) for it in CASES for name in CASES[it]])
+def test_it_ends_with_one_clear_line(words: str, name: str, tmp_path: Path) -> None:
+    text, code, said = CASES[words][name]
+    program, *options = words.split()
     (tmp_path / "good.urdf").write_text(GOOD)
     (tmp_path / "fleet.yaml").write_text(fleet("related_files: {lua: in.yaml}\n"))
     for ending in ENDINGS:
         data = text if isinstance(text, bytes) else text.encode()
         (tmp_path / f"in{ending}").write_bytes(data)
-    command = [sys.executable, "-m", f"multibot_rewrite.cli.{program}", *words]
+    command = [sys.executable, "-m", f"multibot_rewrite.cli.{program}", *options]
     # With two pipes urdf-postfix would tell of failures alone.
     with open(tmp_path / "messages", "w+b") as messages:
         run = subprocess.run(

@@ -139,206 +139,175 @@ def test_what_is_no_file_of_moveit_is_one_line(text: str, said: str) -> None:
     assert said in str(raised.value) and "\n" not in str(raised.value)
 
 
-# (text, {layout: what it becomes}); a layout that is not there leaves the text as it is.
+# The file of one robot, and what it becomes by layout; one that is not there leaves it as it is.
 FILES = {
-    "keys of joint limits": (
-        "default_velocity_scaling_factor: 0.1 # j1\njoint_limits:\n  j1: # j2\n    max_velocity: 1e-9\n"
-        "  'j2':   {has_velocity_limits: y}\r\n",
-        {
-            "L2": "default_velocity_scaling_factor: 0.1 # j1\njoint_limits:\n  sp_j1: # j2\n"
-            "    max_velocity: 1e-9\n  'sp_j2':   {has_velocity_limits: y}\r\n",
-            "L4": "default_velocity_scaling_factor: 0.1 # j1\njoint_limits:\n  j1_sp: # j2\n"
-            "    max_velocity: 1e-9\n  'j2_sp':   {has_velocity_limits: y}\r\n",
-        },
-    ),
-    "joints without joint_limits above": (
-        "default_acceleration_scaling_factor: 1\nj1: {has_velocity_limits: true}\n",
-        {
-            "L2": "default_acceleration_scaling_factor: 1\nsp_j1: {has_velocity_limits: true}\n",
-            "L4": "default_acceleration_scaling_factor: 1\nj1_sp: {has_velocity_limits: true}\n",
-        },
-    ),
-    "names that need quotes": (
-        "joint_limits: {y: {max_velocity: 1}, 1: {max_velocity: 2}}\n",
-        {
-            "L2": "joint_limits: {sp_y: {max_velocity: 1}, sp_1: {max_velocity: 2}}\n",
-            "L4": 'joint_limits: {y_sp: {max_velocity: 1}, "1_sp": {max_velocity: 2}}\n',
-        },
-    ),
-    "a joint with a dot": (
-        "joint_limits:\n  finger.left: {max_velocity: 1}\n  j1.max_velocity: 2\n",
-        {
-            "L2": "joint_limits:\n  sp_finger.left: {max_velocity: 1}\n  sp_j1.max_velocity: 2\n",
-            "L4": "joint_limits:\n  finger.left_sp: {max_velocity: 1}\n  j1_sp.max_velocity: 2\n",
-        },
-    ),
-    "a simple controller manager": (
-        "moveit_controller_manager: moveit_simple_controller_manager/MoveItSimpleControllerManager\n"
+    "keys of joint limits": {
+        "one": "default_velocity_scaling_factor: 0.1 # j1\njoint_limits:\n  j1: # j2\n"
+        "    max_velocity: 1e-9\n  'j2':   {has_velocity_limits: y}\r\n",
+        "L2": "default_velocity_scaling_factor: 0.1 # j1\njoint_limits:\n  sp_j1: # j2\n"
+        "    max_velocity: 1e-9\n  'sp_j2':   {has_velocity_limits: y}\r\n",
+        "L4": "default_velocity_scaling_factor: 0.1 # j1\njoint_limits:\n  j1_sp: # j2\n"
+        "    max_velocity: 1e-9\n  'j2_sp':   {has_velocity_limits: y}\r\n",
+    },
+    "joints without joint_limits above": {
+        "one": "default_acceleration_scaling_factor: 1\nj1: {has_velocity_limits: true}\n",
+        "L2": "default_acceleration_scaling_factor: 1\nsp_j1: {has_velocity_limits: true}\n",
+        "L4": "default_acceleration_scaling_factor: 1\nj1_sp: {has_velocity_limits: true}\n",
+    },
+    "names that need quotes": {
+        "one": "joint_limits: {y: {max_velocity: 1}, 1: {max_velocity: 2}}\n",
+        "L2": "joint_limits: {sp_y: {max_velocity: 1}, sp_1: {max_velocity: 2}}\n",
+        "L4": 'joint_limits: {y_sp: {max_velocity: 1}, "1_sp": {max_velocity: 2}}\n',
+    },
+    "a joint with a dot": {
+        "one": "joint_limits:\n  finger.left: {max_velocity: 1}\n  j1.max_velocity: 2\n",
+        "L2": "joint_limits:\n  sp_finger.left: {max_velocity: 1}\n  sp_j1.max_velocity: 2\n",
+        "L4": "joint_limits:\n  finger.left_sp: {max_velocity: 1}\n  j1_sp.max_velocity: 2\n",
+    },
+    "a simple controller manager": {
+        "one": "moveit_controller_manager: "
+        "moveit_simple_controller_manager/MoveItSimpleControllerManager\n"
         "moveit_simple_controller_manager:\n  controller_names: [arm_controller]\n"
         "  arm_controller:\n    type: FollowJointTrajectory\n    action_ns: follow_joint_trajectory\n"
         '    default: true\n    joints: [j1, "j2"]\n',
-        {
-            "L2": "moveit_controller_manager: "
-            "moveit_simple_controller_manager/MoveItSimpleControllerManager\n"
-            "moveit_simple_controller_manager:\n  controller_names: [arm_controller]\n"
-            "  arm_controller:\n    type: FollowJointTrajectory\n"
-            "    action_ns: follow_joint_trajectory\n    default: true\n"
-            '    joints: [sp_j1, "sp_j2"]\n',
-            "L4": "moveit_controller_manager: "
-            "moveit_simple_controller_manager/MoveItSimpleControllerManager\n"
-            "moveit_simple_controller_manager:\n  controller_names: [arm_controller_amr]\n"
-            "  arm_controller_amr:\n    type: FollowJointTrajectory\n"
-            "    action_ns: follow_joint_trajectory\n    default: true\n"
-            '    joints: [j1_sp, "j2_sp"]\n',
-        },
-    ),
-    "dotted keys are nested maps": (
-        "moveit_simple_controller_manager.arm_controller.joints: [j1]\n",
-        {
-            "L2": "moveit_simple_controller_manager.arm_controller.joints: [sp_j1]\n",
-            "L4": "moveit_simple_controller_manager.arm_controller_amr.joints: [j1_sp]\n",
-        },
-    ),
-    "a list of controllers": (
-        'controller_list:\n  - name: /arm_controller\n    action_ns: ""\n    joints:\n      - j1\n',
-        {
-            "L1": 'controller_list:\n  - name: /amr/arm_controller\n    action_ns: ""\n'
-            "    joints:\n      - j1\n",
-            "L2": 'controller_list:\n  - name: /amr/arm_controller\n    action_ns: ""\n'
-            "    joints:\n      - sp_j1\n",
-            "L4": 'controller_list:\n  - name: /arm_controller_amr\n    action_ns: ""\n'
-            "    joints:\n      - j1_sp\n",
-        },
-    ),
-    "controllers of ROS 1": (
-        "moveit_sim_hw_interface: {joint_model_group: arm, joint_model_group_pose: home}\n"
+        "L2": "moveit_controller_manager: "
+        "moveit_simple_controller_manager/MoveItSimpleControllerManager\n"
+        "moveit_simple_controller_manager:\n  controller_names: [arm_controller]\n"
+        "  arm_controller:\n    type: FollowJointTrajectory\n"
+        "    action_ns: follow_joint_trajectory\n    default: true\n"
+        '    joints: [sp_j1, "sp_j2"]\n',
+        "L4": "moveit_controller_manager: "
+        "moveit_simple_controller_manager/MoveItSimpleControllerManager\n"
+        "moveit_simple_controller_manager:\n  controller_names: [arm_controller_amr]\n"
+        "  arm_controller_amr:\n    type: FollowJointTrajectory\n"
+        "    action_ns: follow_joint_trajectory\n    default: true\n"
+        '    joints: [j1_sp, "j2_sp"]\n',
+    },
+    "dotted keys are nested maps": {
+        "one": "moveit_simple_controller_manager.arm_controller.joints: [j1]\n",
+        "L2": "moveit_simple_controller_manager.arm_controller.joints: [sp_j1]\n",
+        "L4": "moveit_simple_controller_manager.arm_controller_amr.joints: [j1_sp]\n",
+    },
+    "a list of controllers": {
+        "one": 'controller_list:\n  - name: /arm_controller\n    action_ns: ""\n'
+        "    joints:\n      - j1\n",
+        "L1": 'controller_list:\n  - name: /amr/arm_controller\n    action_ns: ""\n'
+        "    joints:\n      - j1\n",
+        "L2": 'controller_list:\n  - name: /amr/arm_controller\n    action_ns: ""\n'
+        "    joints:\n      - sp_j1\n",
+        "L4": 'controller_list:\n  - name: /arm_controller_amr\n    action_ns: ""\n'
+        "    joints:\n      - j1_sp\n",
+    },
+    "controllers of ROS 1": {
+        "one": "moveit_sim_hw_interface: {joint_model_group: arm, joint_model_group_pose: home}\n"
         "hardware_interface:\n  joints: [j1]\ngeneric_hw_control_loop: {loop_hz: 300}\n"
         "arm_controller:\n  type: effort_controllers/JointTrajectoryController\n  joints: [j1]\n"
         "  constraints: {goal_time: 1, j1: {goal: 1}}\n  gains: {j1: {p: 1}}\n",
-        {
-            "L2": "moveit_sim_hw_interface: {joint_model_group: arm, joint_model_group_pose: home}\n"
-            "hardware_interface:\n  joints: [sp_j1]\ngeneric_hw_control_loop: {loop_hz: 300}\n"
-            "arm_controller:\n  type: effort_controllers/JointTrajectoryController\n"
-            "  joints: [sp_j1]\n"
-            "  constraints: {goal_time: 1, sp_j1: {goal: 1}}\n  gains: {sp_j1: {p: 1}}\n",
-            "L4": "moveit_sim_hw_interface: {joint_model_group: arm, joint_model_group_pose: home}\n"
-            "hardware_interface:\n  joints: [j1_sp]\ngeneric_hw_control_loop: {loop_hz: 300}\n"
-            "arm_controller_amr:\n  type: effort_controllers/JointTrajectoryController\n"
-            "  joints: [j1_sp]\n"
-            "  constraints: {goal_time: 1, j1_sp: {goal: 1}}\n  gains: {j1_sp: {p: 1}}\n",
-        },
-    ),
-    "controllers below a namespace of ROS 1": (
-        "cell:\n  hardware_interface: {joints: [j1]}\n  controller_list: []\n",
-        {
-            "L2": "cell:\n  hardware_interface: {joints: [sp_j1]}\n  controller_list: []\n",
-            "L4": "cell:\n  hardware_interface: {joints: [j1_sp]}\n  controller_list: []\n",
-        },
-    ),
-    "ids of planners beside groups": (
-        "planner_configs:\n  arm: {type: geometric::RRT}\narm:\n  planner_configs: [arm]\n"
+        "L2": "moveit_sim_hw_interface: {joint_model_group: arm, joint_model_group_pose: home}\n"
+        "hardware_interface:\n  joints: [sp_j1]\ngeneric_hw_control_loop: {loop_hz: 300}\n"
+        "arm_controller:\n  type: effort_controllers/JointTrajectoryController\n"
+        "  joints: [sp_j1]\n"
+        "  constraints: {goal_time: 1, sp_j1: {goal: 1}}\n  gains: {sp_j1: {p: 1}}\n",
+        "L4": "moveit_sim_hw_interface: {joint_model_group: arm, joint_model_group_pose: home}\n"
+        "hardware_interface:\n  joints: [j1_sp]\ngeneric_hw_control_loop: {loop_hz: 300}\n"
+        "arm_controller_amr:\n  type: effort_controllers/JointTrajectoryController\n"
+        "  joints: [j1_sp]\n"
+        "  constraints: {goal_time: 1, j1_sp: {goal: 1}}\n  gains: {j1_sp: {p: 1}}\n",
+    },
+    "controllers below a namespace of ROS 1": {
+        "one": "cell:\n  hardware_interface: {joints: [j1]}\n  controller_list: []\n",
+        "L2": "cell:\n  hardware_interface: {joints: [sp_j1]}\n  controller_list: []\n",
+        "L4": "cell:\n  hardware_interface: {joints: [j1_sp]}\n  controller_list: []\n",
+    },
+    "ids of planners beside groups": {
+        "one": "planner_configs:\n  arm: {type: geometric::RRT}\narm:\n  planner_configs: [arm]\n"
         "  projection_evaluator: joints(j1, j2)\n  longest_valid_segment_fraction: 0.005\n"
         "gripper: {planner_configs: [], projection_evaluator: link(tool0)}\n",
-        {
-            "L2": "planner_configs:\n  arm: {type: geometric::RRT}\narm:\n  planner_configs: [arm]\n"
-            '  projection_evaluator: "joints(sp_j1, sp_j2)"\n'
-            "  longest_valid_segment_fraction: 0.005\n"
-            'gripper: {planner_configs: [], projection_evaluator: "link(sp/tool0)"}\n',
-            "L4": "planner_configs:\n  arm: {type: geometric::RRT}\narm:\n  planner_configs: [arm]\n"
-            '  projection_evaluator: "joints(j1_sp, j2_sp)"\n'
-            "  longest_valid_segment_fraction: 0.005\n"
-            'gripper: {planner_configs: [], projection_evaluator: "link(tool0/sp)"}\n',
-        },
-    ),
-    "servo": (
-        "move_group_name: arm\nplanning_frame: base_link\nee_frame_name: /tool0\n"
+        "L2": "planner_configs:\n  arm: {type: geometric::RRT}\narm:\n  planner_configs: [arm]\n"
+        '  projection_evaluator: "joints(sp_j1, sp_j2)"\n'
+        "  longest_valid_segment_fraction: 0.005\n"
+        'gripper: {planner_configs: [], projection_evaluator: "link(sp/tool0)"}\n',
+        "L4": "planner_configs:\n  arm: {type: geometric::RRT}\narm:\n  planner_configs: [arm]\n"
+        '  projection_evaluator: "joints(j1_sp, j2_sp)"\n'
+        "  longest_valid_segment_fraction: 0.005\n"
+        'gripper: {planner_configs: [], projection_evaluator: "link(tool0/sp)"}\n',
+    },
+    "servo": {
+        "one": "move_group_name: arm\nplanning_frame: base_link\nee_frame_name: /tool0\n"
         "joint_topic: /joint_states\ncommand_out_topic: /arm_controller/joint_trajectory\n"
         "status_topic: ~/status\ncommand_out_type: trajectory_msgs/JointTrajectory\n",
-        {
-            "L1": "move_group_name: arm\nplanning_frame: base_link\nee_frame_name: /tool0\n"
-            "joint_topic: /amr/joint_states\n"
-            "command_out_topic: /amr/arm_controller/joint_trajectory\n"
-            "status_topic: ~/status\ncommand_out_type: trajectory_msgs/JointTrajectory\n",
-            "L2": "move_group_name: arm\nplanning_frame: sp/base_link\nee_frame_name: /sp/tool0\n"
-            "joint_topic: /amr/joint_states\n"
-            "command_out_topic: /amr/arm_controller/joint_trajectory\n"
-            "status_topic: ~/status\ncommand_out_type: trajectory_msgs/JointTrajectory\n",
-            "L4": "move_group_name: arm\nplanning_frame: base_link/sp\nee_frame_name: /tool0/sp\n"
-            # A rule of the node moves this one.
-            "joint_topic: /joint_states\n"
-            "command_out_topic: /arm_controller_amr/joint_trajectory\n"
-            "status_topic: ~/status\ncommand_out_type: trajectory_msgs/JointTrajectory\n",
-        },
-    ),
-    "servo with a private topic": (
-        "move_group_name: arm\ncommand_out_topic: ~/joint_trajectory\n",
-        dict.fromkeys(
+        "L1": "move_group_name: arm\nplanning_frame: base_link\nee_frame_name: /tool0\n"
+        "joint_topic: /amr/joint_states\n"
+        "command_out_topic: /amr/arm_controller/joint_trajectory\n"
+        "status_topic: ~/status\ncommand_out_type: trajectory_msgs/JointTrajectory\n",
+        "L2": "move_group_name: arm\nplanning_frame: sp/base_link\nee_frame_name: /sp/tool0\n"
+        "joint_topic: /amr/joint_states\n"
+        "command_out_topic: /amr/arm_controller/joint_trajectory\n"
+        "status_topic: ~/status\ncommand_out_type: trajectory_msgs/JointTrajectory\n",
+        "L4": "move_group_name: arm\nplanning_frame: base_link/sp\nee_frame_name: /tool0/sp\n"
+        # A rule of the node moves this one.
+        "joint_topic: /joint_states\n"
+        "command_out_topic: /arm_controller_amr/joint_trajectory\n"
+        "status_topic: ~/status\ncommand_out_type: trajectory_msgs/JointTrajectory\n",
+    },
+    "servo with a private topic": {
+        "one": "move_group_name: arm\ncommand_out_topic: ~/joint_trajectory\n",
+        **dict.fromkeys(
             ("L1", "L2", "L4"), "move_group_name: arm\ncommand_out_topic: ~/joint_trajectory\n"
         ),
-    ),
-    "sensors": (
-        "sensors:\n  - {sensor_plugin: a/B, point_cloud_topic: /eye/points, filtered_cloud_topic: f}\n"
-        "octomap_frame: odom\n",
-        {
-            "L1": "sensors:\n  - {sensor_plugin: a/B, point_cloud_topic: /amr/eye/points, "
-            "filtered_cloud_topic: f}\noctomap_frame: odom\n",
-            "L2": "sensors:\n  - {sensor_plugin: a/B, point_cloud_topic: /amr/eye/points, "
-            "filtered_cloud_topic: f}\noctomap_frame: sp/odom\n",
-            "L4": "sensors:\n  - {sensor_plugin: a/B, point_cloud_topic: /eye/points/amr, "
-            "filtered_cloud_topic: f/amr}\noctomap_frame: odom/sp\n",
-        },
-    ),
-    "start tolerances": (
-        "trajectory_execution:\n  allowed_start_tolerance: 0.1\n"
+    },
+    "sensors": {
+        "one": "sensors:\n  - {sensor_plugin: a/B, point_cloud_topic: /eye/points, "
+        "filtered_cloud_topic: f}\noctomap_frame: odom\n",
+        "L1": "sensors:\n  - {sensor_plugin: a/B, point_cloud_topic: /amr/eye/points, "
+        "filtered_cloud_topic: f}\noctomap_frame: odom\n",
+        "L2": "sensors:\n  - {sensor_plugin: a/B, point_cloud_topic: /amr/eye/points, "
+        "filtered_cloud_topic: f}\noctomap_frame: sp/odom\n",
+        "L4": "sensors:\n  - {sensor_plugin: a/B, point_cloud_topic: /eye/points/amr, "
+        "filtered_cloud_topic: f/amr}\noctomap_frame: odom/sp\n",
+    },
+    "start tolerances": {
+        "one": "trajectory_execution:\n  allowed_start_tolerance: 0.1\n"
         "  allowed_start_tolerance_joints: {j1: 0.1}\n",
-        {
-            "L2": "trajectory_execution:\n  allowed_start_tolerance: 0.1\n"
-            "  allowed_start_tolerance_joints: {sp_j1: 0.1}\n",
-            "L4": "trajectory_execution:\n  allowed_start_tolerance: 0.1\n"
-            "  allowed_start_tolerance_joints: {j1_sp: 0.1}\n",
-        },
-    ),
-    "a tag stays": (
-        "initial_positions:\n  j1: !degrees 90\n  !!str j2: 0\n",
-        {
-            "L2": "initial_positions:\n  sp_j1: !degrees 90\n  !!str sp_j2: 0\n",
-            "L4": "initial_positions:\n  j1_sp: !degrees 90\n  !!str j2_sp: 0\n",
-        },
-    ),
-    "an alias is one place": (
-        "controller_list:\n  - name: &c a\n    joints: &j [&one j1, j2]\n"
+        "L2": "trajectory_execution:\n  allowed_start_tolerance: 0.1\n"
+        "  allowed_start_tolerance_joints: {sp_j1: 0.1}\n",
+        "L4": "trajectory_execution:\n  allowed_start_tolerance: 0.1\n"
+        "  allowed_start_tolerance_joints: {j1_sp: 0.1}\n",
+    },
+    "a tag stays": {
+        "one": "initial_positions:\n  j1: !degrees 90\n  !!str j2: 0\n",
+        "L2": "initial_positions:\n  sp_j1: !degrees 90\n  !!str sp_j2: 0\n",
+        "L4": "initial_positions:\n  j1_sp: !degrees 90\n  !!str j2_sp: 0\n",
+    },
+    "an alias is one place": {
+        "one": "controller_list:\n  - name: &c a\n    joints: &j [&one j1, j2]\n"
         "  - {name: b, joints: *j}\n  - {name: d, joints: [*one]}\n",
-        {
-            "L2": "controller_list:\n  - name: &c a\n    joints: &j [&one sp_j1, sp_j2]\n"
-            "  - {name: b, joints: *j}\n  - {name: d, joints: [*one]}\n",
-            "L4": "controller_list:\n  - name: &c a_amr\n    joints: &j [&one j1_sp, j2_sp]\n"
-            "  - {name: b_amr, joints: *j}\n  - {name: d_amr, joints: [*one]}\n",
-        },
-    ),
-    "merged maps": (
-        "base: &all {type: FollowJointTrajectory, joints: [j1]}\n"
+        "L2": "controller_list:\n  - name: &c a\n    joints: &j [&one sp_j1, sp_j2]\n"
+        "  - {name: b, joints: *j}\n  - {name: d, joints: [*one]}\n",
+        "L4": "controller_list:\n  - name: &c a_amr\n    joints: &j [&one j1_sp, j2_sp]\n"
+        "  - {name: b_amr, joints: *j}\n  - {name: d_amr, joints: [*one]}\n",
+    },
+    "merged maps": {
+        "one": "base: &all {type: FollowJointTrajectory, joints: [j1]}\n"
         "moveit_simple_controller_manager:\n  one: {<<: *all}\n",
-        {
-            "L2": "base: &all {type: FollowJointTrajectory, joints: [sp_j1]}\n"
-            "moveit_simple_controller_manager:\n  one: {<<: *all}\n",
-            "L4": "base_amr: &all {type: FollowJointTrajectory, joints: [j1_sp]}\n"
-            "moveit_simple_controller_manager:\n  one_amr: {<<: *all}\n",
-        },
-    ),
-    "what is no name": (
-        'joint_limits: {}\nrequest_adapters: >-\n  a/B\n  c/D\ncapabilities: ""\n'
-        'octomap_frame: ""\n',
-        {},
-    ),
+        "L2": "base: &all {type: FollowJointTrajectory, joints: [sp_j1]}\n"
+        "moveit_simple_controller_manager:\n  one: {<<: *all}\n",
+        "L4": "base_amr: &all {type: FollowJointTrajectory, joints: [j1_sp]}\n"
+        "moveit_simple_controller_manager:\n  one_amr: {<<: *all}\n",
+    },
+    "what is no name": {
+        "one": 'joint_limits: {}\nrequest_adapters: >-\n  a/B\n  c/D\ncapabilities: ""\n'
+        'octomap_frame: ""\n'
+    },
 }
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize("name", FILES)
 def test_a_file_for_a_robot(name: str, layout: str) -> None:
-    text, wanted = FILES[name]
-    new = wanted.get("L2" if layout == "L3" else layout, text)
-    assert text_of(text, context(layout)) == new
+    one = FILES[name]["one"]
+    new = FILES[name].get("L2" if layout == "L3" else layout, one)
+    assert text_of(one, context(layout)) == new
 
 
 def test_groups_without_an_srdf_are_reported() -> None:

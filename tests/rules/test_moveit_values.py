@@ -215,65 +215,53 @@ BESIDE = f"{SIZED}: robot_radius has no effect with a footprint, and is another 
 
 
 @pytest.mark.parametrize(
-    ("size", "said"),
+    "row",
     [
-        ("robot_radius: 0.5", []),
-        (
-            "robot_radius: 0.6",
-            [f"6:80 warning {SIZED}: inflation.inflation_radius is 0.5 m, less than the robot's"
-             " 0.6 m; the robot is as large as robot_radius says; inflate further than that"],
-        ),
-        (SQUARE.format(0.5), []),
-        (
-            SQUARE.format(0.6),
-            [f"6:80 warning {SIZED}: inflation.inflation_radius is 0.5 m, less than the robot's"
-             " 0.6 m; the robot is as large as footprint says; inflate further than that"],
-        ),
+        ("robot_radius: 0.5",),
+        ("robot_radius: 0.6",
+         f"6:80 warning {SIZED}: inflation.inflation_radius is 0.5 m, less than the robot's"
+         " 0.6 m; the robot is as large as robot_radius says; inflate further than that"),
+        (SQUARE.format(0.5),),
+        (SQUARE.format(0.6),
+         f"6:80 warning {SIZED}: inflation.inflation_radius is 0.5 m, less than the robot's"
+         " 0.6 m; the robot is as large as footprint says; inflate further than that"),
         # The footprint counts.
-        ("robot_radius: 0.6\n      " + SQUARE.format(0.5), []),
+        ("robot_radius: 0.6\n      " + SQUARE.format(0.5),),
         # A tenth below its nearest edge, half above its farthest point.
-        ("robot_radius: 0.45\n      " + SQUARE.format(0.5), []),
-        (
-            "robot_radius: 0.44\n      " + SQUARE.format(0.5),
-            [f"4:21 warning {BESIDE}; leave out robot_radius"],
-        ),
-        ("robot_radius: 1.06\n      " + SQUARE.format(0.5), []),
-        (
-            "robot_radius: 1.07\n      " + SQUARE.format(0.5),
-            [f"4:21 warning {BESIDE}; leave out robot_radius"],
-        ),
+        ("robot_radius: 0.45\n      " + SQUARE.format(0.5),),
+        ("robot_radius: 0.44\n      " + SQUARE.format(0.5),
+         f"4:21 warning {BESIDE}; leave out robot_radius"),
+        ("robot_radius: 1.06\n      " + SQUARE.format(0.5),),
+        ("robot_radius: 1.07\n      " + SQUARE.format(0.5),
+         f"4:21 warning {BESIDE}; leave out robot_radius"),
         # Of two points nothing is a footprint.
-        ('robot_radius: 0.4\n      footprint: "[[9, 9], [8, 8]]"', []),
-        ("robot_radius: 0.0", []),
+        ('robot_radius: 0.4\n      footprint: "[[9, 9], [8, 8]]"',),
+        ("robot_radius: 0.0",),
     ],
 )  # fmt: skip
-def test_what_is_said_of_the_size_in_a_costmap(size: str, said: list[str], tmp_path: Path) -> None:
+def test_what_is_said_of_the_size_in_a_costmap(row: tuple[str, ...], tmp_path: Path) -> None:
+    size, *said = row
     found = told(tmp_path, "nav2.yaml", COSTMAP.format(size), "MB895")
     assert [it.replace(f"{7 + size.count(chr(10))}:", "6:") for it in found] == said
 
 
 @pytest.mark.parametrize(
-    ("size", "said"),
+    "row",
     [
-        ("robot_radius: 0.4", []),
-        (
-            "robot_radius: 0.1",
-            [f"4:21 warning {SIZED}: robot_radius reaches 0.1 m from the middle alone; the"
-             " description reaches 1 m; write metres"],
-        ),
-        ("robot_radius: 3.0", []),
-        (
-            "robot_radius: 3.1",
-            [f"4:21 warning {SIZED}: robot_radius reaches 3.1 m from the middle; the description"
-             " reaches 1 m; write metres"],
-        ),
+        ("robot_radius: 0.4",),
+        ("robot_radius: 0.1",
+         f"4:21 warning {SIZED}: robot_radius reaches 0.1 m from the middle alone; the"
+         " description reaches 1 m; write metres"),
+        ("robot_radius: 3.0",),
+        ("robot_radius: 3.1",
+         f"4:21 warning {SIZED}: robot_radius reaches 3.1 m from the middle; the description"
+         " reaches 1 m; write metres"),
         # An eighth.
-        ("robot_radius: 0.125", []),
+        ("robot_radius: 0.125",),
     ],
 )  # fmt: skip
-def test_the_size_in_a_costmap_beside_the_description(
-    size: str, said: list[str], tmp_path: Path
-) -> None:
+def test_the_size_in_a_costmap_beside_the_description(row: tuple[str, ...], tmp_path: Path) -> None:
+    size, *said = row
     body = '<collision><geometry><box size="1.2 1.6 1"/></geometry></collision>'
     (tmp_path / "package.xml").write_text(PACKAGE.format("ament_cmake"))
     (tmp_path / "r.urdf").write_text(f'<robot name="r"><link name="a">{body}</link></robot>')
@@ -288,73 +276,46 @@ AXIS = "{axis: 1, scale: 1.0, offset: 0.0}"
 
 
 @pytest.mark.parametrize(
-    ("command", "said"),
+    "row",
     [
-        (
-            "type: topics, topic_name: a",
-            ["is of type 'topics'; write one of topic, service, action"],
-        ),
-        ("topic_name: a", ["has no type; write one of topic, service, action"]),
-        (
-            f"type: topic, {START}, message_value: {{a: 1}}",
-            ["has no interface_type; add interface_type", "has no topic_name; add topic_name"],
-        ),
-        (
-            "type: service, interface_type: a/msg/B, axes: [1]",
-            ["has no service_name; add service_name",
-             "has the interface_type 'a/msg/B'; write PACKAGE/srv/B"],
-        ),
-        (
-            "type: service, interface_type: B, service_name: b, buttons: []",
-            ["has the interface_type 'B'; write PACKAGE/srv/B",
-             "is started by nothing; add buttons, or axes or axes_negative"],
-        ),
-        (
-            f"type: topic, {NAMED}, message_value: {{a: 1}}",
-            ["is started by nothing; add deadman_buttons, or deadman_axes or deadman_axes_negative"],
-        ),
-        ("type: action, interface_type: a/action/B, action_name: b, axes_negative: [1]", []),
-        ("type: service, interface_type: a/srv/B, service_name: b, axes: [1]", []),
-        (
-            f"type: topic, {NAMED}, {START}",
-            ["has neither message_value nor axis_mappings; give it one of the two"],
-        ),
-        (
-            f"type: topic, {NAMED}, {START}, message_value: {{a: 1}}, axis_mappings: {{a: {AXIS}}}",
-            ["has both message_value and axis_mappings; give it one of the two"],
-        ),
-        (
-            f"type: topic, {NAMED}, {START}, axis_mappings: {{a: {{scale: 1.0}}, b: {{button: 1}}}}",
-            ["has no axis, button or value for a; add one of them"],
-        ),
-        (
-            f"type: topic, {NAMED}, {START}, axis_mappings: {{a: {{axis: 1}}, b: {{value: 1}}}}",
-            ["has no scale and no offset for a; add scale and offset of the axis"],
-        ),
-        (
-            f"type: topic, {NAMED}, {START}, axis_mappings: {{a: {{axis: 1, scale: 1.0}}}}",
-            ["has no offset for a; add scale and offset of the axis"],
-        ),
-        (f"{TWIST}, axis_mappings: {{linear-x: {AXIS}, -angular-z: {AXIS}}}", []),
-        (
-            f"{TWIST}, axis_mappings: {{twist-linear-x: {AXIS}}}",
-            ["sets twist-linear-x of a geometry_msgs/msg/Twist, which has linear and angular; use"
-             " one of these"],
-        ),
-        (
-            f"{TWIST}, axis_mappings: {{linear-x: {AXIS}}}".replace("Twist,", "TwistStamped,"),
-            ["sets linear-x of a geometry_msgs/msg/TwistStamped, which has header and twist; use"
-             " one of these"],
-        ),
-        (
-            f"{TWIST}, axis_mappings: {{twist-linear-x: {AXIS}}}".replace("st,", "stStamped,"),
-            [],
-        ),
+        ("type: topics, topic_name: a", "is of type 'topics'; write one of topic, service, action"),
+        ("topic_name: a", "has no type; write one of topic, service, action"),
+        (f"type: topic, {START}, message_value: {{a: 1}}",
+         "has no interface_type; add interface_type", "has no topic_name; add topic_name"),
+        ("type: service, interface_type: a/msg/B, axes: [1]",
+         "has no service_name; add service_name",
+         "has the interface_type 'a/msg/B'; write PACKAGE/srv/B"),
+        ("type: service, interface_type: B, service_name: b, buttons: []",
+         "has the interface_type 'B'; write PACKAGE/srv/B",
+         "is started by nothing; add buttons, or axes or axes_negative"),
+        (f"type: topic, {NAMED}, message_value: {{a: 1}}",
+         "is started by nothing; add deadman_buttons, or deadman_axes or deadman_axes_negative"),
+        ("type: action, interface_type: a/action/B, action_name: b, axes_negative: [1]",),
+        ("type: service, interface_type: a/srv/B, service_name: b, axes: [1]",),
+        (f"type: topic, {NAMED}, {START}",
+         "has neither message_value nor axis_mappings; give it one of the two"),
+        (f"type: topic, {NAMED}, {START}, message_value: {{a: 1}}, axis_mappings: {{a: {AXIS}}}",
+         "has both message_value and axis_mappings; give it one of the two"),
+        (f"type: topic, {NAMED}, {START}, axis_mappings: {{a: {{scale: 1.0}}, b: {{button: 1}}}}",
+         "has no axis, button or value for a; add one of them"),
+        (f"type: topic, {NAMED}, {START}, axis_mappings: {{a: {{axis: 1}}, b: {{value: 1}}}}",
+         "has no scale and no offset for a; add scale and offset of the axis"),
+        (f"type: topic, {NAMED}, {START}, axis_mappings: {{a: {{axis: 1, scale: 1.0}}}}",
+         "has no offset for a; add scale and offset of the axis"),
+        (f"{TWIST}, axis_mappings: {{linear-x: {AXIS}, -angular-z: {AXIS}}}",),
+        (f"{TWIST}, axis_mappings: {{twist-linear-x: {AXIS}}}",
+         "sets twist-linear-x of a geometry_msgs/msg/Twist, which has linear and angular; use"
+         " one of these"),
+        (f"{TWIST}, axis_mappings: {{linear-x: {AXIS}}}".replace("Twist,", "TwistStamped,"),
+         "sets linear-x of a geometry_msgs/msg/TwistStamped, which has header and twist; use"
+         " one of these"),
+        (f"{TWIST}, axis_mappings: {{twist-linear-x: {AXIS}}}".replace("st,", "stStamped,"),),
         # Blocks of another node that is called so.
-        ("x: 1, y: 2", []),
+        ("x: 1, y: 2",),
     ],
 )  # fmt: skip
-def test_what_is_said_of_a_joysticks_command(command: str, said: list[str], tmp_path: Path) -> None:
+def test_what_is_said_of_a_joysticks_command(row: tuple[str, ...], tmp_path: Path) -> None:
+    command, *said = row
     """joy_teleop.py: what each type of a command asks for."""
     found = told(tmp_path, "joy.yaml", TELEOP.format(command), "MB897")
     assert found == [f"3:10 error joy_teleop: command 'go' {it}" for it in said]

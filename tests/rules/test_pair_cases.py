@@ -33,78 +33,55 @@ TWO = "planned: /robot1/arm\nplanned: /robot1/driver\nplanned: /robot2/driver\n"
 
 
 @pytest.mark.parametrize(
-    ("lines", "said"),
+    "row",
     [
-        (
-            f"planned: {ORDER}\nrunning: {ORDER}Stamped",
-            [f"MG306 uses /robot1/cmd_vel as {TWIST}Stamped, but the plan has it as {TWIST};"
-             " velocities are stamped on one side? If this type is right, correct the plan"],
-        ),
-        (
-            f"planned: {ORDER}Stamped\nrunning: {ORDER}",
-            [f"MG306 uses /robot1/cmd_vel as {TWIST}, but the plan has it as {TWIST}Stamped;"
-             " velocities are stamped on one side? If this type is right, correct the plan"],
-        ),
-        (
-            f"planned: {ORDER}\nrunning: {ORDER}X",
-            [f"MG306 uses /robot1/cmd_vel as {TWIST}X, but the plan has it as {TWIST};"
-             " another version or setting of the node? If this type is right, correct the plan"],
-        ),
-        (FRAMES.format("robot1/base_link", "robot1/laser"), []),
-        (
-            FRAMES.format("robot1/base_link", "robot1/lasr"),
-            ["MG204 frame robot1/lasr is not in the description of robot1; did you mean"
-             " robot1/laser? Otherwise add it to other_frames of the plan"],
-        ),
-        (
-            FRAMES.format("robot1/base_link", "robot1/tool"),
-            ["MG208 frame robot1/laser of robot1 is in no transform: robot1/laser; has"
-             " /robot1/robot_state_publisher the description of robot1, or that of another robot?",
-             "MG204 frame robot1/tool is not in the description of robot1; a sensor's own frame?"
-             " Then add it to other_frames of the plan"],
-        ),
+        (f"planned: {ORDER}\nrunning: {ORDER}Stamped",
+         f"MG306 uses /robot1/cmd_vel as {TWIST}Stamped, but the plan has it as {TWIST};"
+         " velocities are stamped on one side? If this type is right, correct the plan"),
+        (f"planned: {ORDER}Stamped\nrunning: {ORDER}",
+         f"MG306 uses /robot1/cmd_vel as {TWIST}, but the plan has it as {TWIST}Stamped;"
+         " velocities are stamped on one side? If this type is right, correct the plan"),
+        (f"planned: {ORDER}\nrunning: {ORDER}X",
+         f"MG306 uses /robot1/cmd_vel as {TWIST}X, but the plan has it as {TWIST};"
+         " another version or setting of the node? If this type is right, correct the plan"),
+        (FRAMES.format("robot1/base_link", "robot1/laser"),),
+        (FRAMES.format("robot1/base_link", "robot1/lasr"),
+         "MG204 frame robot1/lasr is not in the description of robot1; did you mean"
+         " robot1/laser? Otherwise add it to other_frames of the plan"),
+        (FRAMES.format("robot1/base_link", "robot1/tool"),
+         "MG208 frame robot1/laser of robot1 is in no transform: robot1/laser; has"
+         " /robot1/robot_state_publisher the description of robot1, or that of another robot?",
+         "MG204 frame robot1/tool is not in the description of robot1; a sensor's own frame?"
+         " Then add it to other_frames of the plan"),
         # A description of one link has no transform: its frame comes with the odometry.
-        (ALONE.format(""), []),
-        (
-            ALONE.format("robot1/laser, "),
-            ["MG208 2 of the 3 frames of robot1 are in no transform: robot1/base_link, robot1/laser;"
-             " no planned node publishes its description: is the node that does it running?"],
-        ),
-        (
-            ALONE.format("robot1/laser, ") + DESCRIBED,
-            ["MG208 2 of the 3 frames of robot1 are in no transform: robot1/base_link, robot1/laser;"
-             " has robot_state_publisher the description of robot1, or that of another robot?"],
-        ),
-        (
-            FRAMES.format("base_link", "laser"),
-            ["MG207 frames base_link, laser on /robot1/tf do not have the name of robot1; expected"
-             " robot1/base_link: load the rewritten description in /robot1/robot_state_publisher"],
-        ),
-        (
-            TWO + "running: /robot1/arm\nrunning: /robot1/driver",
-            ["MG109 none of the 1 nodes of robot2 is in the graph; is the robot started, and with"
-             " this ROS_DOMAIN_ID? Only this machine is checked: range LOCALHOST, no"
-             " ROS_STATIC_PEERS"],
-        ),
-        (
-            TWO + "running: /arm\nrunning: /robot1/driver\nrunning: /robot2/driver",
-            ["MG101 node /robot1/arm is in the plan, but not in the graph; /arm is running: it was"
-             " started without the robot's namespace; use namespace='robot1' in the launch file, or"
-             " --ros-args -r __ns:=/robot1"],
-        ),
-        (
-            f"planned: {SCAN.format('/robot1/scan')}\nrunning: {SCAN.format('/robot1/scn')}",
-            ["MG102 should publish topic /robot1/scan, but does not; it publishes /robot1/scn"
-             " instead: is the name misspelled in a remap rule or parameter?"],
-        ),
-        (
-            f"planned: {SCAN.format('/robot1/scan')}\nrunning: {SCAN.format('/robot1/laser')}",
-            ["MG102 should publish topic /robot1/scan, but does not; it publishes /robot1/laser of"
-             " that type: is that meant?"],
-        ),
+        (ALONE.format(""),),
+        (ALONE.format("robot1/laser, "),
+         "MG208 2 of the 3 frames of robot1 are in no transform: robot1/base_link, robot1/laser;"
+         " no planned node publishes its description: is the node that does it running?"),
+        (ALONE.format("robot1/laser, ") + DESCRIBED,
+         "MG208 2 of the 3 frames of robot1 are in no transform: robot1/base_link, robot1/laser;"
+         " has robot_state_publisher the description of robot1, or that of another robot?"),
+        (FRAMES.format("base_link", "laser"),
+         "MG207 frames base_link, laser on /robot1/tf do not have the name of robot1; expected"
+         " robot1/base_link: load the rewritten description in /robot1/robot_state_publisher"),
+        (TWO + "running: /robot1/arm\nrunning: /robot1/driver",
+         "MG109 none of the 1 nodes of robot2 is in the graph; is the robot started, and with"
+         " this ROS_DOMAIN_ID? Only this machine is checked: range LOCALHOST, no"
+         " ROS_STATIC_PEERS"),
+        (TWO + "running: /arm\nrunning: /robot1/driver\nrunning: /robot2/driver",
+         "MG101 node /robot1/arm is in the plan, but not in the graph; /arm is running: it was"
+         " started without the robot's namespace; use namespace='robot1' in the launch file, or"
+         " --ros-args -r __ns:=/robot1"),
+        (f"planned: {SCAN.format('/robot1/scan')}\nrunning: {SCAN.format('/robot1/scn')}",
+         "MG102 should publish topic /robot1/scan, but does not; it publishes /robot1/scn"
+         " instead: is the name misspelled in a remap rule or parameter?"),
+        (f"planned: {SCAN.format('/robot1/scan')}\nrunning: {SCAN.format('/robot1/laser')}",
+         "MG102 should publish topic /robot1/scan, but does not; it publishes /robot1/laser of"
+         " that type: is that meant?"),
     ],
 )  # fmt: skip
-def test_what_is_other_than_planned_and_why(lines: str, said: list[str]) -> None:
+def test_what_is_other_than_planned_and_why(row: tuple[str, ...]) -> None:
+    lines, *said = row
     plan, graph = read_example(lines)
     assert [f"{it.code} {it.message}; {it.hint}" for it in check(plan, graph)] == said
 
@@ -125,43 +102,34 @@ CAMERA = LIDAR.replace("lidar", "camera")
 
 
 @pytest.mark.parametrize(
-    ("lines", "said"),
+    "row",
     [
-        (HAS.format("a", "x", "a", "x"), []),
-        (HAS.format("a", "1", "a", "2"), [f"MG132 a is 2, planned is 1; {CHANGE}"]),
-        (HAS.format("a", "1", "a", "true"), [f"MG132 a is true, planned is 1; {CHANGE}"]),
-        (HAS.format("a", "false", "a", "0"), [f"MG132 a is 0, planned is false; {CHANGE}"]),
+        (HAS.format("a", "x", "a", "x"),),
+        (HAS.format("a", "1", "a", "2"), f"MG132 a is 2, planned is 1; {CHANGE}"),
+        (HAS.format("a", "1", "a", "true"), f"MG132 a is true, planned is 1; {CHANGE}"),
+        (HAS.format("a", "false", "a", "0"), f"MG132 a is 0, planned is false; {CHANGE}"),
         # It does not have the parameter: not known.
-        (HAS.format("a", "x", "b", "y"), []),
-        (
-            HAS.format("a", "x", "a", "y") + SET.format("y"),
-            [f"MG132 a is \"y\", planned is \"x\"; has it the parameters of robot2? {CHANGE}"],
-        ),
-        (
-            HAS.format("a", "x", "a", "y") + SET.format("z"),
-            [f"MG132 a is \"y\", planned is \"x\"; {CHANGE}"],
-        ),
-        (LIDAR.format(1, "a", 1) + CAMERA.format(1, "a", 1), []),
-        (LIDAR.format(1, "a", 1) + LIDAR.format(2, "b", 2), []),
-        (
-            LIDAR.format(1, "a", 1) + LIDAR.format(2, "b", 1),
-            ["MG133 hosts a, b are one machine; is this a simulation? Then leave out host"],
-        ),
-        (
-            LIDAR.format(1, "a", 1) + LIDAR.format(2, "a", 1) + CAMERA.format(1, "a", 2),
-            ["MG133 not on a, where /robot1/lidar, /robot2/lidar runs: /robot1/camera; start it"
-             " there, or change host in the plan"],
-        ),
-        (
-            "planned: state of /robot1/amcl: active\n" + AMCL + "running: /robot1/amcl is inactive",
-            ["MG511 /robot1/amcl is inactive, not active; see the log of its lifecycle manager; ros2"
-             " lifecycle get /robot1/amcl"],
-        ),
-        ("planned: state of /robot1/amcl: active\n" + AMCL + "running: /robot1/amcl is active", []),
-        ("planned: state of /robot1/amcl: active\n" + AMCL, []),
+        (HAS.format("a", "x", "b", "y"),),
+        (HAS.format("a", "x", "a", "y") + SET.format("y"),
+         f"MG132 a is \"y\", planned is \"x\"; has it the parameters of robot2? {CHANGE}"),
+        (HAS.format("a", "x", "a", "y") + SET.format("z"),
+         f"MG132 a is \"y\", planned is \"x\"; {CHANGE}"),
+        (LIDAR.format(1, "a", 1) + CAMERA.format(1, "a", 1),),
+        (LIDAR.format(1, "a", 1) + LIDAR.format(2, "b", 2),),
+        (LIDAR.format(1, "a", 1) + LIDAR.format(2, "b", 1),
+         "MG133 hosts a, b are one machine; is this a simulation? Then leave out host"),
+        (LIDAR.format(1, "a", 1) + LIDAR.format(2, "a", 1) + CAMERA.format(1, "a", 2),
+         "MG133 not on a, where /robot1/lidar, /robot2/lidar runs: /robot1/camera; start it"
+         " there, or change host in the plan"),
+        ("planned: state of /robot1/amcl: active\n" + AMCL + "running: /robot1/amcl is inactive",
+         "MG511 /robot1/amcl is inactive, not active; see the log of its lifecycle manager; ros2"
+         " lifecycle get /robot1/amcl"),
+        ("planned: state of /robot1/amcl: active\n" + AMCL + "running: /robot1/amcl is active",),
+        ("planned: state of /robot1/amcl: active\n" + AMCL,),
     ],
 )  # fmt: skip
-def test_states_parameters_and_machines(lines: str, said: list[str]) -> None:
+def test_states_parameters_and_machines(row: tuple[str, ...]) -> None:
+    lines, *said = row
     plan, graph = read_example(lines)
     found = [it for it in check(plan, graph) if it.code in ("MG511", "MG132", "MG133")]
     assert [f"{it.code} {it.message}; {it.hint}" for it in found] == said
@@ -181,43 +149,34 @@ NOT_SHARED = ", and is not in shared_topics: robots that do the same use one top
 
 
 @pytest.mark.parametrize(
-    ("lines", "said"),
+    "row",
     [
-        (USES.format("publishes", "/robot1/x", TEXT), []),
-        (
-            USES.format("publishes", "/x", TEXT),
-            [f"uses /x, which is not a name of robot1{NOT_SHARED}; an absolute name in its"
-             " code or parameters; pass /x:=/robot1/x with --ros-args -r /x:=/robot1/x, or with"
-             " remappings=[('/x', '/robot1/x')] in the launch file"],
-        ),
-        ("planned: shared topic /x\n" + USES.format("publishes", "/x", TEXT), []),
+        (USES.format("publishes", "/robot1/x", TEXT),),
+        (USES.format("publishes", "/x", TEXT),
+         f"uses /x, which is not a name of robot1{NOT_SHARED}; an absolute name in its"
+         " code or parameters; pass /x:=/robot1/x with --ros-args -r /x:=/robot1/x, or with"
+         " remappings=[('/x', '/robot1/x')] in the launch file"),
+        ("planned: shared topic /x\n" + USES.format("publishes", "/x", TEXT),),
         # Everybody's.
-        (USES.format("publishes", "/rosout", "rcl_interfaces/msg/Log"), []),
-        (
-            USES.format("publishes", "/robot2/x", TEXT),
-            ["publishes /robot2/x, a name of robot2; a remap rule or parameter of robot1 names"
-             " robot2"],
-        ),
-        (
-            USES.format("subscribes", "/robot2/x", TEXT),
-            ["subscribes to /robot2/x, a name of robot2; a remap rule or parameter of robot1 names"
-             " robot2"],
-        ),
-        (
-            USES.format("calls", "/robot2/x", "std_srvs/srv/Trigger"),
-            ["has a client for /robot2/x, a name of robot2; a remap rule or parameter of robot1"
-             " names robot2"],
-        ),
-        (
-            f"planned: /robot1/a publishes /robot1/x {TEXT} as /x\n"
-            + USES.format("publishes", "/x", TEXT),
-            ["should publish topic /robot1/x, but does not; it publishes /x instead: the remap rule"
-             " /x:=x is not applied; pass it with --ros-args -r /x:=x, or with"
-             " remappings=[('/x', 'x')] in the launch file"],
-        ),
+        (USES.format("publishes", "/rosout", "rcl_interfaces/msg/Log"),),
+        (USES.format("publishes", "/robot2/x", TEXT),
+         "publishes /robot2/x, a name of robot2; a remap rule or parameter of robot1 names"
+         " robot2"),
+        (USES.format("subscribes", "/robot2/x", TEXT),
+         "subscribes to /robot2/x, a name of robot2; a remap rule or parameter of robot1 names"
+         " robot2"),
+        (USES.format("calls", "/robot2/x", "std_srvs/srv/Trigger"),
+         "has a client for /robot2/x, a name of robot2; a remap rule or parameter of robot1"
+         " names robot2"),
+        (f"planned: /robot1/a publishes /robot1/x {TEXT} as /x\n"
+         + USES.format("publishes", "/x", TEXT),
+         "should publish topic /robot1/x, but does not; it publishes /x instead: the remap rule"
+         " /x:=x is not applied; pass it with --ros-args -r /x:=x, or with"
+         " remappings=[('/x', 'x')] in the launch file"),
     ],
 )  # fmt: skip
-def test_names_of_the_wrong_robot(lines: str, said: list[str]) -> None:
+def test_names_of_the_wrong_robot(row: tuple[str, ...]) -> None:
+    lines, *said = row
     plan, graph = read_example(NODES + lines)
     found = [it for it in check(plan, graph) if it.code.startswith("MG3")]
     assert [f"{it.message}; {it.hint}" for it in found] == said
@@ -310,52 +269,37 @@ ON_TF = (
 
 
 @pytest.mark.parametrize(
-    ("lines", "said"),
+    "row",
     [
-        (TREE + SENT.format("robot1/base_link"), []),
+        (TREE + SENT.format("robot1/base_link"),),
         # A frame that is like none but for the robot's name is no slip.
-        (
-            TREE + SENT.format("robot1/arm"),
-            [PIECES.format("robot1/arm, robot1/base_link") + "a transform between them is missing:"
-             " joint states of a moving joint, odometry or localization"],
-        ),
-        (
-            TREE + SENT.format("robot1/base_lnk"),
-            [PIECES.format("robot1/base_link, robot1/base_lnk") + "robot1/tool is sent below"
-             " robot1/base_lnk, but nothing sends that: did you mean robot1/base_link?"],
-        ),
-        (
-            TREE + SENT.format("base_link"),
-            [PIECES.format("base_link, robot1/base_link") + "base_link and robot1/base_link are one"
-             " frame with two names: by the plan /robot1/robot_state_publisher sends the second,"
-             " robot1/base_link"],
-        ),
-        (
-            TREE.replace(", robot1/tool", "")
-            + LASER + STATIC.format("robot1/laser", "robot1/base_link", OWN_TF),
-            ["MG403 the transforms on /robot1/tf go round in a circle: robot1/laser ->"
-             " robot1/base_link -> robot1/laser; the node that sends on /robot1/tf:"
-             " /robot1/robot_state_publisher"],
-        ),
-        (
-            TREE + SENT.format("robot1/base_link").replace(OWN_TF, "/tf_static"),
-            [f"MG405 {ON_TF}"],
-        ),
-        (
-            TREE.replace(", robot1/tool", "") + LASER.replace(OWN_TF, "/tf_static"),
-            [f"MG405 {ON_TF}"],
-        ),
-        (
-            TREE.replace(", robot1/tool", "").replace("/robot1/tf", "/tf").replace("as p", "p")
-            + f"planned: frames of robot2 on /tf: robot2/base_link\nrunning: {STATE_TF}\n" + LASER,
-            ["MG405 /robot1/robot_state_publisher sends tf on /robot1/tf, but the tf of robot1 is on"
-             " /tf; by the plan it should publish topic /tf_static, but does not: it publishes"
-             " /robot1/tf_static instead: the node resolves a relative name in its own namespace:"
-             " write /tf_static in its parameters"],
-        ),
+        (TREE + SENT.format("robot1/arm"),
+         PIECES.format("robot1/arm, robot1/base_link") + "a transform between them is missing:"
+         " joint states of a moving joint, odometry or localization"),
+        (TREE + SENT.format("robot1/base_lnk"),
+         PIECES.format("robot1/base_link, robot1/base_lnk") + "robot1/tool is sent below"
+         " robot1/base_lnk, but nothing sends that: did you mean robot1/base_link?"),
+        (TREE + SENT.format("base_link"),
+         PIECES.format("base_link, robot1/base_link") + "base_link and robot1/base_link are one"
+         " frame with two names: by the plan /robot1/robot_state_publisher sends the second,"
+         " robot1/base_link"),
+        (TREE.replace(", robot1/tool", "")
+         + LASER + STATIC.format("robot1/laser", "robot1/base_link", OWN_TF),
+         "MG403 the transforms on /robot1/tf go round in a circle: robot1/laser ->"
+         " robot1/base_link -> robot1/laser; the node that sends on /robot1/tf:"
+         " /robot1/robot_state_publisher"),
+        (TREE + SENT.format("robot1/base_link").replace(OWN_TF, "/tf_static"), f"MG405 {ON_TF}"),
+        (TREE.replace(", robot1/tool", "") + LASER.replace(OWN_TF, "/tf_static"), f"MG405 {ON_TF}"),
+        (TREE.replace(", robot1/tool", "").replace("/robot1/tf", "/tf").replace("as p", "p")
+         + f"planned: frames of robot2 on /tf: robot2/base_link\nrunning: {STATE_TF}\n" + LASER,
+         "MG405 /robot1/robot_state_publisher sends tf on /robot1/tf, but the tf of robot1 is on"
+         " /tf; by the plan it should publish topic /tf_static, but does not: it publishes"
+         " /robot1/tf_static instead: the node resolves a relative name in its own namespace:"
+         " write /tf_static in its parameters"),
     ],
 )  # fmt: skip
-def test_why_a_tree_is_not_as_planned(lines: str, said: list[str]) -> None:
+def test_why_a_tree_is_not_as_planned(row: tuple[str, ...]) -> None:
+    lines, *said = row
     plan, graph = read_example(lines)
     assert [f"{it.code} {it.message}; {it.hint}" for it in check(plan, graph)] == said
 

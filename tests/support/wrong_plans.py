@@ -96,57 +96,43 @@ USE = b'<parent link="base'
 NOTE = b'<note link="base'
 RULE = b"</joint>\r"
 
-EDITS = (
-    ("an edit too few", "same_names", at(USE, lambda it: [])),
-    ("an edit twice", "same_names", at(USE, lambda it: [it, it])),
-    ("an edit one byte further on", "unreadable", at(USE, lambda it: [shifted(it, 1)])),
-    ("an edit one byte before", "same_names", at(USE, lambda it: [shifted(it, -1)])),
-    (
-        "an edit that takes a letter",
-        "same_names",
-        at(USE, lambda it: [it._replace(start=it.start - 1)]),
-    ),
-    ("an edit that takes a quote", "unreadable", at(USE, lambda it: [it._replace(end=it.end + 1)])),
-    (
-        "an edit with its halves swapped",
-        "same_names",
-        at(USE, lambda it: [Edit(it.start, it.end, b"", b"/")]),
-    ),
-    ("an edit of another kind", "same_names", at(USE, lambda it: [it._replace(before=b"_")])),
-    (
-        "an edit without the robot's name",
-        "same_names",
-        at(USE, lambda it: [it._replace(after=None)]),
-    ),
-    (
-        "an edit with another robot's name",
-        "same_names",
-        at(USE, lambda it: [it._replace(before=b"/robot2", after=None)]),
-    ),
-    ("an edit with the robot's name as it is", "a_slot_each", at(USE, literal)),
-    ("an edit of a value that is no name", "a_slot_each", more(NOTE, b"/", b"")),
-    (
-        "an edit of a value that is no name, the robot's name as it is",
-        "strips_to_source",
-        more(NOTE, b"/robot1", None),
-    ),
-    ("an edit that overlaps another", "same_names", more(USE[:-1], b"a", None)),
-    (
-        "an edit of a line end",
-        "strips_to_source",
-        edits(lambda all_: [*all_, Edit(behind(RULE) - 1, behind(RULE), b"", None)]),
-    ),
-    ("an edit of a comment", "strips_to_source", more(b"<!-- made", b" well", None)),
-    ("the slot of the model's name in a marker", "same_names", in_marker),
-    ("an edit in a comment, with a slot", "a_slot_each", more(b"<!-- made", b" for ", b"")),
-    (
-        "all edits in another order",
-        "unreadable",
-        lambda plan: plan._replace(edits=plan.edits[::-1]),
-    ),
-    ("no edits at all", "same_names", edits(lambda all_: [])),
-    ("the first edits", "same_names", edits(lambda all_: all_[:9])),
-)
+EDITS = {
+    "same_names": {
+        "an edit too few": at(USE, lambda it: []),
+        "an edit twice": at(USE, lambda it: [it, it]),
+        "an edit one byte before": at(USE, lambda it: [shifted(it, -1)]),
+        "an edit that takes a letter": at(USE, lambda it: [it._replace(start=it.start - 1)]),
+        "an edit with its halves swapped": at(USE, lambda it: [Edit(it.start, it.end, b"", b"/")]),
+        "an edit of another kind": at(USE, lambda it: [it._replace(before=b"_")]),
+        "an edit without the robot's name": at(USE, lambda it: [it._replace(after=None)]),
+        "an edit with another robot's name": at(
+            USE, lambda it: [it._replace(before=b"/robot2", after=None)]
+        ),
+        "an edit that overlaps another": more(USE[:-1], b"a", None),
+        "the slot of the model's name in a marker": in_marker,
+        "no edits at all": edits(lambda all_: []),
+        "the first edits": edits(lambda all_: all_[:9]),
+    },
+    "unreadable": {
+        "an edit one byte further on": at(USE, lambda it: [shifted(it, 1)]),
+        "an edit that takes a quote": at(USE, lambda it: [it._replace(end=it.end + 1)]),
+        "all edits in another order": lambda plan: plan._replace(edits=plan.edits[::-1]),
+    },
+    "a_slot_each": {
+        "an edit with the robot's name as it is": at(USE, literal),
+        "an edit of a value that is no name": more(NOTE, b"/", b""),
+        "an edit in a comment, with a slot": more(b"<!-- made", b" for ", b""),
+    },
+    "strips_to_source": {
+        "an edit of a value that is no name, the robot's name as it is": more(
+            NOTE, b"/robot1", None
+        ),
+        "an edit of a line end": edits(
+            lambda all_: [*all_, Edit(behind(RULE) - 1, behind(RULE), b"", None)]
+        ),
+        "an edit of a comment": more(b"<!-- made", b" well", None),
+    },
+}
 
 
 # Plans that only add: their texts are stripped value by value.
@@ -206,21 +192,23 @@ def respelled(text: str, before: str, after: str, at_: int | None = None) -> Wro
     return wrong
 
 
-RENAMES = (
-    ("a map without one use", "same_names", once("wheel", 1)),
-    ("a map without the last use", "same_names", once("base", -1)),
-    ("a map without one declaration", "same_names", once("wheel", 0)),
-    ("a map without a name", "same_names", unnamed(lambda text: text == "wheel")),
-    ("a map without a joint", "same_names", unnamed(lambda text: text == "axle")),
-    ("a map without the model", "same_names", unnamed(lambda text: text == "rover")),
-    ("a map without a name that is escaped", "same_names", unnamed(lambda text: "&" in text)),
-    ("a map of nothing", "same_names", unnamed(lambda _: True)),
-    ("a name under another kind", "same_names", respelled("wheel", "_", "")),
-    ("a name with the affix in front", "same_names", respelled("wheel", "", "/", 0)),
-    ("a name with the affix inside", "same_names", respelled("wheel", "/", "", 2)),
-    ("a name without a separator", "same_names", respelled("axle", "", "")),
-    ("a namespace of another robot", "same_names", respelled("/demo", "x", "/")),
-)
+RENAMES = {
+    "same_names": {
+        "a map without one use": once("wheel", 1),
+        "a map without the last use": once("base", -1),
+        "a map without one declaration": once("wheel", 0),
+        "a map without a name": unnamed(lambda text: text == "wheel"),
+        "a map without a joint": unnamed(lambda text: text == "axle"),
+        "a map without the model": unnamed(lambda text: text == "rover"),
+        "a map without a name that is escaped": unnamed(lambda text: "&" in text),
+        "a map of nothing": unnamed(lambda _: True),
+        "a name under another kind": respelled("wheel", "_", ""),
+        "a name with the affix in front": respelled("wheel", "", "/", 0),
+        "a name with the affix inside": respelled("wheel", "/", "", 2),
+        "a name without a separator": respelled("axle", "", ""),
+        "a namespace of another robot": respelled("/demo", "x", "/"),
+    },
+}
 
 
 def named_otherwise(**words: Any) -> Callable[..., Any]:
@@ -274,71 +262,49 @@ def spelled(it: Insertion, old: str, new: str) -> list[Insertion]:
 
 
 ODOM, TF, SPACE = "odometry_frame", "/tf:=tf", "namespace"
-INSERTIONS = (
-    ("an insertion forgotten", "nothing_to_add", inserted(lambda it: [], ODOM)),
-    ("a rule forgotten", "nothing_to_add", inserted(lambda it: [], TF)),
-    ("a namespace forgotten", "nothing_to_add", inserted(lambda it: [], SPACE)),
-    (
-        "an insertion without the robot's name",
-        "robots_own",
-        inserted(lambda it: spelled(it, f"/{ROBOT_SLOT}", ""), ODOM),
-    ),
-    (
-        "an insertion without a separator",
-        "robots_own",
-        inserted(lambda it: spelled(it, f"/{ROBOT_SLOT}", ROBOT_SLOT), ODOM),
-    ),
-    (
-        "an insertion for another robot",
-        "robots_own",
-        inserted(lambda it: spelled(it, ROBOT_SLOT, "robot2"), ODOM),
-    ),
-    (
-        "an insertion with the robot's name as it is",
-        "a_slot_each",
-        inserted(lambda it: spelled(it, ROBOT_SLOT, "robot1"), ODOM),
-    ),
-    (
-        "an insertion with one more slot",
-        "a_slot_each",
-        inserted(
+INSERTIONS = {
+    "nothing_to_add": {
+        "an insertion forgotten": inserted(lambda it: [], ODOM),
+        "a rule forgotten": inserted(lambda it: [], TF),
+        "a namespace forgotten": inserted(lambda it: [], SPACE),
+        "a rule for another topic": inserted(lambda it: spelled(it, "/tf:", "/tg:"), TF),
+        "an insertion in another element": inserted(
+            lambda it: spelled(it, "odometry_frame", "odom_frame"), ODOM
+        ),
+        "an insertion at another plugin": inserted(
+            lambda it: [it._replace(parent=it.parent.getnext())], ODOM
+        ),
+    },
+    "robots_own": {
+        "an insertion without the robot's name": inserted(
+            lambda it: spelled(it, f"/{ROBOT_SLOT}", ""), ODOM
+        ),
+        "an insertion without a separator": inserted(
+            lambda it: spelled(it, f"/{ROBOT_SLOT}", ROBOT_SLOT), ODOM
+        ),
+        "an insertion for another robot": inserted(
+            lambda it: spelled(it, ROBOT_SLOT, "robot2"), ODOM
+        ),
+        "an absolute rule": inserted(lambda it: spelled(it, ":=tf", ":=/tf"), TF),
+        "a namespace of all robots": inserted(lambda it: spelled(it, ROBOT_SLOT, "fleet"), SPACE),
+    },
+    "a_slot_each": {
+        "an insertion with the robot's name as it is": inserted(
+            lambda it: spelled(it, ROBOT_SLOT, "robot1"), ODOM
+        ),
+        "an insertion with one more slot": inserted(
             lambda it: spelled(it, "<odometry_frame>", f"<!-- {ROBOT_SLOT} --><odometry_frame>"),
             ODOM,
         ),
-    ),
-    ("an absolute rule", "robots_own", inserted(lambda it: spelled(it, ":=tf", ":=/tf"), TF)),
-    (
-        "a rule for another topic",
-        "nothing_to_add",
-        inserted(lambda it: spelled(it, "/tf:", "/tg:"), TF),
-    ),
-    (
-        "a namespace of all robots",
-        "robots_own",
-        inserted(lambda it: spelled(it, ROBOT_SLOT, "fleet"), SPACE),
-    ),
-    (
-        "an insertion in another element",
-        "nothing_to_add",
-        inserted(lambda it: spelled(it, "odometry_frame", "odom_frame"), ODOM),
-    ),
-    (
-        "an insertion at another plugin",
-        "nothing_to_add",
-        inserted(lambda it: [it._replace(parent=it.parent.getnext())], ODOM),
-    ),
-    ("an insertion twice", "added_once", inserted(lambda it: [it, it], ODOM)),
-    (
-        "an insertion of what is there",
-        "added_once",
-        inserted(lambda it: [it, *spelled(it, "odometry_frame", "robot_base_frame")], ODOM),
-    ),
-    (
-        "a rule twice",
-        "added_once",
-        inserted(lambda it: [it, *spelled(it, "=tf", "=tf_static")], TF),
-    ),
-)
+    },
+    "added_once": {
+        "an insertion twice": inserted(lambda it: [it, it], ODOM),
+        "an insertion of what is there": inserted(
+            lambda it: [it, *spelled(it, "odometry_frame", "robot_base_frame")], ODOM
+        ),
+        "a rule twice": inserted(lambda it: [it, *spelled(it, "=tf", "=tf_static")], TF),
+    },
+}
 
 
 def named(new: str) -> Wrong:
@@ -346,41 +312,55 @@ def named(new: str) -> Wrong:
     return lambda found: [(it, re.sub(f"/[{ROBOT_SLOT}{LAST}]", new, text)) for it, text in found]
 
 
-COLLISIONS = (
-    ("a collision forgotten", "same_names", lambda found: found[1:]),
-    ("all collisions forgotten", "same_names", lambda found: []),
-    (
-        "a collision with another number",
-        "same_names",
-        lambda found: [(it, text.replace("_2", "_1")) for it, text in found],
-    ),
-    ("a collision without the robot", "same_names", named("")),
-    (
-        "collisions swapped",
-        "same_names",
-        lambda found: [(found[0][0], found[1][1]), (found[1][0], found[0][1])],
-    ),
-    ("a collision with the robot's name as it is", "a_slot_each", named("/robot1")),
-)
+COLLISIONS = {
+    "same_names": {
+        "a collision forgotten": lambda found: found[1:],
+        "all collisions forgotten": lambda found: [],
+        "a collision with another number": lambda found: [
+            (it, text.replace("_2", "_1")) for it, text in found
+        ],
+        "a collision without the robot": named(""),
+        "collisions swapped": lambda found: [
+            (found[0][0], found[1][1]),
+            (found[1][0], found[0][1]),
+        ],
+    },
+    "a_slot_each": {
+        "a collision with the robot's name as it is": named("/robot1"),
+    },
+}
 
 PLANS = [
-    *(Fault(about, by, pipeline, "make_plan", wrong) for about, by, wrong in EDITS),
+    *(
+        Fault(about, by, pipeline, "make_plan", wrong)
+        for by, faults in EDITS.items()
+        for about, wrong in faults.items()
+    ),
     *(
         Fault(about, "strips_to_source", pipeline, "make_plan", wrong, "model")
         for about, wrong in ADDED
     ),
-    *(Fault(about, by, planning, "make_renames", wrong) for about, by, wrong in RENAMES),
+    *(
+        Fault(about, by, planning, "make_renames", wrong)
+        for by, faults in RENAMES.items()
+        for about, wrong in faults.items()
+    ),
     *(
         Fault(about, "same_names", planning, "make_renames", wrong, instead=True)
         for about, wrong in NAMINGS
     ),
-    *(Fault(about, by, planning, "insertions", wrong) for about, by, wrong in INSERTIONS),
+    *(
+        Fault(about, by, planning, "insertions", wrong)
+        for by, faults in INSERTIONS.items()
+        for about, wrong in faults.items()
+    ),
     *(
         Fault(about, "as_decided", planning, "insertion_edits", wrong, source)
         for about, source, wrong in WRITTEN
     ),
     *(
         Fault(about, by, planning, "respell_collisions", wrong, "touch", "postfix")
-        for about, by, wrong in COLLISIONS
+        for by, faults in COLLISIONS.items()
+        for about, wrong in faults.items()
     ),
 ]

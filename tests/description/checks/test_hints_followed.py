@@ -97,122 +97,78 @@ class Followed(NamedTuple):
     options: dict[str, Any]
 
 
+def followed(
+    text: str,
+    layout_and_distro: str,
+    code: str,
+    hint: str,
+    after: str | None = None,
+    **options: Any,
+) -> Followed:
+    layout, distro = layout_and_distro.split()
+    return Followed(text, layout, distro, code, hint, text if after is None else after, options)
+
+
 ROWS = (
-    Followed(LIDAR, "postfix", "humble", "MB422", "--affix prefix", LIDAR, {"affix": "prefix"}),
-    Followed(
-        ESTOP,
-        "postfix",
-        "jazzy",
-        "MG301",
-        "--layout tf-per-robot or both",
-        ESTOP,
-        {"layout": "both"},
-    ),
-    Followed(
-        ABB,
-        "postfix",
-        "humble",
-        "MB428",
-        "--layout tf-per-robot",
-        ABB,
-        {"layout": "tf-per-robot"},
-    ),
+    followed(LIDAR, "postfix humble", "MB422", "--affix prefix", affix="prefix"),
+    followed(ESTOP, "postfix jazzy", "MG301", "--layout tf-per-robot or both", layout="both"),
+    followed(ABB, "postfix humble", "MB428", "--layout tf-per-robot", layout="tf-per-robot"),
     *(
-        Followed(MOTOR, it, "jazzy", code, "--layout", MOTOR, {"layout": "frame-prefix"})
+        followed(MOTOR, f"{it} jazzy", code, "--layout", layout="frame-prefix")
         for it, code in (("postfix", "MB428"), ("both", "MB428"), ("tf-per-robot", "MB437"))
     ),
-    Followed(PX4, "postfix", "jazzy", "MB428", "frame-prefix", PX4, {"layout": "frame-prefix"}),
-    Followed(
+    followed(PX4, "postfix jazzy", "MB428", "frame-prefix", layout="frame-prefix"),
+    followed(
         WINCH,
-        "postfix",
-        "jazzy",
+        "postfix jazzy",
         "MB902",
         "opens: nothing",
-        WINCH,
-        {"definitions": "[plugin acme_winch]\nopens: nothing\n"},
+        definitions="[plugin acme_winch]\nopens: nothing\n",
     ),
-    Followed(
+    followed(
         ARM,
-        "postfix",
-        "jazzy",
+        "postfix jazzy",
         "MB903",
         "opens: nothing",
-        ARM,
-        {"definitions": "[hardware acme/Arm]\nopens: nothing\n"},
+        definitions="[hardware acme/Arm]\nopens: nothing\n",
     ),
-    Followed(
+    followed(
         MARK,
-        "postfix",
-        "jazzy",
+        "postfix jazzy",
         "MB901",
         "add a line to a file of plugin definitions: uses or declares",
-        MARK,
-        {"definitions": "[element acme]\nat: robot\n@at uses link\n"},
+        definitions="[element acme]\nat: robot\n@at uses link\n",
     ),
-    Followed(
-        SAWYER,
-        "postfix",
-        "humble",
-        "MG305",
-        "load the plugin for one robot only",
-        "",
-        {},
+    followed(SAWYER, "postfix humble", "MG305", "load the plugin for one robot only", after=""),
+    followed(
+        KOBUKI, "both humble", "MG402", "allow it with --shared FRAME", shared_frames=["odom"]
     ),
-    Followed(
-        KOBUKI,
-        "both",
-        "humble",
-        "MG402",
-        "allow it with --shared FRAME",
-        KOBUKI,
-        {"shared_frames": ["odom"]},
+    followed(EYE, "tf-per-robot jazzy", "MB437", "--layout both", layout="both"),
+    followed(SENSORS, "postfix jazzy", "MB416", "--world-systems leave", world_systems="leave"),
+    followed(
+        CONTROL.format(""), "postfix humble", "MB426", "--topics namespace", topics="namespace"
     ),
-    Followed(EYE, "tf-per-robot", "jazzy", "MB437", "--layout both", EYE, {"layout": "both"}),
-    Followed(
-        SENSORS,
-        "postfix",
-        "jazzy",
-        "MB416",
-        "--world-systems leave",
-        SENSORS,
-        {"world_systems": "leave"},
-    ),
-    Followed(
-        CONTROL.format(""),
-        "postfix",
-        "humble",
-        "MB426",
-        "--topics namespace",
-        CONTROL.format(""),
-        {"topics": "namespace"},
-    ),
-    Followed(IMU, "tf-per-robot", "jazzy", "MB425", "--layout both", IMU, {"layout": "both"}),
-    Followed(
+    followed(IMU, "tf-per-robot jazzy", "MB425", "--layout both", layout="both"),
+    followed(
         HIT.format("~/hit"),
-        "postfix",
-        "jazzy",
+        "postfix jazzy",
         "MB438",
         "write both the same way",
-        HIT.format("hit"),
-        {},
+        after=HIT.format("hit"),
     ),
-    Followed(
+    followed(
         DRIVE,
-        "tf-per-robot",
-        "humble",
+        "tf-per-robot humble",
         "MG320",
         "--layout frames-per-robot",
-        DRIVE,
-        {"layout": "frames-per-robot"},
+        layout="frames-per-robot",
     ),
-    Followed(
+    followed(
         PARAM.format("/robot_description"),
-        "postfix",
-        "humble",
+        "postfix humble",
         "MB410",
         "the part after the last slash",
-        PARAM.format("robot_description"),
-        {},
+        after=PARAM.format("robot_description"),
     ),
 )
 

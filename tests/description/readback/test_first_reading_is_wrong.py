@@ -40,13 +40,12 @@ SCAN = "</gazebo><gazebo reference='base'><sensor name='lidar' type='gpu_lidar'>
 class Fault(NamedTuple):
     """``names`` of ``owner`` are ``instead``; the plugin is ``source``, and ``shared`` what meets."""
 
-    about: str
     owner: Any
     name: str
     instead: Any
     source: str
-    layout: str
     shared: str
+    layout: str = "both"
 
 
 def nothing(*_: object) -> tuple[()]:
@@ -80,152 +79,103 @@ def unseen(path: str) -> Callable[[TreeNode, Any], None]:
     return lambda node, site: None if site.path == path else right(node, site)
 
 
-FAULTS = (
-    Fault(
-        "no default is inserted", insert, "_defaults", nothing, DRIVE % "", "both", "frame 'odom'"
+FAULTS = {
+    "no default is inserted": Fault(insert, "_defaults", nothing, DRIVE % "", "frame 'odom'"),
+    "no namespace is inserted": Fault(insert, "_defaults", nothing, IMU % "", "node '/imu'"),
+    "no rule is inserted": Fault(insert, "_remaps", nothing, DRIVE % ODOM, "topic '/tf'"),
+    "no rule is inserted for a wired topic": Fault(
+        insert, "_remaps", nothing, DRIVE % ODOM, "topic '/odom'", "postfix"
     ),
-    Fault(
-        "no namespace is inserted", insert, "_defaults", nothing, IMU % "", "both", "node '/imu'"
+    "an empty namespace is taken for one": Fault(
+        insert, "text_of", lambda _: "x", IMU % "<ros><namespace/></ros>", "node '/imu'"
     ),
-    Fault("no rule is inserted", insert, "_remaps", nothing, DRIVE % ODOM, "both", "topic '/tf'"),
-    Fault(
-        "no rule is inserted for a wired topic",
-        insert,
-        "_remaps",
-        nothing,
-        DRIVE % ODOM,
-        "postfix",
-        "topic '/odom'",
-    ),
-    Fault(
-        "an empty namespace is taken for one",
-        insert,
-        "text_of",
-        lambda _: "x",
-        IMU % "<ros><namespace/></ros>",
-        "both",
-        "node '/imu'",
-    ),
-    Fault(
-        "a namespace behind a comment is not read",
+    "a namespace behind a comment is not read": Fault(
         collect,
         "text_of",
         own_text,
         IMU % "<ros><namespace><!-- --> /a</namespace></ros>",
-        "both",
         "node '/a/imu'",
     ),
-    Fault(
-        "a topic behind a comment is not read",
+    "a topic behind a comment is not read": Fault(
         collect,
         "text_of",
         own_text,
         LASER % "<topicName><!-- -->/scan</topicName>",
-        "both",
         "topic '/scan'",
     ),
-    Fault(
-        "a rule behind a comment is not read",
+    "a rule behind a comment is not read": Fault(
         collect,
         "text_of",
         own_text,
         DRIVE % "<ros><remapping><!-- -->cmd_vel:=/cmd</remapping></ros>",
-        "both",
         "topic '/cmd'",
     ),
-    Fault(
-        "topics stay",
+    "topics stay": Fault(
         naming,
         "_topic_affix",
         none,
         LASER % "<topicName>/scan</topicName>",
+        "topic '/scan'",
         "postfix",
-        "topic '/scan'",
     ),
-    Fault(
-        "topics of gz stay",
-        naming,
-        "_topic_affix",
-        none,
-        GZ % "<topic>/cmd</topic>",
-        "both",
-        "topic '/cmd'",
+    "topics of gz stay": Fault(
+        naming, "_topic_affix", none, GZ % "<topic>/cmd</topic>", "topic '/cmd'"
     ),
-    Fault(
-        "topics of sensors stay",
-        naming,
-        "_topic_affix",
-        none,
-        SCAN % "<topic>scan</topic>",
-        "both",
-        "topic '/scan'",
+    "topics of sensors stay": Fault(
+        naming, "_topic_affix", none, SCAN % "<topic>scan</topic>", "topic '/scan'"
     ),
-    Fault(
-        "namespaces stay",
+    "namespaces stay": Fault(
         naming,
         "_namespace_affix",
         none,
         IMU % "<ros><namespace>/a</namespace></ros>",
-        "both",
         "node '/a/imu'",
     ),
-    Fault("nodes stay", naming, "_active", without("node"), IMU % "", "postfix", "node '/imu'"),
-    Fault(
-        "frames stay",
+    "nodes stay": Fault(naming, "_active", without("node"), IMU % "", "node '/imu'", "postfix"),
+    "frames stay": Fault(
         naming,
         "_active",
         without("frame"),
         DRIVE % "<odometry_frame>o</odometry_frame>",
-        "both",
         "frame 'o'",
     ),
-    Fault("links stay", naming, "_active", without("link"), "", "both", "frame 'base'"),
-    Fault(
-        "a rule is not read",
+    "links stay": Fault(naming, "_active", without("link"), "", "frame 'base'"),
+    "a rule is not read": Fault(
         remap_rules,
         "remap",
         nothing,
         DRIVE % "<ros><remapping>cmd_vel:=/cmd</remapping></ros>",
-        "both",
         "topic '/cmd'",
     ),
-    Fault(
-        "a parameter has no place in the tree",
+    "a parameter has no place in the tree": Fault(
         TreeNode,
         "_add",
         unseen("topicName"),
         LASER % "<topicName>/scan</topicName>",
-        "both",
         "topic '/scan'",
     ),
-    Fault(
-        "a namespace has no place in the tree",
+    "a namespace has no place in the tree": Fault(
         TreeNode,
         "_add",
         unseen("ros/namespace"),
         IMU % "<ros><namespace>/a</namespace></ros>",
-        "both",
         "node '/a/imu'",
     ),
-    Fault(
-        "plugins are not told apart",
+    "plugins are not told apart": Fault(
         tree,
         "SELECTORS",
         tree.SELECTORS | {"plugin": lambda _: []},
         IMU % "<ros><namespace>/a</namespace></ros>",
-        "both",
         "node '/a/imu'",
     ),
-    Fault(
-        "an unknown plugin with <ros> is nothing",
+    "an unknown plugin with <ros> is nothing": Fault(
         tree,
         "SELECTORS",
         tree.SELECTORS | {"plugin": lambda _: []},
         NOBODY % "<ros><namespace>/a</namespace></ros>",
-        "both",
         "node '/a/own'",
     ),
-)
+}
 
 
 def found(fault: Fault) -> tuple[set[str], tuple[str, ...]]:
@@ -236,7 +186,7 @@ def found(fault: Fault) -> tuple[set[str], tuple[str, ...]]:
 
 
 @pytest.mark.sample(1)
-@pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: fault.about)
+@pytest.mark.parametrize("fault", FAULTS.values(), ids=FAULTS)
 def test_the_second_reading_names_what_is_shared(
     monkeypatch: pytest.MonkeyPatch, fault: Fault
 ) -> None:
@@ -253,13 +203,12 @@ def test_the_second_reading_names_what_is_shared(
     assert any("shared by all robots" in it for it in why)
 
 
+# The release is chosen by tags.
 BY_TAGS = Fault(
-    "the release is chosen by tags",
     tree,
     "_flavour",
     majority,
     IMU % "<ros/><topicName>imu</topicName><bodyName>base</bodyName>",
-    "both",
     "node '/imu'",
 )
 
@@ -276,5 +225,5 @@ def test_nothing_is_inserted_at_all(monkeypatch: pytest.MonkeyPatch) -> None:
     """By the plan, nor asked for by the proof."""
     for module in (plan, verify):
         monkeypatch.setattr(module, "insertions", lambda *_: [])
-    fault = FAULTS[0]._replace(source=DRIVE % ODOM + IMU % "")
+    fault = FAULTS["no default is inserted"]._replace(source=DRIVE % ODOM + IMU % "")
     assert found(fault)[0] >= {"frame 'odom'", "topic '/tf'", "node '/imu'", "node '/drive'"}
