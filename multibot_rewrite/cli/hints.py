@@ -16,13 +16,9 @@ _BEGUN = 2
 def option_hint(wrong: str, command: str, known: Collection[str], has_fleet: bool) -> str:
     """Return what to write in place of an unknown option, behind a semicolon; "" if nothing is known.
 
-    An option that begins with it comes first. Then its meaning counts: what is known for this command,
-    a key of the fleet file, a word of other tools, an option of another command. Its letters come last.
+    What its name means in other tools and earlier versions comes first, then an option of this command
+    that begins with it, a key of the fleet file, an option of another command, and one of like letters.
     """
-    bare = wrong.lstrip("-")
-    begun = (it for it in known if len(bare) > _BEGUN and it.startswith(f"--{bare}"))
-    if first := next(begun, ""):
-        return f"; did you mean '{first}'?"
     word = f"-{wrong.removeprefix('-').replace('_', '-')}"
     if own := other_words("options").get(f"{command} {word}"):
         return f"; use {own}"
@@ -31,6 +27,10 @@ def option_hint(wrong: str, command: str, known: Collection[str], has_fleet: boo
     meant = first_word if first_word.startswith("-") else ""
     if meant in known:
         return f"; use {other}"
+    bare = wrong.lstrip("-")
+    begun = (it for it in known if len(bare) > _BEGUN and it.startswith(f"--{bare}"))
+    if first := next(begun, ""):
+        return f"; did you mean '{first}'?"
     if has_fleet and (keys := _fleet_keys(wrong) or _fleet_keys(meant)):
         return f"; write the key {' or '.join(f'{it}:' for it in keys)} into the fleet file"
     if meant:

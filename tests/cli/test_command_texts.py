@@ -411,7 +411,7 @@ COMMAND = Command(
     (
         OptionGroup("input, and more", (argument("the file", "file", "FILE"),)),
         OptionGroup("output", (
-            choice("100 % of it", "--output-kind", "FORM", "a|b"),
+            choice("100 % of it", "--form", "FORM", "a|b"),
             switch("say less", "-q,--quiet"),
         )),
     ),
@@ -420,11 +420,11 @@ COMMAND = Command(
 
 
 def test_headings_and_names_are_painted() -> None:
-    text = "usage: x\noptions:\n  -q, --quiet  less\n  --output-kind F\nNo: x\n"
+    text = "usage: x\noptions:\n  -q, --quiet  less\n  --form F\nNo: x\n"
     assert parser.painted(text, False) == text
     assert parser.painted(text, True) == (
         "\033[1musage:\033[0m x\n\033[1moptions:\033[0m\n\033[36m  -q, --quiet\033[0m  less\n"
-        "\033[36m  --output-kind\033[0m F\nNo: x\n"
+        "\033[36m  --form\033[0m F\nNo: x\n"
     )
 
 
@@ -434,7 +434,7 @@ def test_headings_and_names_are_painted() -> None:
         (["--quite"], "unknown option --quite; did you mean '--quiet'?"),
         (["--from=a"],
          "unknown option --from; multibot check, multibot snapshot, multibot view take it;"
-         " did you mean '--output-kind'?"),
+         " did you mean '--form'?"),
         (["--changed"], "unknown option --changed"),
         (["--dry-run"],
          "unknown option --dry-run; --diff does that,"
@@ -444,10 +444,10 @@ def test_headings_and_names_are_painted() -> None:
          "unknown option --github; --format does that,"
          " which urdf-postfix, urdf-lint, multibot build and 5 more take"),
         # Dashes are not counted.
-        (["--fxxrm"], "unknown option --fxxrm; did you mean '--output-kind'?"),
+        (["--fxxrm"], "unknown option --fxxrm; did you mean '--form'?"),
         (["a", "b"], "unexpected b"),
         # A part of it says what it is, another first letter does not.
-        (["--output-form", "b"], "unknown option --output-form; did you mean '--output-kind'?"),
+        (["--output-form", "b"], "unknown option --output-form; did you mean '--form'?"),
         (["--norm"], "unknown option --norm"),
         # A short option, alone or with its value; what is no option is a value.
         (["-n", "3"],
@@ -466,11 +466,9 @@ def test_a_mistake_is_one_line(
 
 
 def test_what_a_command_is_told() -> None:
-    made = parser.parsed(
-        parser.make_parser(COMMAND, "multibot do"), ["a", "--output-kind", "b", "-q"]
-    )
+    made = parser.parsed(parser.make_parser(COMMAND, "multibot do"), ["a", "--form", "b", "-q"])
     assert vars(made) == {
-        "file": "a", "output_kind": "b", "quiet": True, "command": "do", "findings_first": False,
+        "file": "a", "form": "b", "quiet": True, "command": "do", "findings_first": False,
         "fail_on": "error", "program": "multibot", "h": None,
     }  # fmt: skip
     assert parser._colour_asked(["--color", "always", "--color=never"]) == "never"
@@ -478,7 +476,7 @@ def test_what_a_command_is_told() -> None:
         "auto",
         "always",
     )
-    assert parser._first_unknown_option(["--", "--odd"], ["--output-kind"]) == ""
+    assert parser._first_unknown_option(["--", "--odd"], ["--form"]) == ""
     assert parser._first_unknown_option(["-qv", "-q", "-q3", "-"], ["-q"]) == ""
 
 

@@ -296,8 +296,8 @@ ELSEWHERE = (
         ),
         (
             (WAITS, "/robot1/amcl subscribes /robot1/imu sensor_msgs/msg/Imu as imu"),
-            ["MG316 no known node sends /robot1/imu, /robot1/scan; name a node set or nodes that do, if"
-             " no driver of its own does"],
+            ["MG316 no known node sends /robot1/imu, /robot1/scan; unless a driver of the robot"
+             " does, add a node or node set that does"],
         ),
         (
             (WAITS, WAITS.replace("robot1", "robot2"),
