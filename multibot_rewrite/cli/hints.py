@@ -16,8 +16,8 @@ _BEGUN = 2
 def option_hint(wrong: str, command: str, known: Collection[str], has_fleet: bool) -> str:
     """Return what to write in place of an unknown option, behind a semicolon; "" if nothing is known.
 
-    Its meaning comes first: what is known for this command. Then an option that begins with it, a key
-    of the fleet file, a word of other tools, an option of another command. Its letters come last.
+    What its name means in other tools and earlier versions comes first, then an option of this command
+    that begins with it, a key of the fleet file, an option of another command, and one of like letters.
     """
     word = f"-{wrong.removeprefix('-').replace('_', '-')}"
     if own := other_words("options").get(f"{command} {word}"):

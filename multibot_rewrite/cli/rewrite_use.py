@@ -35,7 +35,7 @@ CHANGES = "changes"
 
 
 def check_use(options: argparse.Namespace, names: list[str]) -> None:
-    """Raise UsageError for missing words and for options that exclude each other."""
+    """Raise UsageError for missing arguments and for options that exclude each other."""
     if options.input == "":
         raise UsageError("the name of the input is empty")
     if options.input is None:
@@ -71,7 +71,7 @@ def check_use(options: argparse.Namespace, names: list[str]) -> None:
 def _check_together(options: argparse.Namespace) -> None:
     """Raise UsageError for options of which one would silently have no effect with the other."""
     if options.output is not None and options.in_place:
-        raise UsageError("--output and --in-place exclude each other")
+        raise UsageError("give --output or --in-place, not both")
     if options.diff and (options.output is not None or options.in_place):
         raise UsageError("--diff prints to standard output: leave out --output and --in-place")
     if options.xacro and not options.undo:

@@ -84,7 +84,7 @@ def named_in_package(kind: str, data: bytes, path: str, settings: Settings) -> N
 
 
 def context_of(declared: Declared, settings: Settings) -> Context:
-    """Return a reader's context: the declared names, unchanged if no robot is given."""
+    """Return the context in which a file is read: the declared names, renamed if robots are given."""
     every = {it: declared.get(it, {}) for kinds in KINDS.values() for it in kinds}
     naming = settings.naming if settings.robots else _AS_WRITTEN
     names = CompanionNames(every, naming, "")

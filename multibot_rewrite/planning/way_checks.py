@@ -256,7 +256,7 @@ def useless_rules(
                 yield LATER_RULE.finding(message, "remove it", robot=robot, node=node)
             elif wide and (controllers is None or source.lstrip("/") in TF_TOPICS):
                 pass  # the rewrite itself writes those of tf
-            elif wide and not whose and _is_for(source, known, by_file):
+            elif wide and not whose and _is_for_controllers(source, known, by_file):
                 pass
             elif not any(_matches(left, it) for it in asked):
                 message = f"{text} matches no name of this node"
@@ -274,8 +274,9 @@ def _of_managers(release: str) -> frozenset[str]:
     return frozenset(end.name for node in nodes for end in node.endpoints)
 
 
-def _is_for(source: str, known: frozenset[str], by_file: bool) -> bool:
-    """Return whether it is a name in a known controller's code, or below a node that may be one."""
+def _is_for_controllers(source: str, known: frozenset[str], by_file: bool) -> bool:
+    """Return whether a rule's source is a name in a controller's code, ``known``, or may be one's
+    private name: NODE/NAME where rules are not given ``by_file``."""
     above, slash, _ = source.partition("/")
     below = "" if by_file or not slash or above == "~" else f"~{source[len(above) :]}"
     return source in known or below in known

@@ -53,7 +53,7 @@ class Description(NamedTuple):
 
     @property
     def sources(self) -> Mapping[str, bytes]:
-        """The files that make it."""
+        """The text of each file that the description is made of, by path."""
         return self.read.sources if self.read else {self.path: self.inventory.document.source}
 
 

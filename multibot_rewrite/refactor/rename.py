@@ -115,7 +115,7 @@ def rename_symbol(
         if not _NAME.fullmatch(name):
             raise UsageError(f"{name!r} is no name of a {symbol.kind}: write it without blanks")
     if symbol.old == symbol.new:
-        raise UsageError(f"{symbol.old!r} is called so already")
+        raise UsageError(f"{symbol.old!r} has this name already; give another")
     tree = builtin_tree(tuple(definitions), release_here(distro))
     how = Expanding(TRUSTED if trust else BOUNDED, xacro_args or {})
     package = read_package(folder, tree, how)

@@ -49,7 +49,7 @@ class Splice(NamedTuple):
 def read_yaml(data: bytes, file: str) -> YamlText:
     """Parse one document; raises InputError with place, cause and remedy."""
     if len(data) > MAX_BYTES:
-        raise InputError(f"{file}: {len(data):,} bytes, over the limit of {MAX_BYTES:,}")
+        raise InputError(f"{file}: {len(data):,} bytes, over the limit of {MAX_BYTES:,}; split it")
     try:
         text = data.decode()
     except UnicodeDecodeError as error:

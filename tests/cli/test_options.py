@@ -163,6 +163,7 @@ def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str
         ("urdf-lint a --tf_prefix x", "unknown option --tf_prefix; use --affix prefix"),
         ("urdf-lint a --xacro x", "unknown option --xacro; urdf-postfix takes it;"),
         ("multibot chek", "unknown command 'chek'; did you mean 'check'?"),
+        ("multibot plan --form table", "unknown option --form; use --output-kind KIND"),
         ("multibot plan --layuot L1", "unknown option --layuot; did you mean '--layout'?"),
         ("urdf-postfix a b --udno", "unknown option --udno; did you mean '--undo'?"),
         ("urdf-lint a --formt json", "unknown option --formt; did you mean '--format'?"),

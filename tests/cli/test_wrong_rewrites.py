@@ -22,7 +22,7 @@ WRONG = (
     ("r.urdf", ("no robot name given; for example: urdf-postfix r.urdf robot1\n",)),
     ("r.urdf --undo", ("for example: urdf-postfix r.urdf robot1 --undo\n",)),
     ("r.urdf a:=b", ("no robot name given",)),
-    ("robot1 robot2 r.urdf", ("the file comes first: urdf-postfix r.urdf robot1\n",)),
+    ("robot1 robot2 r.urdf", ("the file comes first: urdf-postfix r.urdf robot1 robot2\n",)),
     # Names of robots.
     ("r.urdf robot-1", ("'robot-1'", "'-'", "'robot_1'")),
     ("r.urdf 1st", ("'1st'", "digit '1'", "'robot_1st'")),
@@ -50,7 +50,7 @@ WRONG = (
       for it in ("--undo -o {robot}", "--in-place")),
     ("r.urdf a --format json",
      ("--format json prints the findings; name a file for the result with -o\n",)),
-    ("r.urdf a -o x --in-place", ("--output and --in-place exclude each other\n",)),
+    ("r.urdf a -o x --in-place", ("give --output or --in-place, not both\n",)),
     *((f"r.urdf a --diff {it}",
        ("--diff prints to standard output: leave out --output and --in-place\n",))
       for it in ("-o x", "--in-place")),

@@ -189,7 +189,7 @@ WORDS = {
     TYPE + "acme/DiffDriveController}": "",
     TYPE + "'diff_drive_controller::DiffDriveController'}": (
         "warning controller_manager: arm.type is 'diff_drive_controller::DiffDriveController',"
-        " which is written with other signs in jazzy; write diff_drive_controller/DiffDriveController"
+        " which is written differently in jazzy; write diff_drive_controller/DiffDriveController"
     ),
     TYPE + "joint_state_controller/JointStateController}": (
         "error controller_manager: arm.type is 'joint_state_controller/JointStateController',"

@@ -255,8 +255,8 @@ ELSEWHERE = (
          "MG417 the stamps on /robot1/scan are 9 s old; see the clock of /robot1/lidar,"
          " or that of its machine"),
         (WAITS, "/robot1/amcl subscribes /robot1/imu sensor_msgs/msg/Imu as imu",
-         "MG316 no known node sends /robot1/imu, /robot1/scan; name a node set or nodes that do, if"
-         " no driver of its own does"),
+         "MG316 no known node sends /robot1/imu, /robot1/scan; unless a driver of the robot"
+         " does, add a node or node set that does"),
         (WAITS, WAITS.replace("robot1", "robot2"),
          f"/robot2/lidar publishes /robot2/scan {SCAN}",
          "MG316 no node sends /robot1/scan, and one sends /robot2/scan; start what sends it for"

@@ -51,7 +51,7 @@ def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
             message, hint = _said(part, tree.definitions, guesses)
             yield Problem(part.element, message, None, hint, (), CODES.get(part.kind, "MB902"))
         elif part is old:
-            message = f"plugin {part.name!r} is of Gazebo Classic, which {release} has not"
+            message = f"plugin {part.name!r} is of Gazebo Classic, which is not in {release}"
             yield Problem(part.element, message, None, ANOTHER_RELEASE, (), CODES[PLUGIN])
         elif ROS_2 in by_ros and part in by_ros.get(ROS_1, ()):
             message = (

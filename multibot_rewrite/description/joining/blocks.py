@@ -120,7 +120,7 @@ _SYSTEM, _HARDWARE = "ros2_control", "hardware"
 
 
 def one_system(joined: Inventory, part: Inventory) -> Once:
-    """Return a part's systems merged into earlier ones; one without a match stays, with a note."""
+    """Return the edits that merge a part's systems into earlier ones; an unmatched one has a note."""
     spans, before = Spans(part.document), Spans(joined.document)
     gone: list[Edit] = []
     more: list[Edit] = []

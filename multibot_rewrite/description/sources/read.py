@@ -101,7 +101,7 @@ def _encoded(text: str) -> bytes:
     try:
         return text.encode()
     except UnicodeEncodeError as error:
-        raise InputError(f"<text>: character {error.start + 1} is half of one: {error}") from None
+        raise InputError(f"<text>: it has a lone surrogate, decode it again: {error}") from None
 
 
 def read_file(path: str, limit: int = MAX_BYTES) -> bytes:

@@ -23,9 +23,9 @@ def wrong_in_descriptions(
     said: Iterable[Member] = (),
     launched: Iterable[Member] = (),
 ) -> Iterator[Finding]:
-    """Yield once each what stops robots with these descriptions; the ``simulated`` ones run in
-    Gazebo. ``said`` are those of which the file says so; for others the hint says how to deny it.
-    In a description that launch files of the user start (``launched``) it stops nobody."""
+    """Yield findings about what stops the robots of these descriptions, each once. The ``simulated``
+    ones run in Gazebo; unless they are in ``said`` (the fleet file says so), the hint says how to
+    deny it. In descriptions that the user's launch files start (``launched``) errors are warnings."""
     its = (simulated, said, launched)
     in_gazebo, sure, own = ({it.source.file for it in one} for one in its)
     documents = {

@@ -126,7 +126,7 @@ NOBODYS = declare("MF838", "shared-by-nothing", WARNING, formats=("fleet",))
 
 
 class NamesOfFleet(Protocol):
-    """What is asked of a fleet: its names, and the words that stand for each robot in them."""
+    """What is asked of a fleet: its names, and ``words``: the robot by what stands for it in names."""
 
     @property
     def naming(self) -> Naming: ...

@@ -85,7 +85,7 @@ def _with_off(graph: LaunchGraph, given: Collection[str]) -> LaunchGraph:
 def _read(order: LaunchOrder) -> LaunchGraph:
     """Return the graph of a launch file, which is read once, whatever the spelling of its path;
     errors name the path that was given."""
-    whole = _whole(order)
+    whole = _with_full_path(order)
     try:
         graph = once_kept(whole, lambda: _graph(whole, times_of(whole.file)))
     except InputError:
@@ -104,10 +104,10 @@ def why_not(graph: LaunchGraph) -> str:
 
 def keep(order: LaunchOrder, graph: LaunchGraph) -> None:
     """Keep the graph of a launch file, which is not read again in ``kept_expansions``."""
-    once_kept(_whole(order), lambda: graph)
+    once_kept(_with_full_path(order), lambda: graph)
 
 
-def _whole(order: LaunchOrder) -> LaunchOrder:
+def _with_full_path(order: LaunchOrder) -> LaunchOrder:
     return order._replace(file=os.path.abspath(order.file))
 
 

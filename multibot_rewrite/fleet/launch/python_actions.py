@@ -179,7 +179,7 @@ def _keywords(it: Start, own: OfRobot) -> Iterator[str]:
     else:
         yield from lines("cmd=", [*_pairs((it.executable, *it.arguments))], ",")
     if it.environment:
-        set_ = {name: _with_rest(name, text) for name, text in it.environment.items()}
+        set_ = {name: _with_inherited(name, text) for name, text in it.environment.items()}
         yield from lines("additional_env=", set_, ",")
     for name in HOW:
         if given := getattr(it.process, name):
@@ -188,7 +188,7 @@ def _keywords(it: Start, own: OfRobot) -> Iterator[str]:
         yield "output='screen',"
 
 
-def _with_rest(name: Any, text: Any) -> Any:
+def _with_inherited(name: Any, text: Any) -> Any:
     rest = Code(f"EnvironmentVariable({value(name)}, default_value='')")
     return text if isinstance(text, Code) else with_rest(text, rest)
 

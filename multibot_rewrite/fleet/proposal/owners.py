@@ -281,7 +281,7 @@ def fitting(
     found = {
         value
         for kind, value in _named(nodes, known)
-        if (value not in own if kind in _OF_ROBOT else _is_strange(value, said))
+        if (value not in own if kind in _OF_ROBOT else _is_missing_below_namespace(value, said))
     }
     names = frozenset(word for it in nodes for word in (it.node, it.fact.known) if word)
     return Fitting(path, names, frozenset(found))
@@ -311,7 +311,7 @@ def _named(nodes: Iterable[Run], known: KnownNodes) -> Iterator[tuple[str, str]]
                 yield from ((kind, it) for it in values if isinstance(it, str) and "$" not in it)
 
 
-def _is_strange(topic: str, said: str) -> bool:
+def _is_missing_below_namespace(topic: str, said: str) -> bool:
     words = topic.strip("/")
     return "/" in words and words not in said
 

@@ -100,14 +100,14 @@ def _of_yaml(tag: str, line: int, node: yaml.Node) -> Entity:
         name = str(key.value)
         if name == _CHILDREN:
             below += _in_list(value)
-        elif _is_of_entities(value):
+        elif _is_list_of_maps(value):
             own += [_of_yaml(name, line_of(it), it) for it in value.value]
         else:
             values[name] = _plain(value)
     return Entity(tag, line, values, [*own, *below])
 
 
-def _is_of_entities(node: yaml.Node) -> bool:
+def _is_list_of_maps(node: yaml.Node) -> bool:
     first = node.value[:1] if isinstance(node, yaml.SequenceNode) else []
     return any(isinstance(it, yaml.MappingNode) for it in first)
 

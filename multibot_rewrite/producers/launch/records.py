@@ -38,7 +38,7 @@ class LaunchOrder(NamedTuple):
 
     @property
     def command_line(self) -> list[str]:
-        """That of ``ros2 launch``: nav2_common's ParseMultiRobotPose reads it from sys.argv[4] on."""
+        """The ``ros2 launch`` line: nav2_common's ParseMultiRobotPose reads it from sys.argv[4] on."""
         file = [self.package, os.path.basename(self.file)] if self.package else [self.file]
         return ["ros2", "launch", *file, *(f"{name}:={value}" for name, value in self.arguments)]
 

@@ -77,7 +77,7 @@ def raw_sections(document: YamlText) -> list[RawSection]:
 
 
 def without_own(found: Iterable[RawSection], own: Collection[str]) -> list[RawSection]:
-    """Return the sections of a file for one robot, without the words for that robot."""
+    """Return the sections of a file for one robot, without the robot's name before their paths."""
     made = []
     for it in found:
         above = next((f"{word}/" for word in own if it.path.startswith(f"{word}/")), "")

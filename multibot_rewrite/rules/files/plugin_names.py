@@ -113,7 +113,7 @@ def _class_fault(name: str, base: str, known: Base, release: str) -> tuple[str, 
     empty where an unknown package may have it."""
     there = [it for it, words in known.classes.items() if has_release(words, release)]
     if alike := next((it for it in there if canonical(it) == canonical(name)), ""):
-        return f"which is written with other signs in {release}", f"write {alike}", WARNING
+        return f"which is written differently in {release}", f"write {alike}", WARNING
     if name in known.older:
         level = WARNING if name in known.ended else ERROR
         return "which ROS 2 has under another name", f"write {known.older[name]}", level

@@ -173,7 +173,7 @@ def no_type(launched: Launched) -> Iterator[Finding]:
 
 @launch_rule("MG725", "controller-without-joints")
 def no_joints(launched: Launched) -> Iterator[Finding]:
-    """Report it if all parameter files are known, and parameters alone decide what it claims."""
+    """Report spawned controllers without a joint in their parameters, if all files are known."""
     if any(it.parameters for it in launched.graph.notes):
         return
     spawned = {(it.full_name, it.place) for it in launched.spawned}

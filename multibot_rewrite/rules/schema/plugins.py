@@ -98,13 +98,13 @@ def _measure(child: _Element, row: Value, text: str, where: str) -> Iterator[Pro
     if value is None:
         return
     if row.unit == "nonzero" and not any(map(number_in, text.split())):
-        message = f"{where} has to be other than 0{_in(row.checked)}"
+        message = f"{where} has to be other than 0{_in_brackets(row.checked)}"
         yield fault("range", child, "", message, "", WARNING)
     elif row.low is not None and (value < row.low or (row.is_open and value == row.low)):
         limit = f"has to be {'above' if row.is_open else 'at least'} {row.low:g}"
-        yield fault("range", child, "", f"{where} {limit}{_in(row.checked)}", "", WARNING)
+        yield fault("range", child, "", f"{where} {limit}{_in_brackets(row.checked)}", "", WARNING)
     elif row.high is not None and value > row.high:
-        message = f"{where} may be {row.high:g} at most{_in(row.checked)}"
+        message = f"{where} may be {row.high:g} at most{_in_brackets(row.checked)}"
         yield fault("range", child, "", message, "", WARNING)
     elif row.unit == "rad" and abs(value) > TURN:
         hint = f"{value:g} degrees are {radians(value):.4g}"
@@ -186,11 +186,11 @@ def _missing(
     for name, row in section.rows.items():
         if row.required and name not in given and has_release(row.releases, release):
             message = f"{title(section)} needs {name!r}"
-            hint = f"without it, it is not loaded{_in(row.place)}"
+            hint = f"without it, it is not loaded{_in_brackets(row.place)}"
             yield fault("missing", element, None, message, hint)
 
 
-def _in(place: str) -> str:
+def _in_brackets(place: str) -> str:
     return f" ({place})" if place else ""
 
 

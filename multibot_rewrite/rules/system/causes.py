@@ -244,8 +244,8 @@ def _rest(parts: list[str], at: int) -> _Rest:
 
 
 def _is_slip(one: str, other: str) -> bool:
-    """Return whether no part between underscores is another word. `cmd_vel_out` is no slip of
-    `cmd_vel_ui`, nor is `lidar_l` of `lidar_r`."""
+    """Return whether one name is the other one mistyped: each part between underscores is equal or
+    nearly so. `cmd_vel_out` is not `cmd_vel_ui` mistyped, nor `lidar_l` `lidar_r`."""
     parts = list(zip_longest(one.split("_"), other.split("_"), fillvalue=""))
     return all(here == there or nearest(here, (there,), CHOICE) for here, there in parts)
 

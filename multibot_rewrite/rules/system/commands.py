@@ -119,8 +119,8 @@ def _alike(seen: Index, ends: Ends, known: Spelled) -> str:
 
 
 def _of_a_mux(seen: Index, ends: Ends) -> str:
-    """Return what the drive reads where twist_mux or Nav2 sends velocities that nobody reads; for
-    Nav2 otherwise the input of its robot's mux that nobody sends."""
+    """Return the topic that a topic of twist_mux or Nav2 without readers should be: the one that
+    the robot's drive reads; for Nav2 otherwise an input of the robot's mux without senders. Or ""."""
     robot, kinds = seen.robot(ends.name), _kinds(ends)
     # MoveIt's nodes have drives of their own kind, and each its own goal.
     chosen = any(map(chooses, nodes_of(ends.publishers)))

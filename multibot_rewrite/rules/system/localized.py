@@ -147,7 +147,7 @@ def transform_refused(seen: Index) -> Iterator[Finding]:
         )
     for it in seen.system.heard:
         _, senders = sent_on(seen, it.topic)
-        if senders and (why := _odd(it.pose)):
+        if senders and (why := _fault_of_pose(it.pose)):
             yield transform_refused.finding(
                 f"the pose on {it.topic} cannot be used: {why}",
                 f"see what {shorten(senders)} makes it of",
@@ -160,10 +160,10 @@ def _why_dropped(it: Edge) -> str:
         return "a frame has no name"
     if it.child == it.parent:
         return "a frame is its own parent"
-    return _odd(it.transform)
+    return _fault_of_pose(it.transform)
 
 
-def _odd(numbers: tuple[float, ...]) -> str:
+def _fault_of_pose(numbers: tuple[float, ...]) -> str:
     if not all(map(isfinite, numbers)):
         return "a number in it is not finite (NaN)"
     length = sum(number * number for number in numbers[3:])

@@ -37,7 +37,7 @@ def relayed_to_another_robot(seen: Index) -> Iterator[Finding]:
             owner, other = seen.robot(source.name), seen.robot(ends.name)
             yield relayed_to_another_robot.finding(
                 f"reads {source.name} of {owner} and publishes {ends.name} of {other}",
-                f"a name in its topics is wrong: {other} gets what is of {owner}",
+                f"correct one of the two topics: {other} gets the data of {owner}",
                 robot=other, node=node, names=(ends.name,),
             )  # fmt: skip
 

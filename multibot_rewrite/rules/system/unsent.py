@@ -61,7 +61,7 @@ def nothing_known_sends(seen: Index) -> Iterator[Finding]:
                 "start what sends it for the other robot", level=ERROR, robot=robot, names=lacked,
             )  # fmt: skip
         if rest := tuple(it for it in sorted(names) if it not in elsewhere):
-            hint = "name a node set or nodes that do, if no driver of its own does"
+            hint = "unless a driver of the robot does, add a node or node set that does"
             message = f"no known node sends {shorten(rest, _LISTED)}"
             yield nothing_known_sends.finding(message, hint, robot=robot, names=rest)
 

@@ -208,8 +208,8 @@ def class_not_in_library(subject: Subject) -> Iterator[Problem]:
 def _misspelt_library(
     subject: Subject, plugin: _Element, library: str, name: str
 ) -> Iterator[Problem]:
-    """Yield a library that is not known, of a class that is: that of another one, nearly spelt so. A
-    library that is not called as those of Gazebo may be anybody's."""
+    """Report an unknown library of a known class if the class is in a library with nearly this name.
+    It is a note if the library is not called like those of Gazebo: it may be the user's own."""
     definitions = subject.tree.definitions
     if "::" not in name or definitions.values(library) or definitions.find("plugin", library):
         return

@@ -155,7 +155,7 @@ def interface_of_two_systems(subject: Subject) -> Iterator[Problem]:
 
 
 def misspelt_interfaces(subject: Subject) -> Iterator[Problem]:
-    """Report interfaces of joints."""
+    """Report misspelt interfaces of joints."""
     for owner in subject.elements.owners():
         for it in owner.iterchildren(COMMAND, STATE) if owner.tag == "joint" else ():
             name = name_of(it)
