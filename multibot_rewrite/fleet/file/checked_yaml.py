@@ -74,7 +74,7 @@ def _lines(node: yaml.Node, file: str, path: Path) -> Iterator[tuple[Path, int]]
             yield from _lines(item, file, (*path, at))
     seen: dict[str, int] = {}
     for key, value in pairs(node):
-        name: str = _OLD_KEYS.get(key.value, key.value) if len(path) in (0, 2) else key.value
+        name = str(_OLD_KEYS.get(key.value, key.value) if len(path) in (0, 2) else key.value)
         if name in seen:
             first = f"first in line {seen[name]}; remove one of them"
             raise InputError(f"{file}:{line_of(key)}: the key {name!r} is repeated, {first}")
