@@ -47,6 +47,14 @@ def robot(folder: Path, keys: str, above: str = "") -> RobotSpec:
 # ---------------------------------------------------------------- what it means
 
 
+def test_keys_of_0_2_0(tmp_path: Path) -> None:
+    """Two keys have new names; fleet files that were written before are read as they were."""
+    old = "companions: {params: nosuch.yaml}"
+    with pytest.raises(InputError, match=r"fleet\.yaml:2: .*nosuch\.yaml does not exist"):
+        robot(tmp_path, old)
+    read(tmp_path, f"companions: {{}}\nvocabulary: []\n{ONE}")
+
+
 @pytest.mark.parametrize(
     ("keys", "above", "field", "value"),
     [
@@ -292,7 +300,11 @@ BAD: dict[str, tuple[str, ...]] = {
     "colour-two": (with_keys("colour: [1, 2]"), "2: robots[0].colour: [1, 2] is not valid; write"),
     "other-affix": (
         "affix: prefix\nrobots:\n  - {name: a, description: rover.urdf, postfix: b}\n",
-        "3: 'a' has a postfix, but the fleet's affix is prefix; write prefix: instead",
+        "3: 'a' has a postfix, but the fleet's affix is prefix; write prefix: instead, or affix:",
+    ),
+    "old-and-new-key": (
+        f"companions: {{}}\n{ONE}related_files: {{}}\n",
+        "4: the key 'related_files' is repeated, first in line 1; remove one of them",
     ),
     "no-description": ("robots:\n  - {name: a}\n", "2: robot 'a' has no description; name its"),
     "arguments-without-xacro": (

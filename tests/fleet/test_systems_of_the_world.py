@@ -80,4 +80,13 @@ def test_other_settings_of_the_second_robot_are_said(
     out = _built(tmp_path, OGRE, other)
     assert etree.parse(out / "world.sdf").findtext("world/plugin/render_engine") == "ogre"
     said = capsys.readouterr().err
-    assert "warning: MF847 r2 has other settings of gz-sim-sensors-system" in said
+    assert "fleet.yaml:6:1: warning: MF847 r2 has other settings of gz-sim-sensors-system" in said
+
+
+def test_a_real_robot_is_not_blamed_for_them(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """No Gazebo loads the description of a real robot."""
+    _built(tmp_path, OGRE, OGRE, simulator="none")
+    said = capsys.readouterr().err
+    assert "MB416" not in said and "not verified" not in said

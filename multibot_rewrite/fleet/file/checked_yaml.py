@@ -27,6 +27,8 @@ TYPES = {
 SHOWN = 60
 # The key under which a fleet file names the files beside a description.
 BELOW = "related_files"
+# What fleet files of 0.2.0 call otherwise.
+_OLD_KEYS = {"companions": BELOW, "vocabulary": "definitions"}
 
 
 class CheckedYaml(NamedTuple):
@@ -47,13 +49,21 @@ def text_checked(text: bytes, path: str, schema: Mapping[str, Any], hint: str) -
     if not isinstance(document.root, yaml.MappingNode):
         raise InputError(f"{path}:1: the file must hold keys with values; {hint}")
     lines = dict(_lines(document.root, path, ()))
-    data = load_yaml(document.text, path, "write plain keys and values")
+    data = _in_new_keys(load_yaml(document.text, path, "write plain keys and values"))
     found = [it for error in _errors(data, schema) for it in _faults(error, lines, schema)]
     if found:
         (line, words), *others = dict.fromkeys(sorted(found, key=lambda it: it[0]))
         also = "".join(f"; line {at}: {text}" for at, text in others)
         raise InputError(f"{path}:{line}: {words}{also}")
     return CheckedYaml(data, lines)
+
+
+def _in_new_keys(data: Any) -> Any:
+    """Return the data of a fleet or its robots with each old key under its new name."""
+    if not isinstance(data, dict):
+        return [_in_new_keys(it) for it in data] if isinstance(data, list) else data
+    new = {_OLD_KEYS.get(key, key): value for key, value in data.items()}
+    return {**new, "robots": _in_new_keys(new["robots"])} if "robots" in new else new
 
 
 def _lines(node: yaml.Node, file: str, path: Path) -> Iterator[tuple[Path, int]]:
@@ -64,13 +74,13 @@ def _lines(node: yaml.Node, file: str, path: Path) -> Iterator[tuple[Path, int]]
             yield from _lines(item, file, (*path, at))
     seen: dict[str, int] = {}
     for key, value in pairs(node):
-        if key.value in seen:
-            place = f"{file}:{line_of(key)}"
-            first = f"first in line {seen[key.value]}; remove one of them"
-            raise InputError(f"{place}: the key {key.value!r} is repeated, {first}")
-        seen[key.value] = line_of(key)
-        for below, line in _lines(value, file, (*path, key.value)):
-            yield below, line_of(key) if below == (*path, key.value) else line
+        name = str(_OLD_KEYS.get(key.value, key.value) if len(path) in (0, 2) else key.value)
+        if name in seen:
+            first = f"first in line {seen[name]}; remove one of them"
+            raise InputError(f"{file}:{line_of(key)}: the key {name!r} is repeated, {first}")
+        seen[name] = line_of(key)
+        for below, line in _lines(value, file, (*path, name)):
+            yield below, line_of(key) if below == (*path, name) else line
 
 
 def _errors(data: Any, schema: Mapping[str, Any]) -> list[Any]:

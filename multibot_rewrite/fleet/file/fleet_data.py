@@ -24,7 +24,7 @@ from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.description.joining.from_file import BESIDE
 from multibot_rewrite.description.sources.own_names import filled
 from multibot_rewrite.description.sources.read import is_xacro, read_file
-from multibot_rewrite.fleet.file.checked_yaml import CheckedYaml, Path, text_checked
+from multibot_rewrite.fleet.file.checked_yaml import Path, text_checked
 from multibot_rewrite.knowledge.nodl.lookup import NO_DOCUMENTS, find_interfaces
 
 PATHS = (
@@ -74,13 +74,11 @@ def with_paths(folder: str, data: dict[str, Any]) -> dict[str, Any]:
         return value if isinstance(value, dict) else [resolve(it) for it in value]
 
     result = dict(data)
-    for key in (*PATHS, *BESIDE):
+    for key in (*PATHS, *BESIDE, "launch_roots"):
         if key in result:
             result[key] = resolve(result[key])
     if result.get("nodl", NO_DOCUMENTS) != NO_DOCUMENTS:
         result["nodl"] = resolve(result["nodl"])
-    if "launch_roots" in result:
-        result["launch_roots"] = resolve(result["launch_roots"])
     if "launch" in result:
         # What follows ``ros2 launch``: a path of its file, or a package.
         launch = []
@@ -90,9 +88,8 @@ def with_paths(folder: str, data: dict[str, Any]) -> dict[str, Any]:
             launch.append(text if _of_package(text) else path)
         result["launch"] = launch
     if "related_files" in result:
-        result["related_files"] = {
-            kind: resolve(it) for kind, it in result["related_files"].items()
-        }
+        kinds = result["related_files"].items()
+        result["related_files"] = {kind: resolve(it) for kind, it in kinds}
     for key in ("robots", JOIN):
         if key in result:
             result[key] = [with_paths(folder, inner) for inner in result[key]]
@@ -194,9 +191,8 @@ def read_data(source: FleetSource) -> FleetData:
         raise InputError(f"{DICT}: {str(error).splitlines()[0]}; {hint}") from None
     except RecursionError:
         raise InputError(f"{DICT}: a value holds itself; {hint}") from None
-    checked = text_checked(text.encode(), path, _wanted(), f"write {EXAMPLE}")
     folder = "" if path == DICT else os.path.dirname(path)
-    return _with_includes(_placed(path, folder, checked)._replace(files=()), ())
+    return _with_includes(_placed(path, folder, text.encode())._replace(files=()), ())
 
 
 def _with_includes(read: FleetData, above: tuple[str, ...]) -> FleetData:
@@ -214,21 +210,17 @@ def _with_includes(read: FleetData, above: tuple[str, ...]) -> FleetData:
 
 
 def _of_file(path: str) -> FleetData:
-    checked = text_checked(read_file(path), path, _wanted(), f"write {EXAMPLE}")
-    return _placed(path, os.path.dirname(path), checked)
+    return _placed(path, os.path.dirname(path), read_file(path))
 
 
-def _placed(path: str, folder: str, checked: CheckedYaml) -> FleetData:
-    data, lines = checked
+def _placed(path: str, folder: str, text: bytes) -> FleetData:
+    """Return the checked data of a file; an included file need not have the keys that are required."""
+    known = {key: value for key, value in schema().items() if key != "required"}
+    data, lines = text_checked(text, path, known, f"write {EXAMPLE}")
     places = {at: (path, line) for at, line in lines.items()}
     resolved = with_paths(folder, data)
     check_files(resolved, (), places)
     return FleetData(path, resolved, places, (path,))
-
-
-def _wanted() -> dict[str, Any]:
-    """Return the schema without required keys: an included file need not list robots."""
-    return {key: value for key, value in schema().items() if key != "required"}
 
 
 @cache

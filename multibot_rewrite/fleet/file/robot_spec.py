@@ -148,7 +148,7 @@ def robot_spec(read: FleetData, naming: Naming, at: int, release: str) -> RobotS
     side, other = ("prefix", "postfix") if naming.affix == "prefix" else (naming.affix, "prefix")
     if other in own:
         what = f"{name!r} has a {other}, but the fleet's affix is {side}"
-        raise InputError(f"{place}: {what}; write {side}: instead")
+        raise InputError(f"{place}: {what}; write {side}: instead, or affix: {other}")
     # Parameters in the fleet file itself have the path of their text.
     made = iter(texts)
     files = {

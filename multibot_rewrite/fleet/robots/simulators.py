@@ -190,22 +190,25 @@ MOVED = declare(LEFT, "system-of-the-world", NOTE, formats=("fleet",))
 
 
 def without_world_systems(robots: Sequence[RewrittenRobot]) -> list[RewrittenRobot]:
-    """Return the robots without world systems, each with those that it had; the first has the note."""
-    made = [it if it.spec.simulator == REAL else _without(it) for it in robots]
+    """Return the robots without world systems, each with those that it had; the first has the note.
+    No simulator loads those of real robots, which keep them."""
+    made = [_unblamed(it) if it.spec.simulator == REAL else _without(it) for it in robots]
     first = next((it for it in made if it.world_systems), None)
     if first is None:
         return made
     every = systems_of(made)
     message = f"the world loads {shorten(sorted(every))}, not each robot"
     hint = "another world than the fleet's has to load them"
-    said = [at_robot(MOVED, first, message, hint)]
+    result = []
     for robot in made:
+        said = [at_robot(MOVED, first, message, hint)] if robot is first else []
         for library, text in robot.world_systems.items():
             if text.split() != every[library].split():
-                message = f"{robot.spec.name} has other settings of {library}: they are not used"
-                hint = "write one text for all robots"
-                said.append(at_robot(MOVED, first, message, hint, WARNING))
-    return [it._replace(findings=(*it.findings, *said)) if it is first else it for it in made]
+                other = f"{robot.spec.name} has other settings of {library}: they are not used"
+                remedy = "write one text for all robots"
+                said.append(at_robot(MOVED, robot, other, remedy, WARNING))
+        result.append(robot._replace(findings=(*robot.findings, *said)))
+    return result
 
 
 def systems_of(robots: Sequence[RewrittenRobot]) -> dict[str, str]:
@@ -226,8 +229,13 @@ def _without(robot: RewrittenRobot) -> RewrittenRobot:
     edits = [Edit(spans.start_of(it), spans.end_of(it), b"", None) for it in own]
     data = b"".join(cut(document.source, sorted(edits)))
     texts = {_library(it): spans.text_of(it).decode() for it in own}
+    return robot_with_text(_unblamed(robot), data)._replace(world_systems=texts)
+
+
+def _unblamed(robot: RewrittenRobot) -> RewrittenRobot:
+    """Return the robot without the finding that it loads systems of the world."""
     said = tuple(it for it in robot.findings if it.code != _IN_ROBOT)
-    return robot_with_text(robot, data)._replace(world_systems=texts, findings=said)
+    return robot._replace(findings=said)
 
 
 def _library(plugin: _Element) -> str:
