@@ -296,12 +296,12 @@ def planned(fleet: Fleet) -> System:
 
 
 def _parameters(fleet: Fleet) -> Iterator[Parameter]:
-    """Yield the clock of each node of a robot, if one in a plugin has that of the simulator, and
-    the prefix that adds the robot's name to the frames of its description."""
+    """Yield the clock of each node of a robot that is started by itself, and the prefix that adds the
+    robot's name to the frames of its description."""
     clocks = dict(fleet.clocks)
     for it in merged(fleet.table.runs):
         given: dict[str, object] = {}
-        if it.robot in clocks and not it.fact.plugin:
+        if it.robot in clocks and not (it.fact.plugin or it.fact.of_hardware):
             given[SIM_TIME] = clocks[it.robot]
         if it.robot and it.fact.package == STATE_PUBLISHER and fleet.naming.layout.at_run_time:
             given[FRAME_PREFIX] = f"{fleet.tags.get(it.robot, it.robot)}/"

@@ -46,6 +46,20 @@ def test_stacks_that_did_not_fit(pair: tuple[str, str], tmp_path: Path) -> None:
     assert not stack_cells.pair_faults(*pair, "lyrical", tmp_path)
 
 
+@pytest.mark.parametrize(
+    "cell",
+    [
+        Cell("gz", "localization", "jazzy", "frame-prefix", "none"),
+        Cell("sdf", "rtabmap", "humble", "postfix", "none"),
+    ],
+    ids="-".join,
+)
+def test_odometry_of_a_real_robots_driver_is_no_fault_of_its_localizer(
+    cell: Cell, tmp_path: Path
+) -> None:
+    assert not stack_cells.faults(cell, tmp_path)
+
+
 FOUR = (
     Cell("gz", "nav2", "lyrical", "tf-per-robot", "gazebo"),
     Cell("gz", "nav2_composed", "lyrical", "postfix", "gazebo"),

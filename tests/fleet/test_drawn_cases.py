@@ -89,6 +89,16 @@ CASES = {
         f"{XACRO}, {XACRO}", {"name": "low", "arguments": {"mast": "low"}}, {"name": "r2"},
         layout="both", separators={"link": "_"},
     ),
+    # Its bridge, which no plan has, is ros_gz_bridge_map, and the other robot's scan is its driver's.
+    "a robot called as the topic of a real one's node": fleet(
+        f"{GZ}, {GZ}", {"name": "r1", "simulator": "none"}, {"name": "map"}, layout="postfix",
+        distro="humble", stack="nav2",
+    ),
+    # The parameters of a manager with a name are not those of the nodes that its hardware makes.
+    "hardware on the machine's time": fleet(
+        f"{GZ}, {ARM}", {"name": "r1"}, {"name": "r2", "stack": "ros2_control"},
+        layout="tf-per-robot", use_sim_time=True,
+    ),
 }  # fmt: skip
 
 

@@ -110,7 +110,7 @@ def not_exported(file: NamedFile) -> Iterator[Finding]:
         for it in missing_in(robot, claimed):
             if is_in(file, it.claims[0].place):
                 place = it.claims[0].place._replace(column=1)
-                yield remark(place, *said_of_missing(it, not robot.origins))
+                yield remark(place, *said_of_missing(it, None if robot.origins else shown))
 
 
 @rule("MB878", "section-of-no-controller", WARNING, formats=(PARAMS,))

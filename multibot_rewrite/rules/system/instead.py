@@ -304,15 +304,15 @@ def _given(seen: Index) -> Mapping[tuple[str, str, str], list[tuple[int, Ends]]]
 
 def _may_be(seen: Index, ends: Ends, end: End) -> bool:
     """Return whether another node, of its robot or of none, sends it, and it is not read already.
-    Displays of Nav2 and MoveIt are no sensors."""
+    Displays of Nav2 and MoveIt are no sensors. A node of none sends for the robot in the name."""
     if any(it.node == end.node for it in (*ends.subscribers, *ends.clients)):
         return False
-    own, twin = ("", seen.robot(end.node)), last_word(end.node)
-    senders = _givers(ends)
-    if end.type.startswith("sensor_msgs/"):
-        senders = [it for it in senders if team(it.node) == it.node]
+    own, twin = seen.robot(end.node), last_word(end.node)
+    named, sensor = own and seen.robot(ends.name), end.type.startswith("sensor_msgs/")
+    senders = [it.node for it in _givers(ends) if not sensor or team(it.node) == it.node]
     # A node of the same name elsewhere does the same for another robot.
-    return any(last_word(it.node) != twin and seen.robot(it.node) in own for it in senders)
+    robots = {seen.robot(node) or named for node in senders if last_word(node) != twin}
+    return not robots.isdisjoint(("", own))
 
 
 def _givers(ends: Ends) -> list[End]:

@@ -60,7 +60,7 @@ def _starts_at(seen: Index, node: str) -> End | None:
 
 
 def _body(seen: Index, tree: Tree, robot: str) -> _Body | None:
-    """Return the robot's part of a tree if nothing joins it with the map; None otherwise."""
+    """Return the robot's part of a tree if nothing joins its odometry with the map; None otherwise."""
     above: dict[str, str] = {it.child: it.parent for it in tree.edges}
     if len({(it.child, it.parent) for it in tree.edges}) > len(above):
         return None
@@ -70,9 +70,9 @@ def _body(seen: Index, tree: Tree, robot: str) -> _Body | None:
     loose = [it for it in frames if it in ends and above[it] in WORLD_FRAMES]
     body = (it for it in frames if seen.plain_frame(it) in (*BODY_FRAMES, _ODOM))
     roots = {root_of(it, above) for it in body if it not in loose} - {*above}
-    if len(roots) != 1 or roots & {*WORLD_FRAMES}:
-        return None
-    return _Body(next(iter(roots)), tuple(loose))
+    no_odometry = {*WORLD_FRAMES, *(BODY_FRAMES if loose else ())}
+    is_one = len(roots) == 1 and no_odometry.isdisjoint(map(seen.plain_frame, roots))
+    return _Body(next(iter(roots)), tuple(loose)) if is_one else None
 
 
 def _is_of(seen: Index, frame: str, robot: str) -> bool:

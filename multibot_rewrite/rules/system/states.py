@@ -11,7 +11,7 @@ called ``CONTROLLER/...``.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import PLACEHOLDER
@@ -267,11 +267,11 @@ def missing(known: Sequence[Interface]) -> Iterator[Missing]:
         yield Missing((first, *more), meant or next(beside, None), near)
 
 
-def said_of_missing(it: Missing, with_line: bool) -> tuple[str, str]:
-    """Return message and hint about what the controller of one robot claims."""
+def said_of_missing(it: Missing, shown: Callable[..., str] | None) -> tuple[str, str]:
+    """Return message and hint about a claim of one robot. Known places are ``shown`` so."""
     first, *more = it.claims
     also = f" and {len(more)} more" if more else ""
-    line = f" (line {it.near.place.line})" if it.near and with_line else ""
+    line = f" ({shown(it.near.place)})" if it.near and shown else ""
     named = f"name an interface that is there{line}, or add it"
     message = (
         f"{first.node} claims {first.kind} interface {first.name}{also}, which no <ros2_control>"

@@ -42,7 +42,7 @@ def _not_exported(subject: Subject) -> Iterator[Problem]:
 
         for it in missing_in(subject, known):
             # Lines of an expanded xacro are in no file.
-            message, hint = said_of_missing(it, not subject.origins)
+            message, hint = said_of_missing(it, None if subject.origins else "line {0.line}".format)
             yield Problem(element, f"{_at(it.claims[0])}: {message}", _place(element), hint)
 
 
