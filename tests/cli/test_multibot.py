@@ -216,7 +216,9 @@ def test_what_is_shown_of_a_plugin(multibot: Multibot) -> None:
 @pytest.mark.slow
 def test_every_row_names_the_line_it_stands_in(multibot: Multibot) -> None:
     """The file and line of each row of the whole plugin definitions, held against the files."""
-    home = Path(multibot_rewrite.__file__).parent / "description" / "rewriters" / "definitions"
+    home = (
+        Path(multibot_rewrite.__file__).parent / "description" / "rewriters" / "plugin_definitions"
+    )
     rows = [row for section in multibot.json("inspect")["sections"] for row in section["rows"]]
     assert len(rows) > 500
     texts = {path.name: path.read_text().split("\n") for path in home.glob("*.vocab")}

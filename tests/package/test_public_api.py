@@ -114,7 +114,7 @@ def test_mypy_sees_every_option(tmp_path: Path) -> None:
     [
         (lambda: rewrite(SMALL, "r1", layuot="L1"), "'layuot'; did you mean 'layout'?"),
         (lambda: rewrite_all(SMALL, ["r1"], seperators={}), "did you mean 'separators'?"),
-        (lambda: strip(SMALL, "r1", vocabluary=[]), "did you mean 'definitions'?"),
+        (lambda: strip(SMALL, "r1", defintions=[]), "did you mean 'definitions'?"),
         (lambda: explain(SMALL, 1, afix="prefix"), "'afix'; did you mean 'affix'?"),
         (lambda: load_fleet(pathh="x"), "has no argument 'pathh'; did you mean 'path'?"),
         (lambda: load_fleet("x", zzz=1), "has no argument 'zzz'; it takes path"),

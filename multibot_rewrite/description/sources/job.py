@@ -13,6 +13,7 @@ from multibot_rewrite.base.naming import Naming, OwnNames
 from multibot_rewrite.base.releases import ROS_2
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.tree import Tree, builtin_tree
+from multibot_rewrite.description.sources.dialect import ros_shown
 from multibot_rewrite.description.sources.own_names import (
     OF_ALL,
     Arguments,
@@ -28,8 +29,9 @@ from multibot_rewrite.description.sources.own_names import (
     own_texts,
     templates,
 )
-from multibot_rewrite.description.sources.read import Source, SourceText, args_for, read_whole
-from multibot_rewrite.description.sources.release_said import release_said, ros_shown
+from multibot_rewrite.description.sources.read import Source, SourceText, args_for
+from multibot_rewrite.description.sources.release_said import release_said
+from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.description.sources.world_systems import set_aside
 from multibot_rewrite.description.steps.apply import cut, fill
 from multibot_rewrite.description.steps.collect import NOTHING, Inventory, collect, declarations

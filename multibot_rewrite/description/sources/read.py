@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where a description comes from: a path, text or bytes, xacro expanded on the way, a list of parts
-joined."""
+"""Where a description comes from: a path, text or bytes, xacro expanded on the way."""
 
 from __future__ import annotations
 
@@ -112,13 +111,3 @@ def read_file(path: str, limit: int = MAX_BYTES) -> bytes:
         reason = getattr(error, "strerror", "") or error
         more = "; name a file in it" if isinstance(error, IsADirectoryError) else ""
         raise InputError(f"{path}: cannot be read: {reason}{more}", UNREADABLE) from None
-
-
-def read_whole(source: Source, xacro_args: Mapping[str, str], trust: bool = False) -> SourceText:
-    """Return the bytes of a source with the files that were read; ``trust`` lets a xacro file do
-    anything."""
-    if not isinstance(source, bytes) and str(source).endswith(JOIN) and not xacro_args:
-        from multibot_rewrite.description.joining.from_file import read_joined
-
-        return read_joined(str(source), trust)
-    return read_alone(source, xacro_args, trust)

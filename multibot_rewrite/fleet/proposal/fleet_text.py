@@ -25,7 +25,7 @@ from multibot_rewrite.producers.launch.programs import once_for_all
 
 # Files not taken that are named, and launch files beside the robot's that cannot be read.
 MOST, MOST_UNREAD = 10, 3
-_MAP = re.compile(rb"""^\s*yaml_filename:\s*["']?[^\s"'#]""", re.MULTILINE)
+_MAP = re.compile(rb"""^[ \t]*yaml_filename:[ \t]*["']?[^\s"'#]""", re.MULTILINE)
 _NO_MAP = "Nav2 waits for a map: write its yaml_filename for map_server into a parameter file"
 
 

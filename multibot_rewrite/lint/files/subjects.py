@@ -16,9 +16,9 @@ from multibot_rewrite.base.findings.finding import SRDF, XACRO
 from multibot_rewrite.base.model import NO_ARGUMENT, InputError
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.tree import builtin_tree
+from multibot_rewrite.description.sources.dialect import ros_shown
 from multibot_rewrite.description.sources.packages import package_folder
 from multibot_rewrite.description.sources.read import JOIN, XACRO as ENDING, has_xacro
-from multibot_rewrite.description.sources.release_said import ros_shown
 from multibot_rewrite.description.steps.collect import NOTHING, SRDF as SRDF_SECTION, collect
 from multibot_rewrite.description.steps.document import Document, read_document
 from multibot_rewrite.lint.files.named import SRDF_MARK

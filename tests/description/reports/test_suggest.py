@@ -22,7 +22,7 @@ from multibot_rewrite.description.rewriters.tree import Tree, builtin_tree
 from multibot_rewrite.description.steps.collect import Inventory, collect
 from multibot_rewrite.description.steps.document import read_document
 
-HERE = Path(multibot_rewrite.__file__).parent / "description" / "rewriters" / "definitions"
+HERE = Path(multibot_rewrite.__file__).parent / "description" / "rewriters" / "plugin_definitions"
 ROBOT = """<robot name="bot"><link name="base"/><link name="arm"/><link name="both"/>
 <joint name="hip" type="fixed"><parent link="base"/><child link="arm"/></joint>
 <joint name="knee" type="fixed"><parent link="base"/><child link="both"/></joint>
