@@ -78,63 +78,48 @@ def test_a_robot_with_the_description_of_another_one(built: tuple[FleetPlan, Out
     assert codes["MG208"] == ERROR
 
 
-# Faults of one file, each with the code that `multibot check` has for it where the fleet runs.
-PLANTED: Mapping[str, tuple[Edit, str]] = {
-    "a rule leads to the other robot": (
-        in_launch(lambda it: it.replace('"cmd_vel_nav")', '"/robot2/cmd_vel_nav")', 1)),
-        "MG311",
+# Faults of one file, each with the code in front that `multibot check` has for it where the fleet runs.
+PLANTED: Mapping[str, Edit] = {
+    "MG311: a rule leads to the other robot": in_launch(
+        lambda it: it.replace('"cmd_vel_nav")', '"/robot2/cmd_vel_nav")', 1)
     ),
-    "tf goes to the other robot": (
-        node("robot1", "amcl", lambda it: it.replace('"tf")', '"/robot2/tf")')),
-        "MG405",
+    "MG405: tf goes to the other robot": node(
+        "robot1", "amcl", lambda it: it.replace('"tf")', '"/robot2/tf")')
     ),
-    "a rule is lost": (node("robot1", "controller_server", without("cmd_vel")), "MG315"),
-    "a node is lost": (node("robot1", "velocity_smoother", lambda it: ""), "MG101"),
-    "a node has another name": (
-        node("robot1", "amcl", lambda it: it.replace('"amcl"', '"amcl_node"')),
-        "MG101",
+    "MG315: a rule is lost": node("robot1", "controller_server", without("cmd_vel")),
+    "MG101: a node is lost": node("robot1", "velocity_smoother", lambda it: ""),
+    "MG101: a node has another name": node(
+        "robot1", "amcl", lambda it: it.replace('"amcl"', '"amcl_node"')
     ),
-    "a node is not in its robot's namespace": (
-        node("robot2", "amcl", lambda it: it.replace('namespace="/robot2",', "")),
-        "MG101",
+    "MG101: a node is not in its robot's namespace": node(
+        "robot2", "amcl", lambda it: it.replace('namespace="/robot2",', "")
     ),
-    "a parameter file has another topic": (
-        in_file("robot2/nav2_params.yaml", "scan_topic: scan", "scan_topic: robot2/scan"),
-        "MG303",
+    "MG303: a parameter file has another topic": in_file(
+        "robot2/nav2_params.yaml", "scan_topic: scan", "scan_topic: robot2/scan"
     ),
-    "a costmap's source is misspelt": (
-        in_file("robot1/nav2_params.yaml", "topic: /robot1/scan", "topic: /robot1/scn"),
-        "MG303",
+    "MG303: a costmap's source is misspelt": in_file(
+        "robot1/nav2_params.yaml", "topic: /robot1/scan", "topic: /robot1/scn"
     ),
-    "a parameter file is not given": (
-        node("robot1", "collision_monitor", lambda it: it.replace("*params, ", "")),
-        "MF823",
+    "MF823: a parameter file is not given": node(
+        "robot1", "collision_monitor", lambda it: it.replace("*params, ", "")
     ),
-    "a lifecycle manager waits for nobody": (
-        in_launch(lambda it: it.replace('  "smoother_server",', '  "smother_server",', 1)),
-        "MG102",
+    "MG102: a lifecycle manager waits for nobody": in_launch(
+        lambda it: it.replace('  "smoother_server",', '  "smother_server",', 1)
     ),
-    "a frame of the other robot": (
-        in_file("robot2/nav2_params.yaml", "odom_frame_id: odom", "odom_frame_id: robot1/odom"),
-        "MG407",
+    "MG407: a frame of the other robot": in_file(
+        "robot2/nav2_params.yaml", "odom_frame_id: odom", "odom_frame_id: robot1/odom"
     ),
-    "a node is on the wrong clock": (
-        node("robot1", "amcl", lambda it: it.replace("CLOCK]", 'CLOCK, {"use_sim_time": False}]')),
-        "MG503",
+    "MG503: a node is on the wrong clock": node(
+        "robot1", "amcl", lambda it: it.replace("CLOCK]", 'CLOCK, {"use_sim_time": False}]')
     ),
-    "a row of the bridge has another type": (
-        in_file("robot1/bridge.yaml", "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2"),
-        "MG126",
+    "MG126: a row of the bridge has another type": in_file(
+        "robot1/bridge.yaml", "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2"
     ),
-    "a row of the bridge goes the other way": (
-        in_file("robot1/bridge.yaml", "GZ_TO_ROS", "ROS_TO_GZ"),
-        "MG126",
+    "MG126: a row of the bridge goes the other way": in_file(
+        "robot1/bridge.yaml", "GZ_TO_ROS", "ROS_TO_GZ"
     ),
-    "a node has no description": (
-        in_launch(
-            lambda it: it.replace('{"robot_description": text("robot1/hexbase.urdf")},', "", 1)
-        ),
-        "MF823",
+    "MF823: a node has no description": in_launch(
+        lambda it: it.replace('{"robot_description": text("robot1/hexbase.urdf")},', "", 1)
     ),
 }
 
@@ -143,7 +128,7 @@ PLANTED: Mapping[str, tuple[Edit, str]] = {
 @pytest.mark.sample(3)
 @pytest.mark.parametrize("name", PLANTED)
 def test_a_planted_fault_is_an_error_of_its_code(name: str) -> None:
-    edit, code = PLANTED[name]
+    code, edit = name.partition(":")[0], PLANTED[name]
     plan, made = fleet()
     found = read_back(plan, edited(made, edit), OUT)
     assert code in {it.code for it in found if it.level == ERROR}
@@ -177,11 +162,13 @@ def test_what_check_launch_finds_in_the_folder_is_an_error(name: str) -> None:
 
 @pytest.mark.more
 @pytest.mark.sample(3)
-@pytest.mark.parametrize("name", ["a rule is lost", "a node is lost", "a node has no description"])
+@pytest.mark.parametrize(
+    "name", ["MG315: a rule is lost", "MG101: a node is lost", "MF823: a node has no description"]
+)
 def test_the_command_ends_with_an_error_and_writes_nothing(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    edit, code = PLANTED[name]
+    code, edit = name.partition(":")[0], PLANTED[name]
     (tmp_path / "fleet.yaml").write_text(FLEET)
     monkeypatch.setattr(build, "make_outputs", lambda *given: edited(make_outputs(*given), edit))
     out = tmp_path / "out"

@@ -182,9 +182,9 @@ def test_a_name_is_expanded_as_rcl_does(name: str, namespace: str, full: str) ->
     assert expand(name, namespace, "node") == full
 
 
-@pytest.mark.parametrize(
-    ("name", "place", "reason"),
-    [
+# What a name of each kind may not be: the name, the place of the fault, and why.
+REFUSED: dict[Callable[[str], NameFault | None], list[tuple[str, int, str]]] = {
+    check_topic_name: [
         ("", 1, "it is empty"),
         ("7a", 1, "is a digit, with which no part of a name starts"),
         ("a/7", 3, "is a digit, with which no part of a name starts"),
@@ -199,17 +199,7 @@ def test_a_name_is_expanded_as_rcl_does(name: str, namespace: str, full: str) ->
         ("{a/b}", 3, "does not belong in a {substitution}"),
         ("{7}", 2, "is a digit, with which no substitution starts"),
     ],
-)
-def test_a_name_before_expansion_may_not_be(name: str, place: int, reason: str) -> None:
-    fault = check_topic_name(name)
-    assert fault is not None
-    assert fault.at == place - 1
-    assert reason in fault.reason
-
-
-@pytest.mark.parametrize(
-    ("name", "place", "reason"),
-    [
+    check_full_name: [
         ("", 1, "it is empty"),
         ("a", 1, "is not the slash"),
         ("/a/", 3, "is a slash at the end"),
@@ -217,13 +207,27 @@ def test_a_name_before_expansion_may_not_be(name: str, place: int, reason: str) 
         ("/a/7", 4, "is a digit"),
         ("/{node}", 2, "is not a letter, a digit, an underscore or a slash"),
     ],
+    check_node_name: [
+        ("", 1, "empty"),
+        ("7", 1, "digit"),
+        ("a/b", 2, "is not a letter"),
+        ("é", 1, "is not"),
+    ],
+}
+
+
+@pytest.mark.parametrize(
+    ("check", "name", "place", "reason"),
+    [(check, *row) for check, rows in REFUSED.items() for row in rows],
 )
-def test_full_names_and_namespaces_may_not_be(name: str, place: int, reason: str) -> None:
-    fault = check_full_name(name)
-    assert fault == check_namespace(name)
+def test_what_a_name_may_not_be(
+    check: Callable[[str], NameFault | None], name: str, place: int, reason: str
+) -> None:
+    fault = check(name)
     assert fault is not None
     assert fault.at == place - 1
     assert reason in fault.reason
+    assert check is not check_full_name or fault == check_namespace(name)
 
 
 @pytest.mark.parametrize(
@@ -239,17 +243,6 @@ def test_lengths_have_a_limit(check: Callable[[str], NameFault | None], longest:
     reason = f"it has {limit + 1} characters, ROS 2 allows {limit}"
     assert check(longest) is None
     assert check(longest + "a") == NameFault(reason, limit - 1)
-
-
-@pytest.mark.parametrize(
-    ("name", "place", "reason"),
-    [("", 1, "empty"), ("7", 1, "digit"), ("a/b", 2, "is not a letter"), ("é", 1, "is not")],
-)
-def test_a_node_may_not_be_called(name: str, place: int, reason: str) -> None:
-    fault = check_node_name(name)
-    assert fault is not None
-    assert fault.at == place - 1
-    assert reason in fault.reason
 
 
 def rules(*texts: str) -> list[RemapRule]:

@@ -53,94 +53,78 @@ def codes(text: str, it: Context) -> list[tuple[str, int]]:
     return [(found.code, found.line) for found in run(text, it)[1]]
 
 
-# (node, {layout: what it becomes}); a layout that is not there leaves the node as it is.
+# A node for one robot, and what it becomes by layout; one that is not there leaves it as it is.
 NODES = {
-    "a relative service": (
-        '<ClearEntireCostmap service_name="local_costmap/clear_it"/>',
-        {"L4": '<ClearEntireCostmap service_name="local_costmap/clear_it/amr"/>'},
-    ),
-    "an absolute service": (
-        '<Action ID="ClearEntireCostmap" service_name="/local_costmap/clear_it"/>',
-        {
-            "L1": '<Action ID="ClearEntireCostmap" service_name="/amr/local_costmap/clear_it"/>',
-            "L2": '<Action ID="ClearEntireCostmap" service_name="/amr/local_costmap/clear_it"/>',
-            "L4": '<Action ID="ClearEntireCostmap" service_name="/local_costmap/clear_it/amr"/>',
-        },
-    ),
-    "an action": (
-        "<Spin server_name='spin'/>",
-        {"L4": "<Spin server_name='spin/amr'/>"},
-    ),
-    "a private service of a node": (
-        '<Call service_name="amcl/get_state"/>',
-        {"L4": '<Call service_name="amcl_amr/get_state"/>'},
-    ),
-    "a node": ('<Ask node_name="amcl"/>', {"L4": '<Ask node_name="amcl_amr"/>'}),
-    "topics": (
-        '<PlannerSelector topic_name="planner_selector"/><IsBatteryLow battery_topic="/battery"/>',
-        {
-            "L1": '<PlannerSelector topic_name="planner_selector"/>'
-            '<IsBatteryLow battery_topic="/amr/battery"/>',
-            "L2": '<PlannerSelector topic_name="planner_selector"/>'
-            '<IsBatteryLow battery_topic="/amr/battery"/>',
-            "L4": '<PlannerSelector topic_name="planner_selector/amr"/>'
-            '<IsBatteryLow battery_topic="/battery/amr"/>',
-        },
-    ),
-    "frames": (
-        '<GoalReached global_frame="map" robot_base_frame="base_link"/>'
+    "a relative service": {
+        "one": '<ClearEntireCostmap service_name="local_costmap/clear_it"/>',
+        "L4": '<ClearEntireCostmap service_name="local_costmap/clear_it/amr"/>',
+    },
+    "an absolute service": {
+        "one": '<Action ID="ClearEntireCostmap" service_name="/local_costmap/clear_it"/>',
+        "L1": '<Action ID="ClearEntireCostmap" service_name="/amr/local_costmap/clear_it"/>',
+        "L2": '<Action ID="ClearEntireCostmap" service_name="/amr/local_costmap/clear_it"/>',
+        "L4": '<Action ID="ClearEntireCostmap" service_name="/local_costmap/clear_it/amr"/>',
+    },
+    "an action": {"one": "<Spin server_name='spin'/>", "L4": "<Spin server_name='spin/amr'/>"},
+    "a private service of a node": {
+        "one": '<Call service_name="amcl/get_state"/>',
+        "L4": '<Call service_name="amcl_amr/get_state"/>',
+    },
+    "a node": {"one": '<Ask node_name="amcl"/>', "L4": '<Ask node_name="amcl_amr"/>'},
+    "topics": {
+        "one": '<PlannerSelector topic_name="planner_selector"/>'
+        '<IsBatteryLow battery_topic="/battery"/>',
+        "L1": '<PlannerSelector topic_name="planner_selector"/>'
+        '<IsBatteryLow battery_topic="/amr/battery"/>',
+        "L2": '<PlannerSelector topic_name="planner_selector"/>'
+        '<IsBatteryLow battery_topic="/amr/battery"/>',
+        "L4": '<PlannerSelector topic_name="planner_selector/amr"/>'
+        '<IsBatteryLow battery_topic="/battery/amr"/>',
+    },
+    "frames": {
+        "one": '<GoalReached global_frame="map" robot_base_frame="base_link"/>'
         '<DistanceTraveled global_frame="odom"/>',
-        {
-            "L2": '<GoalReached global_frame="map" robot_base_frame="sp/base_link"/>'
-            '<DistanceTraveled global_frame="sp/odom"/>',
-            "L4": '<GoalReached global_frame="map" robot_base_frame="base_link/sp"/>'
-            '<DistanceTraveled global_frame="odom/sp"/>',
-        },
-    ),
-    "ports that only one node means so": (
-        '<TransformAvailable parent="map" child="base_link"/><Other parent="map" child="x"/>',
-        {
-            "L2": '<TransformAvailable parent="map" child="sp/base_link"/>'
-            '<Other parent="map" child="x"/>',
-            "L4": '<TransformAvailable parent="map" child="base_link/sp"/>'
-            '<Other parent="map" child="x"/>',
-        },
-    ),
-    "the blackboard": ('<Spin server_name="{spin}" goal="{goal}" spin_dist="1.57"/>', {}),
-    "nothing": ('<Spin server_name="" name="base_link" ID="odom"/>', {}),
-    "placeholders": ('<Spin server_name="$(var x)/spin" robot_base_frame="${frame}"/>', {}),
-    "what stands for the robot": (
-        '<Spin server_name="${namespace}/spin" robot_base_frame="${namespace}/odom"/>',
-        {
-            "L1": '<Spin server_name="/amr/spin" robot_base_frame="odom"/>',
-            "L2": '<Spin server_name="/amr/spin" robot_base_frame="sp/odom"/>',
-            "L4": '<Spin server_name="/spin/amr" robot_base_frame="odom/sp"/>',
-        },
-    ),
-    "escapes": (
-        "<A robot_base_frame=\"base&#95;link\" global_frame='odom&quot;'/>",
-        {
-            "L2": "<A robot_base_frame=\"sp/base_link\" global_frame='sp/odom&quot;'/>",
-            "L4": "<A robot_base_frame=\"base_link/sp\" global_frame='odom&quot;/sp'/>",
-        },
-    ),
-    "a default that is every robot's": (
-        '<TruncatePathLocal distance="1"/><Action ID="TruncatePathLocal" pose="{pose}"/>',
-        {
-            "L2": '<TruncatePathLocal robot_frame="sp/base_link" distance="1"/>'
-            '<Action ID="TruncatePathLocal" pose="{pose}"/>',
-            "L4": '<TruncatePathLocal robot_frame="base_link/sp" distance="1"/>'
-            '<Action ID="TruncatePathLocal" pose="{pose}"/>',
-        },
-    ),
+        "L2": '<GoalReached global_frame="map" robot_base_frame="sp/base_link"/>'
+        '<DistanceTraveled global_frame="sp/odom"/>',
+        "L4": '<GoalReached global_frame="map" robot_base_frame="base_link/sp"/>'
+        '<DistanceTraveled global_frame="odom/sp"/>',
+    },
+    "ports that only one node means so": {
+        "one": '<TransformAvailable parent="map" child="base_link"/><Other parent="map" child="x"/>',
+        "L2": '<TransformAvailable parent="map" child="sp/base_link"/>'
+        '<Other parent="map" child="x"/>',
+        "L4": '<TransformAvailable parent="map" child="base_link/sp"/>'
+        '<Other parent="map" child="x"/>',
+    },
+    "the blackboard": {"one": '<Spin server_name="{spin}" goal="{goal}" spin_dist="1.57"/>'},
+    "nothing": {"one": '<Spin server_name="" name="base_link" ID="odom"/>'},
+    "placeholders": {"one": '<Spin server_name="$(var x)/spin" robot_base_frame="${frame}"/>'},
+    "what stands for the robot": {
+        "one": '<Spin server_name="${namespace}/spin" robot_base_frame="${namespace}/odom"/>',
+        "L1": '<Spin server_name="/amr/spin" robot_base_frame="odom"/>',
+        "L2": '<Spin server_name="/amr/spin" robot_base_frame="sp/odom"/>',
+        "L4": '<Spin server_name="/spin/amr" robot_base_frame="odom/sp"/>',
+    },
+    "escapes": {
+        "one": "<A robot_base_frame=\"base&#95;link\" global_frame='odom&quot;'/>",
+        "L2": "<A robot_base_frame=\"sp/base_link\" global_frame='sp/odom&quot;'/>",
+        "L4": "<A robot_base_frame=\"base_link/sp\" global_frame='odom&quot;/sp'/>",
+    },
+    "a default that is every robot's": {
+        "one": '<TruncatePathLocal distance="1"/><Action ID="TruncatePathLocal" pose="{pose}"/>',
+        "L2": '<TruncatePathLocal robot_frame="sp/base_link" distance="1"/>'
+        '<Action ID="TruncatePathLocal" pose="{pose}"/>',
+        "L4": '<TruncatePathLocal robot_frame="base_link/sp" distance="1"/>'
+        '<Action ID="TruncatePathLocal" pose="{pose}"/>',
+    },
 }
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize("name", NODES)
 def test_a_node_for_a_robot(name: str, layout: str) -> None:
-    text, wanted = NODES[name]
-    assert one(text, layout) == wanted.get("L2" if layout == "L3" else layout, text)
+    text = NODES[name]["one"]
+    assert one(text, layout) == NODES[name].get("L2" if layout == "L3" else layout, text)
 
 
 def test_a_port_that_is_set_is_not_inserted() -> None:

@@ -73,6 +73,7 @@ def loaded(text: str, folder: Path) -> Tree:
 @pytest.mark.parametrize(
     ("child", "row"),
     [
+        # From the value.
         ("<x>hip</x>", "x uses joint"),
         ("<x>arm</x>", "x uses link"),
         ("<x>both</x>", "x uses link joint"),
@@ -90,15 +91,7 @@ def loaded(text: str, folder: Path) -> Tree:
         ("<x>a:=arm</x>", "x uses topic form=remap"),
         ("<x>nobody</x><!-- none -->", "# x: 'nobody'"),
         ("<x>3.5 1e3</x>", "# x: '3.5 1e3'"),
-    ],
-)
-def test_a_guess_from_the_value(child: str, row: str) -> None:
-    assert line_for(child) == row
-
-
-@pytest.mark.parametrize(
-    ("child", "row"),
-    [
+        # From the tag.
         ("<leftJoint>a</leftJoint>", "leftJoint uses joint"),
         ("<left_joint>a</left_joint>", "left_joint uses joint"),
         ("<jointName>a</jointName>", "jointName uses joint"),
@@ -128,7 +121,7 @@ def test_a_guess_from_the_value(child: str, row: str) -> None:
         ("<joint>1</joint>", "# joint: '1'"),
     ],
 )
-def test_a_guess_from_the_tag(child: str, row: str) -> None:
+def test_a_guess_from_the_value_or_the_tag(child: str, row: str) -> None:
     assert line_for(child) == row
 
 
