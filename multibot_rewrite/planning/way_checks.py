@@ -275,8 +275,7 @@ def _of_managers(release: str) -> frozenset[str]:
 
 
 def _is_for_controllers(source: str, known: frozenset[str], by_file: bool) -> bool:
-    """Return whether a rule's source is a name in a controller's code, ``known``, or may be one's
-    private name: NODE/NAME where rules are not given ``by_file``."""
+    """Return whether a rule's source is one of the ``known`` names of controllers, or NODE/NAME."""
     above, slash, _ = source.partition("/")
     below = "" if by_file or not slash or above == "~" else f"~{source[len(above) :]}"
     return source in known or below in known

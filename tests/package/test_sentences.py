@@ -72,8 +72,8 @@ def test_a_page_has_short_sentences(page: Path) -> None:
     assert list(said_texts.long_sentences_of_a_page(page, MOST)) == []
 
 
-# For contributors, and not yet rewritten.
-LONG_PARAGRAPHS = {"architecture"}
+# Pages that may have long paragraphs.
+LONG_PARAGRAPHS: set[str] = set()
 FENCE = re.compile(r"^( *)(`{3,}).*?^\1\2`*$", re.MULTILINE | re.DOTALL)
 
 

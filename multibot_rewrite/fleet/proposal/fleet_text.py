@@ -73,12 +73,12 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
         yield ""
         yield "# No launch file is taken: none, or no single one, starts this robot. What they start;"
         yield f"# to say which: multibot init {shlex.quote(home)} --launch FILE NAME:=VALUE"
-        yield from _placed(it.started, folder)
+        yield from _lines_of_rows(it.started, folder)
     few = it.others_unread if len(it.others_unread) <= MOST_UNREAD else ()
     if it.unread or few:
         yield ""
         yield "# Of launch files could not be read:"
-        yield from _placed((*it.unread, *few), folder)
+        yield from _lines_of_rows((*it.unread, *few), folder)
     if len(it.others_unread) > len(few):
         yield ""
         names = shorten([os.path.relpath(file, folder) for file, _, _ in it.others_unread], 1)
@@ -90,7 +90,7 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
     yield from (f"  - {_flow(robot)}" for robot in _robots(it, folder))
 
 
-def _placed(rows: Iterable[Row], folder: str) -> Iterator[str]:
+def _lines_of_rows(rows: Iterable[Row], folder: str) -> Iterator[str]:
     return _capped(f"{os.path.relpath(file, folder)}:{at}: {text}" for file, at, text in rows)
 
 

@@ -194,8 +194,6 @@ def _parameters(found: Mapping[str, YamlItem]) -> Iterator[Parameter]:
             wrong(item, f"parameter {name!r} has no type; write one, such as string")
         type_ = word_of(keys, "type")
         if not _PARAMETER_TYPE.fullmatch(type_):
-            wrong(
-                keys["type"], f"parameter {name!r}: {type_!r} is no type; write one, such as string"
-            )
+            wrong(keys["type"], f"parameter {name!r}: {type_!r} is no type; write one like string")
         default = keys["default_value"].value if "default_value" in keys else ""
         yield Parameter(name, type_, default if isinstance(default, str) else "")
