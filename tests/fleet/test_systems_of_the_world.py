@@ -90,3 +90,14 @@ def test_a_real_robot_is_not_blamed_for_them(
     _built(tmp_path, OGRE, OGRE, simulator="none")
     said = capsys.readouterr().err
     assert "MB416" not in said and "not verified" not in said
+
+
+def test_a_frame_that_nobody_chose_is_no_error(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Without gz_frame_id Gazebo's frame ends with the sensor's name, also if a link has that name."""
+    _built(tmp_path, OGRE, OGRE, sensor=LIDAR.replace('"eye"', '"base_link"'))
+    text = (tmp_path / "fleet.yaml").read_text()
+    (tmp_path / "fleet.yaml").write_text(text.replace("both", "tf-per-robot"))
+    assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "shared")]) == 0
+    assert "warning: MG412" in capsys.readouterr().err

@@ -61,7 +61,7 @@ def text_checked(text: bytes, path: str, schema: Mapping[str, Any], hint: str) -
 def _in_new_keys(data: Any) -> Any:
     """Return the data of a fleet or its robots with each old key under its new name."""
     if not isinstance(data, dict):
-        return [_in_new_keys(it) for it in data] if isinstance(data, list) else data
+        return [*map(_in_new_keys, data)] if isinstance(data, list) else data
     new = {_OLD_KEYS.get(key, key): value for key, value in data.items()}
     return {**new, "robots": _in_new_keys(new["robots"])} if "robots" in new else new
 

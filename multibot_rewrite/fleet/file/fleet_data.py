@@ -183,7 +183,7 @@ def fleet_yaml(value: Any, **options: Any) -> str:
 def read_data(source: FleetSource) -> FleetData:
     """Return the data of a fleet; in a dict paths are from the working directory. Raises InputError."""
     if isinstance(source, str):
-        return _with_includes(_of_file(source), ())
+        return _with_includes(_placed(source, read_file(source)), ())
     hint = "write texts, numbers, lists and dicts"
     try:
         path, text = source if isinstance(source, FleetText) else (DICT, fleet_yaml(dict(source)))
@@ -191,8 +191,7 @@ def read_data(source: FleetSource) -> FleetData:
         raise InputError(f"{DICT}: {str(error).splitlines()[0]}; {hint}") from None
     except RecursionError:
         raise InputError(f"{DICT}: a value holds itself; {hint}") from None
-    folder = "" if path == DICT else os.path.dirname(path)
-    return _with_includes(_placed(path, folder, text.encode())._replace(files=()), ())
+    return _with_includes(_placed(path, text.encode())._replace(files=()), ())
 
 
 def _with_includes(read: FleetData, above: tuple[str, ...]) -> FleetData:
@@ -201,7 +200,7 @@ def _with_includes(read: FleetData, above: tuple[str, ...]) -> FleetData:
         if os.path.realpath(other) in (*above, real):
             ring = " -> ".join(os.path.basename(it) for it in (*above, real, other))
             raise InputError(f"{other}: the file includes itself ({ring}); remove one include")
-        under = _with_includes(_of_file(other), (*above, real))
+        under = _with_includes(_placed(other, read_file(other)), (*above, real))
         both = {**under.data, **read.data}, {**under.places, **read.places}
         read = FleetData(path, *both, (*read.files, *under.files))
     if not above and "robots" not in read.data:
@@ -209,16 +208,12 @@ def _with_includes(read: FleetData, above: tuple[str, ...]) -> FleetData:
     return read
 
 
-def _of_file(path: str) -> FleetData:
-    return _placed(path, os.path.dirname(path), read_file(path))
-
-
-def _placed(path: str, folder: str, text: bytes) -> FleetData:
+def _placed(path: str, text: bytes) -> FleetData:
     """Return the checked data of a file; an included file need not have the keys that are required."""
     known = {key: value for key, value in schema().items() if key != "required"}
     data, lines = text_checked(text, path, known, f"write {EXAMPLE}")
     places = {at: (path, line) for at, line in lines.items()}
-    resolved = with_paths(folder, data)
+    resolved = with_paths(os.path.dirname(path), data)
     check_files(resolved, (), places)
     return FleetData(path, resolved, places, (path,))
 

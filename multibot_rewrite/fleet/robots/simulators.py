@@ -190,9 +190,8 @@ MOVED = declare(LEFT, "system-of-the-world", NOTE, formats=("fleet",))
 
 
 def without_world_systems(robots: Sequence[RewrittenRobot]) -> list[RewrittenRobot]:
-    """Return the robots without world systems, each with those that it had; the first has the note.
-    No simulator loads those of real robots, which keep them."""
-    made = [_unblamed(it) if it.spec.simulator == REAL else _without(it) for it in robots]
+    """Return the robots without world systems, each with those that it had; the first has the note."""
+    made = [_without(it) for it in robots]
     first = next((it for it in made if it.world_systems), None)
     if first is None:
         return made
@@ -205,8 +204,7 @@ def without_world_systems(robots: Sequence[RewrittenRobot]) -> list[RewrittenRob
         for library, text in robot.world_systems.items():
             if text.split() != every[library].split():
                 other = f"{robot.spec.name} has other settings of {library}: they are not used"
-                remedy = "write one text for all robots"
-                said.append(at_robot(MOVED, robot, other, remedy, WARNING))
+                said.append(at_robot(MOVED, robot, other, "write one text for all", WARNING))
         result.append(robot._replace(findings=(*robot.findings, *said)))
     return result
 
@@ -220,6 +218,9 @@ def systems_of(robots: Sequence[RewrittenRobot]) -> dict[str, str]:
 
 
 def _without(robot: RewrittenRobot) -> RewrittenRobot:
+    said = tuple(it for it in robot.findings if it.code != _IN_ROBOT)
+    if robot.spec.simulator == REAL:  # no simulator loads it
+        return robot._replace(findings=said)
     document = robot.member.inventory.document
     own = [it.element for it in world_systems(robot.member.inventory)]
     # A description for Gazebo Classic keeps them: its worlds are not made here.
@@ -229,13 +230,7 @@ def _without(robot: RewrittenRobot) -> RewrittenRobot:
     edits = [Edit(spans.start_of(it), spans.end_of(it), b"", None) for it in own]
     data = b"".join(cut(document.source, sorted(edits)))
     texts = {_library(it): spans.text_of(it).decode() for it in own}
-    return robot_with_text(_unblamed(robot), data)._replace(world_systems=texts)
-
-
-def _unblamed(robot: RewrittenRobot) -> RewrittenRobot:
-    """Return the robot without the finding that it loads systems of the world."""
-    said = tuple(it for it in robot.findings if it.code != _IN_ROBOT)
-    return robot._replace(findings=said)
+    return robot_with_text(robot, data)._replace(world_systems=texts, findings=said)
 
 
 def _library(plugin: _Element) -> str:

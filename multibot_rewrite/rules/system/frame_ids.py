@@ -102,7 +102,7 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
             or (f"set the frame of {_one_of(senders)} to {_one_of(likely)}" if likely else "")
             or _sent_there(seen, frame, robot, elsewhere)
             or f"send a transform for it, or set the frame of {_one_of(senders)} to one that is in tf",
-            level=ERROR if meant or elsewhere or needed else WARNING,
+            level=ERROR if (meant and not link) or elsewhere or needed else WARNING,
             robot=robot, node=senders[0], names=(frame,), **where(messages[:1]),
             settings=() if link else _with_frame(messages, only(likely)),
         )  # fmt: skip
