@@ -70,8 +70,8 @@ def _body(seen: Index, tree: Tree, robot: str) -> _Body | None:
     loose = [it for it in frames if it in ends and above[it] in WORLD_FRAMES]
     body = (it for it in frames if seen.plain_frame(it) in (*BODY_FRAMES, _ODOM))
     roots = {root_of(it, above) for it in body if it not in loose} - {*above}
-    no_odometry = {*WORLD_FRAMES, *(BODY_FRAMES if loose else ())}
-    is_one = len(roots) == 1 and no_odometry.isdisjoint(map(seen.plain_frame, roots))
+    bodies = BODY_FRAMES if _ODOM in map(seen.plain_frame, loose) else ()
+    is_one = len(roots) == 1 and {*WORLD_FRAMES, *bodies}.isdisjoint(map(seen.plain_frame, roots))
     return _Body(next(iter(roots)), tuple(loose)) if is_one else None
 
 
