@@ -21,7 +21,7 @@ from multibot_rewrite.lint.files.subjects import make_subject
 from multibot_rewrite.related_files.context import Context
 from multibot_rewrite.related_files.formats import read_named
 from multibot_rewrite.related_files.named_file import MOVEIT, NamedFile, kind_of
-from multibot_rewrite.related_files.names.rename_map import KINDS, CompanionNames
+from multibot_rewrite.related_files.names.rename_map import KINDS, RelatedNames
 from multibot_rewrite.rules.files.judge import judged, rules_for
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.rules.subject import NO_ROBOTS, Robots, Subject
@@ -87,7 +87,7 @@ def context_of(declared: Declared, settings: Settings) -> Context:
     """Return the context in which a file is read: the declared names, renamed if robots are given."""
     every = {it: declared.get(it, {}) for kinds in KINDS.values() for it in kinds}
     naming = settings.naming if settings.robots else _AS_WRITTEN
-    names = CompanionNames(every, naming, "")
+    names = RelatedNames(every, naming, "")
     return Context(names, names, {}, settings.distro)
 
 

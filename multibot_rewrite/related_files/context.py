@@ -15,7 +15,7 @@ from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.model_namespaces import NO_WORDS, Stems
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.planning.of_runs import placed
-from multibot_rewrite.related_files.names.rename_map import NO_OWN, CompanionNames
+from multibot_rewrite.related_files.names.rename_map import NO_OWN, RelatedNames
 from multibot_rewrite.related_files.yaml_text import Splice
 
 # Stand for the robot's namespace, and for the tag (prefix or postfix) in its frames and joints:
@@ -82,8 +82,8 @@ class Context(NamedTuple):
     those that the robots have in the place of a default: by the node's last name and the parameter.
     """
 
-    names: CompanionNames
-    topics: CompanionNames
+    names: RelatedNames
+    topics: RelatedNames
     nodes: Mapping[str, str]
     distro: str
     frames: Frames = NO_FRAMES
@@ -99,12 +99,12 @@ def make_context(
     given: frozenset[str] = frozenset(),
 ) -> Context:
     """Return the context of a description (not rewritten) and the nodes of its robots; ``own``,
-    ``words`` and ``given`` are those of ``CompanionNames``."""
+    ``words`` and ``given`` are those of ``RelatedNames``."""
     nodes = {
         it.name: f"/{it.name}" if it.shared else full_name(it.name, naming, it.apart)
         for it in facts
     }
-    names = CompanionNames(declared, naming, TAG_SLOT, own, words, given)
+    names = RelatedNames(declared, naming, TAG_SLOT, own, words, given)
     return Context(names, names._replace(robot=NAMESPACE_SLOT), nodes, distro)
 
 

@@ -45,7 +45,7 @@ from multibot_rewrite.related_files.params.sections import (
     controller_types,
     raw_sections,
 )
-from multibot_rewrite.related_files.rviz.display_groups import group_text, leaves
+from multibot_rewrite.related_files.rviz.display_groups import group_text, item_splices, leaves
 from multibot_rewrite.related_files.rviz.read_config import (
     GRAPH_NAMESPACE,
     TOPIC,
@@ -53,7 +53,6 @@ from multibot_rewrite.related_files.rviz.read_config import (
     RvizItem,
     RvizRobot,
     fixed_frame,
-    item_splices,
     read_config,
     targets,
     value,

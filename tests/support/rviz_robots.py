@@ -10,7 +10,7 @@ from typing import Any
 import yaml
 
 from multibot_rewrite.base.naming import make_naming
-from multibot_rewrite.related_files.names.rename_map import CompanionNames
+from multibot_rewrite.related_files.names.rename_map import RelatedNames
 from multibot_rewrite.related_files.rviz.read_config import RvizRobot, rviz_data
 from multibot_rewrite.related_files.yaml_text import YamlText, pairs
 
@@ -39,5 +39,5 @@ def _names(node: yaml.Node | None) -> Iterator[tuple[str, str]]:
 def robots_of(names: Declared, layout: str, robots: Sequence[str], **more: Any) -> list[RvizRobot]:
     """A robot of this description for each name."""
     naming = make_naming(layout, "postfix" if layout == "L4" else "prefix")
-    both = ((name, CompanionNames(names, naming, name)) for name in robots)
+    both = ((name, RelatedNames(names, naming, name)) for name in robots)
     return [RvizRobot(name, it, it, **more) for name, it in both]

@@ -38,7 +38,7 @@ from multibot_rewrite.fleet.robots.member import Member, member, with_text
 from multibot_rewrite.fleet.robots.own_values import Written
 from multibot_rewrite.planning.transforms import links_of, tree_of
 from multibot_rewrite.related_files.names.rename_map import (
-    CompanionNames,
+    RelatedNames,
     related_file_names,
     with_srdf,
 )
@@ -86,8 +86,8 @@ class RewrittenRobot(NamedTuple):
     spec: RobotSpec
     description: bytes
     srdf: bytes
-    names: CompanionNames
-    topics: CompanionNames
+    names: RelatedNames
+    topics: RelatedNames
     member: Member
     findings: tuple[Finding, ...]
     simulated: bytes = b""

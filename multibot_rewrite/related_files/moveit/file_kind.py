@@ -15,7 +15,7 @@ import yaml
 from multibot_rewrite.base.bounded import load_own_yaml
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.related_files.names.placeholders import without_robot
-from multibot_rewrite.related_files.names.rename_map import KINDS, CompanionNames, is_declared
+from multibot_rewrite.related_files.names.rename_map import KINDS, RelatedNames, is_declared
 from multibot_rewrite.related_files.params.sections import PARAMETERS
 from multibot_rewrite.related_files.sites import Site, site_at, slot_of
 from multibot_rewrite.related_files.yaml_text import YamlText, is_text, pairs, refused
@@ -40,7 +40,7 @@ class MoveitKind(NamedTuple):
 
 
 class _Walk(NamedTuple):
-    names: CompanionNames
+    names: RelatedNames
     found: list[Site]
     claimed: set[int]
     seen: set[tuple[int, int]]
@@ -61,7 +61,7 @@ def kinds() -> tuple[MoveitKind, ...]:
 
 
 def find_names(
-    root: yaml.Node | None, rules: Shapes, names: CompanionNames
+    root: yaml.Node | None, rules: Shapes, names: RelatedNames
 ) -> tuple[list[Site], list[Site], list[Site]]:
     """Return every name below ``root``, the texts of unknown use, and repeated keys; an aliased
     value counts once for every shape that reaches it."""
@@ -135,7 +135,7 @@ def _named(node: yaml.ScalarNode, kind: str) -> Iterator[Site]:
 
 
 def _resolved(
-    word: str, at: int, value: yaml.Node, rules: Shapes, names: CompanionNames
+    word: str, at: int, value: yaml.Node, rules: Shapes, names: RelatedNames
 ) -> _Match | None:
     """Return the names in a key: nested maps and keys with dots are the same parameter."""
     found = _exact(word, at, value, rules, names)
@@ -149,9 +149,7 @@ def _resolved(
     return _open(word, at, value, rules)
 
 
-def _rest(
-    head: _Match, word: str, at: int, value: yaml.Node, names: CompanionNames
-) -> _Match | None:
+def _rest(head: _Match, word: str, at: int, value: yaml.Node, names: RelatedNames) -> _Match | None:
     marks, rule = head
     if rule == KEEP:
         known = all(_declared(names, kind, text) for _, text, kind in marks if kind in KINDS)
@@ -161,7 +159,7 @@ def _rest(
 
 
 def _exact(
-    word: str, at: int, value: yaml.Node | None, rules: Shapes, names: CompanionNames
+    word: str, at: int, value: yaml.Node | None, rules: Shapes, names: RelatedNames
 ) -> _Match | None:
     """Return the match of a literal key, of a declared name, or of a name known by its contents."""
     if word in rules and word[:1] not in ("<", "*"):
@@ -180,7 +178,7 @@ def _exact(
     return None
 
 
-def _declared(names: CompanionNames, kind: str, word: str) -> bool:
+def _declared(names: RelatedNames, kind: str, word: str) -> bool:
     """Return whether the description declares it, without a launch file's ``$(var prefix)``."""
     return is_declared(names, kind, without_robot(word))
 

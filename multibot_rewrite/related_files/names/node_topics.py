@@ -21,7 +21,7 @@ from multibot_rewrite.planning.records import Table
 from multibot_rewrite.planning.table import run_of
 from multibot_rewrite.related_files.context import NAMESPACE_SLOT, Context
 from multibot_rewrite.related_files.names.by_kind import is_plain
-from multibot_rewrite.related_files.names.rename_map import CompanionNames, spell
+from multibot_rewrite.related_files.names.rename_map import RelatedNames, spell
 from multibot_rewrite.related_files.sites import FROM_NODE, FROM_PARENT, IN_FULL
 from multibot_rewrite.system.records import ACTION, TOPIC
 
@@ -138,7 +138,7 @@ def is_topic(value: str) -> bool:
     return check_name_in_code(value) is None
 
 
-def robot_topic(names: CompanionNames, value: str, known: Mapping[str, str] = NOTHING) -> str:
+def robot_topic(names: RelatedNames, value: str, known: Mapping[str, str] = NOTHING) -> str:
     """Return the robot's absolute topic; ``value`` itself if it is shared or not a topic name.
 
     ``known`` is ``fleet_topics`` of the robot, for topics that do not follow the general rule.

@@ -18,7 +18,7 @@ TOPIC = "topic"
 NO_OWN: Mapping[tuple[str, str], str] = {}
 
 
-class CompanionNames(NamedTuple):
+class RelatedNames(NamedTuple):
     """The names that a description declares (not rewritten), the naming, and the robot.
 
     ``own`` are names (kind and text) that arguments of the xacro make another for the robot; ``words``
@@ -39,7 +39,7 @@ class CompanionNames(NamedTuple):
         return {plain: text for plain, text in own if self.naming.topics == NAMESPACE}
 
 
-def spell(names: CompanionNames, word: str, value: str, namespaced: bool = True) -> str:
+def spell(names: RelatedNames, word: str, value: str, namespaced: bool = True) -> str:
     """Return the robot's version of ``value``, a name of the kind ``word``; other values stay.
 
     ``namespaced`` is true if a relative topic is resolved in the robot's namespace.
@@ -73,7 +73,7 @@ def related_file_names(
     words: Stems = NO_WORDS,
     in_full: Collection[str] = (),
     given: frozenset[str] = frozenset(),
-) -> CompanionNames:
+) -> RelatedNames:
     """Return the names of a robot; ``own`` are declared by either of their texts. Nodes in the robot's
     namespace call the topics ``in_full``, which it does not reach, by their full names."""
     if naming.topics == NAMESPACE:
@@ -90,7 +90,7 @@ def related_file_names(
     for (kind, plain), text in own.items():
         if text in both.get(kind, ()):
             both[kind].setdefault(plain, both[kind][text])
-    return CompanionNames(both, naming, robot, own, words, given)
+    return RelatedNames(both, naming, robot, own, words, given)
 
 
 def _without_argument(
@@ -104,6 +104,6 @@ def _without_argument(
             yield kind, rest[1:], text
 
 
-def is_declared(names: CompanionNames, word: str, value: str) -> bool:
+def is_declared(names: RelatedNames, word: str, value: str) -> bool:
     """Return whether the description declares this link, joint, sensor, gpio or hardware."""
     return any(value in names.declared.get(kind, ()) for kind in KINDS[word])

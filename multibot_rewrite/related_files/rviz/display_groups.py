@@ -9,10 +9,13 @@ from typing import NamedTuple
 
 import yaml
 
+from multibot_rewrite.related_files.engine import splices_of
 from multibot_rewrite.related_files.names.node_topics import robot_topic
 from multibot_rewrite.related_files.rviz.read_config import (
     ABSOLUTE,
+    COLOUR,
     DOCK,
+    FLAT_COLOUR,
     FRAME,
     GROUP,
     PROCESS,
@@ -23,9 +26,9 @@ from multibot_rewrite.related_files.rviz.read_config import (
     RvizRobot,
     changed_values,
     is_name,
-    item_splices,
     robot_value,
     rviz_data,
+    text_of,
     value,
 )
 from multibot_rewrite.related_files.yaml_text import (
@@ -290,3 +293,18 @@ def remark(document: YamlText, one: RvizItem) -> str:
     title = f" {one.name!r}" if one.name else ""
     why = "it serves the robot of its rviz2 process"
     return f"{' ' * one.block.column}# left out: {one.cls}{title}: {why}{newline(document)}"
+
+
+def item_splices(
+    document: YamlText, one: RvizItem, robot: RvizRobot, colour: Colour | None
+) -> list[Splice]:
+    """Return the splices that make a display or tool show the robot."""
+    made = [*splices_of(document.text, document.file, changed_values(one, robot))]
+    if colour:
+        # As RViz writes it, if the display has one colour for all its data.
+        kinds = [COLOUR]
+        if text_of(one.node, "Color Transformer") == "FlatColor":
+            kinds.append(FLAT_COLOUR)
+        slots = (it.slot for it in one.places if it.kind in kinds)
+        made += [Splice(it.start, it.end, "; ".join(map(str, colour))) for it in slots]
+    return made

@@ -15,14 +15,12 @@ from multibot_rewrite.base.bounded import load_own_yaml
 from multibot_rewrite.base.model import FOR_ROS_1, InputError
 from multibot_rewrite.base.naming import NAMESPACE
 from multibot_rewrite.base.nearest import did_you_mean_one_of
-from multibot_rewrite.related_files.engine import splices_of
 from multibot_rewrite.related_files.names.node_topics import NOTHING, robot_topic
 from multibot_rewrite.related_files.names.placeholders import is_robot, without_robot
-from multibot_rewrite.related_files.names.rename_map import CompanionNames, spell
+from multibot_rewrite.related_files.names.rename_map import RelatedNames, spell
 from multibot_rewrite.related_files.sites import Site, site_at
 from multibot_rewrite.related_files.yaml_text import (
     Block,
-    Splice,
     YamlText,
     blocks,
     is_block,
@@ -236,8 +234,8 @@ class RvizRobot(NamedTuple):
     sets start."""
 
     name: str
-    names: CompanionNames
-    topics: CompanionNames
+    names: RelatedNames
+    topics: RelatedNames
     colour: str | tuple[int, ...] = ""
     known: Mapping[str, str] = NOTHING
     tf_prefix: str = ""
@@ -272,21 +270,6 @@ def changed_values(one: RvizItem, robot: RvizRobot) -> Iterator[tuple[Site, str]
     """Yield the places of a display or tool with another value for the robot, and that value."""
     made = ((it, robot_value(it, robot)) for it in filter(is_name, one.places))
     yield from ((it, new) for it, new in made if new != it.slot.value)
-
-
-def item_splices(
-    document: YamlText, one: RvizItem, robot: RvizRobot, colour: Colour | None
-) -> list[Splice]:
-    """Return the splices that make a display or tool show the robot."""
-    made = [*splices_of(document.text, document.file, changed_values(one, robot))]
-    if colour:
-        # As RViz writes it, if the display has one colour for all its data.
-        kinds = [COLOUR]
-        if text_of(one.node, "Color Transformer") == "FlatColor":
-            kinds.append(FLAT_COLOUR)
-        slots = (it.slot for it in one.places if it.kind in kinds)
-        made += [Splice(it.start, it.end, "; ".join(map(str, colour))) for it in slots]
-    return made
 
 
 def frame_of(node: yaml.Node | None, robot: RvizRobot) -> str:

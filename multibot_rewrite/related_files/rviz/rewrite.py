@@ -19,6 +19,7 @@ from multibot_rewrite.related_files.named_file import RVIZ, NamedFile
 from multibot_rewrite.related_files.names.placeholders import without_robot
 from multibot_rewrite.related_files.rviz.display_groups import (
     has_own_windows,
+    item_splices,
     leaves,
     make_rviz_job,
     panels,
@@ -38,7 +39,6 @@ from multibot_rewrite.related_files.rviz.read_config import (
     fixed_frame,
     frame_of,
     is_name,
-    item_splices,
     palette,
     read_colour,
     read_config,
