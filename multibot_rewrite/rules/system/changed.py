@@ -72,7 +72,10 @@ def untold(found: Iterable[Finding]) -> list[Finding]:
         it
         for it in every
         if it.code != changed_since.code
-        or not (names & {*it.names} or it.node in nodes or it.robot in robots)
+        or (
+            not (names & {*it.names} or it.robot in robots)
+            and (it.level == ERROR or it.node not in nodes)
+        )
     ]
 
 
