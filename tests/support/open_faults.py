@@ -109,7 +109,7 @@ def open_rows() -> tuple[Fault, ...]:
         Fault(
             "the driver is in another namespace than the commands", single,
             renamed("/cmd_vel", "/robo/cmd_vel", "/diff_drive"),
-            "MG303", ("/robo/cmd_vel", "/cmd_vel"), WARNING,
+            "MG303", ("/robo/cmd_vel", "/cmd_vel"), ERROR,
         ),
         Fault(
             "twist_mux sends cmd_vel_out of its default", single,
