@@ -50,6 +50,8 @@ from multibot_rewrite.fleet.robots.simulators import (
     without_world_systems,
 )
 from multibot_rewrite.planning.way_checks import UNREACHABLE_NAME
+from multibot_rewrite.system.coverage import Coverage, coverage
+from multibot_rewrite.system.records import System
 
 
 class FleetPlan(NamedTuple):
@@ -92,10 +94,19 @@ class FleetPlan(NamedTuple):
 
     def with_names(self, findings: Iterable[Finding]) -> Iterator[Finding]:
         """Yield the findings with the names of robots; about nodes and frames they have namespaces."""
-        names = {it.spec.namespace: it.spec.name for it in self.robots}
+        names = self._names()
         for it in findings:
             robots = tuple(names.get(one, one) for one in it.robots) if it.robot else it.robots
             yield it._replace(robot=names.get(it.robot, it.robot), robots=robots)
+
+    def held(self, planned: System) -> Coverage:
+        """Return how much the plan holds, with the names of robots."""
+        names, all_held = self._names(), coverage(planned)
+        rows = (it._replace(robot=names.get(it.robot, it.robot)) for it in all_held.robots)
+        return all_held._replace(robots=tuple(rows))
+
+    def _names(self) -> Mapping[str, str]:
+        return {it.spec.namespace: it.spec.name for it in self.robots}
 
 
 def plan_fleet(

@@ -224,3 +224,24 @@ def planned(robots: Iterable[tuple[str, int, int]]) -> System:
 )
 def test_robots_that_differ_are_named(robots: list[tuple[str, int, int]], text: str) -> None:
     assert coverage(planned(robots)).in_words == text
+
+
+DEPTH_CAMERA = (
+    '<robot name="cam"><link name="base_link"/><gazebo reference="base_link"><sensor name="front"'
+    ' type="depth_camera"><topic>camera/image_raw</topic><camera/></sensor></gazebo></robot>'
+)
+
+
+def test_a_build_has_the_names_of_robots_and_the_keys_of_the_fleet_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Not their namespaces, and no options of urdf-postfix."""
+    (tmp_path / "cam.urdf").write_text(DEPTH_CAMERA)
+    rows = "robots: [{name: r1, namespace: alpha}, {name: r2, namespace: beta}]"
+    fleet = tmp_path / "fleet.yaml"
+    fleet.write_text(f"description: cam.urdf\nlayout: postfix\ndistro: jazzy\n{rows}\n")
+    main(["build", str(fleet), "-o", str(tmp_path / "out"), "--format", "json"])
+    told = json.loads(capsys.readouterr().out)
+    assert [it["robot"] for it in told["coverage"]["robots"]] == ["r1", "r2"]
+    hints = [it["hint"] for it in told["findings"] if "camera_info" in it["message"]]
+    assert any("topics: namespace" in it for it in hints) and "--topics" not in str(hints)
