@@ -199,7 +199,7 @@ def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str
         ("urdf-lint a --severity error", "use --fail-on LEVEL"),
         (
             "multibot rviz f.yaml",
-            "use multibot build FLEET, which writes fleet.rviz for all robots",
+            "use multibot build FLEET: with layout: frames-per-robot it writes one fleet.rviz",
         ),
         (f"multibot plan r1 r2 {ROVER}", f"the file comes first: multibot plan {ROVER} r1 r2"),
         (f"multibot rehearse r1 {ROVER}", f"first: multibot rehearse {ROVER} r1"),

@@ -174,7 +174,7 @@ def _assert_same_by_library(fleet: DrawnFleet, out: Path) -> None:
     made = {
         it.path: _without_paths(it.data) for it in load_fleet(fleet.data, trust=True).made.files
     }
-    assert made.keys() == written.keys()
+    assert made.keys() == written.keys(), made.keys() ^ written.keys()
     for path, data in made.items():
         assert data == written[path], path
 

@@ -8,6 +8,7 @@ the same names; the rules are those of its table.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -121,6 +122,12 @@ def played(name: str, release: str, plan: FleetPlan) -> System:
             nodes.append(f"{at.namespace.rstrip('/')}/{at.name}")
             there = known.get(node, built_in(release).nodes[kind])
             ends += endpoints(kind, there, at, release) if kind in facts(release) else ()
+    if release == "lyrical":
+        # hardware_component_interface.cpp:119-133: each component is a node beside the manager's.
+        for robot in plan.robots:
+            manager = placed[robot.spec.name, "controller_manager"]
+            names = re.findall(r'<ros2_control name="([^"]+)"', str(robot.description))
+            nodes += [f"{manager.namespace.rstrip('/')}/{it.lower()}" for it in names]
     owners = dict.fromkeys([*nodes, *(it.node for it in ends)])
     frames = [
         frame
