@@ -11,6 +11,7 @@ import importlib.util
 import os
 from collections.abc import Callable, Iterable
 from functools import cache
+from importlib.machinery import SourceFileLoader
 from typing import Any
 
 from multibot_rewrite.producers.launch.stand_in.frontend import description_in
@@ -286,8 +287,10 @@ def get_launch_description_from_python_launch_file(path: str) -> Any:
 
 
 def load_python_launch_file_as_module(path: str) -> Any:
-    spec = importlib.util.spec_from_file_location("launch_file", path)
-    assert spec is not None and spec.loader is not None
+    loader = SourceFileLoader("launch_file", path)
+    spec = importlib.util.spec_from_loader("launch_file", loader)
+    assert spec is not None
     module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+    # Not by the loader, which would write a __pycache__ next to the user's file.
+    exec(loader.source_to_code(loader.get_data(path), path), module.__dict__)
     return module
