@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType
 from typing import NamedTuple
@@ -25,6 +26,7 @@ from multibot_rewrite.description.checks.verdict import not_verified
 from multibot_rewrite.description.joining.from_file import plain_text, plain_texts
 from multibot_rewrite.description.joining.join import GivenPart, JoinedText, join_texts
 from multibot_rewrite.description.joining.part import Part, ReadPart, prefixing
+from multibot_rewrite.description.joining.referring import Output
 from multibot_rewrite.description.joining.second_reading import split_text
 from multibot_rewrite.description.joining.semantic import (
     JoinedSemantics,
@@ -77,10 +79,12 @@ def join(
     trust: bool = False,
     distro: str = "",
     samples: int = 0,
+    output: str = "",
 ) -> Joined:
     """Join descriptions: each part after the first is fixed to a link of those before it.
 
-    Every part stays as it is but for its prefix, and ``split`` gives it back byte by byte. With
+    Every part stays as it is but for its prefix, and ``split`` gives it back byte by byte. Where
+    ``output`` names the file that it goes to, relative paths and ``<parameters>`` fit that. With
     ``samples`` random poses pinocchio tells which links of two parts never touch, for the SRDF. Raises
     UsageError and InputError, in one line, where parts cannot be joined: a link that is not there, a
     name that two of them have, a part with two roots. Raises ProofError as ``rewrite``.
@@ -92,14 +96,17 @@ def join(
     tree = builtin_tree(tuple(vocabulary), release_here(distro))
     texts = [read_whole(it.description, it.xacro_args, trust) for it in given]
     pairs = zip(given, texts, strict=True)
-    made = join_texts([GivenPart(it, text.data, text.file) for it, text in pairs], tree)
+    there = f"{os.path.abspath(output).removesuffix('.urdf')}_controllers.yaml" if output else ""
+    texts_given = [GivenPart(it, text.data, text.file) for it, text in pairs]
+    made = join_texts(texts_given, tree, Output(output, there))
     found = _with_beside(given, made, tree, trust, samples)
     unread = (
         f"{text.file}: no file of the xacro has the argument {name}"
         for it, text in zip(given, texts, strict=True)
         for name in (text.known.lacks(sorted(it.xacro_args)) if text.known else ())
     )
-    return found._replace(notes=(*unread, *found.notes))
+    told = () if output else _relative(made)
+    return found._replace(notes=(*unread, *told, *found.notes))
 
 
 def join_plain(parts: Sequence[Part], place: str, tree: Tree, trust: bool) -> Joined:
@@ -140,7 +147,7 @@ def _with_beside(
         for it in meetings(named, prefixing())
     )
     told = (f"{file}: {what}" for file, what in moveit.notes)
-    notes = (*_relative(made), *made.notes, *semantics.notes, *files.notes, *told, *rviz.notes)
+    notes = (*made.notes, *semantics.notes, *files.notes, *told, *rviz.notes)
     notes, names = (*notes, *met), tuple(it.part.name for it in made.parts)
     return Joined(
         made.data, semantics.data, files.data, names, notes, made.findings, moveit.files, rviz.data

@@ -10,12 +10,13 @@ an argument for a namespace where plugins and sensors have names of ROS (``names
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import redirect_stderr
 from io import StringIO
 from itertools import chain
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.model import InputError
@@ -31,11 +32,24 @@ from multibot_rewrite.description.rewriters.contact import respell_collisions
 from multibot_rewrite.description.rewriters.insert import insertions
 from multibot_rewrite.description.rewriters.tree import Tree, builtin_tree
 from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED
+from multibot_rewrite.description.sources.expand import expand, kept_expansions
 from multibot_rewrite.description.sources.included_by import robot_instead
+from multibot_rewrite.description.sources.own_names import MARKS
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.collect import Inventory
+from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.description.steps.renames import make_renames, respeller
-from multibot_rewrite.refactor.declaring import SPACES, declared, free_name
+from multibot_rewrite.refactor.handing_on import (
+    MARK,
+    NAMES,
+    SPACES,
+    Place,
+    Sources,
+    Words,
+    compared,
+    declared,
+    free_name,
+)
 from multibot_rewrite.refactor.launch_argument import Space
 from multibot_rewrite.refactor.launches import Trial, fillable, with_launches
 from multibot_rewrite.refactor.named_elsewhere import named_elsewhere, root_sections
@@ -64,6 +78,11 @@ from multibot_rewrite.refactor.source_edits import (
 
 _PARTS = ("link", "joint")
 TRIED = "robot1_"
+_TRIED = re.compile(TRIED)
+# So many links may lack an argument that is not empty: the world.
+_FEW = 2
+# So many calls and properties are tried.
+_PLACES = 999
 _ALONE = "wherever the prefix is put, it changes more than names"
 
 
@@ -71,10 +90,12 @@ class Adopted(NamedTuple):
     """A package with its new argument. ``before`` and ``after`` are the bytes of the files that change,
     by path, empty for a new one; ``verified`` are the descriptions that take it, ``left`` is what could
     not be changed, ``unread`` are descriptions that could not be read, with the reason. ``already`` are
-    those that have such an argument, with its name: they stay. ``launches`` are the launch files that
+    those that have such an argument, with its name: they stay but for the verified ones, in which it
+    reaches all names now. ``launches`` are the launch files that
     are verified to hand it on, ``configurations`` those that were verified besides the default one, as
     ``robot.urdf.xacro gripper:=true``. ``namespace`` is the argument for a namespace, empty where
-    nothing needs one, ``spaced`` the descriptions that take it."""
+    nothing needs one, ``spaced`` the descriptions that take it. ``bare`` are names that stay without
+    the prefix, by description."""
 
     argument: str
     before: Mapping[str, bytes]
@@ -87,6 +108,7 @@ class Adopted(NamedTuple):
     configurations: tuple[str, ...] = ()
     namespace: str = ""
     spaced: tuple[str, ...] = ()
+    bare: Mapping[str, tuple[str, ...]] = MappingProxyType({})
 
 
 @checked
@@ -99,24 +121,73 @@ def adopt(
     distro: str = "",
 ) -> Adopted:
     """Give every description of ``folder`` an argument for a prefix, in its xacro sources; a plain URDF
-    becomes a xacro. Writes nothing. Raises InputError where there is no description that can be
-    expanded, or wherever the prefix is put, it changes more than names."""
+    becomes a xacro. An argument that reaches some names only is made to reach all. Writes nothing.
+    Raises InputError where there is no description that can be expanded, or wherever the prefix is put,
+    it changes more than names."""
     tree = builtin_tree(tuple(vocabulary), release_here(distro))
     how = Expanding(TRUSTED if trust else BOUNDED, xacro_args or {})
-    package = read_package(folder, tree, how)
-    job = _Job(folder, package, tree, how, dict(package.unread))
-    arguments = {it.path: _arguments(it, job) for it in package.descriptions}
+    with kept_expansions():
+        package = read_package(folder, tree, how)
+        return _adopted(_Job(folder, package, tree, how, dict(package.unread)))
+
+
+def _adopted(job: _Job) -> Adopted:
+    """Return the package with the arguments that some descriptions have, which reach all names then,
+    and a new one for the others."""
+    descriptions = job.package.descriptions
+    arguments = {it.path: _arguments(it, job) for it in descriptions}
+    begun = {path: name for path, its in arguments.items() if (name := _begun(its))}
     already = {path: name for path, its in arguments.items() if (name := _prefix_of(its))}
-    found = list(_as_xacros((it for it in package.descriptions if it.path not in already), job))
-    if not found and not already:
-        nothing = f"{folder}: there is no description of a robot in it"
-        raise InputError(next(iter(job.unread.values()), nothing))
-    if not found:
-        return Adopted("", {}, {}, (), (), job.unread, already)
+    # An SRDF follows its URDF.
+    fixed = {already[it.path] for it in descriptions if it.path in already.keys() - begun.keys()}
+    srdfs = [it.path for it in descriptions if _is_srdf(it)]
+    begun = {path: name for path, name in begun.items() if path not in srdfs or name not in fixed}
+    names = already | begun
+    every = [it for it in descriptions if it.path in names]
+    lacks = {it.path: _lacks(it, names[it.path], job) for it in every}
     own = {path: _space_of(its) for path, its in arguments.items()}
-    found = list(_configured(found, job))
-    made = _with_files_beside(_with_namespace(found, own, job), found, job)
-    return made._replace(unread=job.unread, already=already)
+    made = Adopted("", {}, {}, (), (), {})
+    found: list[Description] = []
+    for argument in (*dict.fromkeys(begun.values()), ""):
+        some = (it for it in descriptions if begun.get(it.path, "") == argument)
+        some = (it for it in some if argument or it.path not in lacks)
+        found = list(_configured(list(_as_xacros(some, job)), job))
+        if argument:
+            # What another configuration has may lack it, too.
+            wanting = {it.path for it in found if lacks[it.path] or _lacks(it, argument, job)}
+            found = [it for it in found if it.path in wanting]
+        made = _with_more(made, found, argument, own, job) if found else made
+    if not found and not lacks:
+        nothing = f"{job.folder}: there is no description of a robot in it"
+        raise InputError(next(iter(job.unread.values()), nothing))
+    bare = {it: lacks[it] for it in lacks if lacks[it] and it not in made.verified}
+    return made._replace(unread=job.unread, already=names, bare={**bare, **made.bare})
+
+
+def _with_more(
+    made: Adopted, found: Sequence[Description], argument: str, own: Mapping[str, str], job: _Job
+) -> Adopted:
+    """With more descriptions that have an argument, or get one; raises InputError if there is nothing
+    else."""
+    texts = {os.path.realpath(path): data for path, data in made.after.items()}
+    try:
+        if not texts.keys().isdisjoint(texts_of(found)):
+            found = [_again(it, texts, {}, job) for it in found]
+        more = _with_files_beside(_best(found, argument, own, job), found, job)
+    except InputError as error:
+        if not argument and not made.argument:
+            raise
+        left = Left(found[0].path, f"its names are not verified: {error}")
+        names = {it.path: tuple(dict.fromkeys(one.value for one in _changes(it))) for it in found}
+        return made._replace(left=(*made.left, left), bare={**names, **made.bare})
+    return Adopted(*(_both(*pair) for pair in zip(made, more, strict=True)))
+
+
+def _both(one: Any, two: Any) -> Any:
+    """Two values of one field as one."""
+    if isinstance(one, Mapping):
+        return {**one, **two}
+    return tuple(dict.fromkeys((*one, *two))) if isinstance(one, tuple) else two or one
 
 
 class _Job(NamedTuple):
@@ -162,56 +233,158 @@ def _configured(found: Sequence[Description], job: _Job) -> Iterator[Description
         yield from own
 
 
+class _Begun(NamedTuple):
+    """Descriptions whose sources are on the way to the argument: ``texts`` are those so far, ``bases``
+    are expanded without the argument, ``found`` with it where it reaches names, and ``asked`` are the
+    changes that those lack."""
+
+    words: Words
+    texts: Mapping[str, bytes]
+    bases: Sequence[Description]
+    found: Sequence[Description]
+    asked: Sequence[Sequence[ValueEdit]]
+
+
+def _best(
+    found: Sequence[Description], argument: str, own: Mapping[str, str], job: _Job
+) -> Adopted:
+    """Return the best that can be made of descriptions with their own argument, or a new one: handed to
+    calls that take one, or put before names alone."""
+    texts = texts_of(found)
+    sources = Sources(texts, {os.path.realpath(it.path) for it in found})
+    places = [it for it in sources.places if it.may_be_prefix]
+    names = [argument or free_name(found, NAMES, {it.name for it in places if not it.macro})]
+    names += [] if argument else [free_name(found)]
+    tries = dict.fromkeys((*((it, bool(places)) for it in names), (names[-1], False)))
+    made: list[Adopted] = []
+    wrong: list[InputError] = []
+    for name, in_calls in tries:
+        try:
+            words = Words(name, not argument, sources, sources.carriers(name))
+            begun = _lacking(words, texts, found, job)
+            begun = _with_calls(begun, places, job) if in_calls else begun
+            made.append(_with_namespace(begun, own, job))
+        except InputError as error:
+            wrong.append(error)
+        if made and len(made[-1].verified) == len({it.path for it in found}):
+            break
+    if not made:
+        raise wrong[-1]
+    return max(made, key=lambda it: (len(it.verified), -sum(map(len, it.bare.values()))))
+
+
+def _lacking(
+    words: Words, texts: Mapping[str, bytes], bases: Sequence[Description], job: _Job
+) -> _Begun:
+    """Return what descriptions lack with the argument. Raises InputError for a new one that is in
+    other values."""
+    found = [_again(it, texts, {words.argument: TRIED}, job) for it in bases]
+    every = [
+        compared(it.document, _changes(it), other.document, _TRIED)
+        for it, other in zip(bases, found, strict=True)
+    ]
+    if words.is_new and any(it.astray for it in every):
+        raise InputError(f"{job.folder}: {words.argument} would be elsewhere, too")
+    return _Begun(words, texts, bases, found, [it.lacks for it in every])
+
+
+def _with_calls(begun: _Begun, places: Sequence[Place], job: _Job) -> _Begun:
+    """With the argument handed to those places where it reaches names alone. Raises InputError if there
+    are none."""
+    argument, is_new, sources, _ = begun.words
+    # Those outside of macros are first.
+    outside = sorted(places, key=lambda it: bool(sources.macro_at(it.spot)))
+    marks = {f"qz{at:03}z": it for at, it in enumerate(outside[:_PLACES])}
+    texts = edited(begun.texts, [it.edit(mark) for mark, it in marks.items()])
+    seen: set[str] = set()
+    astray: set[str] = set()
+    for it, asked in zip(begun.found, begun.asked, strict=True):
+        if not it.arguments:
+            other = _again(it, texts, {argument: TRIED}, job).document
+            seen |= set(MARK.findall(other.source.decode()))
+            astray |= compared(it.document, asked, other, MARK).astray
+    chosen = [it for mark, it in marks.items() if mark in seen - astray]
+    if "" in astray or not chosen:
+        raise InputError(f"{job.folder}: no call takes the argument alone")
+    files = edited(begun.texts, [it.edit(f"$(arg {argument})") for it in chosen])
+    carriers = Sources({**begun.texts, **files}, sources.tops).carriers(argument)
+    words = Words(argument, is_new, sources, {it for it in carriers if it[0]})
+    edits = [it.edit(word.decode()) for it in chosen if (word := words.at(it.spot, True))]
+    edits += declared(begun.bases, begun.texts, words.using(edits), argument)
+    texts = {**begun.texts, **edited(begun.texts, edits)}
+    words = Words(argument, is_new, Sources(texts, sources.tops), carriers)
+    bases = [it._replace(read=_again(it, texts, {}, job).read) for it in begun.bases]
+    return _lacking(words, texts, bases, job)
+
+
+def _again(
+    it: Description, texts: Mapping[str, bytes], more: Mapping[str, str], job: _Job
+) -> Description:
+    """Return a description expanded from other texts, or with more arguments."""
+    given = Expanding(job.how.reach, {**job.how.arguments, **it.arguments, **more})
+    own = {path: texts.get(path, data) for path, data in texts_of([it]).items()}
+    # What is as on the disk is expanded once.
+    there = {path: os.path.exists(path) and read_file(path) for path in own}
+    changed = {path: data for path, data in own.items() if data != there[path]}
+    data, read = read_text(it.path, given, changed)
+    inventory = it.inventory._replace(document=read_document(data, it.path))
+    return it._replace(inventory=inventory, read=read)
+
+
 def _made(
-    found: Sequence[Description],
-    texts: Mapping[str, bytes],
-    argument: str,
-    how: Expanding,
-    more: Collection[SourceEdit] = (),
+    begun: _Begun, job: _Job, more: Collection[SourceEdit] = ()
 ) -> tuple[Adopted, Mapping[str, bytes]]:
     """Return the descriptions with the argument, verified together with ``more`` edits; and the
     files that change, by their real paths."""
-    word = b"${%s}" % argument.encode()
-    asked = [list(_changes(it)) for it in found]
-    made = placed(found, asked, lambda _: word)
-    edits = {*made.edits, *declared(found, texts, {it.file for it in made.edits}, argument), *more}
-    after = edited(texts, edits)
-    every = zip(found, made.changes, strict=True)
-    wrong = {at: _fault(it, its, after, argument, how) for at, (it, its) in enumerate(every)}
-    wrong = {at: why for at, why in wrong.items() if why}
-    lacking = {at for at, its in enumerate(asked) if len(its) > len(made.changes[at])}
-    # Proved is a description none of whose configurations is wrong or lacks a prefix.
-    paths = dict.fromkeys(it.path for it in found)
-    if len({found[at].path for at in wrong}) == len(paths):
-        at, why = next(iter(wrong.items()))
-        raise InputError(f"{found[at].words}: {_ALONE}; {why}")
-    unmade = {found[at].path for at in (*wrong, *lacking)}
+    words, texts, bases, found, asked = begun
+    argument = words.argument
+    made = placed(found, asked, lambda spot, _: words.at(spot))
+    edits = {*made.edits, *declared(bases, texts, words.using(made.edits), argument), *more}
+    after = {**texts, **edited(texts, edits)}
+    every = [*zip(bases, found, made.changes, strict=True)]
+    wrong = {it[0].words: _fault(*it, after, argument, job.how) for it in every}
+    wrong = {name: why for name, why in wrong.items() if why}
+    bare = {
+        it.words: tuple(dict.fromkeys(one.value.strip() for one in its if one not in own))
+        for (it, _, own), its in zip(every, asked, strict=True)
+        if len(its) > len(own)
+    }
+    # Verified is a description none of whose configurations is wrong or lacks a prefix.
+    paths = dict.fromkeys(it.path for it in bases)
+    if len({it.path for it in bases if it.words in wrong}) == len(paths):
+        name, why = next(iter(wrong.items()))
+        raise InputError(f"{name}: {_ALONE}; {why}")
+    unmade = {it.path for it in bases if it.words in wrong or it.words in bare}
     verified = tuple(path for path in paths if path not in unmade)
     left = (
         *made.left,
-        *chain.from_iterable(map(_not_written, found)),
-        *(Left(found[at].words, f"its names are not verified: {it}") for at, it in wrong.items()),
+        *chain.from_iterable(map(_not_written, bases)),
+        *(Left(name, f"its names are not verified: {why}") for name, why in wrong.items()),
     )
-    named = as_named(after, found)
-    before = {path: data for path, data in as_named(texts, found).items() if path in named}
-    before |= dict.fromkeys((path for path in before if not os.path.exists(path)), b"")
-    others = tuple(it.words for at, it in enumerate(found) if it.arguments and at not in wrong)
-    return Adopted(argument, before, named, verified, left, {}, configurations=others), after
+    there = {path: read_file(path) if os.path.exists(path) else b"" for path in after}
+    named = as_named({path: data for path, data in after.items() if data != there[path]}, bases)
+    before = {path: data for path, data in as_named(there, bases).items() if path in named}
+    others = tuple(it.words for it in bases if it.arguments and it.words not in wrong)
+    return Adopted(
+        argument, before, named, verified, left, {}, configurations=others, bare=bare
+    ), after
 
 
-def _with_namespace(found: Sequence[Description], own: Mapping[str, str], job: _Job) -> Adopted:
+def _with_namespace(begun: _Begun, own: Mapping[str, str], job: _Job) -> Adopted:
     """Return the result with an argument for a namespace, if one changes names alone; ``own`` are
     arguments that descriptions have for that already, by their paths."""
-    texts, prefix = texts_of(found), free_name(found)
+    found, prefix = begun.bases, begun.words.argument
     has = {it.path: own.get(it.path, "") for it in found}
-    space = namespaced([] if any(has.values()) else found, texts, job.tree)
+    # An argument that is made whole is one change.
+    none = any(has.values()) or not begun.words.is_new
+    space = namespaced([] if none else found, begun.texts, job.tree)
     left = [*space.left]
     left += (
         Left(path, f"it has an argument for a namespace: {it}") for path, it in has.items() if it
     )
     if space.argument:
         try:
-            made, after = _made(found, texts, prefix, job.how, space.edits)
+            made, after = _made(begun, job, space.edits)
             verified, wrong = space_verified(space, prefix, TRIED, after, job.how, job.tree)
         except InputError as error:
             verified, wrong = (), (Left(found[0].path, f"it gets no namespace: {error}"),)
@@ -220,7 +393,7 @@ def _with_namespace(found: Sequence[Description], own: Mapping[str, str], job: _
             return made._replace(
                 left=(*made.left, *left), namespace=space.argument, spaced=verified
             )
-    made, _ = _made(found, texts, prefix, job.how)
+    made, _ = _made(begun, job)
     return made._replace(left=(*made.left, *left))
 
 
@@ -235,7 +408,9 @@ def _arguments(it: Description, job: _Job) -> Sequence[Argument]:
     # What xacro warns about is not said here.
     with redirect_stderr(StringIO()):
         reach, given = job.how
-        found = find_arguments(it.path, given, job.tree, reach=reach, wanted=names_robots)
+        found = find_arguments(
+            it.path, given, job.tree, reach=reach, wanted=names_robots, read=it.read
+        )
     return found.arguments
 
 
@@ -247,13 +422,36 @@ def _space_of(arguments: Iterable[Argument]) -> str:
 
 
 def _prefix_of(arguments: Iterable[Argument]) -> str:
-    """Return the argument that is before links, other for each robot; empty if there is none.
-    ``world`` and some that were forgotten may lack it."""
+    """Return the argument that is before links, other for each robot; empty if there is none. ``world``
+    and, where it is empty, some that were forgotten may lack it."""
     for it in arguments:
-        links = (use for use in it.uses if (use.kind, use.how) == ("link", PREFIX))
-        if it.value and any(2 * use.names >= use.total for use in links):
+        links = [use for use in it.uses if (use.kind, use.how) == ("link", PREFIX)]
+        lacking = [use.total - use.names for use in links]
+        if (
+            it.value and any(many <= use.names for use, many in zip(links, lacking, strict=True))
+        ) or (not it.missed and any(many < _FEW for many in lacking)):
             return it.name
     return ""
+
+
+def _begun(arguments: Iterable[Argument]) -> str:
+    """Return the argument that is empty by default and before some links and joints, or before nothing
+    yet; empty if there is none."""
+    every = [it for it in arguments if not it.default and not it.fault]
+    for it in every:
+        parts = [use for use in it.uses if use.kind in _PARTS]
+        if parts and all((use.how, use.separator) == (PREFIX, "") for use in parts):
+            return it.name
+    unused = (it.name for it in every if not it.uses and not it.others)
+    return next((name for name in unused if "prefix" in name), "")
+
+
+def _lacks(it: Description, name: str, job: _Job) -> tuple[str, ...]:
+    """Return the names that an argument of a description does not reach."""
+    given = {**job.how.arguments, **it.arguments, name: MARKS[0]}
+    other = read_document(expand(it.path, given, reach=job.how.reach), it.path)
+    lacks = compared(it.document, _changes(it), other, re.compile(MARKS[0])).lacks
+    return tuple(dict.fromkeys(one.value.strip() for one in lacks))
 
 
 def _as_xacros(descriptions: Iterable[Description], job: _Job) -> Iterator[Description]:
@@ -316,6 +514,7 @@ def _not_written(it: Description) -> Iterator[Left]:
 
 def _fault(
     it: Description,
+    found: Description,
     changes: Collection[ValueEdit],
     after: Mapping[str, bytes],
     argument: str,
@@ -323,11 +522,11 @@ def _fault(
 ) -> str:
     """Return what is wrong with a description with a prefix: only the names may change. Raises
     InputError for one that differs without a prefix."""
-    document = it.inventory.document
-    for prefix, wanted in (("", document.source), (TRIED, expected(document, changes))):
+    with_prefix = expected(found.inventory.document, changes)
+    for prefix, wanted in (("", it.inventory.document.source), (TRIED, with_prefix)):
         more = {argument: prefix} if prefix else {}
         given = Expanding(how.reach, {**how.arguments, **it.arguments, **more})
-        made, _ = read_text(it.path, given, after)
+        made, _ = read_text(it.path, given, after, False)
         if made != wanted:
             other = first_difference(made, wanted)
             if not prefix:

@@ -16,6 +16,7 @@ from itertools import accumulate, chain
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import locate
+from multibot_rewrite.description.steps.document import read_document, value_slot
 from multibot_rewrite.refactor.placing import Left
 from multibot_rewrite.refactor.source_edits import SourceEdit, edited
 
@@ -37,6 +38,7 @@ OF_ROBOT = (
     "controller_manager",
 )
 _NODE = rb"<node\b[^<>]*?\bpkg=\"(?:%s)\"" % "|".join(OF_ROBOT).encode()
+_NODES = ("Node", "LifecycleNode", "ComposableNode")
 _Placed = ast.expr | ast.stmt | ast.keyword
 # Spawners of simulators read the topic that follows: in the namespace, if it is relative.
 _TOPIC = "robot_description"
@@ -71,7 +73,8 @@ def with_argument(
     """Return the launch file with an argument for the descriptions (names of files) that it
     expands; it fills in those of ``parameters`` (names of files) that it only gives to nodes, and
     puts what belongs to the description into the namespace ``space``."""
-    if not any(name.encode() in source for name in descriptions):
+    handed = re.search(rb"\b%s:=" % argument.encode(), source)
+    if handed or not any(name.encode() in source for name in descriptions):
         return LaunchEdit(None, ())
     if space and not space.of_xacro and not any(it.encode() in source for it in OF_ROBOT):
         space = None
@@ -138,12 +141,10 @@ class _Text(NamedTuple):
 def _of_python(
     path: str, source: bytes, argument: str, parameters: Collection[str], space: Space | None
 ) -> LaunchEdit:
-    try:
-        tree = ast.parse(source)
-    except (SyntaxError, ValueError):
+    it = _text(path, source)
+    if it is None:
         return LaunchEdit(None, (Left(path, "it is no Python"),))
-    lines = list(accumulate(map(len, source.splitlines(keepends=True)), initial=0))
-    it = _Text(path, source, tree, lines)
+    tree = it.tree
     every, of_xacro = _both(argument, space)
     # ``["xacro ", ...]`` or ``[FindExecutable(name="xacro"), " ", ...]``.
     called = (it for it in _lists_of(tree, "Command") if it.elts)
@@ -166,6 +167,47 @@ def _of_python(
     edits += _imports(it, [name for name in _IMPORTS if files or name != "ParameterFile"])
     data = edited({path: source}, edits)[path]
     return LaunchEdit(data, (), tuple(files), space is not None)
+
+
+def literal_parameters(path: str, data: bytes, value: str) -> Iterator[tuple[int, str, str]]:
+    """Yield where parameters with a literal value are in a launch file, with the node and the key."""
+    if path.endswith(".xml"):
+        document = read_document(data, path)
+        for element, start in zip(document.elements, document.starts, strict=True):
+            above = element.getparent()
+            slot = (
+                value_slot(data, start, "value", value) if element.get("value") == value else None
+            )
+            if slot and above is not None and (above.tag, element.tag) == ("node", "param"):
+                name = above.get("name") or above.get("exec") or ""
+                yield slot[0], name, element.get("name") or ""
+        return
+    it = _text(path, data)
+    for call in ast.walk(it.tree) if it else ():
+        if it is None or not isinstance(call, ast.Call) or _called(call) not in _NODES:
+            continue
+        given = {one.arg: one.value for one in call.keywords}
+        names = (given.get(word) for word in ("name", "executable", "plugin"))
+        node = next((str(one.value) for one in names if isinstance(one, ast.Constant)), "")
+        inside = ast.walk(given.get("parameters", ast.Tuple([])))
+        tables = (
+            zip(one.keys, one.values, strict=True) for one in inside if isinstance(one, ast.Dict)
+        )
+        for key, item in chain.from_iterable(tables):
+            start, end = it.begin(item) + 1, it.end(item) - 1
+            is_literal = isinstance(item, ast.Constant) and item.value == value
+            if isinstance(key, ast.Constant) and is_literal and data[start:end] == value.encode():
+                yield start, node, str(key.value)
+
+
+def _text(path: str, source: bytes) -> _Text | None:
+    """Return a launch file in Python; None if it is none."""
+    try:
+        tree = ast.parse(source)
+    except (SyntaxError, ValueError):
+        return None
+    lines = accumulate(map(len, source.splitlines(keepends=True)), initial=0)
+    return _Text(path, source, tree, list(lines))
 
 
 def _spaced(it: _Text, space: str) -> Iterator[SourceEdit]:

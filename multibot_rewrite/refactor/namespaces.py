@@ -26,7 +26,7 @@ from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.steps.apply import Template
 from multibot_rewrite.description.steps.document import tag_end
 from multibot_rewrite.description.steps.inserted import elements_of, lead_of
-from multibot_rewrite.refactor.declaring import SPACES, declared, free_name
+from multibot_rewrite.refactor.handing_on import SPACES, declared, free_name
 from multibot_rewrite.refactor.package import Description, Expanding, read_text
 from multibot_rewrite.refactor.placing import Left, Spot, placed
 from multibot_rewrite.refactor.source_edits import SourceEdit, ValueEdit, change_of, place
@@ -73,7 +73,7 @@ def namespaced(found: Sequence[Description], texts: Mapping[str, bytes], tree: T
     made = placed(
         [it.found for it in every],
         [list(_changes(it.template)) for it in every],
-        lambda change: _written(change, argument),
+        lambda _, change: _written(change, argument),
     )
     edits, left = list(made.edits), [*left, *made.left]
     for (file, start), wanted in _added(every).items():

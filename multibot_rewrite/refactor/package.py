@@ -11,7 +11,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import redirect_stderr
+from contextlib import redirect_stderr, suppress
 from io import StringIO
 from itertools import chain, islice
 from types import MappingProxyType
@@ -20,12 +20,13 @@ from typing import NamedTuple
 from lxml.etree import _Element
 
 from multibot_rewrite.base.model import InputError
+from multibot_rewrite.description.joining.part import faults
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.expand import Expansion, expand_traced
 from multibot_rewrite.description.sources.read import is_xacro, read_file
 from multibot_rewrite.description.steps.collect import SRDF as SRDF_SECTION, Inventory, collect
-from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.description.steps.document import Document, read_document
 from multibot_rewrite.fleet.proposal.searching import Found, search
 from multibot_rewrite.lint.files.subjects import NO_URDF
 
@@ -45,6 +46,11 @@ class Description(NamedTuple):
     inventory: Inventory
     read: Expansion | None = None
     arguments: Mapping[str, str] = MappingProxyType({})
+
+    @property
+    def document(self) -> Document:
+        """Its text, read."""
+        return self.inventory.document
 
     @property
     def words(self) -> str:
@@ -83,11 +89,25 @@ def read_package(folder: str, tree: Tree, how: Expanding) -> Package:
             made.append(Description(path, inventory_of(data, path, tree, urdfs), read))
         except InputError as error:
             unread[path] = str(error)
+    made += _included(found.parts, tree, how)
     return Package(found, tuple(made), unread)
 
 
+def _included(paths: Iterable[str], tree: Tree, how: Expanding) -> Iterator[Description]:
+    """Yield the files that others include and that are complete robots themselves."""
+    for path in paths:
+        with suppress(InputError):
+            data, read = read_text(path, how)
+            inventory = inventory_of(data, path, tree)
+            if inventory.declared.get("joint") and not any(faults(inventory)):
+                yield Description(path, inventory, read)
+
+
 def read_text(
-    path: str, how: Expanding, texts: Mapping[str, bytes] | None = None
+    path: str,
+    how: Expanding,
+    texts: Mapping[str, bytes] | None = None,
+    in_pieces: bool = True,
 ) -> tuple[bytes, Expansion | None]:
     """Return the text of a description; ``texts`` are the bytes of files that differ from the disk,
     by their real paths. Raises InputError."""
@@ -97,7 +117,7 @@ def read_text(
         return data, None
     # What xacro warns about is not said here.
     with redirect_stderr(StringIO()):
-        read = expand_traced(path, data, how.arguments, None, how.reach, True, known)
+        read = expand_traced(path, data, how.arguments, None, how.reach, in_pieces, known)
     return read.data, read
 
 

@@ -9,7 +9,7 @@ of the macro. Then every other place that uses this piece has to take it from th
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import accumulate
 from typing import NamedTuple
 
@@ -18,7 +18,7 @@ from lxml import etree
 from multibot_rewrite.base.grouping import dicts_by_key, lists_by_key
 from multibot_rewrite.description.sources.expand import Expansion
 from multibot_rewrite.description.sources.trace import EXPRESSION, GIVEN, Piece
-from multibot_rewrite.description.steps.document import attribute_slots, tag_end
+from multibot_rewrite.description.steps.document import tag_end, written_slot
 from multibot_rewrite.refactor.package import Description
 from multibot_rewrite.refactor.source_edits import SourceEdit, ValueEdit, place_of
 
@@ -56,14 +56,15 @@ class _Name(NamedTuple):
 def placed(
     found: Sequence[Description],
     changes: Sequence[Sequence[ValueEdit]],
-    written: Callable[[ValueEdit], bytes],
+    written: Callable[[Spot, ValueEdit], bytes | None],
 ) -> PlacedNames:
     """Return the edits of the sources for the changes of each description. They share sources: what
     one of them needs at a place, the others get. ``written`` returns a change's text in the
     source."""
     both = enumerate(zip(found, changes, strict=True))
     names = [name for of, (it, own) in both for name in _names(of, it, own)]
-    deep = _made_elsewhere(names)
+    closed = {it.used for it in names if it.used and it.change and not written(it.used, it.change)}
+    deep = _made_elsewhere(names, closed)
     stay = {it.made for it in names if it.made and it.change is None}
     others = stay.union(*(it.other for it in names))
     made = PlacedNames([], [[] for _ in found], [])
@@ -71,13 +72,14 @@ def placed(
         if name.change is None:
             continue
         spot = name.made if name.used is None or name.used in deep else name.used
-        if spot is None or (spot == name.made and spot in others):
+        word = spot and written(spot, name.change)
+        if spot is None or not word or (spot == name.made and spot in others):
             it = found[name.of]
             where = place_of(it.read, name.change.element) or it.path
             why = "stays with other arguments or elsewhere" if spot in stay else "is put together"
             made.left.append(Left(where, f"{name.change.value!r} {why}"))
             continue
-        made.edits.append(SourceEdit(*spot, spot[1], written(name.change)))
+        made.edits.append(SourceEdit(*spot, spot[1], word))
         made.changes[name.of].append(name.change)
     return made
 
@@ -89,8 +91,10 @@ def _names(of: int, it: Description, changes: Iterable[ValueEdit]) -> Iterator[_
     real = {file: os.path.realpath(file) for file in read.sources}
     wanted = dicts_by_key(((one.element, one.attribute), one.start, one) for one in changes)
     for number, element in enumerate(it.inventory.document.elements):
-        for attribute, value in _values(element):
+        for attribute, value in values_of(element):
             mine = wanted.get((number, attribute), {})
+            if not value and not mine:
+                continue
             own = read.pieces.of(number, attribute, value)
             # Each with the offset in the value at which it ends.
             pieces = [*zip(accumulate(len(it.text) for it in own), own, strict=True)]
@@ -105,11 +109,11 @@ def _at(spot: Spot | None, real: Mapping[str, str]) -> Spot | None:
     return spot and (real[spot[0]], spot[1])
 
 
-def _values(element: etree._Element) -> Iterator[tuple[str, str]]:
-    """Yield the attributes of an element, and its text under the name "" if it has nothing else."""
+def values_of(element: etree._Element) -> Iterator[tuple[str, str]]:
+    """Yield the attributes of an element, and its text under the name "" if it has no elements."""
     yield from ((str(name), str(value)) for name, value in element.attrib.items())
-    if element.text and not len(element):
-        yield "", element.text
+    if not len(element):
+        yield "", element.text or ""
 
 
 def _used(
@@ -134,7 +138,7 @@ def _used(
 
 def _slot(source: bytes, start: int, attribute: str) -> tuple[int, int] | None:
     if attribute:
-        return attribute_slots(source, start).get(attribute.encode())
+        return written_slot(source, start, attribute)
     begin = tag_end(source, start)
     return begin, source.find(b"<", begin)
 
@@ -154,12 +158,15 @@ def _made(
     return None, frozenset(spots)
 
 
-def _made_elsewhere(names: Sequence[_Name]) -> set[Spot | None]:
-    """Return the spots of use at which no prefix can go: it comes from where the names are made."""
+def _made_elsewhere(names: Sequence[_Name], closed: Collection[Spot]) -> set[Spot | None]:
+    """Return the spots of use at which no prefix can go, the ``closed`` among them: it comes from
+    where the names are made."""
     groups = lists_by_key((it.used, it) for it in names)
-    deep = {it for it, group in groups.items() if len({name.change is None for name in group}) > 1}
+    deep = {*closed} | {
+        it for it, group in groups.items() if len({name.change is None for name in group}) > 1
+    }
     while True:
-        made = {it.made for it in names if it.change and it.used in deep}
+        made = {it.made for it in names if it.change and it.made and it.used in deep}
         more = {
             it.used for it in names if it.change and it.made in made and it.made != it.used
         } - deep

@@ -20,6 +20,7 @@ from multibot_rewrite.description.checks.numbers import number
 from multibot_rewrite.description.joining.join import GivenPart, JoinedText, join_texts
 from multibot_rewrite.description.joining.kept import without_marks
 from multibot_rewrite.description.joining.part import MISSED, Part
+from multibot_rewrite.description.joining.referring import Output
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.read import JOIN, SourceText, read_alone, read_file
 from multibot_rewrite.knowledge.yaml_with_lines import (
@@ -71,7 +72,7 @@ def read_joined(path: str, trust: bool) -> SourceText:
     """Return the joined description of a file, without comments; raises as ``join_texts``."""
     given, read = plain_texts(parts_of(path), trust)
     try:
-        made = join_texts(given, builtin_tree((), release_here()))
+        made = join_texts(given, builtin_tree((), release_here()), Output(path))
     except UsageError as error:
         raise InputError(f"{path}: {error}") from None
     return SourceText(plain_text(made, path), f"{path} (expanded)", (path, *read))

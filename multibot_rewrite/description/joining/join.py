@@ -33,6 +33,7 @@ from multibot_rewrite.description.joining.blocks import (
     prefixed,
     repeated,
     said_once,
+    same_ids,
     word_of,
 )
 from multibot_rewrite.description.joining.part import (
@@ -43,6 +44,7 @@ from multibot_rewrite.description.joining.part import (
     read_part,
     with_names,
 )
+from multibot_rewrite.description.joining.referring import NOWHERE, Output, referring
 from multibot_rewrite.description.joining.second_reading import Mounted, prove
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.steps.apply import cut
@@ -155,20 +157,27 @@ class GivenPart(NamedTuple):
     file: str
 
 
-def join_texts(given: Sequence[GivenPart], tree: Tree) -> JoinedText:
-    """Join descriptions; raises UsageError and InputError in one line, ProofError."""
+def join_texts(given: Sequence[GivenPart], tree: Tree, output: Output = NOWHERE) -> JoinedText:
+    """Join descriptions, which refer to files as ``output`` needs it; raises UsageError and InputError
+    in one line, ProofError."""
     if len(given) < 2:
         raise UsageError("one description alone: give those that are joined to it, too")
     parts = [read_part(*it, tree, at == 0) for at, it in enumerate(given)]
     _check_given(given, parts)
     known: dict[tuple[str, str], str] = {}
     with_names(known, parts[0])
+    is_whole = kept.is_joined_whole(parts[0].data)
+    one, own = parts[0], given[0].part.controllers
+    referred = referring(one.text, one.file, own, NOWHERE if is_whole else output)
+    inventory = collect(read_document(referred.text, one.file), tree)
+    parts[0] = one._replace(text=referred.text, inventory=inventory)
+    first = kept.KeptText(one.name, one.prefix, (), referred)
     mounted = [Mounted(parts[0], "", ZERO, "", parts[0].text)]
     data = parts[0].text
     notes: list[str] = []
     for it, part in zip(given[1:], parts[1:], strict=True):
         check_meeting(part, known)
-        data, made, told = _added(data, it.part, part, parts[0], tree)
+        data, made, told = _added(data, it.part, part, first, tree, output)
         with_names(known, part)
         mounted.append(made)
         notes += told
@@ -194,7 +203,7 @@ def _check_given(given: Sequence[GivenPart], parts: Sequence[ReadPart]) -> None:
 
 
 def _added(
-    data: bytes, spec: Part, part: ReadPart, first: ReadPart, tree: Tree
+    data: bytes, spec: Part, part: ReadPart, first: kept.KeptText, tree: Tree, output: Output
 ) -> tuple[bytes, Mounted, Sequence[str]]:
     """Return the text with one more part, the part, and notes."""
     joined = collect(read_document(data, JOINED), tree)
@@ -203,23 +212,25 @@ def _added(
     names = other_looks(joined.document.root, part)
     word = word_of(part.name, part.prefix)
     text = prefixed(part.text, part.file, word, names)
-    part = part._replace(inventory=collect(read_document(text, part.file), tree))
+    referred = referring(text, part.file, spec.controllers, output)
+    part = part._replace(inventory=collect(read_document(referred.text, part.file), tree))
     root, spans = part.inventory.document.root, Spans(part.inventory.document)
     start, end = spans.inside(root)
     once, mount = said_once(joined, part.inventory), fixed(part, spec, spans)
     if mount.joint in robot.joint or mount.joint in part.robot.joint:
         what = f"joint {mount.joint!r} is there already; name the part otherwise"
         raise InputError(f"{part.file}: {what}")
-    system = one_system(joined, part.inventory) if spec.one_system else Once()
+    twice_driven = Once(notes=tuple(same_ids(joined, part.inventory)))
+    system = one_system(joined, part.inventory) if spec.one_system else twice_driven
     twice = repeated(joined.document.root, spans)
     edits = [*mount.edits, *twice, *once.part, *system.part]
-    made = _edited(text, [*edits, *own_spaces(joined.document, spans, edits)])
-    own = kept.KeptText(part.name, part.prefix, names, made)
-    more = kept.section(own, start, end + len(made) - len(text))
+    made = _edited(referred.text, [*edits, *own_spaces(joined.document, spans, edits)])
+    own = kept.KeptText(part.name, part.prefix, names, referred._replace(text=made))
+    more = kept.section(own, start, end + len(made) - len(referred.text))
     base = _edited(data, (*once.joined, *system.joined))
     mounted = Mounted(part, spec.at, spec.pose, mount.joint, made)
     notes = (*mount.notes, *once.notes, *system.notes)
-    return kept.placed(base, first.name, first.prefix, more), mounted, notes
+    return kept.placed(base, first, more), mounted, notes
 
 
 def _edited(text: bytes, edits: Iterable[Edit]) -> bytes:

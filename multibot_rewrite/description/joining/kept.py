@@ -3,7 +3,7 @@
 
 A part is in front of ``</robot>`` of the first one, between two comments:
 
-    <!-- multibot part gripper prefix=left_ materials=grey HEAD -->
+    <!-- multibot part gripper prefix=left_ materials=grey folder=../hand/ HEAD -->
     <!-- multibot end gripper TAIL -->
 
 ``HEAD`` is what its file has up to the end of its root's start tag, ``TAIL`` what it has from the end
@@ -17,7 +17,7 @@ A comment holds no ``--``, and no colon before a blank: launch files pass a desc
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 from urllib.parse import quote, unquote
 
@@ -25,15 +25,21 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Edit, InputError
+from multibot_rewrite.description.joining.referring import Referring
 from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.description.steps.document import read_document, silenced
 from multibot_rewrite.description.steps.spans import Spans
 
-_BASE = lazy_compile(rb"  <!-- multibot base (\w+)(?: prefix=(\w+))? -->\n")
+_PATHS = rb"(?: folder=(\S+))?(?: files=(\S+))?"
+_BASE = lazy_compile(rb"  <!-- multibot base (\w+)(?: prefix=(\w+))?" + _PATHS + rb" -->\n")
 # No comment holds two dashes.
 _INSIDE = rb"(?:[^-]|-(?!-))*?"
 _PART = lazy_compile(
-    rb"  <!-- multibot part (\w+)(?: prefix=(\w+))?(?: materials=(\S+))? (" + _INSIDE + rb") -->"
+    rb"  <!-- multibot part (\w+)(?: prefix=(\w+))?(?: materials=(\S+))?"
+    + _PATHS
+    + rb" ("
+    + _INSIDE
+    + rb") -->"
 )
 _LAST = b"<!-- multibot end "
 _END = _LAST + b"%s "
@@ -47,13 +53,13 @@ _ESCAPED = lazy_compile(rb"%|-(?=-|\Z)|(?<=:) ")
 
 
 class KeptText(NamedTuple):
-    """A part as a joined text holds it: its ``text`` has its prefix still, and prefixed names of
-    ``materials``."""
+    """A part as a joined text holds it: what ``referring`` has is with its prefix still, and prefixed
+    names of ``materials``."""
 
     name: str
     prefix: str
     materials: tuple[str, ...]
-    text: bytes
+    referring: Referring
 
 
 def is_joined(text: bytes) -> bool:
@@ -84,25 +90,32 @@ def left_out(spans: Spans, element: _Element) -> Edit:
 
 def section(it: KeptText, start: int, end: int) -> bytes:
     """Return a part for a joined text; ``start`` and ``end`` delimit the content of its root."""
-    names = ",".join(quote(name, safe="") for name in it.materials).replace("--", "-%2D")
-    words = _words(it.name, prefix=it.prefix, materials=names)
-    first = b"  <!-- multibot part %s %s -->" % (words, _hidden(it.text[:start]))
-    last = _END % it.name.encode() + _hidden(it.text[end:]) + b" -->\n"
-    return first + it.text[start:end] + last
+    text = it.referring.text
+    words = _words(it)
+    first = b"  <!-- multibot part %s %s -->" % (words, _hidden(text[:start]))
+    last = _END % it.name.encode() + _hidden(text[end:]) + b" -->\n"
+    return first + text[start:end] + last
 
 
-def _words(name: str, **more: str) -> bytes:
-    return " ".join([name, *(f"{key}={text}" for key, text in more.items() if text)]).encode()
+def _words(it: KeptText) -> bytes:
+    _, folder, files = it.referring
+    more = {"prefix": it.prefix, "materials": _listed(it.materials)}
+    more |= {"folder": _listed([folder]), "files": _listed(files)}
+    return " ".join([it.name, *(f"{key}={text}" for key, text in more.items() if text)]).encode()
 
 
-def placed(text: bytes, name: str, prefix: str, more: bytes) -> bytes:
+def _listed(words: Iterable[str]) -> str:
+    return ",".join(quote(it, safe="./") for it in words).replace("--", "-%2D")
+
+
+def placed(text: bytes, first: KeptText, more: bytes) -> bytes:
     """Return the text of the first part, or of parts joined so far, with one more section."""
     last = text.rfind(_LAST) if is_joined_whole(text) else -1
     if last >= 0:
         at = text.index(b" -->\n", last) + len(b" -->\n")
         return text[:at] + more + text[at:]
     at = silenced(text).rindex(b"</")
-    mark = b"  <!-- multibot base %s -->\n" % _words(name, prefix=prefix)
+    mark = b"  <!-- multibot base %s -->\n" % _words(first)
     return text[:at] + mark + more + text[at:]
 
 
@@ -119,7 +132,7 @@ def sections(text: bytes, file: str) -> list[KeptText]:
         raise InputError(f"{file}: it was not made by multibot join: its parts are not known")
     found, last = [], mark.end()
     while part := _PART.match(before, last):
-        name, prefix, materials, head = (word or b"" for word in part.groups())
+        name, prefix, materials, *paths, head = (word or b"" for word in part.groups())
         end = _END % name
         close = before.find(end, part.end())
         stop = before.find(b" -->\n", close + len(end))
@@ -128,12 +141,20 @@ def sections(text: bytes, file: str) -> list[KeptText]:
             raise InputError(f"{file}: {what}")
         tail = before[close + len(end) : stop]
         whole = _shown(head) + before[part.end() : close] + _shown(tail)
-        names = tuple(unquote(it) for it in materials.decode().split(",") if it)
-        found.append(KeptText(name.decode(), prefix.decode(), names, whole))
+        names = tuple(it for it in _unlisted(materials) if it)
+        found.append(KeptText(name.decode(), prefix.decode(), names, _referring(whole, *paths)))
         last = stop + len(b" -->\n")
     base = before[: mark.start()] + before[last:]
-    first, prefix = (word or b"" for word in mark.groups())
-    return [KeptText(first.decode(), prefix.decode(), (), base), *found]
+    first, prefix, *paths = (word or b"" for word in mark.groups())
+    return [KeptText(first.decode(), prefix.decode(), (), _referring(base, *paths)), *found]
+
+
+def _referring(text: bytes, folder: bytes, files: bytes) -> Referring:
+    return Referring(text, _unlisted(folder)[0], _unlisted(files) if files else ())
+
+
+def _unlisted(words: bytes) -> tuple[str, ...]:
+    return tuple(map(unquote, words.decode().split(",")))
 
 
 def _end(spans: Spans, found: re.Match[bytes], file: str) -> int:

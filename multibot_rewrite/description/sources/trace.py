@@ -10,6 +10,7 @@ as written there only where the bytes read back as it.
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -135,7 +136,7 @@ class Pieces:
         ``attribute`` is empty; () if unknown. Elements are numbered in the order of the
         document."""
         found, at = [], 0
-        for row in self._rows.get((element, attribute or TEXT_NODE), ()):
+        for row in self._rows.get((element, _written(attribute) or TEXT_NODE), ()):
             length = row[0]
             found.append(self._piece(value[at : at + length], row))
             at += length
@@ -146,7 +147,7 @@ class Pieces:
         numbers, words = self.trace.result.pieces, self.trace.result.words
         every = (numbers[at : at + EIGHT] for at in range(0, len(numbers), EIGHT))
         return lists_by_key(
-            ((element, words[attribute]), tuple(row))
+            ((element, _written(words[attribute])), tuple(row))
             for element, attribute, *row in every
             if 0 <= attribute < len(words)
         )
@@ -175,6 +176,12 @@ class Pieces:
         tag = source[start + 1 : tag_end(source, start)].split(None, 1)[0].rstrip(b"/>").decode()
         kind = _KINDS.get(tag, "parameter" if tag.startswith("xacro:") else LITERAL)
         return Piece(text, kind if as_is else EXPRESSION, name, begin, end)
+
+
+def _written(attribute: str) -> str:
+    """Return the name of an attribute, the same for ``gz:name`` and ``{uri}name``."""
+    local = re.split("[}:]", attribute)[-1]
+    return attribute if local == attribute else f":{local}"
 
 
 def _slot(source: bytes, start: int, attribute: str) -> tuple[int, int] | None:
