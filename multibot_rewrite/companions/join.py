@@ -24,9 +24,8 @@ from multibot_rewrite.companions.joined import (
 )
 from multibot_rewrite.description.checks.verdict import not_verified
 from multibot_rewrite.description.joining.from_file import plain_text, plain_texts
-from multibot_rewrite.description.joining.join import GivenPart, JoinedText, join_texts
+from multibot_rewrite.description.joining.join import GivenPart, JoinedText, Output, join_texts
 from multibot_rewrite.description.joining.part import Part, ReadPart, prefixing
-from multibot_rewrite.description.joining.referring import Output
 from multibot_rewrite.description.joining.second_reading import split_text
 from multibot_rewrite.description.joining.semantic import (
     JoinedSemantics,

@@ -17,10 +17,9 @@ from typing import Any
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.releases import release_here
 from multibot_rewrite.description.checks.numbers import number
-from multibot_rewrite.description.joining.join import GivenPart, JoinedText, join_texts
+from multibot_rewrite.description.joining.join import GivenPart, JoinedText, Output, join_texts
 from multibot_rewrite.description.joining.kept import without_marks
 from multibot_rewrite.description.joining.part import MISSED, Part
-from multibot_rewrite.description.joining.referring import Output
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.read import JOIN, SourceText, read_alone, read_file
 from multibot_rewrite.knowledge.yaml_with_lines import (

@@ -6,6 +6,7 @@ link ``world`` of a later part is left out, and what is fixed to it is fixed to 
 
 from __future__ import annotations
 
+import os
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from math import isfinite
 from typing import NamedTuple
@@ -44,7 +45,6 @@ from multibot_rewrite.description.joining.part import (
     read_part,
     with_names,
 )
-from multibot_rewrite.description.joining.referring import NOWHERE, Output, referring
 from multibot_rewrite.description.joining.second_reading import Mounted, prove
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.steps.apply import cut
@@ -157,6 +157,47 @@ class GivenPart(NamedTuple):
     file: str
 
 
+class Output(NamedTuple):
+    """The file that a joined description goes to, and that of all controllers; empty if unknown."""
+
+    path: str = ""
+    controllers: str = ""
+
+    def folder_of(self, file: str) -> str:
+        """Return how the folder of a part's file is called from that of the output."""
+        if not self.path or file.startswith("<"):
+            return ""
+        above = os.path.dirname(os.path.abspath(self.path))
+        path = os.path.relpath(os.path.dirname(os.path.abspath(file)), above)
+        return "" if path == os.curdir else f"{path}/"
+
+
+NOWHERE = Output()
+_FILES = "parameters"
+
+
+def referring(document: Document, own: Iterable[str], output: Output) -> bytes:
+    """Return a part's text for the folder of the output: a path from the part's folder has that in
+    front, and its ``own`` files of controllers are the one file of all. Source:
+    gz_ros2_control_plugin.cpp (``<parameters>`` is a path)."""
+    source, spans = document.source, Spans(document)
+    folder, names = output.folder_of(document.file), {os.path.basename(it) for it in own}
+    edits: list[Edit] = []
+    for element in document.root.iter("mesh", "texture", _FILES):
+        name = "" if element.tag == _FILES else "filename"
+        path = ((element.get(name) if name else element.text) or "").strip()
+        new = output.controllers if os.path.basename(path) in names else ""
+        if name:
+            new = f"{folder}{path}" if "://" not in path and not os.path.isabs(path) else ""
+        start, end = spans.of(element)
+        slot = value_slot(source, start, name, path) if path and new and new != path else None
+        if slot:
+            text = new.translate(ESCAPES).encode()
+            text = source[start : slot[0]] + text + source[slot[1] : end]
+            edits.append(kept.was(start, end, source[start:end], text))
+    return _edited(source, edits)
+
+
 def join_texts(given: Sequence[GivenPart], tree: Tree, output: Output = NOWHERE) -> JoinedText:
     """Join descriptions, which refer to files as ``output`` needs it; raises UsageError and InputError
     in one line, ProofError."""
@@ -166,24 +207,25 @@ def join_texts(given: Sequence[GivenPart], tree: Tree, output: Output = NOWHERE)
     _check_given(given, parts)
     known: dict[tuple[str, str], str] = {}
     with_names(known, parts[0])
-    is_whole = kept.is_joined_whole(parts[0].data)
-    one, own = parts[0], given[0].part.controllers
-    referred = referring(one.text, one.file, own, NOWHERE if is_whole else output)
-    inventory = collect(read_document(referred.text, one.file), tree)
-    parts[0] = one._replace(text=referred.text, inventory=inventory)
-    first = kept.KeptText(one.name, one.prefix, (), referred)
+    if not kept.is_joined_whole(parts[0].data):
+        parts[0] = _referring(parts[0], given[0].part, output, tree)
     mounted = [Mounted(parts[0], "", ZERO, "", parts[0].text)]
     data = parts[0].text
     notes: list[str] = []
     for it, part in zip(given[1:], parts[1:], strict=True):
         check_meeting(part, known)
-        data, made, told = _added(data, it.part, part, first, tree, output)
+        data, made, told = _added(data, it.part, part, parts[0], tree, output)
         with_names(known, part)
         mounted.append(made)
         notes += told
     prove(data, mounted, tree)
     findings = tuple(found for part in parts for found in part.findings)
     return JoinedText(data, tuple(mounted), tuple(notes), findings)
+
+
+def _referring(part: ReadPart, spec: Part, output: Output, tree: Tree) -> ReadPart:
+    text = referring(read_document(part.text, part.file), spec.controllers, output)
+    return part._replace(text=text, inventory=collect(read_document(text, part.file), tree))
 
 
 def _check_given(given: Sequence[GivenPart], parts: Sequence[ReadPart]) -> None:
@@ -203,7 +245,7 @@ def _check_given(given: Sequence[GivenPart], parts: Sequence[ReadPart]) -> None:
 
 
 def _added(
-    data: bytes, spec: Part, part: ReadPart, first: kept.KeptText, tree: Tree, output: Output
+    data: bytes, spec: Part, part: ReadPart, first: ReadPart, tree: Tree, output: Output
 ) -> tuple[bytes, Mounted, Sequence[str]]:
     """Return the text with one more part, the part, and notes."""
     joined = collect(read_document(data, JOINED), tree)
@@ -212,8 +254,7 @@ def _added(
     names = other_looks(joined.document.root, part)
     word = word_of(part.name, part.prefix)
     text = prefixed(part.text, part.file, word, names)
-    referred = referring(text, part.file, spec.controllers, output)
-    part = part._replace(inventory=collect(read_document(referred.text, part.file), tree))
+    part = _referring(part._replace(text=text), spec, output, tree)
     root, spans = part.inventory.document.root, Spans(part.inventory.document)
     start, end = spans.inside(root)
     once, mount = said_once(joined, part.inventory), fixed(part, spec, spans)
@@ -224,13 +265,13 @@ def _added(
     system = one_system(joined, part.inventory) if spec.one_system else twice_driven
     twice = repeated(joined.document.root, spans)
     edits = [*mount.edits, *twice, *once.part, *system.part]
-    made = _edited(referred.text, [*edits, *own_spaces(joined.document, spans, edits)])
-    own = kept.KeptText(part.name, part.prefix, names, referred._replace(text=made))
-    more = kept.section(own, start, end + len(made) - len(referred.text))
+    made = _edited(part.text, [*edits, *own_spaces(joined.document, spans, edits)])
+    own = kept.KeptText(part.name, part.prefix, names, made)
+    more = kept.section(own, start, end + len(made) - len(part.text))
     base = _edited(data, (*once.joined, *system.joined))
     mounted = Mounted(part, spec.at, spec.pose, mount.joint, made)
     notes = (*mount.notes, *once.notes, *system.notes)
-    return kept.placed(base, first, more), mounted, notes
+    return kept.placed(base, first.name, first.prefix, more), mounted, notes
 
 
 def _edited(text: bytes, edits: Iterable[Edit]) -> bytes:

@@ -3,7 +3,7 @@
 
 A part is in front of ``</robot>`` of the first one, between two comments:
 
-    <!-- multibot part gripper prefix=left_ materials=grey folder=../hand/ HEAD -->
+    <!-- multibot part gripper prefix=left_ materials=grey HEAD -->
     <!-- multibot end gripper TAIL -->
 
 ``HEAD`` is what its file has up to the end of its root's start tag, ``TAIL`` what it has from the end
@@ -17,7 +17,7 @@ A comment holds no ``--``, and no colon before a blank: launch files pass a desc
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import NamedTuple
 from urllib.parse import quote, unquote
 
@@ -25,21 +25,15 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Edit, InputError
-from multibot_rewrite.description.joining.referring import Referring
 from multibot_rewrite.description.steps.apply import cut
 from multibot_rewrite.description.steps.document import read_document, silenced
 from multibot_rewrite.description.steps.spans import Spans
 
-_PATHS = rb"(?: folder=(\S+))?(?: files=(\S+))?"
-_BASE = lazy_compile(rb"  <!-- multibot base (\w+)(?: prefix=(\w+))?" + _PATHS + rb" -->\n")
+_BASE = lazy_compile(rb"  <!-- multibot base (\w+)(?: prefix=(\w+))? -->\n")
 # No comment holds two dashes.
 _INSIDE = rb"(?:[^-]|-(?!-))*?"
 _PART = lazy_compile(
-    rb"  <!-- multibot part (\w+)(?: prefix=(\w+))?(?: materials=(\S+))?"
-    + _PATHS
-    + rb" ("
-    + _INSIDE
-    + rb") -->"
+    rb"  <!-- multibot part (\w+)(?: prefix=(\w+))?(?: materials=(\S+))? (" + _INSIDE + rb") -->"
 )
 _LAST = b"<!-- multibot end "
 _END = _LAST + b"%s "
@@ -53,13 +47,13 @@ _ESCAPED = lazy_compile(rb"%|-(?=-|\Z)|(?<=:) ")
 
 
 class KeptText(NamedTuple):
-    """A part as a joined text holds it: what ``referring`` has is with its prefix still, and prefixed
-    names of ``materials``."""
+    """A part as a joined text holds it: its ``text`` has its prefix still, and prefixed names of
+    ``materials``."""
 
     name: str
     prefix: str
     materials: tuple[str, ...]
-    referring: Referring
+    text: bytes
 
 
 def is_joined(text: bytes) -> bool:
@@ -90,49 +84,37 @@ def left_out(spans: Spans, element: _Element) -> Edit:
 
 def section(it: KeptText, start: int, end: int) -> bytes:
     """Return a part for a joined text; ``start`` and ``end`` delimit the content of its root."""
-    text = it.referring.text
-    words = _words(it)
-    first = b"  <!-- multibot part %s %s -->" % (words, _hidden(text[:start]))
-    last = _END % it.name.encode() + _hidden(text[end:]) + b" -->\n"
-    return first + text[start:end] + last
+    names = ",".join(quote(name, safe="") for name in it.materials).replace("--", "-%2D")
+    words = _words(it.name, prefix=it.prefix, materials=names)
+    first = b"  <!-- multibot part %s %s -->" % (words, _hidden(it.text[:start]))
+    last = _END % it.name.encode() + _hidden(it.text[end:]) + b" -->\n"
+    return first + it.text[start:end] + last
 
 
-def _words(it: KeptText) -> bytes:
-    _, folder, files = it.referring
-    more = {"prefix": it.prefix, "materials": _listed(it.materials)}
-    more |= {"folder": _listed([folder]), "files": _listed(files)}
-    return " ".join([it.name, *(f"{key}={text}" for key, text in more.items() if text)]).encode()
+def _words(name: str, **more: str) -> bytes:
+    return " ".join([name, *(f"{key}={text}" for key, text in more.items() if text)]).encode()
 
 
-def _listed(words: Iterable[str]) -> str:
-    return ",".join(quote(it, safe="./") for it in words).replace("--", "-%2D")
-
-
-def placed(text: bytes, first: KeptText, more: bytes) -> bytes:
+def placed(text: bytes, name: str, prefix: str, more: bytes) -> bytes:
     """Return the text of the first part, or of parts joined so far, with one more section."""
     last = text.rfind(_LAST) if is_joined_whole(text) else -1
     if last >= 0:
         at = text.index(b" -->\n", last) + len(b" -->\n")
         return text[:at] + more + text[at:]
     at = silenced(text).rindex(b"</")
-    mark = b"  <!-- multibot base %s -->\n" % _words(first)
+    mark = b"  <!-- multibot base %s -->\n" % _words(name, prefix=prefix)
     return text[:at] + mark + more + text[at:]
 
 
 def sections(text: bytes, file: str) -> list[KeptText]:
     """Return the parts of a joined text, the first one first; raises InputError."""
-    # The text with what was left out or changed in its old place.
-    spans = Spans(read_document(text, file))
-    edits = [
-        Edit(it.start(), _end(spans, it, file), _shown(it[2]), None) for it in _WAS.finditer(text)
-    ]
-    before = b"".join(cut(text, edits))
+    before = _as_it_was(text, file)
     mark = _BASE.search(before)
     if mark is None:
         raise InputError(f"{file}: it was not made by multibot join: its parts are not known")
     found, last = [], mark.end()
     while part := _PART.match(before, last):
-        name, prefix, materials, *paths, head = (word or b"" for word in part.groups())
+        name, prefix, materials, head = (word or b"" for word in part.groups())
         end = _END % name
         close = before.find(end, part.end())
         stop = before.find(b" -->\n", close + len(end))
@@ -141,20 +123,26 @@ def sections(text: bytes, file: str) -> list[KeptText]:
             raise InputError(f"{file}: {what}")
         tail = before[close + len(end) : stop]
         whole = _shown(head) + before[part.end() : close] + _shown(tail)
-        names = tuple(it for it in _unlisted(materials) if it)
-        found.append(KeptText(name.decode(), prefix.decode(), names, _referring(whole, *paths)))
+        names = tuple(unquote(it) for it in materials.decode().split(",") if it)
+        found.append(KeptText(name.decode(), prefix.decode(), names, whole))
         last = stop + len(b" -->\n")
     base = before[: mark.start()] + before[last:]
-    first, prefix, *paths = (word or b"" for word in mark.groups())
-    return [KeptText(first.decode(), prefix.decode(), (), _referring(base, *paths)), *found]
+    first, prefix = (word or b"" for word in mark.groups())
+    return [KeptText(first.decode(), prefix.decode(), (), base), *found]
 
 
-def _referring(text: bytes, folder: bytes, files: bytes) -> Referring:
-    return Referring(text, _unlisted(folder)[0], _unlisted(files) if files else ())
-
-
-def _unlisted(words: bytes) -> tuple[str, ...]:
-    return tuple(map(unquote, words.decode().split(",")))
+def _as_it_was(text: bytes, file: str) -> bytes:
+    """Return the text with what was left out or changed in its old place."""
+    while _WAS.search(text):
+        spans, last = Spans(read_document(text, file)), 0
+        edits: list[Edit] = []
+        for it in _WAS.finditer(text):
+            # What was changed in what was changed later comes back with that.
+            if it.start() >= last:
+                last = _end(spans, it, file)
+                edits.append(Edit(it.start(), last, _shown(it[2]), None))
+        text = b"".join(cut(text, edits))
+    return text
 
 
 def _end(spans: Spans, found: re.Match[bytes], file: str) -> int:

@@ -24,7 +24,6 @@ from multibot_rewrite.description.checks.poses import Pose, placed, pose_of, pos
 from multibot_rewrite.description.joining.blocks import bare, has_all, like, word_of
 from multibot_rewrite.description.joining.kept import KeptText, is_joined_whole, sections
 from multibot_rewrite.description.joining.part import ReadPart, in_one_line, prefixing
-from multibot_rewrite.description.joining.referring import before_referring
 from multibot_rewrite.description.readback.xml import plain, read_xml
 from multibot_rewrite.description.rewriters.text import end_of
 from multibot_rewrite.description.rewriters.tree import Tree
@@ -155,8 +154,7 @@ def taken_out(it: KeptText, file: str, tree: Tree) -> bytes:
     """Return a part of a joined text as it was before; raises InputError if the text was edited by
     hand."""
     word = word_of(it.name, it.prefix)
-    text = before_referring(it.referring, file)
-    text = bare(text, file, word, it.materials) if it.materials else text
+    text = bare(it.text, file, word, it.materials) if it.materials else it.text
     if not it.prefix:
         return text
     with in_one_line():
