@@ -14,7 +14,7 @@ import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import redirect_stderr
 from io import StringIO
-from itertools import chain
+from itertools import chain, product
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -32,9 +32,8 @@ from multibot_rewrite.description.rewriters.contact import respell_collisions
 from multibot_rewrite.description.rewriters.insert import insertions
 from multibot_rewrite.description.rewriters.tree import Tree, builtin_tree
 from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED
-from multibot_rewrite.description.sources.expand import expand, kept_expansions
+from multibot_rewrite.description.sources.expand import kept_expansions
 from multibot_rewrite.description.sources.included_by import robot_instead
-from multibot_rewrite.description.sources.own_names import MARKS
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.document import read_document
@@ -43,12 +42,10 @@ from multibot_rewrite.refactor.handing_on import (
     MARK,
     NAMES,
     SPACES,
-    Place,
+    Compared,
     Sources,
-    Words,
     compared,
     declared,
-    free_name,
 )
 from multibot_rewrite.refactor.launch_argument import Space
 from multibot_rewrite.refactor.launches import Trial, fillable, with_launches
@@ -78,7 +75,7 @@ from multibot_rewrite.refactor.source_edits import (
 
 _PARTS = ("link", "joint")
 TRIED = "robot1_"
-_TRIED = re.compile(TRIED)
+_TRIED = re.compile(TRIED.encode())
 # So many links may lack an argument that is not empty: the world.
 _FEW = 2
 # So many calls and properties are tried.
@@ -234,15 +231,22 @@ def _configured(found: Sequence[Description], job: _Job) -> Iterator[Description
 
 
 class _Begun(NamedTuple):
-    """Descriptions whose sources are on the way to the argument: ``texts`` are those so far, ``bases``
-    are expanded without the argument, ``found`` with it where it reaches names, and ``asked`` are the
-    changes that those lack."""
+    """Descriptions whose sources are on the way to the argument: ``texts`` are those so far, what
+    carries it there, ``bases`` are expanded without the argument, ``found`` with it where it reaches
+    names, and ``asked`` are the changes that those lack."""
 
-    words: Words
+    argument: str
+    is_new: bool
     texts: Mapping[str, bytes]
+    carriers: Collection[tuple[str, str]]
     bases: Sequence[Description]
     found: Sequence[Description]
     asked: Sequence[Sequence[ValueEdit]]
+
+    @property
+    def tops(self) -> set[str]:
+        """The files of the descriptions themselves, by real path, if they have to declare it."""
+        return {os.path.realpath(it.path) for it in self.bases} if self.is_new else set()
 
 
 def _best(
@@ -251,18 +255,17 @@ def _best(
     """Return the best that can be made of descriptions with their own argument, or a new one: handed to
     calls that take one, or put before names alone."""
     texts = texts_of(found)
-    sources = Sources(texts, {os.path.realpath(it.path) for it in found})
-    places = [it for it in sources.places if it.may_be_prefix]
-    names = [argument or free_name(found, NAMES, {it.name for it in places if not it.macro})]
-    names += [] if argument else [free_name(found)]
-    tries = dict.fromkeys((*((it, bool(places)) for it in names), (names[-1], False)))
+    sources = Sources(texts)
+    every = Sources({**texts_of(it for it in job.package.descriptions if it.read), **texts})
+    names = dict.fromkeys(
+        (argument,) if argument else (it.free_name(NAMES) for it in (sources, every))
+    )
     made: list[Adopted] = []
     wrong: list[InputError] = []
-    for name, in_calls in tries:
+    for name, in_calls in product(names, (True, False)):
         try:
-            words = Words(name, not argument, sources, sources.carriers(name))
-            begun = _lacking(words, texts, found, job)
-            begun = _with_calls(begun, places, job) if in_calls else begun
+            begun = _lacking(name, not argument, texts, sources.carriers(name), found, job)
+            begun = _with_calls(begun, sources, job) if in_calls else begun
             made.append(_with_namespace(begun, own, job))
         except InputError as error:
             wrong.append(error)
@@ -274,47 +277,53 @@ def _best(
 
 
 def _lacking(
-    words: Words, texts: Mapping[str, bytes], bases: Sequence[Description], job: _Job
+    argument: str,
+    is_new: bool,
+    texts: Mapping[str, bytes],
+    carriers: Collection[tuple[str, str]],
+    bases: Sequence[Description],
+    job: _Job,
 ) -> _Begun:
     """Return what descriptions lack with the argument. Raises InputError for a new one that is in
     other values."""
-    found = [_again(it, texts, {words.argument: TRIED}, job) for it in bases]
-    every = [
-        compared(it.document, _changes(it), other.document, _TRIED)
-        for it, other in zip(bases, found, strict=True)
-    ]
-    if words.is_new and any(it.astray for it in every):
-        raise InputError(f"{job.folder}: {words.argument} would be elsewhere, too")
-    return _Begun(words, texts, bases, found, [it.lacks for it in every])
+    found = [_again(it, texts, {argument: TRIED}, job) for it in bases]
+    every = [_compared(*pair) for pair in zip(bases, found, strict=True)]
+    if is_new and any(it.astray for it in every):
+        raise InputError(f"{job.folder}: {argument} would be elsewhere, too")
+    return _Begun(argument, is_new, texts, carriers, bases, found, [it.lacks for it in every])
 
 
-def _with_calls(begun: _Begun, places: Sequence[Place], job: _Job) -> _Begun:
-    """With the argument handed to those places where it reaches names alone. Raises InputError if there
-    are none."""
-    argument, is_new, sources, _ = begun.words
+def _compared(it: Description, other: Description) -> Compared:
+    return compared(it.document, [*_changes(it)], other.document, _TRIED)
+
+
+def _with_calls(begun: _Begun, sources: Sources, job: _Job) -> _Begun:
+    """With the argument handed to those calls and properties where it reaches names alone. Raises
+    InputError if there are none."""
+    argument, is_new, texts, *_ = begun
+    places = [it for it in sources.places if it.may_be_prefix]
     # Those outside of macros are first.
     outside = sorted(places, key=lambda it: bool(sources.macro_at(it.spot)))
     marks = {f"qz{at:03}z": it for at, it in enumerate(outside[:_PLACES])}
-    texts = edited(begun.texts, [it.edit(mark) for mark, it in marks.items()])
+    marked = edited(texts, [it.edit(mark) for mark, it in marks.items()])
     seen: set[str] = set()
     astray: set[str] = set()
     for it, asked in zip(begun.found, begun.asked, strict=True):
-        if not it.arguments:
-            other = _again(it, texts, {argument: TRIED}, job).document
-            seen |= set(MARK.findall(other.source.decode()))
+        if marks and not it.arguments:
+            other = _again(it, {**texts, **marked}, {argument: TRIED}, job).document
+            seen |= {one.decode() for one in MARK.findall(other.source)}
             astray |= compared(it.document, asked, other, MARK).astray
     chosen = [it for mark, it in marks.items() if mark in seen - astray]
     if "" in astray or not chosen:
         raise InputError(f"{job.folder}: no call takes the argument alone")
-    files = edited(begun.texts, [it.edit(f"$(arg {argument})") for it in chosen])
-    carriers = Sources({**begun.texts, **files}, sources.tops).carriers(argument)
-    words = Words(argument, is_new, sources, {it for it in carriers if it[0]})
-    edits = [it.edit(word.decode()) for it in chosen if (word := words.at(it.spot, True))]
-    edits += declared(begun.bases, begun.texts, words.using(edits), argument)
-    texts = {**begun.texts, **edited(begun.texts, edits)}
-    words = Words(argument, is_new, Sources(texts, sources.tops), carriers)
+    files = edited(texts, [it.edit(f"$(arg {argument})") for it in chosen])
+    carriers = Sources({**texts, **files}).carriers(argument)
+    own = {it for it in carriers if it[0]}
+    edits = [it.edit(sources.word_at(it.spot, argument, own, False)) for it in chosen]
+    edits += [*declared(texts, edits, begun.tops, argument, False)]
+    texts = {**texts, **edited(texts, edits)}
     bases = [it._replace(read=_again(it, texts, {}, job).read) for it in begun.bases]
-    return _lacking(words, texts, bases, job)
+    return _lacking(argument, is_new, texts, carriers, bases, job)
 
 
 def _again(
@@ -336,11 +345,17 @@ def _made(
 ) -> tuple[Adopted, Mapping[str, bytes]]:
     """Return the descriptions with the argument, verified together with ``more`` edits; and the
     files that change, by their real paths."""
-    words, texts, bases, found, asked = begun
-    argument = words.argument
-    made = placed(found, asked, lambda spot, _: words.at(spot))
-    edits = {*made.edits, *declared(bases, texts, words.using(made.edits), argument), *more}
+    argument, _, texts, carriers, bases, found, asked = begun
+    sources = Sources(texts)
+    # Where something is called so, it is no property.
+    as_property = begun.is_new and argument not in sources.hiding
+    made = placed(
+        found, asked, lambda spot, _: sources.word_at(spot, argument, carriers, as_property)
+    )
+    names = declared(texts, made.edits, begun.tops, argument, as_property)
+    edits = {*made.edits, *names, *more}
     after = {**texts, **edited(texts, edits)}
+    _check_others(begun, after, job)
     every = [*zip(bases, found, made.changes, strict=True)]
     wrong = {it[0].words: _fault(*it, after, argument, job.how) for it in every}
     wrong = {name: why for name, why in wrong.items() if why}
@@ -370,13 +385,28 @@ def _made(
     ), after
 
 
+def _check_others(begun: _Begun, after: Mapping[str, bytes], job: _Job) -> None:
+    """Raise InputError if the argument changes other descriptions, which have one of this name."""
+    own = {it.path for it in begun.bases}
+    changed = {path for path, data in after.items() if data != begun.texts.get(path)}
+    for it in (it for it in job.package.descriptions if it.read and it.path not in own):
+        texts = texts_of([it])
+        if begun.argument in Sources(texts).arguments and not changed.isdisjoint(texts):
+            before, there = (
+                _again(it, some, {begun.argument: TRIED}, job).document.source
+                for some in (texts, after)
+            )
+            if before != there:
+                raise InputError(f"{it.words}: {begun.argument} would be in its names twice")
+
+
 def _with_namespace(begun: _Begun, own: Mapping[str, str], job: _Job) -> Adopted:
     """Return the result with an argument for a namespace, if one changes names alone; ``own`` are
     arguments that descriptions have for that already, by their paths."""
-    found, prefix = begun.bases, begun.words.argument
+    found, prefix = begun.bases, begun.argument
     has = {it.path: own.get(it.path, "") for it in found}
     # An argument that is made whole is one change.
-    none = any(has.values()) or not begun.words.is_new
+    none = any(has.values()) or not begun.is_new
     space = namespaced([] if none else found, begun.texts, job.tree)
     left = [*space.left]
     left += (
@@ -448,9 +478,7 @@ def _begun(arguments: Iterable[Argument]) -> str:
 
 def _lacks(it: Description, name: str, job: _Job) -> tuple[str, ...]:
     """Return the names that an argument of a description does not reach."""
-    given = {**job.how.arguments, **it.arguments, name: MARKS[0]}
-    other = read_document(expand(it.path, given, reach=job.how.reach), it.path)
-    lacks = compared(it.document, _changes(it), other, re.compile(MARKS[0])).lacks
+    lacks = _compared(it, _again(it, {}, {name: TRIED}, job)).lacks
     return tuple(dict.fromkeys(one.value.strip() for one in lacks))
 
 

@@ -26,7 +26,7 @@ from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.steps.apply import Template
 from multibot_rewrite.description.steps.document import tag_end
 from multibot_rewrite.description.steps.inserted import elements_of, lead_of
-from multibot_rewrite.refactor.handing_on import SPACES, declared, free_name
+from multibot_rewrite.refactor.handing_on import SPACES, Sources, declared
 from multibot_rewrite.refactor.package import Description, Expanding, read_text
 from multibot_rewrite.refactor.placing import Left, Spot, placed
 from multibot_rewrite.refactor.source_edits import SourceEdit, ValueEdit, change_of, place
@@ -69,7 +69,8 @@ def spacing() -> Naming:
 def namespaced(found: Sequence[Description], texts: Mapping[str, bytes], tree: Tree) -> Namespaced:
     """Return the edits of the sources ``texts``, by their real paths."""
     every, left = _every(found, tree)
-    argument = free_name(found, SPACES)
+    sources = Sources(texts)
+    argument = sources.free_name(SPACES, sources.hiding)
     made = placed(
         [it.found for it in every],
         [list(_changes(it.template)) for it in every],
@@ -84,8 +85,8 @@ def namespaced(found: Sequence[Description], texts: Mapping[str, bytes], tree: T
             edits += _edits(file, texts[file], start, next(iter(wanted)), argument)
     if not edits:
         return Namespaced("", (), (), tuple(left))
-    own = [it.found for it in every]
-    edits += declared(own, texts, {it.file for it in edits}, argument)
+    tops = {os.path.realpath(it.found.path) for it in every}
+    edits += [*declared(texts, edits, tops, argument, True)]
     return Namespaced(argument, tuple(edits), tuple(every), tuple(left))
 
 
@@ -174,12 +175,12 @@ def _changes(template: Template) -> Iterator[ValueEdit]:
             yield change_of(document, claim, at, at, f"{before}{TRIED_SPACE}{after}")
 
 
-def _written(change: ValueEdit, argument: str) -> bytes:
+def _written(change: ValueEdit, argument: str) -> str:
     """Return an expression that is empty without a namespace."""
     before, after = change.new.split(TRIED_SPACE)
     words = [f"'{before}'"] * bool(before) + [argument] + [f"'{after}'"] * bool(after)
     test = f"{argument} and " if len(words) > 1 else ""
-    return f"${{{test}{' + '.join(words)}}}".encode()
+    return f"${{{test}{' + '.join(words)}}}"
 
 
 def _added(every: Iterable[Spaced]) -> dict[Spot, set[_Added]]:

@@ -9,7 +9,7 @@ of the macro. Then every other place that uses this piece has to take it from th
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import accumulate
 from typing import NamedTuple
 
@@ -56,15 +56,14 @@ class _Name(NamedTuple):
 def placed(
     found: Sequence[Description],
     changes: Sequence[Sequence[ValueEdit]],
-    written: Callable[[Spot, ValueEdit], bytes | None],
+    written: Callable[[Spot, ValueEdit], str],
 ) -> PlacedNames:
     """Return the edits of the sources for the changes of each description. They share sources: what
     one of them needs at a place, the others get. ``written`` returns a change's text in the
     source."""
     both = enumerate(zip(found, changes, strict=True))
     names = [name for of, (it, own) in both for name in _names(of, it, own)]
-    closed = {it.used for it in names if it.used and it.change and not written(it.used, it.change)}
-    deep = _made_elsewhere(names, closed)
+    deep = _made_elsewhere(names)
     stay = {it.made for it in names if it.made and it.change is None}
     others = stay.union(*(it.other for it in names))
     made = PlacedNames([], [[] for _ in found], [])
@@ -72,13 +71,13 @@ def placed(
         if name.change is None:
             continue
         spot = name.made if name.used is None or name.used in deep else name.used
-        word = spot and written(spot, name.change)
-        if spot is None or not word or (spot == name.made and spot in others):
+        if spot is None or (spot == name.made and spot in others):
             it = found[name.of]
             where = place_of(it.read, name.change.element) or it.path
             why = "stays with other arguments or elsewhere" if spot in stay else "is put together"
             made.left.append(Left(where, f"{name.change.value!r} {why}"))
             continue
+        word = written(spot, name.change).encode()
         made.edits.append(SourceEdit(*spot, spot[1], word))
         made.changes[name.of].append(name.change)
     return made
@@ -158,13 +157,10 @@ def _made(
     return None, frozenset(spots)
 
 
-def _made_elsewhere(names: Sequence[_Name], closed: Collection[Spot]) -> set[Spot | None]:
-    """Return the spots of use at which no prefix can go, the ``closed`` among them: it comes from
-    where the names are made."""
+def _made_elsewhere(names: Sequence[_Name]) -> set[Spot | None]:
+    """Return the spots of use at which no prefix can go: it comes from where the names are made."""
     groups = lists_by_key((it.used, it) for it in names)
-    deep = {*closed} | {
-        it for it, group in groups.items() if len({name.change is None for name in group}) > 1
-    }
+    deep = {it for it, group in groups.items() if len({name.change is None for name in group}) > 1}
     while True:
         made = {it.made for it in names if it.change and it.made and it.used in deep}
         more = {

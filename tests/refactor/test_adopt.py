@@ -234,7 +234,8 @@ def test_a_prefix_that_changes_more_than_names_is_handed_to_nobody(tmp_path: Pat
     )
     (tmp_path / "r.urdf.xacro").write_text(robot(inside))
     made = adopt(str(tmp_path))
-    assert (made.argument, len(made.verified)) == ("robot_prefix", 1)
+    assert (made.argument, len(made.verified)) == ("prefix", 1)
+    assert b'<link name="$(arg prefix)b"/>' in made.after[str(tmp_path / "r.urdf.xacro")]
 
 
 @pytest.mark.parametrize("case", HANDED)
@@ -248,17 +249,33 @@ def test_what_takes_a_prefix_already_gets_the_argument(case: str, tmp_path: Path
     assert (made.argument, made.verified, dict(made.bare)) == (argument, (str(path),), {})
 
 
-def test_a_taken_name_is_not_used_for_the_argument(tmp_path: Path) -> None:
-    """The parameter is in the middle of a name, so nothing can be handed to it."""
+def test_a_parameter_of_the_name_does_not_hide_the_argument(tmp_path: Path) -> None:
+    """It is in the middle of a name, so nothing can be handed to it."""
     inside = (
         '<xacro:macro name="m" params="prefix"><link name="${prefix}_a"/><link name="b_${prefix}"/>'
         '</xacro:macro><xacro:m prefix="left"/>'
     )
     (tmp_path / "r.urdf.xacro").write_text(robot(inside))
     made = adopt(str(tmp_path))
-    assert made.argument == "robot_prefix"
-    names = b'<link name="${robot_prefix}${prefix}_a"/><link name="${robot_prefix}b_${prefix}"/>'
+    names = b'<link name="$(arg prefix)${prefix}_a"/><link name="$(arg prefix)b_${prefix}"/>'
     assert names in next(iter(made.after.values()))
+
+
+def test_an_argument_that_another_description_hands_on_is_not_put_before_its_names_twice(
+    tmp_path: Path,
+) -> None:
+    """Both use the macro, whose material has the parameter, too: so it is not handed to the call."""
+    link = '<link name="${prefix}a"><visual><material name="${prefix}red"/></visual></link>'
+    macro = f'<xacro:macro name="m" params="prefix">{link}</xacro:macro>'
+    (tmp_path / "m.xacro").write_text(f"<robot {SPACE}>{macro}</robot>")
+    include = '<xacro:include filename="m.xacro"/>'
+    own = '<xacro:arg name="prefix" default=""/><xacro:m prefix="$(arg prefix)"/>'
+    (tmp_path / "one.urdf.xacro").write_text(robot(include + own))
+    (tmp_path / "two.urdf.xacro").write_text(robot(f'{include}<xacro:m prefix="l_"/>'))
+    made = adopt(str(tmp_path))
+    for path, data in made.after.items():
+        Path(path).write_bytes(data)
+    assert b'<link name="z_a">' in expand(str(tmp_path / "one.urdf.xacro"), {"prefix": "z_"})
 
 
 # What an argument reaches in part -> what it becomes.

@@ -11,7 +11,7 @@ import pytest
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.access import BOUNDED
-from multibot_rewrite.refactor.handing_on import NAMES, SPACES, free_name
+from multibot_rewrite.refactor.handing_on import NAMES, SPACES, Sources
 from multibot_rewrite.refactor.namespaces import namespaced, space_verified
 from multibot_rewrite.refactor.package import Expanding, read_package, texts_of
 from multibot_rewrite.refactor.source_edits import edited
@@ -49,12 +49,10 @@ def verified(folder: Path, tamper: Tamper, more: str = "") -> tuple[tuple[str, .
         '<xacro:macro name="m" params="{} c"/>',
     ],
 )
-def test_the_first_name_that_is_free_is_taken(form: str, tmp_path: Path) -> None:
+def test_the_first_name_that_is_free_is_taken(form: str) -> None:
     """By an argument, a property or a parameter of a macro, with a default or without."""
-    tree, how = builtin_tree((), NEWEST_LTS), Expanding(BOUNDED, {})
-    (tmp_path / "r.urdf.xacro").write_text(ROBOT.format(form.format("one")))
-    found = read_package(str(tmp_path), tree, how).descriptions
-    assert free_name(found, ("one", "two", "three")) == "two"
+    sources = Sources({"r": ROBOT.format(form.format("one")).encode(), "c.yaml": b"one: 1"})
+    assert sources.free_name(("one", "two", "three"), sources.hiding) == "two"
 
 
 def test_names_of_arguments_are_those_that_people_use() -> None:
