@@ -180,22 +180,20 @@ def referring(document: Document, own: Iterable[str], output: Output) -> bytes:
     """Return a part's text for the folder of the output: a path from the part's folder has that in
     front, and its ``own`` files of controllers are the one file of all. Source:
     gz_ros2_control_plugin.cpp (``<parameters>`` is a path)."""
-    source, spans = document.source, Spans(document)
+    spans = Spans(document)
     folder, names = output.folder_of(document.file), {os.path.basename(it) for it in own}
     edits: list[Edit] = []
     for element in document.root.iter("mesh", "texture", _FILES):
-        name = "" if element.tag == _FILES else "filename"
-        path = ((element.get(name) if name else element.text) or "").strip()
-        new = output.controllers if os.path.basename(path) in names else ""
-        if name:
-            new = f"{folder}{path}" if "://" not in path and not os.path.isabs(path) else ""
-        start, end = spans.of(element)
-        slot = value_slot(source, start, name, path) if path and new and new != path else None
-        if slot:
-            text = new.translate(ESCAPES).encode()
-            text = source[start : slot[0]] + text + source[slot[1] : end]
-            edits.append(kept.was(start, end, source[start:end], text))
-    return _edited(source, edits)
+        is_files = element.tag == _FILES
+        path = ((element.text if is_files else element.get("filename")) or "").strip()
+        if is_files:
+            new = output.controllers if os.path.basename(path) in names else ""
+        else:
+            new = "" if "://" in path or os.path.isabs(path) else f"{folder}{path}"
+        if path and new and new != path:
+            edit = kept.referring(spans, element, new.translate(ESCAPES).encode())
+            edits += [edit] if edit else []
+    return _edited(document.source, edits)
 
 
 def join_texts(given: Sequence[GivenPart], tree: Tree, output: Output = NOWHERE) -> JoinedText:

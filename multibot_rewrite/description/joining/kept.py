@@ -7,7 +7,8 @@ A part is in front of ``</robot>`` of the first one, between two comments:
     <!-- multibot end gripper TAIL -->
 
 ``HEAD`` is what its file has up to the end of its root's start tag, ``TAIL`` what it has from the end
-tag on. What was left out or changed is kept where it was, before the 0 or 1 elements in its place:
+tag on. What was left out or changed is kept where it was, before the 0 or 1 elements in its place; of
+an element that refers to another file than before, that name (2):
 
     <!-- multibot was 1 OLD -->
 
@@ -26,7 +27,7 @@ from lxml.etree import _Element
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.description.steps.apply import cut
-from multibot_rewrite.description.steps.document import read_document, silenced
+from multibot_rewrite.description.steps.document import read_document, silenced, value_slot
 from multibot_rewrite.description.steps.spans import Spans
 
 _BASE = lazy_compile(rb"  <!-- multibot base (\w+)(?: prefix=(\w+))? -->\n")
@@ -37,7 +38,7 @@ _PART = lazy_compile(
 )
 _LAST = b"<!-- multibot end "
 _END = _LAST + b"%s "
-_WAS = lazy_compile(rb"<!-- multibot was ([01]) (" + _INSIDE + rb") -->")
+_WAS = lazy_compile(rb"<!-- multibot was ([012]) (" + _INSIDE + rb") -->")
 _OURS = lazy_compile(rb"<!-- multibot (?:base|part|end|was) ")
 _MARKS = lazy_compile(
     rb"  <!-- multibot (?:base %b-->\n|part %b-->)|<!-- multibot (?:was %b-->|end %b-->\n)"
@@ -75,6 +76,26 @@ def was(start: int, end: int, old: bytes, new: bytes = b"") -> Edit:
     """Return the edit that replaces ``old`` by ``new``, and keeps ``old`` in a comment."""
     kept = b"<!-- multibot was %d %s -->" % (bool(new), _hidden(old))
     return Edit(start, end, kept + new, None)
+
+
+def referring(spans: Spans, element: _Element, new: bytes) -> Edit | None:
+    """Return the edit that puts another path into an element, and keeps the old one; None if escapes
+    hide that."""
+    start, end = spans.of(element)
+    if (slot := path_slot(spans, element)) is None:
+        return None
+    source = spans.document.source
+    kept = b"<!-- multibot was 2 %s -->" % _hidden(source[slice(*slot)])
+    return Edit(start, end, kept + source[start : slot[0]] + new + source[slot[1] : end], None)
+
+
+def path_slot(spans: Spans, element: _Element | None) -> tuple[int, int] | None:
+    """Return where the path is that an element refers to: in ``filename``, or its text."""
+    if element is None:
+        return None
+    name = "filename" if "filename" in element.attrib else ""
+    path = (element.get(name) if name else element.text) or ""
+    return value_slot(spans.document.source, spans.start_of(element), name, path.strip())
 
 
 def left_out(spans: Spans, element: _Element) -> Edit:
@@ -138,9 +159,13 @@ def _as_it_was(text: bytes, file: str) -> bytes:
         edits: list[Edit] = []
         for it in _WAS.finditer(text):
             # What was changed in what was changed later comes back with that.
-            if it.start() >= last:
-                last = _end(spans, it, file)
-                edits.append(Edit(it.start(), last, _shown(it[2]), None))
+            if it.start() < last:
+                continue
+            last, old = _end(spans, it, file), _shown(it[2])
+            if it[1] == b"2":
+                slot = path_slot(spans, spans.first_from(it.end())) or (last, last)
+                old = text[it.end() : slot[0]] + old + text[slot[1] : last]
+            edits.append(Edit(it.start(), last, old, None))
         text = b"".join(cut(text, edits))
     return text
 
