@@ -14,7 +14,7 @@ import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import redirect_stderr
 from io import StringIO
-from itertools import chain, product
+from itertools import chain
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
@@ -256,13 +256,13 @@ def _best(
     calls that take one, or put before names alone."""
     texts = texts_of(found)
     sources = Sources(texts)
-    every = Sources({**texts_of(it for it in job.package.descriptions if it.read), **texts})
-    names = dict.fromkeys(
-        (argument,) if argument else (it.free_name(NAMES) for it in (sources, every))
-    )
+    # One that another description of the same files has would be before its names twice.
+    others = (it for it in job.package.descriptions if not _is_srdf(it) and it.read)
+    near = [it for it in others if not texts.keys().isdisjoint(texts_of([it]))]
+    name = argument or Sources({**texts_of(near), **texts}).free_name(NAMES)
     made: list[Adopted] = []
     wrong: list[InputError] = []
-    for name, in_calls in product(names, (True, False)):
+    for in_calls in (True, False):
         try:
             begun = _lacking(name, not argument, texts, sources.carriers(name), found, job)
             begun = _with_calls(begun, sources, job) if in_calls else begun
@@ -355,7 +355,6 @@ def _made(
     names = declared(texts, made.edits, begun.tops, argument, as_property)
     edits = {*made.edits, *names, *more}
     after = {**texts, **edited(texts, edits)}
-    _check_others(begun, after, job)
     every = [*zip(bases, found, made.changes, strict=True)]
     wrong = {it[0].words: _fault(*it, after, argument, job.how) for it in every}
     wrong = {name: why for name, why in wrong.items() if why}
@@ -383,21 +382,6 @@ def _made(
     return Adopted(
         argument, before, named, verified, left, {}, configurations=others, bare=bare
     ), after
-
-
-def _check_others(begun: _Begun, after: Mapping[str, bytes], job: _Job) -> None:
-    """Raise InputError if the argument changes other descriptions, which have one of this name."""
-    own = {it.path for it in begun.bases}
-    changed = {path for path, data in after.items() if data != begun.texts.get(path)}
-    for it in (it for it in job.package.descriptions if it.read and it.path not in own):
-        texts = texts_of([it])
-        if begun.argument in Sources(texts).arguments and not changed.isdisjoint(texts):
-            before, there = (
-                _again(it, some, {begun.argument: TRIED}, job).document.source
-                for some in (texts, after)
-            )
-            if before != there:
-                raise InputError(f"{it.words}: {begun.argument} would be in its names twice")
 
 
 def _with_namespace(begun: _Begun, own: Mapping[str, str], job: _Job) -> Adopted:
@@ -452,16 +436,21 @@ def _space_of(arguments: Iterable[Argument]) -> str:
 
 
 def _prefix_of(arguments: Iterable[Argument]) -> str:
-    """Return the argument that is before links, other for each robot; empty if there is none. ``world``
-    and, where it is empty, some that were forgotten may lack it."""
-    for it in arguments:
-        links = [use for use in it.uses if (use.kind, use.how) == ("link", PREFIX)]
-        lacking = [use.total - use.names for use in links]
-        if (
-            it.value and any(many <= use.names for use, many in zip(links, lacking, strict=True))
-        ) or (not it.missed and any(many < _FEW for many in lacking)):
+    """Return the argument that is before links, other for each robot, or those of two arms that are so
+    together; empty if there is none. ``world`` and, where it is empty, some that were forgotten may
+    lack it."""
+    uses = [(it, use) for it in arguments for use in it.uses if not it.fault]
+    uses = [(it, use) for it, use in uses if (use.kind, use.how) == ("link", PREFIX)]
+    for it, use in uses:
+        lacking = use.total - use.names
+        if (it.value and lacking <= use.names) or (not it.missed and lacking < _FEW):
             return it.name
-    return ""
+    is_whole = (
+        sum(use.names for it, use in uses if not it.missed) + _FEW > uses[0][1].total
+        if uses
+        else False
+    )
+    return ", ".join(dict.fromkeys(it.name for it, _ in uses)) if is_whole else ""
 
 
 def _begun(arguments: Iterable[Argument]) -> str:
@@ -478,7 +467,7 @@ def _begun(arguments: Iterable[Argument]) -> str:
 
 def _lacks(it: Description, name: str, job: _Job) -> tuple[str, ...]:
     """Return the names that an argument of a description does not reach."""
-    lacks = _compared(it, _again(it, {}, {name: TRIED}, job)).lacks
+    lacks = _compared(it, _again(it, {}, dict.fromkeys(name.split(", "), TRIED), job)).lacks
     return tuple(dict.fromkeys(one.value.strip() for one in lacks))
 
 

@@ -200,7 +200,8 @@ def declared(
 ) -> Iterator[SourceEdit]:
     """Yield the argument in the ``tops`` and in files whose ``edits`` use it; ``as_property`` the
     property, which has its value in the tops. ``texts`` are the bytes by real path."""
-    using = {it.file for it in edits if re.search(rb"\b%s\b" % argument.encode(), it.new)}
+    word = rf"\b{argument}\b" if as_property else rf"\$\(arg {argument}\)"
+    using = {it.file for it in edits if re.search(word.encode(), it.new)}
     value = f'property name="{argument}" value="$(arg {argument})"/>'
     for path in {*tops, *using}:
         lines = [f'property name="{argument}" default=""/>']

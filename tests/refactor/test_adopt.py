@@ -313,6 +313,36 @@ def test_an_argument_of_its_own_reaches_all_names(case: str, tmp_path: Path) -> 
     assert (dict(made.already), made.verified) == ({str(path): "prefix"}, (str(path),))
 
 
+def test_a_file_of_macros_that_take_it_declares_no_argument(tmp_path: Path) -> None:
+    names = '<link name="${prefix}a"/><gazebo reference="a"/>'
+    macro = f'<robot {SPACE}><xacro:macro name="m" params="prefix">{names}</xacro:macro></robot>'
+    (tmp_path / "m.xacro").write_text(macro)
+    own = '<xacro:arg name="prefix" default=""/><xacro:m prefix="$(arg prefix)"/>'
+    (tmp_path / "r.urdf.xacro").write_text(robot(f'<xacro:include filename="m.xacro"/>{own}'))
+    ((path, data),) = adopt(str(tmp_path)).after.items()
+    wanted = macro.replace('reference="a"', 'reference="${prefix}a"')
+    assert (path, data.decode()) == (str(tmp_path / "m.xacro"), wanted)
+
+
+# Two arguments that are not empty; together they are before all links but that of the world.
+ARMS = (
+    '<xacro:arg name="prefix_1" default="L_"/><xacro:arg name="prefix_2" default="R_"/>'
+    '<xacro:macro name="m" params="prefix"><link name="${prefix}a"/></xacro:macro>'
+    '<link name="ground"/><xacro:m prefix="$(arg prefix_1)"/><xacro:m prefix="$(arg prefix_2)"/>'
+)
+
+
+@pytest.mark.parametrize(("more", "stays"), [("", True), ('<link name="b"/>', False)])
+def test_two_arms_with_an_argument_each_stay(more: str, stays: bool, tmp_path: Path) -> None:
+    path = tmp_path / "r.urdf.xacro"
+    path.write_text(robot(ARMS + more))
+    made = adopt(str(tmp_path))
+    assert (dict(made.already), bool(made.after)) == (
+        {str(path): "prefix_1, prefix_2"} if stays else {},
+        not stays,
+    )
+
+
 def test_a_robot_that_another_one_includes_takes_the_argument_too(tmp_path: Path) -> None:
     arm = tmp_path / "arm.urdf.xacro"
     joint = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
