@@ -308,15 +308,18 @@ def test_a_view_with_a_node_without_ends_is_taken_again(monkeypatch: pytest.Monk
         (["/n", "/m"], [tf_end("/tf")]),
         (["/n"], [tf_end("/tf"), tf_end("/x")._replace(node="/_NODE_NAME_UNKNOWN_")]),
         (["/n"], [tf_end("/tf")]),
+        (["/n", "/bare"], [tf_end("/tf"), tf_end("/y")._replace(node="/bare")]),
         (["/never"], []),
     ]
     taken = iter(views)
     monkeypatch.setattr(look, "view", lambda session, cache: next(taken))
+    # A participant has announced itself, and the message that names its node comes later.
+    monkeypatch.setattr(look.queries, "without_nodes", lambda node, ends: not ends[1:])
     stop = SimpleNamespace(wait=lambda seconds: False)
-    session: Any = SimpleNamespace(request=Request(9.0), now=lambda: 0.0, stop=stop)
-    assert complete_view(session, {}) == views[2]
-    late = SimpleNamespace(request=Request(9.0), now=lambda: 9.5, stop=stop)
-    assert complete_view(late, {}) == views[3]  # type: ignore[arg-type]
+    session: Any = SimpleNamespace(request=Request(9.0), now=lambda: 0.0, stop=stop, node=None)
+    assert complete_view(session, {}) == views[3]
+    late = SimpleNamespace(request=Request(9.0), now=lambda: 9.5, stop=stop, node=None)
+    assert complete_view(late, {}) == views[4]  # type: ignore[arg-type]
 
 
 def test_the_ends_of_a_process_are_those_of_all_its_nodes(monkeypatch: pytest.MonkeyPatch) -> None:

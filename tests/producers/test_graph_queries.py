@@ -76,6 +76,9 @@ class GraphNode:
     def get_fully_qualified_name(self) -> str:
         return "/me"
 
+    def get_name(self) -> str:
+        return "me"
+
     def get_node_names_and_namespaces(self) -> Sequence[tuple[str, str]]:
         return self.names
 
@@ -115,6 +118,17 @@ def test_names_are_full_and_without_the_one_who_asks() -> None:
     node = GraphNode([("b", "/robot1"), ("a", "/"), ("me", "/"), ("b", "/robot1"), unknown])
     assert queries.node_names(node) == sorted(["/a", "/robot1/b", "/robot1/b", f"/{UNKNOWN_NODE}"])
     assert queries.enclaves(GraphNode([("b", "/r"), ("a", "/")])) == {"/r/b": "/r", "/a": ""}
+
+
+def test_a_participant_whose_nodes_are_not_known_yet_is_announced_without_nodes() -> None:
+    announced = [info(f"/{UNKNOWN_NODE}", it) for it in (1, 2, 9)]
+    own = [info("/me", 9), info("/a", 1)]
+    node = GraphNode(
+        (), {"publishes ros_discovery_info": announced, "publishes /parameter_events": own}
+    )
+    seen = [whole("/a", PUBLISHES, "/t", 1)]
+    assert queries.without_nodes(node, seen) == {"02" * 12}
+    assert not queries.without_nodes(node, [*seen, whole("/b", PUBLISHES, "/t", 2)])
 
 
 def test_a_node_that_leaves_has_what_it_had_until_then() -> None:

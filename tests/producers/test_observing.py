@@ -179,6 +179,22 @@ def test_what_may_be_missing_in_a_snapshot_is_told(
     assert clock.waited == ([] if over else [0.1] * hears)
 
 
+@pytest.mark.parametrize(("topics", "codes"), [((), ["programs-unannounced"]), (("b",), [])])
+def test_a_program_that_has_announced_itself_without_nodes_is_not_seen(
+    topics: tuple[str, ...], codes: list[str], clock: Clock, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What has topics and no nodes is no ROS program."""
+    monkeypatch.setattr(observe, "participants_here", lambda domain: {7: 3}[domain])
+    asked = observe.queries
+    monkeypatch.setattr(asked, "participants", lambda _: frozenset(("own", "a", "b")))
+    monkeypatch.setattr(asked, "without_nodes", lambda *_: frozenset("b"))
+    monkeypatch.setattr(asked, "participants_with_topics", lambda _: frozenset(topics))
+    monkeypatch.setattr(asked, "on_this_machine", lambda _, found: sorted(found))
+    monkeypatch.setattr(observe, "lost_here", lambda _: 0)
+    found = observe._unannounced(session(clock), ["/lidar"], [SCAN])
+    assert [it.code for it in found] == codes
+
+
 @pytest.mark.parametrize(
     ("around", "announced", "here", "lost", "enough"),
     [

@@ -117,12 +117,14 @@ def overview(session: GraphSession) -> tuple[list[str], list[End]]:
 
 
 def complete_view(session: GraphSession, cache: queries.TopicCache) -> tuple[list[str], list[End]]:
-    """Return names and endpoints; repeated for a while if nodes lack endpoints or a name."""
+    """Return names and endpoints; repeated for a while if nodes lack endpoints or a name, or
+    participants lack nodes."""
     limit = min(session.request.timeout, session.now() + assemble.QUIET_SECONDS)
     while True:
         names, endpoints = view(session, cache)
         owners = {end.node for end in endpoints}
-        complete = owners.issuperset(names) and f"/{UNKNOWN_NODE}" not in owners
+        named = owners.issuperset(names) and f"/{UNKNOWN_NODE}" not in owners
+        complete = named and not queries.without_nodes(session.node, endpoints)
         if complete or session.now() >= limit or session.stop.wait(POLL_SECONDS):
             return names, endpoints
 

@@ -110,7 +110,7 @@ def take_snapshot(session: GraphSession) -> System:
     seconds = session.now()
     names, endpoints = complete_view(session, cache)
     # Who names what is expected does not wait for anything that may be late.
-    late = () if why == EXPECTED else [*clock.starved(), *_unannounced(session, names)]
+    late = () if why == EXPECTED else [*clock.starved(), *_unannounced(session, names, endpoints)]
     late = [*late, *assemble.seen_by_one(missed)]
     more = [*late, *(assemble.cut_short(names, endpoints) if session.over() else ())]
     ears.update(endpoints)
@@ -121,12 +121,17 @@ def take_snapshot(session: GraphSession) -> System:
     return _snapshot(session, names, endpoints, ears, (why, seconds, last), more)
 
 
-def _unannounced(session: GraphSession, names: Sequence[str]) -> Iterator[Caveat]:
-    """Yield a limitation if programs of this machine have ports of the domain and announce nothing."""
-    here, node = participants_here(session.domain()) or 0, session.node
-    if here and here > len(queries.on_this_machine(node, queries.participants(node))):
+def _unannounced(
+    session: GraphSession, names: Sequence[str], endpoints: Sequence[End]
+) -> Iterator[Caveat]:
+    """Yield a limitation if programs of this machine have ports of the domain, but no known nodes."""
+    here, node = participants_here(session.domain()), session.node
+    if not here:
+        return
+    found = queries.participants(node) - queries.without_nodes(node, endpoints)
+    if here > len(queries.on_this_machine(node, found)):
         # What is no ROS program says on no topic of the middleware what it has, and may have topics.
-        found = queries.participants(node) | queries.participants_with_topics(node)
+        found |= queries.participants_with_topics(node)
         announced = len(queries.on_this_machine(node, found))
         lost = lost_here(session.domain()) - session.lost
         yield from assemble.unannounced(announced, here, len(names), lost)

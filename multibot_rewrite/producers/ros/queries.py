@@ -56,12 +56,21 @@ def participants_with_topics(node: Any) -> frozenset[str]:
     return frozenset().union(*(_participants_of(side(it)) for it in topics for side in sides))
 
 
+def without_nodes(node: Any, ends: Iterable[End]) -> frozenset[str]:
+    """Return the participants that have announced themselves, but have none of the nodes of ``ends``:
+    the message that names their nodes has not come. This process's own are not among them."""
+    return participants(node) - _own_participants(node) - {it.process for it in ends}
+
+
 def on_this_machine(node: Any, found: Iterable[str]) -> list[str]:
     """Return those of the participants on the machine of ``node``, as far as their GUIDs tell."""
-    events = node.get_publishers_info_by_topic(PARAMETER_EVENTS)
-    own = _participants_of(it for it in events if it.node_name == node.get_name())
-    machines = set(map(machine, own))
+    machines = set(map(machine, _own_participants(node)))
     return [it for it in found if machine(it) in machines]
+
+
+def _own_participants(node: Any) -> frozenset[str]:
+    events = node.get_publishers_info_by_topic(PARAMETER_EVENTS)
+    return _participants_of(it for it in events if it.node_name == node.get_name())
 
 
 def _participants_of(infos: Iterable[Any]) -> frozenset[str]:
