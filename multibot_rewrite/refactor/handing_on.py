@@ -20,6 +20,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.description.reports.xacro_arguments import declared_in, names_robots
 from multibot_rewrite.description.steps.document import (
     Document,
     attribute_slots,
@@ -34,7 +35,6 @@ SPACES = ("namespace", "robot_namespace", "ros_namespace")
 _SPACE = b' xmlns:xacro="http://www.ros.org/wiki/xacro"'
 _PARAMETER = re.compile(r"([\w.]+)(?:\s*:?=\s*(?:'([^']*)'|(\S*)))?")
 _NAMED = re.compile(r"\s*\$(?:\(arg ([\w.-]+)\)|\{\s*(\w+)\s*\})\s*")
-_LIKE = re.compile("prefix", re.IGNORECASE)
 MARK = re.compile(rb"qz\d{3}z")
 
 
@@ -52,9 +52,9 @@ class Place(NamedTuple):
 
     @property
     def may_be_prefix(self) -> bool:
-        """Is it called so, and is its value known, or outside of macros?"""
+        """Is it for names of robots, and is its value known, or outside of macros?"""
         is_known = "$" not in self.value and "^" not in self.value
-        return bool(_LIKE.search(self.name)) and (is_known or not _macro_of(self.element))
+        return names_robots(self.name.lower()) and (is_known or not _macro_of(self.element))
 
     def edit(self, word: str) -> SourceEdit:
         """Return the edit that puts a word there."""
@@ -74,17 +74,12 @@ class Sources:
     def __init__(self, texts: Mapping[str, bytes]) -> None:
         # YAML that an expression loads is among them.
         own = {file: data for file, data in texts.items() if b"<robot" in data}
+        self.arguments = declared_in(own)
         self.documents = {file: read_document(data, file) for file, data in own.items()}
         macros = (it for one in self.documents.values() for it in one.root.iter("{*}macro"))
         every = ((_name(it), _PARAMETER.findall(it.get("params", ""))) for it in macros)
         self.macros = {name: {it: a or b for it, a, b in found} for name, found in every}
         self.places = [it for file in self.documents for it in self._places(file)]
-
-    @property
-    def arguments(self) -> set[str]:
-        """The names of the declared arguments."""
-        roots = [it.root for it in self.documents.values()]
-        return {it.get("name", "") for root in roots for it in root.iter("{*}arg")}
 
     @property
     def hiding(self) -> set[str]:
@@ -95,7 +90,7 @@ class Sources:
 
     def free_name(self, names: Iterable[str], hiding: Collection[str] = ()) -> str:
         """Return a name that no argument has, and none of those that are ``hiding`` it."""
-        taken = self.arguments.union(hiding)
+        taken = self.arguments.keys() | set(hiding)
         free = next((name for name in names if name not in taken), None)
         if free is None:
             raise UsageError(f"{', '.join(names)} are all names of its arguments")

@@ -10,7 +10,6 @@ from __future__ import annotations
 import os
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from itertools import zip_longest
 from typing import NamedTuple
 
 from lxml import etree
@@ -29,7 +28,13 @@ from multibot_rewrite.description.steps.inserted import elements_of, lead_of
 from multibot_rewrite.refactor.handing_on import SPACES, Sources, declared
 from multibot_rewrite.refactor.package import Description, Expanding, read_text
 from multibot_rewrite.refactor.placing import Left, Spot, placed
-from multibot_rewrite.refactor.source_edits import SourceEdit, ValueEdit, change_of, place
+from multibot_rewrite.refactor.source_edits import (
+    SourceEdit,
+    ValueEdit,
+    change_of,
+    first_difference,
+    place,
+)
 
 # No robot is called so: a description with robot1_ before its names can be tried with it.
 TRIED_SPACE = "ns1"
@@ -145,26 +150,16 @@ def _fault(
             wanted = next(pipeline.render(it.template, [TRIED_SPACE], again=True))
     except InputError as error:
         return str(error)
-    both = zip_longest(_said(made), _said(wanted), fillvalue=(0, "/robot", (), ""))
-    other = next((one for one, two in both if one != two), None)
-    if other is None:
-        return ""
-    _, tag, values, text = other
-    words = " ".join((tag, *(f'{name}="{value}"' for name, value in values)))
-    return f"with {argument}:={TRIED_SPACE} it has <{words}>{text}"
+    other = first_difference(_as_read(made), _as_read(wanted))
+    return f"with {argument}:={TRIED_SPACE} it has {other}" if other else ""
 
 
-def _said(data: bytes) -> list[tuple[int, str, tuple[tuple[str, str], ...], str]]:
-    """Return depth, tag, attributes and text of each element: all that its readers see."""
-    return [
-        (
-            sum(1 for _ in it.iterancestors()),
-            str(it.tag),
-            tuple(sorted((str(name), str(value)) for name, value in it.attrib.items())),
-            "".join((it.text or "", *(one.tail or "" for one in it))).strip(),
-        )
-        for it in read_xml(data, "").iter("*")
-    ]
+def _as_read(data: bytes) -> bytes:
+    """Return a description as its readers see it: without comments, an element a line."""
+    root = read_xml(data, "")
+    etree.strip_tags(root, etree.Comment)
+    etree.indent(root)
+    return etree.tostring(root)
 
 
 def _changes(template: Template) -> Iterator[ValueEdit]:

@@ -21,6 +21,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.description.joining.part import faults
+from multibot_rewrite.description.reports.xacro_arguments import declared_in
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.expand import Expansion, expand_traced
@@ -186,12 +187,7 @@ def _values(sources: Mapping[str, bytes], given: Mapping[str, str]) -> Iterator[
     elements = [it for root in roots for it in root.iter("*")]
     others = list(_others(elements))
     words = set(chain.from_iterable(_compared(str(it)) for one in elements for it in one.values()))
-    # The arguments with their defaults; the first one counts.
-    defaults: dict[str, str] = {}
-    for it in elements:
-        if str(it.tag).endswith("xacro}arg"):
-            defaults.setdefault(it.get("name", ""), it.get("default", ""))
-    for name, default in defaults.items():
+    for name, default in declared_in(sources).items():
         if name in given:
             continue
         names = [name]

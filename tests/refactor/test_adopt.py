@@ -206,6 +206,11 @@ HANDED = {
         f'{WHEEL}<xacro:w prefix="$(arg prefix)left"/>',
         "prefix",
     ),
+    "a call that gives it another name": (
+        WHEEL.replace("prefix", "arm_id") + '<xacro:w arm_id="left"/>',
+        WHEEL.replace("prefix", "arm_id") + '<xacro:w arm_id="$(arg prefix)left"/>',
+        "prefix",
+    ),
     "a call without it": (
         WHEEL.replace('="prefix"', "=\"prefix:='a'\"") + "<xacro:w/>",
         WHEEL.replace('="prefix"', "=\"prefix:='a'\"") + '<xacro:w prefix="$(arg prefix)a"/>',

@@ -63,14 +63,22 @@ def test_names_of_arguments_are_those_that_people_use() -> None:
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        (b"/${namespace and namespace + '/'}demo", b"/demo", "<robotNamespace>/demo"),
-        (b'<link name="base"/>', b'<link name="top" x="1"/>', '<link name="top" x="1">'),
+        (
+            b"/${namespace and namespace + '/'}demo",
+            b"/demo",
+            "<robotNamespace>/demo</robotNamespace>",
+        ),
+        (b'<link name="base"/>', b'<link name="top" x="1"/>', '<link name="top" x="1"/>'),
         (b"<link name='last'/>", b"", "</robot>"),
-        (b"<legacyModeNS>true", b"<legacyModeNS>no", "<legacyModeNS>no"),
+        (
+            b"<legacyModeNS>true",
+            b"<legacyModeNS>no</legacyModeNS>",
+            "<legacyModeNS>no</legacyModeNS>",
+        ),
         # An element of another one, and one more.
-        (b"</plugin></gazebo>", b"</plugin><x/></gazebo>", "<x>"),
-        (b"</gazebo>", b'</gazebo><link name="more"/>', '<link name="more">'),
-        (b"</robot>", b"<link name='more'/></robot>", '<link name="more">'),
+        (b"</plugin></gazebo>", b"</plugin><x/></gazebo>", "<x/>"),
+        (b"</gazebo>", b'</gazebo><link name="more"/>', '<link name="more"/>'),
+        (b"</robot>", b"<link name='more'/></robot>", '<link name="more"/>'),
     ],
 )
 def test_what_is_otherwise_is_said(tmp_path: Path, old: bytes, new: bytes, said: str) -> None:
@@ -93,7 +101,7 @@ def test_it_is_tried_beside_a_prefix_too(tmp_path: Path) -> None:
     declared = b'<xacro:arg name="prefix" default=""/>'
     test = b"${'$(arg prefix)' != '' and namespace != ''}"
     bad = b'<xacro:if value="%s"><link name="odd"/></xacro:if>' % test
-    why = 'its ROS names are not verified: with namespace:=ns1 it has <link name="odd">'
+    why = 'its ROS names are not verified: with namespace:=ns1 it has <link name="odd"/>'
     tampered = verified(
         tmp_path,
         lambda it: it.replace(b"<link name='last'/>", declared + bad + b"<link name='last'/>"),

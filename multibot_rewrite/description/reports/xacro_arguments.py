@@ -149,7 +149,7 @@ def find_arguments(
     expand with these."""
     end = clock() + SECONDS
     read = read or expand_traced(path, read_file(path), given, None, reach)
-    declared = {**_declared(read.sources), **given}
+    declared = {**declared_in(read.sources), **given}
     plain = _parts(collect(read_document(read.data, path), tree))
     found: dict[str, Argument] = {}
     for name, default in [it for it in declared.items() if wanted(it[0])][:MOST]:
@@ -177,11 +177,11 @@ def find_arguments(
 def declared_arguments(path: str, given: Mapping[str, str], reach: Reach) -> Mapping[str, str]:
     """Return the arguments that a xacro declares with their defaults; none if it does not expand."""
     with suppress(InputError):
-        return _declared(expand_traced(path, read_file(path), given, None, reach).sources)
+        return declared_in(expand_traced(path, read_file(path), given, None, reach).sources)
     return {}
 
 
-def _declared(sources: Mapping[str, bytes]) -> dict[str, str]:
+def declared_in(sources: Mapping[str, bytes]) -> dict[str, str]:
     """Return the ``<xacro:arg>`` of all files with their defaults; the first one counts."""
     found: dict[str, str] = {}
     # YAML that an expression loads may be among them.
