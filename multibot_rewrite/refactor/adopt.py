@@ -240,8 +240,8 @@ class _Begun(NamedTuple):
     texts: Mapping[str, bytes]
     carriers: Collection[tuple[str, str]]
     bases: Sequence[Description]
-    found: Sequence[Description]
-    asked: Sequence[Sequence[ValueEdit]]
+    found: Sequence[Description] = ()
+    asked: Sequence[Sequence[ValueEdit]] = ()
 
     @property
     def tops(self) -> set[str]:
@@ -264,7 +264,8 @@ def _best(
     wrong: list[InputError] = []
     for in_calls in (True, False):
         try:
-            begun = _lacking(name, not argument, texts, sources.carriers(name), found, job)
+            begun = _Begun(name, not argument, texts, sources.carriers(name), found)
+            begun = _lacking(begun, job)
             begun = _with_calls(begun, sources, job) if in_calls else begun
             made.append(_with_namespace(begun, own, job))
         except InputError as error:
@@ -276,21 +277,14 @@ def _best(
     return max(made, key=lambda it: (len(it.verified), -sum(map(len, it.bare.values()))))
 
 
-def _lacking(
-    argument: str,
-    is_new: bool,
-    texts: Mapping[str, bytes],
-    carriers: Collection[tuple[str, str]],
-    bases: Sequence[Description],
-    job: _Job,
-) -> _Begun:
+def _lacking(begun: _Begun, job: _Job) -> _Begun:
     """Return what descriptions lack with the argument. Raises InputError for a new one that is in
     other values."""
-    found = [_again(it, texts, {argument: TRIED}, job) for it in bases]
-    every = [_compared(*pair) for pair in zip(bases, found, strict=True)]
-    if is_new and any(it.astray for it in every):
-        raise InputError(f"{job.folder}: {argument} would be elsewhere, too")
-    return _Begun(argument, is_new, texts, carriers, bases, found, [it.lacks for it in every])
+    found = [_again(it, begun.texts, {begun.argument: TRIED}, job) for it in begun.bases]
+    every = [_compared(*pair) for pair in zip(begun.bases, found, strict=True)]
+    if begun.is_new and any(it.astray for it in every):
+        raise InputError(f"{job.folder}: {begun.argument} would be elsewhere, too")
+    return begun._replace(found=found, asked=[it.lacks for it in every])
 
 
 def _compared(it: Description, other: Description) -> Compared:
@@ -300,7 +294,7 @@ def _compared(it: Description, other: Description) -> Compared:
 def _with_calls(begun: _Begun, sources: Sources, job: _Job) -> _Begun:
     """With the argument handed to those calls and properties where it reaches names alone. Raises
     InputError if there are none."""
-    argument, is_new, texts, *_ = begun
+    argument, _, texts, *_ = begun
     places = [it for it in sources.places if it.may_be_prefix]
     # Those outside of macros are first.
     outside = sorted(places, key=lambda it: bool(sources.macro_at(it.spot)))
@@ -323,7 +317,7 @@ def _with_calls(begun: _Begun, sources: Sources, job: _Job) -> _Begun:
     edits += [*declared(texts, edits, begun.tops, argument, False)]
     texts = {**texts, **edited(texts, edits)}
     bases = [it._replace(read=_again(it, texts, {}, job).read) for it in begun.bases]
-    return _lacking(argument, is_new, texts, carriers, bases, job)
+    return _lacking(begun._replace(texts=texts, carriers=carriers, bases=bases), job)
 
 
 def _again(

@@ -320,6 +320,9 @@ def test_what_refers_to_files_refers_to_the_new_ones(tmp_path: Path) -> None:
     assert split(made.data) == {
         Path(str(it.description)).stem: Path(str(it.description)).read_bytes() for it in given
     }
+    gone = made.data.replace(b'<mesh filename="../hand/m/a&amp;b.stl"/>', b"")
+    with pytest.raises(InputError, match="behind a comment 'multibot was' was edited by hand"):
+        split(gone)
     assert [it.text for it in etree.fromstring(join(given).data).iter("parameters")] == [
         str(tmp_path / "arm/c.yaml"),
         str(tmp_path / "hand/c.yaml"),

@@ -70,11 +70,7 @@ def test_names_of_arguments_are_those_that_people_use() -> None:
         ),
         (b'<link name="base"/>', b'<link name="top" x="1"/>', '<link name="top" x="1"/>'),
         (b"<link name='last'/>", b"", "</robot>"),
-        (
-            b"<legacyModeNS>true",
-            b"<legacyModeNS>no</legacyModeNS>",
-            "<legacyModeNS>no</legacyModeNS>",
-        ),
+        (b"<legacyModeNS>true", b"<legacyModeNS>no", "<legacyModeNS>no</legacyModeNS>"),
         # An element of another one, and one more.
         (b"</plugin></gazebo>", b"</plugin><x/></gazebo>", "<x/>"),
         (b"</gazebo>", b'</gazebo><link name="more"/>', '<link name="more"/>'),

@@ -163,14 +163,6 @@ class Output(NamedTuple):
     path: str = ""
     controllers: str = ""
 
-    def folder_of(self, file: str) -> str:
-        """Return how the folder of a part's file is called from that of the output."""
-        if not self.path or file.startswith("<"):
-            return ""
-        above = os.path.dirname(os.path.abspath(self.path))
-        path = os.path.relpath(os.path.dirname(os.path.abspath(file)), above)
-        return "" if path == os.curdir else f"{path}/"
-
 
 NOWHERE = Output()
 _FILES = "parameters"
@@ -181,7 +173,10 @@ def referring(document: Document, own: Iterable[str], output: Output) -> bytes:
     front, and its ``own`` files of controllers are the one file of all. Source:
     gz_ros2_control_plugin.cpp (``<parameters>`` is a path)."""
     spans = Spans(document)
-    folder, names = output.folder_of(document.file), {os.path.basename(it) for it in own}
+    names, folder = {os.path.basename(it) for it in own}, os.curdir
+    if output.path and not document.file.startswith("<"):
+        here, there = (os.path.dirname(os.path.abspath(it)) for it in (document.file, output.path))
+        folder = os.path.relpath(here, there)
     edits: list[Edit] = []
     for element in document.root.iter("mesh", "texture", _FILES):
         is_files = element.tag == _FILES
@@ -189,8 +184,9 @@ def referring(document: Document, own: Iterable[str], output: Output) -> bytes:
         if is_files:
             new = output.controllers if os.path.basename(path) in names else ""
         else:
-            new = "" if "://" in path or os.path.isabs(path) else f"{folder}{path}"
-        if path and new and new != path:
+            is_moved = path and "://" not in path and folder != os.curdir
+            new = os.path.join(folder, path) if is_moved else ""
+        if new and new != path:
             edit = kept.referring(spans, element, new.translate(ESCAPES).encode())
             edits += [edit] if edit else []
     return _edited(document.source, edits)

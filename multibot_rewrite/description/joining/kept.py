@@ -174,7 +174,8 @@ def _end(spans: Spans, found: re.Match[bytes], file: str) -> int:
     if found[1] == b"0":
         return found.end()
     element = spans.first_from(found.end())
-    if element is None:
+    start = found.end() if element is None else spans.start_of(element)
+    if element is None or spans.document.source[found.end() : start].strip():
         raise InputError(f"{file}: what stood behind a comment 'multibot was' was edited by hand")
     return spans.end_of(element)
 
