@@ -25,8 +25,9 @@ from multibot_rewrite.companions.joined import (
 from multibot_rewrite.description.checks.verdict import not_verified
 from multibot_rewrite.description.joining.from_file import plain_text, plain_texts
 from multibot_rewrite.description.joining.join import GivenPart, JoinedText, Output, join_texts
+from multibot_rewrite.description.joining.kept import is_joined_whole
 from multibot_rewrite.description.joining.part import Part, ReadPart, prefixing
-from multibot_rewrite.description.joining.second_reading import split_text
+from multibot_rewrite.description.joining.second_reading import Mounted, split_text
 from multibot_rewrite.description.joining.semantic import (
     JoinedSemantics,
     PartSemantics,
@@ -104,7 +105,8 @@ def join(
         for it, text in zip(given, texts, strict=True)
         for name in (text.known.lacks(sorted(it.xacro_args)) if text.known else ())
     )
-    told = () if output else _relative(made)
+    # What is joined already keeps its paths.
+    told = _relative(made.parts[: is_joined_whole(texts[0].data)] if output else made.parts)
     return found._replace(notes=(*unread, *told, *found.notes))
 
 
@@ -162,9 +164,9 @@ def split(source: Source, *, vocabulary: Iterable[str] = (), distro: str = "") -
     return split_text(read_in.data, read_in.file, tree)
 
 
-def _relative(made: JoinedText) -> Iterator[str]:
+def _relative(parts: Iterable[Mounted]) -> Iterator[str]:
     """Yield notes on meshes and pictures that are looked up from the folder of a part's file."""
-    for it in made.parts:
+    for it in parts:
         root, file = it.part.inventory.document.root, it.part.file
         names = (one.get("filename", "") for one in root.iter("mesh", "texture"))
         found = [name for name in names if name and "://" not in name and name[0] != "/"]

@@ -303,10 +303,9 @@ def _with_calls(begun: _Begun, sources: Sources, job: _Job) -> _Begun:
     seen: set[str] = set()
     astray: set[str] = set()
     for it, asked in zip(begun.found, begun.asked, strict=True):
-        if marks and not it.arguments:
-            other = _again(it, {**texts, **marked}, {argument: TRIED}, job).document
-            seen |= {one.decode() for one in MARK.findall(other.source)}
-            astray |= compared(it.document, asked, other, MARK).astray
+        other = _again(it, {**texts, **marked}, {argument: TRIED}, job).document
+        seen |= {one.decode() for one in MARK.findall(other.source)}
+        astray |= compared(it.document, asked, other, MARK).astray
     chosen = [it for mark, it in marks.items() if mark in seen - astray]
     if "" in astray or not chosen:
         raise InputError(f"{job.folder}: no call takes the argument alone")

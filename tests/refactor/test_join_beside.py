@@ -295,7 +295,7 @@ SYSTEM = (
     '<ros2_control name="s" type="system"><hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin>'
     '</hardware><joint name="{}"><command_interface name="position"/></joint></ros2_control>'
     '<gazebo><plugin filename="libgz_ros2_control-system.so" '
-    'name="gz_ros2_control::GazeboSimROS2ControlPlugin"><parameters>{}</parameters></plugin></gazebo>'
+    'name="gz_ros2_control::GazeboSimROS2ControlPlugin"><parameters> {} </parameters></plugin></gazebo>'
     "</robot>"
 )
 
@@ -313,7 +313,7 @@ def test_what_refers_to_files_refers_to_the_new_ones(tmp_path: Path) -> None:
         given.append(Part(str(path), at, prefix=f"{name}_", controllers=[str(controllers)]))
     made = join(given, output=str(tmp_path / "o/robot.urdf"))
     root = etree.fromstring(made.data)
-    files = [it.text for it in root.iter("parameters")]
+    files = [(it.text or "").strip() for it in root.iter("parameters")]
     assert files == [str(tmp_path / "o/robot_controllers.yaml")]
     meshes = [it.get("filename") for it in root.iter("mesh")]
     assert meshes == ["../arm/m/a&b.stl", "../hand/m/a&b.stl"]
@@ -323,10 +323,29 @@ def test_what_refers_to_files_refers_to_the_new_ones(tmp_path: Path) -> None:
     gone = made.data.replace(b'<mesh filename="../hand/m/a&amp;b.stl"/>', b"")
     with pytest.raises(InputError, match="behind a comment 'multibot was' was edited by hand"):
         split(gone)
-    assert [it.text for it in etree.fromstring(join(given).data).iter("parameters")] == [
+    plain = etree.fromstring(join(given).data).iter("parameters")
+    assert [(it.text or "").strip() for it in plain] == [
         str(tmp_path / "arm/c.yaml"),
         str(tmp_path / "hand/c.yaml"),
     ]
+
+
+def test_paths_of_a_text_and_of_what_is_joined_already_stay(tmp_path: Path) -> None:
+    text = ARM.replace('<box size="1 1 1"/>', '<mesh filename="m/a.stl"/>', 1)
+    for name in ("arm", "hand"):
+        (tmp_path / f"{name}.urdf").write_text(text)
+    parts = [Part(str(tmp_path / "arm.urdf")), Part(text, "tool", prefix="b_", name="b")]
+    made = join(parts, output=str(tmp_path / "o/two.urdf"))
+    (tmp_path / "o").mkdir()
+    (tmp_path / "o/two.urdf").write_bytes(made.data)
+    more = Part(str(tmp_path / "hand.urdf"), "b_tool", prefix="c_")
+    whole = join(
+        [Part(str(tmp_path / "o/two.urdf")), more], output=str(tmp_path / "p/q/three.urdf")
+    )
+    meshes = [it.get("filename") for it in etree.fromstring(whole.data).iter("mesh")]
+    assert meshes == ["../m/a.stl", "m/a.stl", "../../m/a.stl"]
+    assert [it for it in whole.notes if "two.urdf: '../m/a.stl' is looked up from the folder" in it]
+    assert set(split(whole.data).values()) == {text.encode()}
 
 
 def test_both_parts_move_by_what_the_joined_controllers_command(tmp_path: Path) -> None:
@@ -350,7 +369,8 @@ def test_both_parts_move_by_what_the_joined_controllers_command(tmp_path: Path) 
     commanded = {it for one in sections.values() for it in one["ros__parameters"].get("joints", ())}
     root = etree.fromstring(made.data)
     assert commanded == {it.get("name") for it in root.iterfind("ros2_control/joint")}
-    assert [it.text for it in root.iter("parameters")] == [str(tmp_path / "robot_controllers.yaml")]
+    files = [(it.text or "").strip() for it in root.iter("parameters")]
+    assert files == [str(tmp_path / "robot_controllers.yaml")]
     for it in (*root.findall("gazebo"), *root.findall("ros2_control")):
         root.remove(it)
     model = mujoco.MjModel.from_xml_string(etree.tostring(root).decode())
