@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+import nav2_graphs
 import pytest
 from graph_calls import diagnose, seen_plan
 from graph_examples import read_example, read_looks, read_system
@@ -81,6 +82,13 @@ def test_a_circle_of_one_robot_explains_nothing_of_another() -> None:
         ),
     )
     assert [(it.code, it.robot) for it in told] == [("MG401", "robot2"), ("MG403", "robot1")]
+
+
+def test_a_topic_of_one_robot_does_not_explain_a_missing_node_of_another() -> None:
+    plan = nav2_graphs.fleet(3, 2)
+    graph = nav2_graphs.moved(nav2_graphs.healthy(plan), "/robot1/topic1", "/topic1")
+    told = nav2_graphs.scene(plan, nav2_graphs.without_node(graph, "/robot2/driver")).findings
+    assert {it.robot for it in told if it.code == "MG101"} == {"robot2"}
 
 
 def test_data_of_two_robots_on_one_topic_explains_who_misses_it() -> None:
