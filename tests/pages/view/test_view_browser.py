@@ -165,5 +165,6 @@ def test_the_robots_head_a_report(chromium: webdriver.Chrome, tmp_path: Path) ->
     WebDriverWait(chromium, 30).until(
         lambda it: it.find_element(By.TAG_NAME, "body").get_attribute("data-ready")
     )
-    assert chromium.execute_script(COLOURS) > 20
+    # The frame may be drawn a moment after it is ready.
+    WebDriverWait(chromium, 30).until(lambda it: it.execute_script(COLOURS) > 20)
     assert [it for it in chromium.get_log("browser") if it["level"] == "SEVERE"] == []
