@@ -312,22 +312,48 @@ def test_a_manager_of_a_plugin_is_there_beside_another_description(tmp_path: Pat
         assert (found.level, found.robots) == ("error", ("r1",)), others
 
 
+LOADS = """
+from launch import LaunchDescription
+from launch_ros.actions import ComposableNodeContainer, LoadComposableNodes, Node
+from launch_ros.descriptions import ComposableNode
+def generate_launch_description():
+    box = dict(package='rclcpp_components', executable='component_container', name='box')
+    part = ComposableNode(package='image_proc', plugin='image_proc::RectifyNode', name='rectify')
+    return LaunchDescription([{}])
+"""
+
+
 @pytest.mark.more
 def test_what_a_launch_file_loads_or_brings_up_is_reached_from_one_domain(tmp_path: Path) -> None:
     """Components are loaded by a service, slam_toolbox is activated by one; processes need none."""
     (tmp_path / "robot.urdf").write_text('<robot name="r"><link name="base_link"/></robot>')
+    box = "ComposableNodeContainer(**box, namespace='', composable_node_descriptions=[{}])"
+    later = "LoadComposableNodes(target_container='box', composable_node_descriptions=[part])"
+    for name, actions in (
+        ("part", box.format("part")),
+        ("part_later", f"{box.format('')}, {later}"),
+    ):
+        (tmp_path / f"{name}.launch.py").write_text(LOADS.format(actions))
+    (tmp_path / "box.launch.py").write_text(LOADS.format("Node(**box)"))
     head = "description: robot.urdf\ndistro: jazzy\nsimulator: none\n"
     for stack, numbers, told in (
-        ("nav2_composed", (11, 12), True),
-        ("slam_toolbox", (11, 12), True),
-        ("slam_toolbox", (11, 11), False),
-        ("nav2", (11, 12), False),
+        ("stack: nav2_composed", (11, 12), True),
+        ("stack: slam_toolbox", (11, 12), True),
+        ("stack: slam_toolbox", (11, 11), False),
+        ("stack: nav2", (11, 12), False),
+        ("launch: part.launch.py", (11, 12), True),
+        ("launch: part_later.launch.py", (11, 12), True),
+        ("launch: part_later.launch.py", (11, 11), False),
+        ("launch: box.launch.py", (11, 12), False),
     ):
         domains = "domains: {{robot1: {}, robot2: {}}}\n".format(*numbers)
-        (tmp_path / "fleet.yaml").write_text(f"{head}stack: {stack}\n{domains}{SMALL}")
+        (tmp_path / "fleet.yaml").write_text(f"{head}{stack}\n{domains}{SMALL}")
         made = built_fleet(tmp_path / "fleet.yaml")
         found = [it for it in made.findings if it.code == "MF849"]
         assert [it.line for it in found] == [5] * told, stack
+        # The class of this one is known from the launch file alone.
+        loaded = {it.plugin for it in made.starts.every}
+        assert ("image_proc::RectifyNode" in loaded) == ("part" in stack), stack
 
 
 NODES = """\
