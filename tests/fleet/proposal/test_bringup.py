@@ -607,7 +607,9 @@ def test_what_a_launch_file_starts_is_named_where_its_description_cannot_be_read
     spawner = (
         "Node(package='controller_manager', executable='spawner', arguments=['left', 'right'])"
     )
-    fails = "OpaqueFunction(function=lambda _: [Node(package=open('/x').read(), executable='hidden')])"
+    fails = (
+        "OpaqueFunction(function=lambda _: [Node(package=open('/x').read(), executable='hidden')])"
+    )
     actions = f"{READS.format('other', 'example.urdf.xacro')}; {DRIVER}; {spawner}; {fails}"
     (file,) = write(robots / "other/launch", {"up": actions})
     assert main(["init", str(robots), "--yes", "--launch", file, "-o", str(robots / "f.yaml")]) == 2
