@@ -470,6 +470,25 @@ def test_a_package_that_a_function_misses_costs_its_part(tmp_path: Path) -> None
     assert ["acme_files" in it.message for it in graph.notes] == [True] and not graph.whole
 
 
+def test_a_package_that_a_file_goes_on_without_is_named(tmp_path: Path) -> None:
+    """What it starts with that package alone is in no graph."""
+    tried = """from ament_index_python.packages import get_package_share_directory as share
+try:
+    share("acme_files")
+    MORE = [Node(package="acme_files", executable="e")]
+except LookupError:
+    MORE = []
+"""
+    path = tmp_path / "bringup.launch.py"
+    path.write_text(
+        HEAD.replace("def generate_launch_description", f"{tried}\ndef generate_launch_description")
+        + '        *MORE, Node(package="acme", executable="d"),\n    ])\n'
+    )
+    graph = launch_graph(LaunchOrder(str(path)))
+    assert [it.executable for it in graph.nodes] == ["d"] and not graph.whole
+    assert ["package 'acme_files' is not installed" in it.message for it in graph.notes] == [True]
+
+
 def test_what_is_missing_costs_its_part(tmp_path: Path) -> None:
     """Packages and Python modules that are nowhere: the rest of the launch file is read."""
     (tmp_path / "bringup.launch.py").write_text(
