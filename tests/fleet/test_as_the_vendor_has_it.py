@@ -339,6 +339,79 @@ def test_a_row_of_his_bridge_that_reads_nothing_is_told_and_built(
     assert "warning: MB879" in told and "/camera/image_raw" in told
 
 
+HEADS = """\
+from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
+from launch.conditions import IfCondition
+from launch.substitutions import LaunchConfiguration
+from launch_ros.substitutions import FindPackageShare
+"""
+OFF = """        DeclareLaunchArgument('nav', default_value='false'),
+        Node(package='nav2_controller', executable='controller_server',
+             condition=IfCondition(LaunchConfiguration('nav'))),
+"""
+ELSEWHERE = """        Node(package='controller_manager', executable='ros2_control_node',
+             parameters=[[FindPackageShare('acme_config'), '/controllers.yaml']]),
+        Node(package='controller_manager', executable='spawner', arguments=['wheels']),
+"""
+LOST = "        IncludeLaunchDescription(str(ROBOT.parent / 'lost.launch.py')),\n"
+
+
+@pytest.mark.parametrize("more", [OFF, ELSEWHERE, LOST])
+def test_what_is_off_or_elsewhere_is_no_fault_of_a_build(more: str, fleet: Path) -> None:
+    """The costmaps of what an argument keeps off do not run, types may be in a file that is not here,
+    and a file that is lost is named."""
+    (fleet.parent / "robot.urdf").write_text(TWO_LINKS)
+    (fleet.parent / "up.launch.py").write_text(
+        HEADS + LAUNCH.replace("        ekf('ekf_global'),\n", more)
+    )
+    assert main(["build", str(fleet), "-o", str(fleet.parent / "out")]) == 0
+
+
+GZ_PLUGIN = '<gazebo><plugin filename="gz-sim-{0}-system" name="gz::sim::systems::{1}">{2}'
+ODOMETRY = GZ_PLUGIN.format(
+    "odometry-publisher", "OdometryPublisher", "<robot_base_frame>base_link</robot_base_frame>{}"
+)
+PLACED = (
+    CAMERA.replace(
+        '<link name="base_link">',
+        '<link name="dummy"/><joint name="d" type="fixed"><parent link="dummy"/>'
+        '<child link="base_link"/></joint><link name="base_link">',
+    ),
+    CAMERA,
+)
+
+
+ROW = "- {ros_topic_name: tf, gz_topic_name: tf, ros_type_name: tf2_msgs/msg/TFMessage,"
+ROW += " gz_type_name: gz.msgs.Pose_V, direction: GZ_TO_ROS}\n"
+
+
+@pytest.mark.parametrize("has_row", [False, True])
+def test_a_bridge_of_his_gets_no_transforms_that_he_does_without(
+    has_row: bool, fleet: Path
+) -> None:
+    """He bridges none of a frame that has a parent in the description, or one of two gz topics."""
+    plugin = ODOMETRY.format("<tf_topic>/tf</tf_topic>" if has_row else "") + "</plugin></gazebo>"
+    drive = GZ_PLUGIN.format(
+        "diff-drive", "DiffDrive", "<child_frame_id>base_link</child_frame_id>"
+    )
+    more = f"{plugin}{drive}</plugin></gazebo>" if has_row else plugin
+    text = PLACED[has_row].replace("</robot>", f"{more}</robot>")
+    (fleet.parent / "robot.urdf").write_text(text)
+    head, _, _ = LAUNCH.partition("        ekf('ekf_local'),\n")
+    seen = SEEN.replace(
+        "/camera/image_raw@sensor_msgs/msg/Image[gz.msgs.Image", "/x@std_msgs/msg/Bool"
+    )
+    if has_row:
+        (fleet.parent / "b.yaml").write_text(ROW)
+        before, _, after = seen.partition("arguments=['/x@std_msgs/msg/Bool']")
+        seen = f"{before}parameters=[{{'config_file': str(ROBOT.parent / 'b.yaml')}}]{after}"
+        fleet.write_text(f"{fleet.read_text()}related_files: {{bridge: [b.yaml]}}\n")
+    (fleet.parent / "up.launch.py").write_text(f"{head}{seen}    ])\n")
+    fleet.write_text(fleet.read_text().replace("simulator: none", "simulator: gazebo"))
+    assert main(["build", str(fleet), "-o", str(fleet.parent / "out")]) == 0
+    assert "Pose_V" not in (fleet.parent / "out/robot1/bridge.yaml").read_text()
+
+
 def test_what_the_vendor_is_warned_of_excuses_no_error(
     fleet: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -31,6 +31,7 @@ from multibot_rewrite.fleet.file.simulator_switch import loads_hardware, switch_
 from multibot_rewrite.fleet.fleet import known_nodes
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.launch_file import LAUNCH
+from multibot_rewrite.fleet.launch.launched_robot import launch_of
 from multibot_rewrite.fleet.outputs.commands_file import COMMANDS
 from multibot_rewrite.knowledge.nodl.lookup import declared
 from multibot_rewrite.knowledge.parameters import load_known_nodes
@@ -44,6 +45,7 @@ from multibot_rewrite.producers.launch.spawners import NO_MANAGER
 from multibot_rewrite.rules.check import inconclusive_where_in_doubt, judge
 from multibot_rewrite.rules.files.bridges import no_gz_topic
 from multibot_rewrite.rules.launch.judge import as_sure, judge_launch, placed
+from multibot_rewrite.rules.launch.started import no_joints, no_type
 from multibot_rewrite.rules.system.unsent import nothing_known_sends
 from multibot_rewrite.system.index import index
 from multibot_rewrite.system.ownership import Whose, whose_by_plan
@@ -111,6 +113,10 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
         told = (*wrong, *made.findings, *plan.fleet.table.problems)
         # Rows of bridges were compared with the sources: what these have is a warning.
         codes = {it.code for it in told if it.level == ERROR or it.code == no_gz_topic.code}
+        # What a parameter file that is not here sets is in no written file.
+        graphs = (launch_of(it.spec.launch, it.spec.words[0]) for it in plan.robots)
+        if any(one.parameters for it in graphs for one in it.notes):
+            codes |= {no_type.code, no_joints.code}
         by_plan = whose_by_plan(made.planned)
         # What planned nodes give that another launch file starts.
         elsewhere = {it.child for it in made.planned.edges if not {*it.publishers} <= started}

@@ -21,6 +21,7 @@ from multibot_rewrite.fleet.outputs.output_file import (
     path_for,
 )
 from multibot_rewrite.fleet.outputs.spawn import simulators
+from multibot_rewrite.fleet.robots.fitting.fitted import brings_transforms
 from multibot_rewrite.fleet.robots.member import line_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_groups import group_robots
@@ -55,8 +56,11 @@ def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
     """Return every bridge file of a fleet. Raises InputError for a bridge file that cannot be read
     or rewritten."""
     fleet = plan.fleet
+    # A vendor who bridges transforms bridges all of them.
+    own = (it.spec for it in plan.robots if it.spec.launch and brings_transforms(it.spec))
+    placed = {*fleet.placed, *(it.namespace for it in own)}
     topics, unbridged = bridged_topics(
-        fleet.inventories, fleet.naming, fleet.models, fleet.table.runs, fleet.placed
+        fleet.inventories, fleet.naming, fleet.models, fleet.table.runs, placed
     )
     # The groups of robots with their bridge files by path, each rewritten once.
     groups = []

@@ -167,7 +167,9 @@ def robot_nodes(
     named = _made_by_arguments(written, given, topics) if topics else written
     marked, shared = apart(tuple(named), file)
     # A vendor who bridges none of two that place the robot has a node that does.
-    sends = sends_too(nodes, free, has.sent) or (bool(launched) and have_two_parents(has.sent))
+    held = {it.get("link", "") for it in source.root.iterfind("joint/child")} if launched else ()
+    two = bool(launched) and have_two_parents(has.sent)
+    sends = sends_too(nodes, free, has.sent) or two or any(it.child in held for it in has.sent)
     placing = not brings_transforms(spec) and sends
     evidence = RobotEvidence(
         given,

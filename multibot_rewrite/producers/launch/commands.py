@@ -29,7 +29,7 @@ from typing import Any, NamedTuple
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.description.sources.expand import expand
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.producers.launch.describe import text
+from multibot_rewrite.producers.launch.describe import OFF, text
 from multibot_rewrite.producers.launch.door import of_launch
 from multibot_rewrite.producers.launch.handed_on import DESCRIPTION
 from multibot_rewrite.producers.launch.records import FileRead
@@ -160,8 +160,11 @@ def faults(context: Any) -> list[str]:
 
 
 def _performed(self: Any, context: Any, lines: list[str]) -> str:
-    lines.append(text(self.command, context))
-    found = output_of(lines[-1])
+    line = text(self.command, context)
+    # What is kept off reads nothing of this robot.
+    if OFF not in context.launch_configurations:
+        lines.append(line)
+    found = output_of(line)
     if found.fault and found.fault not in faults(context):
         context.extend_globals({_FAULTS: [*faults(context), found.fault]})
     return found.text

@@ -66,6 +66,10 @@ _FLAG = re.compile(r"--?([a-zA-Z]\w*)=(.*)|--?([a-zA-Z]\w*)", re.DOTALL)
 _OF_PLUGIN = re.compile(r"<parameters>\s*([^<\s]+)\s*</parameters>")
 
 
+# The launch configuration of what an argument keeps off.
+OFF = "multibot_off"
+
+
 class Visit(NamedTuple):
     """A visit: the context, what has been found, the files that descriptions name, what an event or a
     timer starts with its visit and the locals that it keeps, the place of what is visited, arguments

@@ -390,13 +390,14 @@ def _is_left(node: NodeFacts, launched: Mapping[str, NodeFacts]) -> bool:
 def _hosted(
     pairs: Iterable[_Pair], known: Mapping[str, NodeFacts], there: Collection[str]
 ) -> Iterator[NodeFacts]:
-    """Yield the nodes that run inside launched ones, such as costmaps."""
-    origins = {it.facts.known: it.facts.origin for it in pairs}
+    """Yield the nodes that run inside launched ones, such as costmaps: where these run."""
+    hosts = {it.facts.known: it.facts for it in pairs}
     for node in known.values():
-        if node.host and node.host in origins and node.host != MANAGER and node.name not in there:
+        if node.host and node.host in hosts and node.host != MANAGER and node.name not in there:
             own = programs().names.get(f"{node.package}/{node.name}", node.name)
             known_as = node.name if own != node.name else node.known
-            yield node._replace(name=own, known=known_as, origin=origins[node.host])
+            origin, when = hosts[node.host].origin, node.when or hosts[node.host].when
+            yield node._replace(name=own, known=known_as, origin=origin, when=when)
 
 
 def _controllers(

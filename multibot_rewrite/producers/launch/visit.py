@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 
 from multibot_rewrite.planning.start import Switch, holds
 from multibot_rewrite.producers.launch.describe import (
+    OFF,
     Visit,
     component,
     is_wanted,
@@ -119,7 +120,7 @@ def _is_kept_off(entity: Any, here: Visit, switch: Switch) -> bool:
     context._push_launch_configurations()
     context._push_environment()
     try:
-        context.launch_configurations[switch.name] = value
+        context.launch_configurations.update({switch.name: value, OFF: "true"})
         visit_all(entity, apart)
     except RecursionError:
         return False

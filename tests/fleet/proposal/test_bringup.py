@@ -473,6 +473,19 @@ def test_a_bad_launch_file_that_is_named_is_one_line(kind: str, package: Path, c
     assert not (package / "made").exists()
 
 
+def test_a_description_of_what_an_argument_keeps_off_is_not_the_robots(package: Path) -> None:
+    robot, other = (package / "urdf" / it for it in ("rover.urdf.xacro", "other.urdf.xacro"))
+    other.write_text(XACRO.replace("</robot>", '<link name="more"/></robot>'))
+    given = ", parameters=[{{'robot_description': Command(['xacro ', '{}'])}}]"
+    off = RSP.format(
+        given.format(other) + ", condition=IfCondition(LaunchConfiguration('use_sim'))"
+    )
+    (file,) = write(
+        package / "launch", {"up": f"{SWITCH}; {off}; {RSP.format(given.format(robot))}"}
+    )
+    assert fleet_of(package, "--launch", file)["description"] == "rover/urdf/rover.urdf.xacro"
+
+
 def test_a_bad_launch_file_is_named_in_the_fleet_file(package: Path) -> None:
     """The others are read all the same."""
     write(package / "launch", {"up": f"{PUBLISHER}; {DRIVER}"})
