@@ -3,8 +3,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import Finding
@@ -49,9 +48,8 @@ from multibot_rewrite.fleet.robots.simulators import (
     note,
     without_world_systems,
 )
+from multibot_rewrite.planning.plan import words_of
 from multibot_rewrite.planning.way_checks import UNREACHABLE_NAME
-from multibot_rewrite.system.coverage import Coverage, coverage
-from multibot_rewrite.system.records import System
 
 
 class FleetPlan(NamedTuple):
@@ -82,31 +80,9 @@ class FleetPlan(NamedTuple):
 
     @property
     def words(self) -> dict[str, str]:
-        """Return the words that stand for robots in texts, each with the name of its robot: the names
-        first; another word only where it stands for one robot."""
-        specs = [it.spec for it in self.robots]
-        names = {it.name: it.name for it in specs}
-        others = {word: it.name for it in specs for word in (it.namespace, it.tag, it.model)}
-        robots = Counter(word for it in specs for word in {it.namespace, it.tag, it.model})
-        return names | {
-            it: name for it, name in others.items() if robots[it] == 1 and it not in names
-        }
-
-    def with_names(self, findings: Iterable[Finding]) -> Iterator[Finding]:
-        """Yield the findings with the names of robots; about nodes and frames they have namespaces."""
-        names = self._names()
-        for it in findings:
-            robots = tuple(names.get(one, one) for one in it.robots) if it.robot else it.robots
-            yield it._replace(robot=names.get(it.robot, it.robot), robots=robots)
-
-    def held(self, planned: System) -> Coverage:
-        """Return how much the plan holds, with the names of robots."""
-        names, all_held = self._names(), coverage(planned)
-        rows = (it._replace(robot=names.get(it.robot, it.robot)) for it in all_held.robots)
-        return all_held._replace(robots=tuple(rows))
-
-    def _names(self) -> Mapping[str, str]:
-        return {it.spec.namespace: it.spec.name for it in self.robots}
+        """Return the words that stand for robots in texts, each with the name of its robot."""
+        specs = (it.spec for it in self.robots)
+        return words_of({it.name: (it.namespace, it.tag, it.model) for it in specs})
 
 
 def plan_fleet(
@@ -191,16 +167,17 @@ def _fleet(
     fleet = merge(fleets)
     members = [it.member for it in robots]
     written = {it.spec.namespace: it.written for it in robots}
-    domains = {it.robot: it.number for it in file.apart.domains}
-    own_domains = [it.number for it in file.apart.domains if it.robot]
+    domains = file.apart.numbers
+    own_domains = [number for robot, number in domains.items() if robot]
     never_meet = bool(own_domains) and len({*own_domains}) == len(own_domains)
     table = fleet.table
-    met = (*table.problems, *robots_meet(table, members, naming, written, domains))
+    said = (it._replace(robot=fleet.name(it.robot)) for it in table.problems)
+    met = (*said, *robots_meet(table, members, naming, written, domains))
     every = (it for it in met if it.code != UNREACHABLE_NAME.code or not never_meet)
     simulated = [it.member for it in robots if is_simulated(it)]
-    said = [it.member for it in robots if is_said(it)]
+    by_file = [it.member for it in robots if is_said(it)]
     own = [it.member for it in robots if it.spec.launch]
-    wrong = wrong_in_descriptions(members, file.definitions, simulated, said, own)
+    wrong = wrong_in_descriptions(members, file.definitions, simulated, by_file, own)
     told = (*declared_twice(robots, naming, met), *other_manager(robots, table), *wrong)
     problems = tuple(dict.fromkeys((*every, *told, *notes)))
     return fleet._replace(table=table._replace(problems=problems))
