@@ -12,6 +12,9 @@ from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import facts_of_release
 from multibot_rewrite.base.wording import plural
+from multibot_rewrite.checks.build import make_outputs
+from multibot_rewrite.checks.judged_plan import plan_fleet
+from multibot_rewrite.checks.read_back import read_back
 from multibot_rewrite.cli.fleet import note_interfaces
 from multibot_rewrite.cli.folders import change_folder, check_inside, clear_leftovers, locked
 from multibot_rewrite.cli.output import detail, note, print_lines, say
@@ -22,20 +25,18 @@ from multibot_rewrite.cli.walk import check_link, is_same_file
 from multibot_rewrite.description.checks.meeting import not_verified
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.sources.release_said import MANIFEST
-from multibot_rewrite.fleet.build import (
+from multibot_rewrite.fleet.file.fleet_file import input_files, read_fleet
+from multibot_rewrite.fleet.file.robot_choice import Choice
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.launch.launch_file import LAUNCH
+from multibot_rewrite.fleet.outputs.manifest import (
     NOTE,
     OutputChanges,
     hash_of,
-    make_outputs,
     manifest,
     output_changes,
     read_manifest,
 )
-from multibot_rewrite.fleet.checks.read_back import read_back
-from multibot_rewrite.fleet.file.fleet_file import input_files, read_fleet
-from multibot_rewrite.fleet.file.robot_choice import Choice
-from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
-from multibot_rewrite.fleet.launch.launch_file import LAUNCH
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.system.coverage import Coverage
 

@@ -18,7 +18,7 @@ from multibot_rewrite.cli.output import note
 from multibot_rewrite.cli.report import check_report, chosen
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.fleet.file.simulator_switch import MOST, is_called_as_switch
-from multibot_rewrite.fleet.file.system_sources import launched_by
+from multibot_rewrite.library.systems import launched_by
 from multibot_rewrite.lint.launched import named_findings
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.launch.findings import not_read

@@ -12,6 +12,7 @@ from multibot_rewrite.base.config import configured_definitions
 from multibot_rewrite.base.file_kinds import DESCRIPTIONS, refuse_others
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import release_doubt
+from multibot_rewrite.checks.judged_plan import make_fleet
 from multibot_rewrite.cli.output import note
 from multibot_rewrite.cli.report import About, check_report, chosen, report_beside
 from multibot_rewrite.cli.usage import (
@@ -25,7 +26,7 @@ from multibot_rewrite.cli.usage import (
 )
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.fleet.fleet import Fleet, make_fleet
+from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.knowledge.nodl.lookup import NO_DOCUMENTS, SUFFIXES
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.launch.records import LaunchOrder, launch_order, orders_in_words
@@ -72,13 +73,13 @@ def note_interfaces(options: argparse.Namespace, facts: Iterable[NodeFacts]) -> 
 
 
 def _from_file(options: argparse.Namespace) -> Fleet:
-    from multibot_rewrite.fleet.checks.closed_plan import closed_plan
+    from multibot_rewrite.checks.closed_plan import closed_plan
+    from multibot_rewrite.checks.judged_plan import plan_fleet
     from multibot_rewrite.fleet.file.fleet_file import (  # one description needs none of it
         input_files,
         read_fleet,
     )
     from multibot_rewrite.fleet.file.robot_choice import Choice
-    from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
     choice = Choice(number=asked_number(options))
     file = read_fleet(options.input, options.distro or "", os.environ, choice)

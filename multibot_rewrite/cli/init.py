@@ -24,22 +24,22 @@ from multibot_rewrite.cli.output import STANDARD, deliver, detail, goes_to_file,
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.usage import asked_number, plain_words, xacro_args
 from multibot_rewrite.description.sources.expand import kept_expansions
-from multibot_rewrite.fleet.proposal.fleet_text import text_of
-from multibot_rewrite.fleet.proposal.launches import order_text
-from multibot_rewrite.fleet.proposal.looking import Looked
-from multibot_rewrite.fleet.proposal.propose import MEANT, Choice, Proposal, names_of, release_of
-from multibot_rewrite.fleet.proposal.searching import Found, Undecided, is_below
-from multibot_rewrite.fleet.proposal.seeing import Seen, Wanted, see, with_arguments
-from multibot_rewrite.fleet.proposal.trying import (
+from multibot_rewrite.knowledge.node_library import stack_of
+from multibot_rewrite.knowledge.stacks import every_release
+from multibot_rewrite.producers.launch.records import LaunchOrder, launch_order, order_in_words
+from multibot_rewrite.proposal.fleet_text import text_of
+from multibot_rewrite.proposal.launches import order_text
+from multibot_rewrite.proposal.looking import Looked
+from multibot_rewrite.proposal.propose import MEANT, Choice, Proposal, names_of, release_of
+from multibot_rewrite.proposal.searching import Found, Undecided, is_below
+from multibot_rewrite.proposal.seeing import Seen, Wanted, see, with_arguments
+from multibot_rewrite.proposal.trying import (
     as_named,
     first_that_builds,
     in_layout,
     that_builds,
     with_faults_of_sources,
 )
-from multibot_rewrite.knowledge.node_library import stack_of
-from multibot_rewrite.knowledge.stacks import every_release
-from multibot_rewrite.producers.launch.records import LaunchOrder, launch_order, order_in_words
 
 SIMULATORS = ("gazebo", "none")
 # Nodes of launch files that are named on the terminal.

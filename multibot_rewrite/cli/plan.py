@@ -15,8 +15,8 @@ from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.tables import Grid, deliver_report
 from multibot_rewrite.cli.usage import given_options, robots
 from multibot_rewrite.cli.walk import check_folder, check_target
-from multibot_rewrite.fleet.file.system_sources import launched_by
 from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER, Fleet, expected, possible
+from multibot_rewrite.library.systems import launched_by
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.live.seen_plan import NAMELESS, seen_plan
 from multibot_rewrite.planning.bridged_topics import as_yaml, bridged_topics

@@ -10,7 +10,6 @@ from typing import Any
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.fleet.outputs import spawn as spawning
 from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
-from multibot_rewrite.fleet.scripts import LoadedFleet
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.launch import later
 from multibot_rewrite.launch.context import (
@@ -31,6 +30,7 @@ from multibot_rewrite.launch.context import (
     sim_time,
     written,
 )
+from multibot_rewrite.library.loaded_fleet import LoadedFleet
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.related_files.params.rcl_parameters import parameters_text
 

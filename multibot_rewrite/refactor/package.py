@@ -26,8 +26,8 @@ from multibot_rewrite.description.sources.expand import Expansion, expand_traced
 from multibot_rewrite.description.sources.read import is_xacro, read_file
 from multibot_rewrite.description.steps.collect import SRDF as SRDF_SECTION, Inventory, collect
 from multibot_rewrite.description.steps.document import read_document
-from multibot_rewrite.fleet.proposal.searching import Found, search
 from multibot_rewrite.lint.files.subjects import NO_URDF
+from multibot_rewrite.proposal.searching import Found, search
 
 
 class Expanding(NamedTuple):

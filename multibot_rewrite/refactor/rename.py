@@ -25,7 +25,7 @@ from multibot_rewrite.description.rewriters.contact import respell_collisions
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED
 from multibot_rewrite.description.steps.renames import make_renames
-from multibot_rewrite.fleet.one_file import names_in_file
+from multibot_rewrite.library.one_file import names_in_file
 from multibot_rewrite.refactor.launches import respelled, starts_of
 from multibot_rewrite.refactor.named_elsewhere import files_below
 from multibot_rewrite.refactor.package import (

@@ -12,7 +12,7 @@ import pytest
 from refusals import said
 
 from multibot_rewrite.cli import build, inspect
-from multibot_rewrite.fleet.build import OutputChanges
+from multibot_rewrite.fleet.outputs.manifest import OutputChanges
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 
 

@@ -40,9 +40,9 @@ from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.description.reports.xacro_arguments import Argument, Use, XacroArguments
 from multibot_rewrite.description.rewriters.lookup import look_up
 from multibot_rewrite.description.rewriters.plugin_definitions import load_definitions
-from multibot_rewrite.fleet.one_file import RewrittenFile
 from multibot_rewrite.knowledge.nodl.writing import NodlFile
 from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.library.one_file import RewrittenFile
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.live.learning.learn import LearnedNode
 from multibot_rewrite.system.records import (

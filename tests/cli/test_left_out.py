@@ -11,7 +11,7 @@ import pytest
 
 from multibot_rewrite.cli import urdf_lint
 from multibot_rewrite.description.sources import included_by
-from multibot_rewrite.fleet.proposal.searching import search
+from multibot_rewrite.proposal.searching import search
 from multibot_rewrite.refactor.named_elsewhere import files_below
 
 ROBOT = '<robot name="{}"><link name="base"/><link name="lost"/></robot>'

@@ -18,9 +18,9 @@ import pytest
 from fleet_folder import planned_fleet
 from paths import ROBOTS, ROOT
 
-from multibot_rewrite.fleet.build import Outputs, make_outputs
-from multibot_rewrite.fleet.checks.as_printed import not_as_commanded
-from multibot_rewrite.fleet.checks.read_back import read_back
+from multibot_rewrite.checks.as_printed import not_as_commanded
+from multibot_rewrite.checks.build import Outputs, make_outputs
+from multibot_rewrite.checks.read_back import read_back
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 
 TOLD = (

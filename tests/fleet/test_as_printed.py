@@ -19,10 +19,10 @@ from fleet_folder import planned_fleet
 from paths import ROBOTS, ROOT
 from printed_mutants import mutants
 
+from multibot_rewrite.checks.as_printed import Difference, not_as_printed
+from multibot_rewrite.checks.build import Outputs, make_outputs
+from multibot_rewrite.checks.read_back import read_back
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.build import Outputs, make_outputs
-from multibot_rewrite.fleet.checks.as_printed import Difference, not_as_printed
-from multibot_rewrite.fleet.checks.read_back import read_back
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch import launch_file
 from multibot_rewrite.fleet.launch.launch_python import to_python

@@ -16,11 +16,11 @@ from fleet_folder import planned_fleet
 from rule_examples import DESCRIPTION
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
+from multibot_rewrite.checks import of_bringup
+from multibot_rewrite.checks.build import make_outputs
+from multibot_rewrite.checks.of_bringup import as_the_vendor_has_it
+from multibot_rewrite.checks.read_back import read_back
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.checks import of_bringup
-from multibot_rewrite.fleet.checks.of_bringup import as_the_vendor_has_it
-from multibot_rewrite.fleet.checks.read_back import read_back
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.rules.system.sharing import sensor_twice

@@ -14,7 +14,7 @@ import yaml
 from fleet_folder import built_fleet
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.fleet.build import Outputs
+from multibot_rewrite.checks.build import Outputs
 
 ROW = """\
 - ros_topic_name: {}

@@ -18,7 +18,7 @@ from plans import ends_of, own
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.checks.build import make_outputs
 from multibot_rewrite.planning.plan import read_plan
 
 URDF = """\

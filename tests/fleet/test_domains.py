@@ -16,9 +16,9 @@ from nav2_graphs import ROVER
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError, UsageError
+from multibot_rewrite.checks.build import Outputs
+from multibot_rewrite.checks.closed_plan import closed_plan
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.build import Outputs
-from multibot_rewrite.fleet.checks.closed_plan import closed_plan
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.planning.plan import read_plan, to_yaml

@@ -16,7 +16,7 @@ from lxml import etree
 from named_ends import named_ends
 from plans import own
 
-from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.checks.build import make_outputs
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.fleet.robots.robot_groups import split_per_robot
 from multibot_rewrite.system.json import from_yaml

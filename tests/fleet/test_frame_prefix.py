@@ -18,7 +18,7 @@ from plans import robot_named
 
 from multibot_rewrite import load_fleet
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.fleet.build import Outputs
+from multibot_rewrite.checks.build import Outputs
 from multibot_rewrite.planning.plan import read_plan
 from multibot_rewrite.system.records import Parameter
 

@@ -10,12 +10,12 @@ from fleet_folder import planned_fleet
 from rule_examples import DESCRIPTION
 
 from multibot_rewrite import InputError
+from multibot_rewrite.checks.judged_plan import plan_fleet
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.file.fleet_file import (
     read_fleet,
 )
 from multibot_rewrite.fleet.fleet import expected
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.system.records import RUNS
 
 MODEL = """\

@@ -16,9 +16,10 @@ from plans import own
 from multibot_rewrite import compare
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.checks.judged_plan import make_fleet
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.library import rewrite
-from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER, expected, facts_of, make_fleet
+from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER, expected, facts_of
 from multibot_rewrite.planning.plan import to_yaml
 from multibot_rewrite.system.json import from_json, from_yaml, to_json
 

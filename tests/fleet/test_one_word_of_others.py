@@ -14,8 +14,8 @@ from graph_cases import as_planned
 from random_parameters import LAYOUTS, RELEASE, STACKS, planned, random_file
 
 from multibot_rewrite import compare
-from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.checks.closed_plan import closed_plan
+from multibot_rewrite.checks.build import make_outputs
+from multibot_rewrite.checks.closed_plan import closed_plan
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.rules.settings import Settings

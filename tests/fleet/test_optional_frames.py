@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from fleet_folder import built_fleet, planned_fleet
 
-from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.checks.build import make_outputs
 
 DOG = """\
 <robot name="dog">

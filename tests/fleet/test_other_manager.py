@@ -15,10 +15,10 @@ import pytest
 from fleet_folder import planned_fleet
 
 from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.checks.build import make_outputs
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.reports.xacro_arguments import find_arguments
 from multibot_rewrite.description.rewriters.tree import builtin_tree
-from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 
 ROVER = """\

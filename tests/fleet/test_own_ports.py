@@ -18,7 +18,7 @@ from lxml import etree
 from multibot_rewrite import rewrite, rewrite_all, strip
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.checks.build import make_outputs
 
 ARDUPILOT = '<plugin name="a" filename="ArduPilotPlugin"><fdm_port_in>9002</fdm_port_in></plugin>'
 MAVLINK = '<plugin name="m" filename="libgazebo_mavlink_interface.so">{}</plugin>'

@@ -17,10 +17,10 @@ from fleet_folder import planned_fleet
 from paths import ROOT
 
 from multibot_rewrite.base.findings.finding import ERROR
+from multibot_rewrite.checks.build import Outputs, make_outputs
+from multibot_rewrite.checks.read_back import read_back
 from multibot_rewrite.cli import build
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.build import Outputs, make_outputs
-from multibot_rewrite.fleet.checks.read_back import read_back
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 
 EXAMPLE = ROOT / "examples" / "namespace_and_prefix" / "nav2.yaml"

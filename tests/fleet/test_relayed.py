@@ -19,7 +19,7 @@ from multibot_rewrite import UsageError, compare, load_fleet
 from multibot_rewrite.base.findings.finding import NOTE
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.fleet import expected
-from multibot_rewrite.fleet.scripts import LoadedFleet
+from multibot_rewrite.library.loaded_fleet import LoadedFleet
 from multibot_rewrite.planning.bridged_topics import TF_TYPE
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, End, System
 

@@ -11,7 +11,7 @@ from fleet_folder import SMALL, fleet_folder, mixed, planned_fleet
 from paths import CORPUS
 
 from multibot_rewrite.base.model import MultibotError
-from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.checks.build import make_outputs
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import (
     OutputFile,

@@ -19,7 +19,7 @@ from paths import FIXTURES, SUPPORT
 from multibot_rewrite import InputError, RewriteRefused, UsageError, load_fleet
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
-from multibot_rewrite.fleet.scripts import LoadedFleet
+from multibot_rewrite.library.loaded_fleet import LoadedFleet
 from multibot_rewrite.related_files.params.rcl_parameters import node_parameters
 from multibot_rewrite.related_files.yaml_text import read_yaml
 

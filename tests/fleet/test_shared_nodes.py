@@ -11,7 +11,7 @@ from nav2_graphs import ROVER
 from plans import own
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.checks.build import make_outputs
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.system.records import System
 

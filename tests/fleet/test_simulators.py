@@ -12,8 +12,8 @@ from nav2_graphs import environment
 from paths import ROBOTS
 
 from multibot_rewrite import compare
+from multibot_rewrite.checks.closed_plan import closed_plan
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.checks.closed_plan import closed_plan
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.system.records import Node, System

@@ -14,7 +14,7 @@ from fleet_folder import built_fleet, planned_fleet
 from plans import robot_named
 
 from multibot_rewrite import load_fleet
-from multibot_rewrite.fleet.build import Outputs
+from multibot_rewrite.checks.build import Outputs
 
 URDF = """\
 <robot name="rover">

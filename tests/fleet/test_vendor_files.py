@@ -10,7 +10,7 @@ from fleet_folder import planned_fleet
 from named_ends import named_ends
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.checks.build import make_outputs
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 
 SENSOR = """\

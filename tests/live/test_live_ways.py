@@ -18,7 +18,8 @@ from live_commands import PATIENTLY
 from paths import ROBOTS
 
 from multibot_rewrite.base.releases import RELEASES
-from multibot_rewrite.fleet.fleet import Fleet, expected, make_fleet
+from multibot_rewrite.checks.judged_plan import make_fleet
+from multibot_rewrite.fleet.fleet import Fleet, expected
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.live.rehearsal import stub_nodes

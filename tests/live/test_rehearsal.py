@@ -13,13 +13,13 @@ from paths import FIXTURES, ROBOTS
 
 from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.checks.closed_plan import bridged_by
+from multibot_rewrite.checks.judged_plan import make_fleet
 from multibot_rewrite.description.library import rewrite
 from multibot_rewrite.description.readback.reading import read
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.steps.collect import Inventory, collect
 from multibot_rewrite.description.steps.document import read_document
-from multibot_rewrite.fleet.checks.closed_plan import bridged_by
-from multibot_rewrite.fleet.fleet import make_fleet
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.knowledge.node_library import stack_of
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts

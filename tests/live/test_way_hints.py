@@ -8,7 +8,8 @@ from graph_calls import from_yaml, index, to_yaml, whose_by_plan
 from paths import ROBOTS
 from plans import planned_end
 
-from multibot_rewrite.fleet.fleet import expected, make_fleet
+from multibot_rewrite.checks.judged_plan import make_fleet
+from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.rules.system.causes import how_to_remap, why_other_name
 from multibot_rewrite.system.records import System
 

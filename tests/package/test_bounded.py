@@ -22,7 +22,7 @@ from multibot_rewrite.base.model import InputError, MultibotError
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.rewriters.plugin_definitions import load_definitions
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.fleet.build import read_manifest
+from multibot_rewrite.fleet.outputs.manifest import read_manifest
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.stacks import user_stack
 from multibot_rewrite.knowledge.yaml_with_lines import read_yaml_with_lines

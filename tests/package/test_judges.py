@@ -15,12 +15,12 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS, ROS_2
+from multibot_rewrite.checks.build import make_outputs
+from multibot_rewrite.checks.judged_plan import make_fleet
 from multibot_rewrite.description.readback.meeting import SHARED_CODES
 from multibot_rewrite.description.readback.reading import read
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.release_said import release_said
-from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.fleet import make_fleet
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.rules.settings import Settings
 

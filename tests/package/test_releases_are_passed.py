@@ -14,9 +14,9 @@ WORDS = ("release", "distro", "environment")
 # The public calls, which ask ROS_DISTRO.
 PUBLIC = (
     "description/library.py",
-    "fleet/one_file.py",
-    "fleet/file/system_sources.py",
-    "fleet/scripts.py",
+    "library/one_file.py",
+    "library/systems.py",
+    "library/loaded_fleet.py",
     "refactor/adopt.py",
     "related_files/join.py",
     "refactor/rename.py",
@@ -27,7 +27,7 @@ NEWEST = {
     "base/releases.py",
     "cli/declared/commands.py",
     "description/sources/release_said.py",
-    "fleet/proposal/propose.py",
+    "proposal/propose.py",
     "rules/settings.py",
 }
 

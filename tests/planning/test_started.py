@@ -9,7 +9,7 @@ import pytest
 from paths import ROBOTS
 
 from multibot_rewrite.base.naming import Policy
-from multibot_rewrite.fleet.fleet import make_fleet
+from multibot_rewrite.checks.judged_plan import make_fleet
 from multibot_rewrite.planning.records import Table
 from multibot_rewrite.planning.table_formats import FORMS
 from multibot_rewrite.planning.ways import arguments, started

@@ -9,7 +9,7 @@ import pytest
 
 from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.fleet.checks.meeting import robots_meet
+from multibot_rewrite.checks.meeting import robots_meet
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.planning.records import Run, Table
 from multibot_rewrite.planning.table import build_table

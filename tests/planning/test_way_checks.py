@@ -6,7 +6,7 @@ from __future__ import annotations
 import pytest
 
 from multibot_rewrite.base.naming import Policy
-from multibot_rewrite.fleet.fleet import make_fleet
+from multibot_rewrite.checks.judged_plan import make_fleet
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.planning.records import Run, Table
 from multibot_rewrite.planning.way_checks import not_taken

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 import yaml
 
-from multibot_rewrite.fleet.build import Outputs, make_outputs
+from multibot_rewrite.checks.build import Outputs, make_outputs
+from multibot_rewrite.checks.judged_plan import plan_fleet
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.related_files.names.placeholders import without_robot
 
 FORMS = (

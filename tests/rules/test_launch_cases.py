@@ -17,6 +17,7 @@ from launched_nodes import AT, started
 from lxml import etree
 
 from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.description.sources.world_systems import needed_systems
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.lint.launched import named_findings
@@ -29,7 +30,6 @@ from multibot_rewrite.producers.launch.records import (
 )
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import launched
-from multibot_rewrite.rules.facts.simulators import needed_systems
 from multibot_rewrite.rules.launch.judge import as_one_of_several, as_sure, judge_launch
 from multibot_rewrite.rules.system.planned_nodes import missing_node, unplanned_node
 from multibot_rewrite.rules.system.states import (

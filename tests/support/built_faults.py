@@ -15,8 +15,8 @@ from fleet_folder import planned_fleet
 from paths import ROOT
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.fleet.build import Outputs, make_outputs
-from multibot_rewrite.fleet.checks.read_back import read_back
+from multibot_rewrite.checks.build import Outputs, make_outputs
+from multibot_rewrite.checks.read_back import read_back
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 
 LAUNCH, OUT = "fleet.launch.py", "/anywhere/out"

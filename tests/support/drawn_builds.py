@@ -23,9 +23,9 @@ from hypothesis import HealthCheck, Phase, given, seed, settings, strategies as 
 
 from multibot_rewrite import load_fleet
 from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.checks import read_back
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.sources.release_said import MANIFEST
-from multibot_rewrite.fleet.checks import read_back
 from multibot_rewrite.fleet.file.fleet_data import DICT
 from multibot_rewrite.fleet.file.fleet_file import FleetFile, read_fleet
 from multibot_rewrite.producers.launch import child

@@ -32,8 +32,8 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.outputs.built_states import with_built
-from multibot_rewrite.fleet.scripts import LoadedFleet
 from multibot_rewrite.knowledge.stacks import load_nodes
+from multibot_rewrite.library.loaded_fleet import LoadedFleet
 from multibot_rewrite.live.rehearsal import stage, with_substitutes
 from multibot_rewrite.planning.plan import read_plan
 from multibot_rewrite.producers.ros.child import ask, observe, running

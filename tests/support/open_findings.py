@@ -9,8 +9,8 @@ from pathlib import Path
 from fleet_folder import planned_fleet
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
-from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.checks.closed_plan import closed_plan
+from multibot_rewrite.checks.build import make_outputs
+from multibot_rewrite.checks.closed_plan import closed_plan
 
 # What a build tells of the odometry of these robots in some layouts, and is no gap.
 BESIDE = ("MB105", "MF7", "MB4", "MR")

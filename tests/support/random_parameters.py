@@ -9,7 +9,7 @@ from pathlib import Path
 from fleet_folder import planned_fleet
 from rule_examples import DESCRIPTION
 
-from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.checks.build import make_outputs
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.knowledge.stacks import built_in

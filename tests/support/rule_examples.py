@@ -19,8 +19,9 @@ from multibot_rewrite.base.findings.finding import SRDF, URDF, XACRO, Finding, R
 from multibot_rewrite.base.findings.selection import grouped
 from multibot_rewrite.base.naming import Policy
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.fleet import known_nodes, make_fleet
+from multibot_rewrite.checks.build import make_outputs
+from multibot_rewrite.checks.judged_plan import make_fleet
+from multibot_rewrite.fleet.fleet import known_nodes
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.producers.launch.read import read_own

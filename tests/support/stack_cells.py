@@ -21,8 +21,8 @@ from multibot_rewrite.base.bounded import own_text
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import RELEASES, has_release
-from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.checks.read_back import read_back
+from multibot_rewrite.checks.build import make_outputs
+from multibot_rewrite.checks.read_back import read_back
 from multibot_rewrite.fleet.file.robot_choice import Choice
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 

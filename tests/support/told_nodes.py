@@ -15,8 +15,8 @@ from typing import Any
 
 import yaml
 
-from multibot_rewrite.fleet.scripts import LoadedFleet
 from multibot_rewrite.knowledge.records import Endpoint
+from multibot_rewrite.library.loaded_fleet import LoadedFleet
 from multibot_rewrite.live.rehearsal import Stub, played, stub_nodes
 from multibot_rewrite.planning.transforms import with_odometry
 from multibot_rewrite.planning.way_checks import running_nodes

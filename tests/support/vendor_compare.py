@@ -30,7 +30,7 @@ from multibot_rewrite.base.rosnames import (
     parse_remap,
     resolve_bound,
 )
-from multibot_rewrite.fleet.build import Outputs
+from multibot_rewrite.checks.build import Outputs
 from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.planning.of_runs import parsed

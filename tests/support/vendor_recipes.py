@@ -28,7 +28,7 @@ from vendor_systems import RECORDER, Vendors, filled, prepare
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.checks.build import make_outputs
 from multibot_rewrite.fleet.fleet import expected
 
 HERE = Path(__file__).parent

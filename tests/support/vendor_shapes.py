@@ -16,9 +16,9 @@ from vendor_recipes import Recipe, fleet_text, recorded, words_for, workspace
 from vendor_rows import description_rows, load, parameter_rows
 from vendor_systems import Vendors, filled, prepare, started_by
 
-from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.checks.build import make_outputs
+from multibot_rewrite.checks.judged_plan import plan_fleet
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.fleet.outputs.shape_outputs import vendor_commands
 from multibot_rewrite.fleet.robots.robot_groups import split_per_robot
 

@@ -11,11 +11,12 @@ import yaml
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, declare
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.fleet.checks.written_files import wrong_in_file
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import (
     FilesAndFindings,
+    FilesToCheck,
     OutputFile,
+    ReadFile,
     gz_bridge_path,
     own_yaml,
     path_for,
@@ -51,7 +52,7 @@ from multibot_rewrite.related_files.yaml_text import (
 )
 
 
-def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
+def bridge_outputs(plan: FleetPlan) -> FilesToCheck:
     """Return every bridge file of a fleet. Raises InputError for a bridge file that cannot be read
     or rewritten."""
     fleet = plan.fleet
@@ -70,7 +71,8 @@ def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
         groups.append((group, bridges))
     for group, files in groups:
         for file in files.values():
-            yield from (*file.own.findings, *wrong_in_file(plan, file.own.file, group.robots))
+            yield from file.own.findings
+            yield ReadFile(file.own.file, tuple(group.robots))
         for robot in group.robots:
             made = list(_for_robot(robot, files, topics))
             yield from made

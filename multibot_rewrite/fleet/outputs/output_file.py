@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A file that a build writes with the source line of each line, and what each step of a build yields:
-files and findings."""
+files, findings, and files to check."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ from multibot_rewrite.description.sources.read import JOIN, XACRO, read_file
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.producers.ends import BRIDGE_FILE
+from multibot_rewrite.related_files.context import NAMESPACE_SLOT, TAG_SLOT
+from multibot_rewrite.related_files.named_file import NamedFile
 from multibot_rewrite.related_files.yaml_text import YamlText, read_yaml
 
 # The plan of a built fleet.
@@ -43,7 +45,15 @@ class OutputFile(NamedTuple):
         return read_yaml(self.data, self.path)
 
 
+class ReadFile(NamedTuple):
+    """A related file as it was read, to be checked for the robots that it is rewritten for."""
+
+    file: NamedFile
+    robots: tuple[RewrittenRobot, ...]
+
+
 FilesAndFindings: TypeAlias = Iterator[OutputFile | Finding]
+FilesToCheck: TypeAlias = Iterator[OutputFile | ReadFile | Finding]
 
 
 def described_path(robot: RewrittenRobot, node: str) -> str:
@@ -146,3 +156,12 @@ def _changes(file: OutputFile) -> tuple[tuple[int, int, int, int], ...]:
         return ()
     codes = SequenceMatcher(None, old, file.text.splitlines(), False).get_opcodes()
     return tuple(it[1:] for it in codes)
+
+
+def without_slots(it: Finding, spec: RobotSpec) -> Finding:
+    """Return a finding about the file of any robot with the names of one in place of slots."""
+    message, hint = (
+        text.replace(NAMESPACE_SLOT, spec.namespace).replace(TAG_SLOT, spec.tag)
+        for text in (it.message, it.hint)
+    )
+    return it._replace(message=message, hint=hint)

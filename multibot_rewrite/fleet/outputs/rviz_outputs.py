@@ -17,7 +17,6 @@ from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.base.naming import LAYOUTS, PREFIX, TF_TOPICS, find_layout, make_naming
-from multibot_rewrite.fleet.checks.written_files import wrong_in_file
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.moveit_parameters import (
     FILE,
@@ -26,8 +25,9 @@ from multibot_rewrite.fleet.outputs.moveit_parameters import (
     parameters_path,
 )
 from multibot_rewrite.fleet.outputs.output_file import (
-    FilesAndFindings,
+    FilesToCheck,
     OutputFile,
+    ReadFile,
     name_among,
     own_yaml,
     path_for,
@@ -215,12 +215,12 @@ USUAL = "/fleet.rviz"
 
 
 class RvizOutput(NamedTuple):
-    """The results of one RViz config, whose path is ``source``; ``name`` is that of a window for
-    several robots."""
+    """The results of one RViz config, whose path is ``source``; ``findings`` are about it, or have it
+    checked, ``name`` is that of a window for several robots."""
 
     source: str
     windows: tuple[RvizText, ...]
-    findings: tuple[Finding, ...]
+    findings: tuple[Finding | ReadFile, ...]
     name: str
 
     def path(self, window: RvizText) -> str:
@@ -247,10 +247,11 @@ def rviz_outputs(plan: FleetPlan, each: Iterable[FleetPlan]) -> Iterator[RvizOut
         if relayed and not plan.fleet.naming.layout.frames:
             window, bare = bridged_window(document, shown, world)
             texts, found = (window, *texts), (*found, *bare)
-        found = (*found, *wrong_in_file(plan, read_for(document, shown, plan.file.distro), robots))
         done = ONE_TF_TOPIC.code if relayed else ""
         left = tuple(it for it in found if it.code != done)
-        yield RvizOutput(path, texts, left, name_among(path, robots_of).replace("/", "_"))
+        read = ReadFile(read_for(document, shown, plan.file.distro), tuple(robots))
+        name = name_among(path, robots_of).replace("/", "_")
+        yield RvizOutput(path, texts, (*left, read), name)
 
 
 def usual_windows(plan: FleetPlan, planned: System) -> list[RvizOutput]:
@@ -284,7 +285,7 @@ def _as_rviz_robot(plan: FleetPlan) -> RvizRobot:
     return RvizRobot(spec.name, names, topics, spec.colour, known, prefix, rules)
 
 
-def rviz_files(configs: Iterable[RvizOutput]) -> FilesAndFindings:
+def rviz_files(configs: Iterable[RvizOutput]) -> FilesToCheck:
     """Yield the files of the windows, and the findings."""
     for config in configs:
         yield from config.findings

@@ -29,6 +29,7 @@ from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.description.sources.included_models import model_file
 from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.description.sources.world_systems import needed_systems
 from multibot_rewrite.description.steps.apply import Spans, cut
 from multibot_rewrite.description.steps.document import Document, read_document, tag_end, text_slot
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
@@ -37,7 +38,6 @@ from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.simulators import is_simulated, systems_of
 from multibot_rewrite.knowledge.worlds import DEFAULTS, SENT_BY, SENT_BY_ANY, SYSTEMS
 from multibot_rewrite.related_files.names.rename_map import is_declared, spell
-from multibot_rewrite.rules.facts.simulators import needed_systems
 
 _SCOPE = "::"
 _BELOW_MODEL = r"((?:^|/)model/){}(?=/|$)"

@@ -8,7 +8,7 @@ from functools import cache
 from types import MappingProxyType
 from typing import NamedTuple
 
-from multibot_rewrite.base.findings.finding import NOTE, Finding, Rule, declare
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding, Rule, declare
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import without_comments
 from multibot_rewrite.base.model import InputError
@@ -42,7 +42,6 @@ from multibot_rewrite.related_files.names.rename_map import (
     related_file_names,
     with_srdf,
 )
-from multibot_rewrite.rules.files.names import of_another_robot
 from multibot_rewrite.system.records import Edge
 
 # Kinds that are ROS names and get the namespace; the others get the tag.
@@ -277,7 +276,7 @@ def _srdf_findings(semantic: Rewrite) -> Iterator[Finding]:
     first = min(loose, key=lambda it: it.line)
     hint = "; ".join((*filter(None, [first.hint]), "give both the same arguments:"))
     place = {"file": first.file, "line": first.line, "column": first.column}
-    yield of_another_robot.finding(message, hint, **place)
+    yield OF_ANOTHER_ROBOT.finding(message, hint, **place)
     yield from (it for it in semantic.findings if it.code not in _LOOSE)
 
 
@@ -318,6 +317,8 @@ def _half(source: bytes, file: str, robot: str, naming: Naming, template: Templa
     return next(pipeline.render(prepared, [robot], again=True))
 
 
+# The rule for related files says the same of one alone.
+OF_ANOTHER_ROBOT = declare("MB875", "file-of-another-robot", ERROR, formats=("fleet",))
 OWN_PORTS = declare(NUMBERED, "own-ports", NOTE, formats=("fleet",))
 
 

@@ -38,7 +38,6 @@ from multibot_rewrite.fleet.robots.fitting.fitted import (
     sent_by_controllers,
     with_frames,
 )
-from multibot_rewrite.fleet.robots.left_idle import left_idle
 from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.knowledge.node_library import stack_of
 from multibot_rewrite.knowledge.nodl.lookup import declared
@@ -206,11 +205,9 @@ def _for_its_wheels(
 def _with_launch(
     it: RobotEvidence, spec: RobotSpec, launched: Launched | None, file: FleetFile
 ) -> RobotEvidence:
-    """Return a robot's evidence with what its launch files start, or without any with what its
-    files leave idle."""
+    """Return a robot's evidence with what its launch files start."""
     if not launched:
-        idle = left_idle(it.nodes, it.given, it.known)
-        return it._replace(findings=(*it.findings, *idle))
+        return it
     every = (one._replace(once=_is_once(one.name, one.once, file)) for one in launched.processes)
     own: dict[str, Any] = {it: getattr(launched, it) for it in _HANDED_ON}
     own["processes"] = tuple(every)

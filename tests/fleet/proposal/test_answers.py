@@ -11,9 +11,9 @@ from typing import Any
 import pytest
 
 from multibot_rewrite.cli import init
-from multibot_rewrite.fleet.proposal.looking import Looked
-from multibot_rewrite.fleet.proposal.propose import Choice, release_of_files
-from multibot_rewrite.fleet.proposal.seeing import Wanted
+from multibot_rewrite.proposal.looking import Looked
+from multibot_rewrite.proposal.propose import Choice, release_of_files
+from multibot_rewrite.proposal.seeing import Wanted
 
 
 @pytest.fixture

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.proposal.looking import NO_SIMULATOR, Looked
-from multibot_rewrite.fleet.proposal.related_files import related_files_of
-from multibot_rewrite.fleet.proposal.searching import Found
+from multibot_rewrite.proposal.looking import NO_SIMULATOR, Looked
+from multibot_rewrite.proposal.related_files import related_files_of
+from multibot_rewrite.proposal.searching import Found
 
 
 def params(folder: Path, name: str, *nodes: str) -> str:

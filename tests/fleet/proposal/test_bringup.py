@@ -13,8 +13,8 @@ import yaml
 from rule_examples import DESCRIPTION
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.proposal.bringup import Robot, bringup_of
 from multibot_rewrite.producers.launch import child
+from multibot_rewrite.proposal.bringup import Robot, bringup_of
 
 IMPORTS = "; ".join(
     f"from {it} import *"

@@ -14,13 +14,13 @@ from lxml import etree
 from small_robots import PACKAGE, init, loads, robot, taken
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.proposal import owners
-from multibot_rewrite.fleet.proposal.choosing import may_be_partners
-from multibot_rewrite.fleet.proposal.looking import Looked
-from multibot_rewrite.fleet.proposal.owners import Fitting, fitting
-from multibot_rewrite.fleet.proposal.searching import Found
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.planning.records import Given
+from multibot_rewrite.proposal import owners
+from multibot_rewrite.proposal.choosing import may_be_partners
+from multibot_rewrite.proposal.looking import Looked
+from multibot_rewrite.proposal.owners import Fitting, fitting
+from multibot_rewrite.proposal.searching import Found
 from multibot_rewrite.system.records import NOWHERE
 
 

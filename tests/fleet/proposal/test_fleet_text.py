@@ -9,10 +9,10 @@ import pytest
 import yaml
 
 from multibot_rewrite.base.naming import LAYOUTS
-from multibot_rewrite.fleet.proposal.fleet_text import text_of
-from multibot_rewrite.fleet.proposal.looking import Looked
-from multibot_rewrite.fleet.proposal.propose import Choice, Member, Proposal
-from multibot_rewrite.fleet.proposal.related_files import RelatedFiles
+from multibot_rewrite.proposal.fleet_text import text_of
+from multibot_rewrite.proposal.looking import Looked
+from multibot_rewrite.proposal.propose import Choice, Member, Proposal
+from multibot_rewrite.proposal.related_files import RelatedFiles
 
 BESIDE = RelatedFiles(
     {"params": ("w/p.yaml", "w/q.yaml"), "rviz": ("w/v.rviz",)},

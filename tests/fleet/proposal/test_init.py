@@ -16,7 +16,7 @@ from paths import ROBOTS, ROOT
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.file.fleet_data import FleetText
-from multibot_rewrite.fleet.proposal import trying
+from multibot_rewrite.proposal import trying
 
 TOOL = '<robot name="tool" xmlns:xacro="http://www.ros.org/wiki/xacro"/>'
 

@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 from lxml import etree
 
-from multibot_rewrite.fleet.proposal.choosing import (
+from multibot_rewrite.proposal.choosing import (
     chosen,
 )
-from multibot_rewrite.fleet.proposal.looking import Looked
-from multibot_rewrite.fleet.proposal.searching import Found
+from multibot_rewrite.proposal.looking import Looked
+from multibot_rewrite.proposal.searching import Found
 
 LINK, JOINT = '<link name="{}"/>', '<joint name="{}" type="{}"/>'
 Made = Callable[..., Looked]

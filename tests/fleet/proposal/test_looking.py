@@ -9,15 +9,15 @@ import pytest
 from lxml import etree
 
 from multibot_rewrite.description.sources.access import Reach
-from multibot_rewrite.fleet.proposal import looking
-from multibot_rewrite.fleet.proposal.launches import Reading
-from multibot_rewrite.fleet.proposal.looking import Looked, NeededValues
 from multibot_rewrite.producers.launch.records import (
     FileRead,
     LaunchArgument,
     LaunchGraph,
     LaunchOrder,
 )
+from multibot_rewrite.proposal import looking
+from multibot_rewrite.proposal.launches import Reading
+from multibot_rewrite.proposal.looking import Looked, NeededValues
 
 CONTROL = '<ros2_control name="c" type="system"/>'
 LINKS = '<link name="a"/><link name="b"/><link/>'

@@ -12,10 +12,10 @@ from small_robots import PACKAGE, init, loads, robot, taken
 
 from multibot_rewrite.base.editors import FLEET, schema_name, schema_text
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.proposal.choosing import is_srdf_launched, names_its_package
-from multibot_rewrite.fleet.proposal.looking import Looked
-from multibot_rewrite.fleet.proposal.related_files import srdf_of
-from multibot_rewrite.fleet.proposal.searching import search, text_of
+from multibot_rewrite.proposal.choosing import is_srdf_launched, names_its_package
+from multibot_rewrite.proposal.looking import Looked
+from multibot_rewrite.proposal.related_files import srdf_of
+from multibot_rewrite.proposal.searching import search, text_of
 
 WIKI = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 GZ = (

@@ -10,8 +10,8 @@ import pytest
 from paths import CORPUS, FIXTURES
 
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.fleet.proposal import searching
-from multibot_rewrite.fleet.proposal.searching import Found, search
+from multibot_rewrite.proposal import searching
+from multibot_rewrite.proposal.searching import Found, search
 
 ROBOT = '<robot name="r"/>'
 PARAMS = "a:\n  ros__parameters: {b: 1}\n"

@@ -14,9 +14,9 @@ from small_robots import PACKAGE, robot
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.proposal.looking import Looked
-from multibot_rewrite.fleet.proposal.owners import moveit_of_others
-from multibot_rewrite.fleet.proposal.searching import Found
+from multibot_rewrite.proposal.looking import Looked
+from multibot_rewrite.proposal.owners import moveit_of_others
+from multibot_rewrite.proposal.searching import Found
 
 MODEL = '<robot name="{0}"><link name="{0}_base"/></robot>'
 SECTION = "{}_node: {{ros__parameters: {{rate: 1}}}}\n"

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from lxml import etree
 
-from multibot_rewrite.fleet.proposal import related_files
-from multibot_rewrite.fleet.proposal.looking import Looked
+from multibot_rewrite.proposal import related_files
+from multibot_rewrite.proposal.looking import Looked
 
 STATE = ("robot_state", "joint_state_publisher sends the joints until a driver does")
 

@@ -17,7 +17,7 @@ from lxml import etree
 from named_ends import named_ends
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.fleet.build import Outputs
+from multibot_rewrite.checks.build import Outputs
 from multibot_rewrite.knowledge.stacks import load_nodes, load_stack
 from multibot_rewrite.planning.records import Table
 from multibot_rewrite.planning.transforms import sent_by

@@ -14,7 +14,7 @@ import yaml
 from fleet_folder import built_fleet
 from plans import ends_of
 
-from multibot_rewrite.fleet.build import Outputs
+from multibot_rewrite.checks.build import Outputs
 
 REPUBLISHER = """\
 /**:

@@ -10,9 +10,9 @@ from fleet_folder import planned_fleet
 from lxml import etree
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.checks.closed_plan import left_open
-from multibot_rewrite.fleet.checks.robot_system import of_sources, with_controllers
+from multibot_rewrite.checks.build import make_outputs
+from multibot_rewrite.checks.closed_plan import left_open
+from multibot_rewrite.checks.robot_system import of_sources, with_controllers
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.fleet.robots.robot_nodes import node_sources

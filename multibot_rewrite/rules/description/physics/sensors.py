@@ -19,6 +19,7 @@ from multibot_rewrite.description.checks.poses import (
 )
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.shapes import shapes_of, way_out
+from multibot_rewrite.knowledge.simulators import CLASSIC, GAZEBO
 from multibot_rewrite.rules.facts import simulators
 from multibot_rewrite.rules.facts.memo import (
     CAMERAS,
@@ -163,10 +164,8 @@ def lidar_without_rays(subject: Subject) -> Iterator[Problem]:
     """Yield lidars in addition to what only Gazebo loads, where nothing is for Gazebo Classic."""
     libraries = {simulators.library_of(it) for it in simulators.simulator_plugins(subject)}
     hardware = {simulator.name for _, _, simulator in simulators.simulated(subject)}
-    gazebo = simulators.GAZEBO.name in hardware or any(it.startswith(_GAZEBOS) for it in libraries)
-    classic = simulators.CLASSIC.name in hardware or any(
-        it.startswith(_CLASSICS) for it in libraries
-    )
+    gazebo = GAZEBO.name in hardware or any(it.startswith(_GAZEBOS) for it in libraries)
+    classic = CLASSIC.name in hardware or any(it.startswith(_CLASSICS) for it in libraries)
     for it in subject.elements.every("sensor") if gazebo and not classic else ():
         if it.get("type") in _RAYS and it.find("plugin") is None:
             message = f"Gazebo simulates no sensor of type {it.get('type')!r}"

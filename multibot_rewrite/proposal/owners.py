@@ -21,12 +21,12 @@ from multibot_rewrite.description.sources.access import BOUNDED
 from multibot_rewrite.description.sources.expand import expand
 from multibot_rewrite.description.sources.included_by import data_of_file
 from multibot_rewrite.description.sources.packages import package_of
-from multibot_rewrite.fleet.proposal.looking import ANY, Looked, filled_for_any
-from multibot_rewrite.fleet.proposal.searching import Found, Undecided, home_of, text_of
 from multibot_rewrite.knowledge.parameters import KnownNodes, is_called, load_known_nodes
 from multibot_rewrite.planning.records import Run
 from multibot_rewrite.producers.ends import bridge_rows
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
+from multibot_rewrite.proposal.looking import ANY, Looked, filled_for_any
+from multibot_rewrite.proposal.searching import Found, Undecided, home_of, text_of
 from multibot_rewrite.related_files.yaml_text import read_yaml
 from multibot_rewrite.system.words import last_word
 

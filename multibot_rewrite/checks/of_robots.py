@@ -11,13 +11,13 @@ from math import ceil, dist
 from multibot_rewrite.base.conventions import CLOCK, USUAL_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, declare
 from multibot_rewrite.base.wording import shorten
+from multibot_rewrite.checks.lacking import lacking, without_camera
+from multibot_rewrite.checks.named_twice import named_twice
 from multibot_rewrite.description.checks.problem import to_findings
 from multibot_rewrite.description.checks.shapes import filled_by
 from multibot_rewrite.description.readback.meeting import OPENED
 from multibot_rewrite.description.rewriters.plugin_definitions import Definitions, load_definitions
 from multibot_rewrite.description.steps.collect import Inventory
-from multibot_rewrite.fleet.checks.lacking import lacking, without_camera
-from multibot_rewrite.fleet.checks.named_twice import named_twice
 from multibot_rewrite.fleet.file.robot_spec import Pose, RobotSpec, Sources
 from multibot_rewrite.fleet.fleet import FRAME_PREFIX
 from multibot_rewrite.fleet.fleet_plan import FleetPlan

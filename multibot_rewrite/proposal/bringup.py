@@ -17,7 +17,14 @@ from multibot_rewrite.description.reports.xacro_arguments import names_robots
 from multibot_rewrite.description.sources.own_names import ROBOT
 from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.file.simulator_switch import is_called_as_switch, other_values
-from multibot_rewrite.fleet.proposal.launches import (
+from multibot_rewrite.producers.launch.programs import programs
+from multibot_rewrite.producers.launch.records import (
+    LaunchArgument,
+    LaunchedNode,
+    LaunchGraph,
+    LaunchOrder,
+)
+from multibot_rewrite.proposal.launches import (
     Bringup,
     Reading,
     is_of_robot,
@@ -26,14 +33,7 @@ from multibot_rewrite.fleet.proposal.launches import (
     read_named,
     starts_simulator,
 )
-from multibot_rewrite.fleet.proposal.searching import known_names
-from multibot_rewrite.producers.launch.programs import programs
-from multibot_rewrite.producers.launch.records import (
-    LaunchArgument,
-    LaunchedNode,
-    LaunchGraph,
-    LaunchOrder,
-)
+from multibot_rewrite.proposal.searching import known_names
 
 # Launch files that are read with their own arguments, and orders of one of them with a switch.
 _MOST, _MOST_SWITCHES = 16, 8

@@ -16,8 +16,8 @@ from lxml import etree
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.releases import ROS_2
+from multibot_rewrite.checks.described import as_known
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.fleet.checks.described import as_known
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.launched_robot import launch_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot

@@ -18,10 +18,10 @@ from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.fleet.file.fleet_data import fleet_yaml
 from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.outputs.rviz_outputs import RVIZ, why_for_each
-from multibot_rewrite.fleet.proposal.launches import Bringup, Row, order_text, said_of
-from multibot_rewrite.fleet.proposal.looking import Looked
-from multibot_rewrite.fleet.proposal.propose import Member, Proposal
 from multibot_rewrite.producers.launch.programs import once_for_all
+from multibot_rewrite.proposal.launches import Bringup, Row, order_text, said_of
+from multibot_rewrite.proposal.looking import Looked
+from multibot_rewrite.proposal.propose import Member, Proposal
 
 # Files not taken that are named, and launch files beside the robot's that cannot be read.
 MOST, MOST_UNREAD = 10, 3

@@ -11,26 +11,27 @@ from multibot_rewrite.base.findings.formats.plain import said
 from multibot_rewrite.base.findings.selection import grouped
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.base.naming import LAYOUTS
+from multibot_rewrite.checks.as_planned import is_of_sources
+from multibot_rewrite.checks.build import make_outputs
+from multibot_rewrite.checks.judged_plan import plan_fleet
+from multibot_rewrite.checks.read_back import read_back
 from multibot_rewrite.description.checks.links_and_joints import read_robot, weighs
 from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.expand import once_kept
-from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.checks.as_planned import is_of_sources
-from multibot_rewrite.fleet.checks.read_back import read_back
 from multibot_rewrite.fleet.file.fleet_data import FleetSource, FleetText, without_place
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.file.robot_spec import REAL
-from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
-from multibot_rewrite.fleet.proposal.fleet_text import text_of
-from multibot_rewrite.fleet.proposal.looking import (
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.proposal.fleet_text import text_of
+from multibot_rewrite.proposal.looking import (
     NO_SIMULATOR,
     Looked,
     with_hardware_loaded,
     without_names,
 )
-from multibot_rewrite.fleet.proposal.propose import Choice, Proposal, affix_of, propose
-from multibot_rewrite.fleet.proposal.searching import Found, Undecided
-from multibot_rewrite.fleet.proposal.seeing import Seen, Wanted, with_arguments
+from multibot_rewrite.proposal.propose import Choice, Proposal, affix_of, propose
+from multibot_rewrite.proposal.searching import Found, Undecided
+from multibot_rewrite.proposal.seeing import Seen, Wanted, with_arguments
 
 # Builds without files that turned out not to go with a robot, and descriptions that are tried.
 MOST_ROUNDS, MOST_TRIED = 10, 5

@@ -13,7 +13,7 @@ from collections import defaultdict
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from multibot_rewrite.fleet.build import Outputs
+from multibot_rewrite.checks.build import Outputs
 from multibot_rewrite.fleet.file.robot_spec import Pose, RobotSpec
 from multibot_rewrite.fleet.launch.launch_file import LAUNCH
 from multibot_rewrite.fleet.outputs.output_file import PLAN, OutputFile

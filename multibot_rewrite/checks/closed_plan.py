@@ -7,16 +7,15 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from itertools import count
+from itertools import chain, count
 from typing import cast
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Rule
 from multibot_rewrite.base.lazy import gc_paused
-from multibot_rewrite.description.sources.included_by import data_of_file
-from multibot_rewrite.fleet.checks.across_domains import not_across
-from multibot_rewrite.fleet.checks.lacking import unmoved
-from multibot_rewrite.fleet.checks.meeting import shared_by_nothing
-from multibot_rewrite.fleet.checks.robot_system import (
+from multibot_rewrite.checks.across_domains import not_across
+from multibot_rewrite.checks.lacking import unmoved
+from multibot_rewrite.checks.meeting import shared_by_nothing
+from multibot_rewrite.checks.robot_system import (
     as_written,
     beside,
     joined,
@@ -24,7 +23,8 @@ from multibot_rewrite.fleet.checks.robot_system import (
     of_sources,
     with_controllers,
 )
-from multibot_rewrite.fleet.checks.written_files import of_files, written_findings
+from multibot_rewrite.checks.written_files import checked, of_files, written_findings
+from multibot_rewrite.description.sources.included_by import data_of_file
 from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.fleet import Fleet, planned
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
@@ -219,8 +219,8 @@ def closed_plan(plan: FleetPlan) -> Fleet:
         fleet = with_start_pose_nodes(plan)
         # The others close as the first one of each that differs in more than its names does.
         few = _of_some(plan, [it.robots[0] for it in group_robots(plan)])
-        made = [*related_files(few), *bridge_outputs(few)]
-        gaps = gaps_of(plan, fleet, made)
+        read = chain(related_files(few), bridge_outputs(few))
+        gaps = gaps_of(plan, fleet, checked(few, read))
         rows = [it for it in bridge_outputs(plan) if isinstance(it, OutputFile)]
         return fleet._replace(gaps=gaps, bridged=bridged_by(plan, rows))
 

@@ -9,7 +9,14 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding, Rule
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.fleet.outputs.output_file import OutputFile, line_in_source
+from multibot_rewrite.fleet.outputs.output_file import (
+    FilesAndFindings,
+    FilesToCheck,
+    OutputFile,
+    ReadFile,
+    line_in_source,
+    without_slots,
+)
 from multibot_rewrite.fleet.outputs.world_file import world_topics
 from multibot_rewrite.fleet.robots.member import line_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
@@ -30,6 +37,12 @@ from multibot_rewrite.rules.files.wheels import with_description
 from multibot_rewrite.system.records import NOWHERE, Place
 
 
+def checked(plan: FleetPlan, made: FilesToCheck) -> FilesAndFindings:
+    """Yield the files and the findings, and for each file to check what the rules find in it."""
+    for it in made:
+        yield from wrong_in_file(plan, *it) if isinstance(it, ReadFile) else (it,)
+
+
 def wrong_in_file(
     plan: FleetPlan, file: NamedFile, robots: Sequence[RewrittenRobot]
 ) -> list[Finding]:
@@ -42,7 +55,8 @@ def wrong_in_file(
     file.memo[Beside] = Beside(evidence.given, evidence.known)
     whole = with_description(file, robots[0].member.source)
     sent = file.sent | known.sent
-    return judged_once(whole._replace(robots=frozenset(words), own=own, sent=sent))
+    found = judged_once(whole._replace(robots=frozenset(words), own=own, sent=sent))
+    return [without_slots(it, robots[0].spec) for it in found]
 
 
 def of_files(found: Iterable[Finding]) -> set[Finding]:

@@ -41,8 +41,8 @@ from multibot_rewrite.description.sources.packages import (
 )
 from multibot_rewrite.description.sources.release_said import MANIFEST
 from multibot_rewrite.fleet.outputs.output_file import PLAN
-from multibot_rewrite.fleet.proposal.launches import Reading, order_text, read_any, read_named
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder
+from multibot_rewrite.proposal.launches import Reading, order_text, read_any, read_named
 
 # Files that are shown where nothing says which is meant.
 MOST_SHOWN = 6

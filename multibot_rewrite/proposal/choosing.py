@@ -12,11 +12,11 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.description.sources.expand import once_kept
 from multibot_rewrite.description.sources.included_by import data_of_file
 from multibot_rewrite.description.sources.packages import package_of
-from multibot_rewrite.fleet.proposal.bringup import processes_of_robot
-from multibot_rewrite.fleet.proposal.launches import Reading
-from multibot_rewrite.fleet.proposal.looking import NO_SIMULATOR, Looked
-from multibot_rewrite.fleet.proposal.owners import names_of_files
-from multibot_rewrite.fleet.proposal.searching import Found, loaded_by, text_of
+from multibot_rewrite.proposal.bringup import processes_of_robot
+from multibot_rewrite.proposal.launches import Reading
+from multibot_rewrite.proposal.looking import NO_SIMULATOR, Looked
+from multibot_rewrite.proposal.owners import names_of_files
+from multibot_rewrite.proposal.searching import Found, loaded_by, text_of
 
 # What descriptions of a part alone are called.
 _PART = lazy_compile(

@@ -14,10 +14,13 @@ from typing import NamedTuple
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.fleet.proposal.choosing import is_srdf_launched, loaded
-from multibot_rewrite.fleet.proposal.launches import Bringup
-from multibot_rewrite.fleet.proposal.looking import CLASSIC, GZ, NO_SIMULATOR, Looked
-from multibot_rewrite.fleet.proposal.owners import (
+from multibot_rewrite.knowledge.parameters import load_known_nodes
+from multibot_rewrite.knowledge.stacks import load_stack
+from multibot_rewrite.producers.evidence.parameter_files import given_nodes
+from multibot_rewrite.proposal.choosing import is_srdf_launched, loaded
+from multibot_rewrite.proposal.launches import Bringup
+from multibot_rewrite.proposal.looking import CLASSIC, GZ, NO_SIMULATOR, Looked
+from multibot_rewrite.proposal.owners import (
     LEAST,
     Fitting,
     best_folders,
@@ -29,10 +32,7 @@ from multibot_rewrite.fleet.proposal.owners import (
     not_started,
     of_others,
 )
-from multibot_rewrite.fleet.proposal.searching import Found, known_names, text_of, without
-from multibot_rewrite.knowledge.parameters import load_known_nodes
-from multibot_rewrite.knowledge.stacks import load_stack
-from multibot_rewrite.producers.evidence.parameter_files import given_nodes
+from multibot_rewrite.proposal.searching import Found, known_names, text_of, without
 from multibot_rewrite.related_files.yaml_text import read_yaml
 
 # Of these kinds a robot has one file, of the others any number.

@@ -15,8 +15,11 @@ from multibot_rewrite.description.sources.access import Reach
 from multibot_rewrite.description.sources.included_by import robot_instead
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.fleet.file.robot_spec import REAL
-from multibot_rewrite.fleet.proposal.bringup import Robot, bringup_as_named, bringup_of
-from multibot_rewrite.fleet.proposal.choosing import (
+from multibot_rewrite.planning.transforms import STATE_PUBLISHER
+from multibot_rewrite.producers.launch.records import LaunchOrder
+from multibot_rewrite.producers.launch.source_packages import ROOTS
+from multibot_rewrite.proposal.bringup import Robot, bringup_as_named, bringup_of
+from multibot_rewrite.proposal.choosing import (
     Candidate,
     acts,
     chosen,
@@ -26,8 +29,8 @@ from multibot_rewrite.fleet.proposal.choosing import (
     partner,
     processes_with,
 )
-from multibot_rewrite.fleet.proposal.launches import Bringup, first_words
-from multibot_rewrite.fleet.proposal.looking import (
+from multibot_rewrite.proposal.launches import Bringup, first_words
+from multibot_rewrite.proposal.looking import (
     NO_SIMULATOR,
     Looked,
     NeededValues,
@@ -38,11 +41,8 @@ from multibot_rewrite.fleet.proposal.looking import (
     with_own_arguments,
     with_semantic_arguments,
 )
-from multibot_rewrite.fleet.proposal.related_files import srdf_of
-from multibot_rewrite.fleet.proposal.searching import Found, Undecided, search
-from multibot_rewrite.planning.transforms import STATE_PUBLISHER
-from multibot_rewrite.producers.launch.records import LaunchOrder
-from multibot_rewrite.producers.launch.source_packages import ROOTS
+from multibot_rewrite.proposal.related_files import srdf_of
+from multibot_rewrite.proposal.searching import Found, Undecided, search
 
 # Descriptions of a folder that are looked at.
 MOST = 60

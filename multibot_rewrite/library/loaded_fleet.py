@@ -17,13 +17,14 @@ from typing import Any
 from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.findings.finding import ERROR, Finding, RewriteRefused
 from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.checks.build import Outputs, make_outputs
+from multibot_rewrite.checks.judged_plan import plan_fleet
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.fleet.build import Outputs, make_outputs
 from multibot_rewrite.fleet.file.fleet_file import FleetFile, read_fleet
 from multibot_rewrite.fleet.file.robot_choice import Choice
 from multibot_rewrite.fleet.file.robot_spec import Sources
 from multibot_rewrite.fleet.fleet import Fleet
-from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.starts import FleetStarts
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.fleet.robots import start_poses

@@ -35,10 +35,10 @@ from multibot_rewrite.fleet.file.simulator_switch import (
     suits_simulator,
     switch_for,
 )
-from multibot_rewrite.fleet.proposal.launches import Bringup, Reading, read_any
-from multibot_rewrite.fleet.proposal.searching import text_of
 from multibot_rewrite.producers.launch.kept_paths import GONE
 from multibot_rewrite.producers.launch.records import LaunchArgument
+from multibot_rewrite.proposal.launches import Bringup, Reading, read_any
+from multibot_rewrite.proposal.searching import text_of
 
 GZ, CLASSIC, NO_SIMULATOR = "gz", "classic", "none"
 # How the file names of plugins for Gazebo Classic begin.

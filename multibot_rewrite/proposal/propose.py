@@ -21,7 +21,7 @@ from multibot_rewrite.description.sources.own_names import ROBOT
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.sources.release_said import SaidRelease, release_said
 from multibot_rewrite.fleet.file.robot_spec import REAL
-from multibot_rewrite.fleet.proposal.launches import (
+from multibot_rewrite.proposal.launches import (
     Bringup,
     Reading,
     Row,
@@ -29,7 +29,7 @@ from multibot_rewrite.fleet.proposal.launches import (
     started,
     starts_simulator,
 )
-from multibot_rewrite.fleet.proposal.looking import (
+from multibot_rewrite.proposal.looking import (
     CLASSIC,
     NO_SIMULATOR,
     Looked,
@@ -37,14 +37,14 @@ from multibot_rewrite.fleet.proposal.looking import (
     is_placed,
     with_controllers,
 )
-from multibot_rewrite.fleet.proposal.owners import of_other_robots
-from multibot_rewrite.fleet.proposal.related_files import (
+from multibot_rewrite.proposal.owners import of_other_robots
+from multibot_rewrite.proposal.related_files import (
     RelatedFiles,
     related_files_launched,
     related_files_of,
 )
-from multibot_rewrite.fleet.proposal.searching import Found, without
-from multibot_rewrite.fleet.proposal.seeing import Wanted
+from multibot_rewrite.proposal.searching import Found, without
+from multibot_rewrite.proposal.seeing import Wanted
 from multibot_rewrite.related_files.context import make_context
 from multibot_rewrite.related_files.formats import read_named
 from multibot_rewrite.related_files.named_file import PARAMS

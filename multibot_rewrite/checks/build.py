@@ -1,28 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A planned fleet -> every file that ``multibot build`` writes, in memory: one step a kind of file; and
-the hashes of what it read and wrote: what the next build must change, and what it must not."""
+"""A planned fleet -> every file that ``multibot build`` writes, in memory, and what is wrong with them:
+one step a kind of file."""
 
 from __future__ import annotations
 
-import itertools
-import json
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from functools import cache
-from hashlib import sha256
+from itertools import chain, pairwise
 from typing import NamedTuple
 
 from multibot_rewrite.base import editors
-from multibot_rewrite.base.bounded import load_json
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.lazy import gc_paused
-from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.description.sources.read import is_xacro, read_file
-from multibot_rewrite.description.sources.release_said import BUILD, MANIFEST
-from multibot_rewrite.fleet.checks.across_domains import one_launch_each
-from multibot_rewrite.fleet.checks.closed_plan import bridged_by, gaps_of, sorted_out
-from multibot_rewrite.fleet.checks.of_bringup import as_in_the_vendors_files
-from multibot_rewrite.fleet.checks.of_robots import of_robots
+from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.checks.across_domains import one_launch_each
+from multibot_rewrite.checks.closed_plan import bridged_by, gaps_of, sorted_out
+from multibot_rewrite.checks.of_bringup import as_in_the_vendors_files
+from multibot_rewrite.checks.of_robots import of_robots
+from multibot_rewrite.checks.written_files import checked
+from multibot_rewrite.description.sources.read import is_xacro
 from multibot_rewrite.fleet.file.fleet_file import input_files
 from multibot_rewrite.fleet.fleet import Fleet, expected, possible
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
@@ -93,9 +90,14 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
     with gc_paused():
         fleet, each = with_start_pose_nodes(plan), list(split_per_robot(plan))
         configs = list(rviz_outputs(plan, each))
-        made = [*related_files(plan), *bridge_outputs(plan)]
+        read = chain(related_files(plan), bridge_outputs(plan))
+        made = list(checked(plan, read))
         files, findings = sorted_out(
-            [*_descriptions(plan, plan.file.installed or folder), *made, *rviz_files(configs)]
+            [
+                *_descriptions(plan, plan.file.installed or folder),
+                *made,
+                *checked(plan, rviz_files(configs)),
+            ]
         )
         findings += of_robots(plan)
         gaps = gaps_of(plan, fleet, made)
@@ -109,7 +111,7 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
                 *in_style(plan, files),
                 *cell_outputs(plan, files),
                 *world_file(plan),
-                *rviz_files([] if configs else opened),
+                *checked(plan, rviz_files([] if configs else opened)),
                 *commands_file(plan, each, shown),
             ]
         )
@@ -130,7 +132,7 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
 
 
 def _check_paths_differ(files: Sequence[OutputFile]) -> None:
-    for one, other in itertools.pairwise(files):
+    for one, other in pairwise(files):
         if one.path == other.path:
             both = " and ".join(", ".join(it.sources) or "the fleet" for it in (one, other))
             raise UsageError(
@@ -219,87 +221,3 @@ def _remappings(table: Table) -> str:
     rows = [f"  {scalar(robot)}:\n{''.join(nodes)}" for robot, nodes in robots.items()]
     head = f"layout: {scalar(table.layout)}\ndistro: {table.release}\n"
     return "".join([head, "robots:" if rows else "robots: {}", "\n", *rows])
-
-
-# The manifest of a build in progress that replaces files one by one.
-NOTE = ".manifest.next.json"
-
-
-class OutputChanges(NamedTuple):
-    """Paths below the output folder. ``write``: new or different. ``remove``: written by an earlier
-    build, not by this one. ``foreign``: to be overwritten, but not written by a build. ``edited``:
-    changed since an earlier build wrote them."""
-
-    write: tuple[str, ...]
-    remove: tuple[str, ...]
-    foreign: tuple[str, ...]
-    edited: tuple[str, ...]
-
-
-def hash_of(data: bytes) -> str:
-    """Return the hash that manifests hold."""
-    return sha256(data).hexdigest()
-
-
-def manifest(
-    files: Iterable[OutputFile], inputs: Mapping[str, bytes], folder: str, plan: FleetPlan
-) -> OutputFile:
-    """Return the manifest of a build into ``folder``; ``inputs`` are the files read, by path."""
-    data = {
-        "format": BUILD,
-        "distro": plan.file.distro,
-        "robots": {it.spec.namespace: it.spec.name for it in plan.robots},
-        "inputs": {os.path.relpath(path, folder): hash_of(inputs[path]) for path in sorted(inputs)},
-        "outputs": {it.path: hash_of(it.data) for it in files},
-    }
-    return OutputFile(MANIFEST, json.dumps(data, indent=1).encode() + b"\n")
-
-
-def inputs_of(folder: str) -> Mapping[str, str]:
-    """Return the hashes of what a build into ``folder`` read, by path; none without its manifest."""
-    found = _section(folder, "inputs").items()
-    return {os.path.normpath(os.path.join(folder, path)): hash_ for path, hash_ in found}
-
-
-def folders_of(folder: str) -> Mapping[str, str]:
-    """Return the folder that a build wrote for each robot, by the robot's name in its plan."""
-    return _section(folder, "robots")
-
-
-def _section(folder: str, name: str) -> Mapping[str, str]:
-    path = os.path.join(folder, MANIFEST)
-    try:
-        found = load_json(read_file(path))[name] if os.path.isfile(path) else {}
-        return {str(key): str(value) for key, value in found.items()}
-    except (ValueError, KeyError, TypeError, AttributeError):
-        return {}
-
-
-def read_manifest(data: bytes, file: str) -> Mapping[str, str]:
-    """Return the hashes of what a build wrote, by path; raises InputError for no manifest."""
-    try:
-        found = load_json(data)
-        if found["format"] != BUILD:
-            raise ValueError(found["format"])
-        outputs = {str(path): str(hash_) for path, hash_ in found["outputs"].items()}
-        # Files that are named here may be deleted, so none may be outside of the folder.
-        if any(os.path.isabs(path) or ".." in path.split("/") for path in outputs):
-            raise ValueError(outputs)
-        return outputs
-    except (ValueError, KeyError, TypeError, AttributeError):
-        hint = "delete it to build again, or choose another folder"
-        raise InputError(f"{file}: not a manifest of multibot build; {hint}") from None
-
-
-def output_changes(
-    files: Iterable[OutputFile], known: Mapping[str, str], there: Mapping[str, str]
-) -> OutputChanges:
-    """Return what a build must change; ``known`` are the hashes of the last build, ``there`` those
-    of the files on disk."""
-    wanted = {it.path: hash_of(it.data) for it in files}
-    write = [path for path, hash_ in wanted.items() if there.get(path) != hash_]
-    remove = [path for path in known if path not in wanted and path in there]
-    foreign = [path for path in write if path in there and path not in known]
-    touched = (path for path in (*write, *remove) if path in there and path in known)
-    edited = [path for path in touched if there[path] != known[path]]
-    return OutputChanges(tuple(write), tuple(remove), tuple(foreign), tuple(edited))

@@ -17,15 +17,15 @@ from tempfile import TemporaryDirectory
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.lazy import gc_paused
 from multibot_rewrite.base.model import MultibotError
+from multibot_rewrite.checks.as_planned import is_for_driver, not_as_planned, open_names
+from multibot_rewrite.checks.as_printed import not_as_commanded, not_as_printed
+from multibot_rewrite.checks.build import Outputs
+from multibot_rewrite.checks.lacking import LACKING
+from multibot_rewrite.checks.of_bringup import as_the_vendor_has_it
+from multibot_rewrite.checks.two_of_each import names_one_of, two_of_each
 from multibot_rewrite.description.readback.meeting import COMMAND, DATA
 from multibot_rewrite.description.sources.access import BOUNDED
 from multibot_rewrite.description.sources.own_names import filled
-from multibot_rewrite.fleet.build import Outputs
-from multibot_rewrite.fleet.checks.as_planned import is_for_driver, not_as_planned, open_names
-from multibot_rewrite.fleet.checks.as_printed import not_as_commanded, not_as_printed
-from multibot_rewrite.fleet.checks.lacking import LACKING
-from multibot_rewrite.fleet.checks.of_bringup import as_the_vendor_has_it
-from multibot_rewrite.fleet.checks.two_of_each import names_one_of, two_of_each
 from multibot_rewrite.fleet.file.robot_spec import REAL
 from multibot_rewrite.fleet.file.simulator_switch import loads_hardware, switch_for
 from multibot_rewrite.fleet.fleet import known_nodes
