@@ -1,10 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """The systems of gz-sim that a world needs, what they send, and plugins that drive joints, as
-``worlds.schema`` has them."""
+``worlds.schema`` has them; and the simulators that load a robot's hardware.
+
+Sources: gz_hardware_plugins.xml and gz_system.cpp:326 of gz_ros2_control (jazzy), the same of
+ign_ros2_control (humble), gazebo_hardware_plugins.xml and gazebo_system.cpp of gazebo_ros2_control;
+for the plugins the plugin definitions."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from typing import NamedTuple
 
 from multibot_rewrite.base.bounded import own_rows
 
@@ -28,3 +33,28 @@ SYSTEMS: Mapping[str, tuple[str, str]] = {
     for library, class_, types in _ROWS
     for type_ in (types.split() if class_ not in (_SENDS, _DRIVES) else ())
 }
+
+
+class Simulator(NamedTuple):
+    """A simulator: the hardware classes that its plugins load, and the plugins.
+
+    ``takes`` are the interfaces of a joint that its hardware exports, the others it leaves out.
+    """
+
+    name: str
+    hardware: tuple[str, ...]
+    plugins: tuple[str, ...]
+    takes: tuple[str, ...]
+
+
+_TAKES = ("position", "velocity", "effort")
+GAZEBO = Simulator(
+    "Gazebo",
+    ("gz_ros2_control/GazeboSimSystem", "ign_ros2_control/IgnitionSystem"),
+    ("gz_ros2_control-system", "ign_ros2_control-system"),
+    _TAKES,
+)
+CLASSIC = Simulator(
+    "Gazebo Classic", ("gazebo_ros2_control/GazeboSystem",), ("gazebo_ros2_control",), _TAKES
+)
+SIMULATORS = (GAZEBO, CLASSIC)

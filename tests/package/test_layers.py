@@ -106,6 +106,18 @@ def test_imports_run_one_way() -> None:
 
 
 @pytest.mark.slow
+def test_a_fleet_is_made_without_asking_a_rule() -> None:
+    """What judges it stands above: checks, and the commands."""
+    asking = [
+        (file, other)
+        for file in sources()
+        for other in inner(file)
+        if room(file) == "fleet" and room(other) in ("rules", "lint", "live")
+    ]
+    assert asking == []
+
+
+@pytest.mark.slow
 def test_no_module_imports_itself_by_a_detour() -> None:
     TopologicalSorter({file: inner(file) for file in sources()}).prepare()
 

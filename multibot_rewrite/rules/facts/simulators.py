@@ -9,8 +9,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.rewriters.tree import library_key
-from multibot_rewrite.knowledge.simulators import CLASSIC, GAZEBO, SIMULATORS, Simulator
-from multibot_rewrite.knowledge.worlds import DRIVES
+from multibot_rewrite.knowledge.worlds import CLASSIC, DRIVES, GAZEBO, SIMULATORS, Simulator
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject
 

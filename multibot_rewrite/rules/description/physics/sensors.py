@@ -19,7 +19,7 @@ from multibot_rewrite.description.checks.poses import (
 )
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.shapes import shapes_of, way_out
-from multibot_rewrite.knowledge.simulators import CLASSIC, GAZEBO
+from multibot_rewrite.knowledge.worlds import CLASSIC, GAZEBO
 from multibot_rewrite.rules.facts import simulators
 from multibot_rewrite.rules.facts.memo import (
     CAMERAS,

@@ -21,7 +21,7 @@ from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.sources.packages import in_sources
 from multibot_rewrite.description.sources.read import XACRO
 from multibot_rewrite.description.sources.trace import alike
-from multibot_rewrite.knowledge.simulators import GAZEBO, SIMULATORS
+from multibot_rewrite.knowledge.worlds import GAZEBO, SIMULATORS
 from multibot_rewrite.rules.description.structure.mimic import controlled_joints, mimic_of_none
 from multibot_rewrite.rules.facts.memo import driven_joints, level_of_absence, since_jazzy
 from multibot_rewrite.rules.facts.simulators import (
