@@ -182,7 +182,7 @@ def _size() -> int:
 
 
 # Files whose tests build fleets for minutes.
-BUILDING_FILES = ("test_drawn_fleets.py", "test_cells_of_stacks.py")
+BUILDING_FILES = ("test_drawn_fleets.py", "test_cells_of_node_sets.py")
 # Files whose tests start nodes.
 LIVE_FILES = (
     *("test_live_", "rcl", "test_docs", "test_examples", "test_recipes", "test_scripts"),

@@ -37,8 +37,8 @@ from multibot_rewrite.fleet.proposal.trying import (
     that_builds,
     with_faults_of_sources,
 )
-from multibot_rewrite.knowledge.node_library import stack_of
-from multibot_rewrite.knowledge.stacks import every_release
+from multibot_rewrite.knowledge.node_library import nodes_of_set
+from multibot_rewrite.knowledge.node_sets import every_release
 from multibot_rewrite.producers.launch.records import LaunchOrder, launch_order, order_in_words
 
 SIMULATORS = ("gazebo", "none")
@@ -121,10 +121,10 @@ def _wanted(options: argparse.Namespace) -> Wanted:
         tuple(options.robots),
         simulator=options.simulator or "",
         launch=_launch(options),
-        stacks=tuple(options.stack),
+        node_sets=tuple(options.node_set),
     )
-    for it in wanted.stacks:
-        stack_of(every_release(), it)
+    for it in wanted.node_sets:
+        nodes_of_set(every_release(), it)
     return wanted._replace(file=options.output) if goes_to_file(options) else wanted
 
 

@@ -50,7 +50,7 @@ from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.knowledge.declared import declared_by, plugin_bases
-from multibot_rewrite.knowledge.stacks import every_release
+from multibot_rewrite.knowledge.node_sets import every_release
 from multibot_rewrite.lint.catalogue import rules
 
 # A word that ends so is a file, there or not.
@@ -174,7 +174,7 @@ def _row(site: SiteRow, section: PluginDefinition) -> tuple[str, ...]:
 
 
 def as_json(section: PluginDefinition) -> dict[str, object]:
-    """Return a section as ``--output-kind json`` writes it; docs/stacks.md describes it."""
+    """Return a section as ``--output-kind json`` writes it; docs/node-sets.md describes it."""
     return {
         "type": section.type,
         "names": section.names,
@@ -274,7 +274,7 @@ def rule_grid(found: Iterable[Rule] | None = None) -> Grid:
 
 
 def rules_json(found: Iterable[Rule] | None = None) -> list[dict[str, object]]:
-    """Return rules (by default all) as ``--output-kind json`` writes them (docs/stacks.md)."""
+    """Return rules (by default all) as ``--output-kind json`` writes them (docs/node-sets.md)."""
     fields = ("code", "name", "level", "what", "why", "fix")
     return [
         {**{name: getattr(it, name) for name in fields}, "examples": dict(examples(it))}

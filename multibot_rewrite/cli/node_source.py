@@ -16,9 +16,9 @@ from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.tables import JSON, Grid, deliver_report, json_bytes
 from multibot_rewrite.description.sources.packages import MANIFEST, package_of
 from multibot_rewrite.knowledge.conditions import said
+from multibot_rewrite.knowledge.node_sets import every_release
 from multibot_rewrite.knowledge.packages import older, versions_of
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts, NodeParameters, Param
-from multibot_rewrite.knowledge.stacks import every_release
 from multibot_rewrite.producers.launch.source_packages import packages_for
 from multibot_rewrite.producers.sources.facts import NodeSource, node_of_program
 

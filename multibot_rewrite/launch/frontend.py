@@ -138,7 +138,7 @@ def _ours(entity: Any, parser: Any) -> dict[str, Any]:
     name = parser.parse_substitution(entity.get_attr("node"))
     describe = entity.get_attr("describe", data_type=bool, optional=True, can_be_str=False)
     texts = _texts(entity, parser, "files", "robot", "fleet", SIM_TIME)
-    return {**texts, "of_stack": name, "describe": bool(describe)}
+    return {**texts, "name_in_set": name, "describe": bool(describe)}
 
 
 def _component(entity: Any, parser: Any) -> dict[str, Any]:

@@ -123,7 +123,7 @@ def domain_bridge_stubs(plan: System) -> Iterator[Stub]:
     """Yield the nodes of domain_bridge in a plan of one domain."""
     ends = lists_by_key((it.node, Endpoint(it.kind, it.role, it.name, it.type)) for it in plan.ends)
     for node in plan.nodes:
-        if node.stack == DOMAIN_BRIDGE:
+        if node.node_set == DOMAIN_BRIDGE:
             yield played(node.name[1:], ends.get(node.name, ()), node.robot), ()
 
 

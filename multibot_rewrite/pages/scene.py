@@ -198,9 +198,9 @@ def _rows(plan: Index, targets: Mapping[Finding, Targets]) -> Iterator[FindingRo
         place = f"{finding.file}:{finding.line}" if finding.line else finding.file
         node = plan.node.get(finding.node)
         if not place and node is not None:
-            # Where a planned node is from: its plugin, a file, or its stack.
-            stack = f"node set {node.stack}" if node.stack else ""
-            place = str(node.plugin) or str(node.place) or stack
+            # Where a planned node is from: its plugin, a file, or its node set.
+            node_set = f"node set {node.node_set}" if node.node_set else ""
+            place = str(node.plugin) or str(node.place) or node_set
         yield FindingRow(finding, merged(targets[it] for it in members), robots, place)
 
 

@@ -51,7 +51,7 @@ def fleet(tmp_path: Path) -> Path:
 def check(tmp_path: Path, said: Said) -> list[str]:
     """A check of twenty robots, each without its robot_state_publisher."""
     plan, graph = tmp_path / "plan.yaml", tmp_path / "graph.json"
-    words = ["plan", ROVER, *TWENTY, "--stack", "robot_state", "--layout", "L2", "-o", str(plan)]
+    words = ["plan", ROVER, *TWENTY, "--node-set", "robot_state", "--layout", "L2", "-o", str(plan)]
     assert said("multibot", *words)[0] == 0
     wanted = from_yaml(plan.read_bytes(), "plan")
     found = as_planned(wanted)

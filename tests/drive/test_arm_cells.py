@@ -14,8 +14,8 @@ import fleet
 import pytest
 import rcl_names
 import verdict
+from node_set_cells import LAYOUTS, shares_rules
 from paths import ROOT
-from stack_cells import LAYOUTS, shares_rules
 
 from multibot_rewrite.base.releases import RELEASES, has_release
 from multibot_rewrite.cli import multibot
@@ -34,9 +34,9 @@ JOINTS = {"arm_controller": ("shoulder_joint", "elbow_joint"), "hand_controller"
 
 
 class Arm(NamedTuple):
-    """What moves the joints: its hardware, what the simulator loads, and the stack that starts it."""
+    """What moves the joints: its hardware, what a simulator loads, and the set that starts it."""
 
-    stack: str
+    node_set: str
     simulator: str
     hardware: str = ""
     plugins: str = ""
@@ -92,12 +92,12 @@ def description(arm: Arm) -> str:
 
 def fleet_of(arm: Arm, more: str, release: str, layout: str) -> str:
     """The text of the fleet file of two such arms, with the files that an arm has."""
-    stack = ", ".join(filter(None, (arm.stack, more)))
+    node_set = ", ".join(filter(None, (arm.node_set, more)))
     files = ["params: controllers.yaml"] if arm.hardware else []
     files += ["moveit: [kinematics.yaml, moveit_controllers.yaml]"] if more else []
     poses = [f", pose: {{y: {y}}}" if arm.simulator == "gazebo" else "" for y in (0.0, 3.0)]
     return (
-        f"distro: {release}\nlayout: {layout}\nsimulator: {arm.simulator}\nstack: [{stack}]\n"
+        f"distro: {release}\nlayout: {layout}\nsimulator: {arm.simulator}\nnode_sets: [{node_set}]\n"
         f"description: arm.urdf\n{f'srdf: {EXAMPLE}/arm.srdf' if more else ''}\n"
         f"robots: [{{name: left{poses[0]}}}, {{name: right{poses[1]}}}]\n"
         f"related_files: {{{', '.join(files)}}}\n"

@@ -365,7 +365,7 @@ def test_whatever_is_changed_in_a_row_of_a_bridge_is_noticed(path: str, tmp_path
     for is known by the description that is spawned."""
     shutil.copy(ROOT / "examples" / "launch_tutorial" / "rover.urdf", tmp_path)
     (tmp_path / "fleet.yaml").write_text(
-        "distro: jazzy\nlayout: tf-per-robot\nstack: nav2\ndescription: rover.urdf\n"
+        "distro: jazzy\nlayout: tf-per-robot\nnode_sets: nav2\ndescription: rover.urdf\n"
         "robots: [{name: r1, model: red}, {name: r2, pose: {x: 2}}]\n"
     )
     plan, made = planned(str(tmp_path / "fleet.yaml"))

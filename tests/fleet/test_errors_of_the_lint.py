@@ -156,7 +156,7 @@ def test_no_error_of_a_parameter_file_is_new_to_the_folder(
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(text)
     fleet.write_text(
-        f"layout: {layout}\ndistro: jazzy\nsimulator: none\nstack: [nav2]\n"
+        f"layout: {layout}\ndistro: jazzy\nsimulator: none\nnode_sets: [nav2]\n"
         f"description: robot.urdf\nrelated_files: {{params: own.yaml}}\n{ROBOTS}"
     )
     wrong = built_all_the_same(fleet, out, capsys)

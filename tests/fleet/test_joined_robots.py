@@ -70,7 +70,7 @@ distro: jazzy
 layout: both
 affix: prefix
 separators: {link: _}
-stack: ros2_control
+node_sets: ros2_control
 simulator: none
 """
 FLEET = f"{KEYS}{PARTS}robots: [{{name: cell1, arguments: {{robot_ip: 10.0.0.2}}}}]\n"

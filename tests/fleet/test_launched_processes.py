@@ -478,10 +478,10 @@ def test_files_of_what_is_not_here_are_the_robots(tmp_path: Path) -> None:
     assert words[-2:] == ["--param-file", str(tmp_path / "out/robot2/c.yaml")]
 
 
-def test_a_stack_stands_for_a_launch_file_that_is_not_here(tmp_path: Path) -> None:
+def test_a_node_set_stands_for_a_launch_file_that_is_not_here(tmp_path: Path) -> None:
     """Its nodes are known; started both ways each robot would have them twice."""
     body = INCLUDE.replace("'id': WHO", "'id': '7'").replace("lidar_x", "slam_toolbox")
-    found = told(actions(tmp_path, body, more="stack: slam_toolbox"))
+    found = told(actions(tmp_path, body, more="node_sets: slam_toolbox"))
     assert "IncludeLaunchDescription" not in found
     assert any("slam_toolbox_node" in it for it in found)
 

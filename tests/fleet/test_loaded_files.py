@@ -23,7 +23,7 @@ wheels:
     right_wheel_names: [right_wheel_joint]
     enable_odom_tf: false
 """
-FLEET = "layout: both\naffix: prefix\nstack: gz_ros2_control\ndescription: rover_gz.urdf\n"
+FLEET = "layout: both\naffix: prefix\nnode_sets: gz_ros2_control\ndescription: rover_gz.urdf\n"
 ROBOTS_TWO = "robots: [{name: robot1}, {name: robot2, pose: {y: 2}}]\n"
 
 

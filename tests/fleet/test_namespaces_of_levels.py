@@ -21,7 +21,7 @@ from multibot_rewrite.system.records import System
 FLEET = """\
 layout: {layout}
 description: {rover}
-stack: nav2
+node_sets: nav2
 distro: jazzy
 robots:
 - {{name: a1, namespace: /fleet_a/robot1}}

@@ -91,7 +91,7 @@ def test_it_cannot_be_asked_for_and_left_out() -> None:
 def test_one_such_robot_among_others_is_an_error_of_every_command(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    text = NO_PLUGIN.replace("{name: b}", f"{{name: b, stack: {NO_STATE_PUBLISHER}}}")
+    text = NO_PLUGIN.replace("{name: b}", f"{{name: b, node_sets: {NO_STATE_PUBLISHER}}}")
     file = str(fleet_folder(tmp_path, text))
     for words in (["plan", file], ["check", file], ["build", file, "-o", str(tmp_path / "out")]):
         more = ["--from", str(COLLISION)] if words[0] == "check" else []
@@ -102,7 +102,7 @@ def test_one_such_robot_among_others_is_an_error_of_every_command(
 
 
 def test_a_table_of_nothing_says_so(rover: str, capsys: pytest.CaptureFixture[str]) -> None:
-    words = ("plan", "--output-kind=table", rover, "robot1", "--stack", NO_STATE_PUBLISHER)
+    words = ("plan", "--output-kind=table", rover, "robot1", "--node-set", NO_STATE_PUBLISHER)
     code, _, err = run(capsys, *words)
     assert (code, err.count("\n")) == (0, 1)
     assert "no node of robot1 is known, so no rule is for it" in err

@@ -11,7 +11,7 @@ import pytest
 import yaml
 from fleet_folder import planned_fleet
 from graph_cases import as_planned
-from random_parameters import LAYOUTS, RELEASE, STACKS, planned, random_file
+from random_parameters import LAYOUTS, NODE_SETS, RELEASE, planned, random_file
 
 from multibot_rewrite import compare
 from multibot_rewrite.fleet.build import make_outputs
@@ -31,11 +31,13 @@ NAMES = ("MG101", "MG102", "MG310", "MG311", "MG320", "MG321", "MG301", "MG307",
 @pytest.mark.parametrize("seed", range(8))
 def test_a_graph_as_planned_has_no_finding(seed: int, tmp_path: Path) -> None:
     draw = random.Random(seed)
-    text, stack = random_file(draw), draw.choice(STACKS)
-    made, _ = planned(tmp_path, text, LAYOUTS[seed % 4], draw.choice(("prefix", "postfix")), stack)
+    text, node_set = random_file(draw), draw.choice(NODE_SETS)
+    made, _ = planned(
+        tmp_path, text, LAYOUTS[seed % 4], draw.choice(("prefix", "postfix")), node_set
+    )
     plan = expected(made.fleet)
     found = [it for it in compare(plan, as_planned(plan)) if it.code in NAMES]
-    assert found == [], (stack, text)
+    assert found == [], (node_set, text)
 
 
 SCAN = "sensor_msgs/msg/LaserScan"

@@ -308,7 +308,8 @@ def test_a_topic_that_an_argument_has_made_the_robots(
     given = f"arguments: {{own: '{value}'}}\n" if value else ""
     (tmp_path / "fleet.yaml").write_text(
         f"layout: {layout}\naffix: prefix\ndistro: jazzy\ndescription: bot.urdf.xacro\n{given}"
-        "stack: localization\nrelated_files: {params: nav2.yaml}\nrobots: [{name: r1}, {name: r2}]\n"
+        "node_sets: localization\nrelated_files: {params: nav2.yaml}\n"
+        "robots: [{name: r1}, {name: r2}]\n"
     )
     made = load_fleet(tmp_path / "fleet.yaml")
     rows = yaml.safe_load(made.text("r1/bridge.yaml"))

@@ -33,10 +33,10 @@ nodes:
     with: [tf_broadcaster]
     frames: {odom_frame: odom, base_frame: base_link}
     SENDS
-stacks:
+node_sets:
   mine: {about: my robot, nodes: [my_driver]}
 """
-DESCRIBED = "nodes: nodes.yaml\nstack: mine"
+DESCRIBED = "nodes: nodes.yaml\nnode_sets: mine"
 
 
 def children(folder: Path, parameters: str, more: str = "", sends: str = "") -> list[str]:

@@ -34,7 +34,7 @@ Displays:
 def fleet(folder: Path, layout: str) -> LoadedFleet:
     (folder / "one.rviz").write_text(RVIZ)
     text = (
-        f"layout: {layout}\nrelayed: true\nstack: robot_state_publisher\n"
+        f"layout: {layout}\nrelayed: true\nnode_sets: robot_state_publisher\n"
         "robots:\n"
         f"  - {{name: robot1, description: {ROBOTS / 'rover.urdf'}}}\n"
         f"  - {{name: robot2, description: {ROBOTS / 'rover.urdf'}}}\n"

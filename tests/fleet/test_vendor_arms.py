@@ -167,7 +167,7 @@ def build(sources: Path, tmp_path: Path) -> Build:
             "srdf": str(sources / arm.srdf),
             "arguments": {**arm.arguments, **(arm.prefix if way == OWN else {})},
             "fill_arguments": way == FILLED,
-            "stack": ["ros2_control", "moveit"],
+            "node_sets": ["ros2_control", "moveit"],
             "simulator": "none",
             "related_files": {
                 "params": [str(sources / it) for it in arm.params],

@@ -14,8 +14,8 @@ import pytest
 from paths import FIXTURES
 
 from multibot_rewrite.base.rosnames import expand
+from multibot_rewrite.knowledge.node_sets import built_in
 from multibot_rewrite.knowledge.records import Endpoint
-from multibot_rewrite.knowledge.stacks import built_in
 
 LEAST_FACTS = 600
 LEAST_NODES = 94

@@ -20,7 +20,7 @@ BY_HAND, OURS = re.findall(r"```python\n(def bt_navigator.*?)```", PAGE, re.DOTA
 FLEET = """\
 distro: jazzy
 layout: LAYOUT
-stack: nav2
+node_sets: nav2
 robots:
   - {name: robot1, description: rover.urdf}
   - {name: robot2, description: rover.urdf}

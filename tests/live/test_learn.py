@@ -19,9 +19,9 @@ from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.base.rosnames import bind, expand, resolve_bound
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER
-from multibot_rewrite.knowledge.node_library import NodeLibrary, stack_of
+from multibot_rewrite.knowledge.node_library import NodeLibrary, nodes_of_set
+from multibot_rewrite.knowledge.node_sets import built_in, user_library
 from multibot_rewrite.knowledge.records import MANAGER, TRANSPORTS, Endpoint, NodeFacts
-from multibot_rewrite.knowledge.stacks import built_in, user_stack
 from multibot_rewrite.live.learning.choosing import choose_nodes
 from multibot_rewrite.live.learning.learn import LearnedNode, learn
 from multibot_rewrite.live.learning.nodes_file import to_yaml
@@ -190,11 +190,11 @@ BOTH_TREES = "tf_namespace_bridge"
 
 
 @cache
-def stacks() -> dict[str, list[NodeFacts]]:
-    """Every stack and node that is known, as its code is; one stack only leaves a node out."""
+def node_sets() -> dict[str, list[NodeFacts]]:
+    """Every node set and node that is known, as its code is; one node set only leaves a node out."""
     library = built_in(NEWEST_LTS)
-    names = sorted({*library.stacks, *library.nodes} - {NO_STATE_PUBLISHER, BOTH_TREES})
-    return {name: [*map(bare, _with_managers(stack_of(library, name)))] for name in names}
+    names = sorted({*library.node_sets, *library.nodes} - {NO_STATE_PUBLISHER, BOTH_TREES})
+    return {name: [*map(bare, _with_managers(nodes_of_set(library, name)))] for name in names}
 
 
 def _with_managers(nodes: Sequence[NodeFacts]) -> Iterator[NodeFacts]:
@@ -210,11 +210,11 @@ def _with_managers(nodes: Sequence[NodeFacts]) -> Iterator[NodeFacts]:
 @pytest.mark.parametrize("affix", ["postfix", "prefix"])
 @pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize("base", ["", pytest.param("/old", marks=pytest.mark.deep)])
-def test_every_known_stack_is_learned_as_it_is_described(
+def test_every_known_node_set_is_learned_as_it_is_described(
     base: str, layout: str, affix: str
 ) -> None:
     naming = make_naming(layout, affix)
-    for nodes in stacks().values():
+    for nodes in node_sets().values():
         assert_served(nodes, base, built_in(NEWEST_LTS), naming)
 
 
@@ -226,8 +226,8 @@ LITERAL = {"nav2_slam", "nav2_slam_composed", "slam_toolbox"}
 @pytest.mark.slow
 @pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize("base", ["", pytest.param("/old", marks=pytest.mark.deep)])
-def test_every_stack_is_learned_where_nothing_is_known(base: str, layout: str) -> None:
-    for name, nodes in stacks().items():
+def test_every_node_set_is_learned_where_nothing_is_known(base: str, layout: str) -> None:
+    for name, nodes in node_sets().items():
         if name not in LITERAL or layout != "L4":
             # Nor can it be seen that the code of a node places it.
             seen = [node._replace(apart=False) for node in nodes]
@@ -447,7 +447,7 @@ def test_what_is_learned_gives_the_whole_table(
                 "nodes",
                 "--from",
                 str(shot),
-                "--stack",
+                "--node-set",
                 "mine",
                 "-o",
                 mine,
@@ -458,10 +458,10 @@ def test_what_is_learned_gives_the_whole_table(
     note = "left out as tools: /rviz2; to learn one give its name to --node"
     said = f"multibot: note: {note}\nmultibot: 2 nodes learned as node set mine (ROS 2 lyrical)\n"
     assert capsys.readouterr() == ("", said)
-    names = [node.name for node in stack_of(user_stack(mine, NEWEST_LTS), "mine")]
+    names = [node.name for node in nodes_of_set(user_library(mine, NEWEST_LTS), "mine")]
     assert names == ["driver", "eye"]
     rover = str(FIXTURES / "robots" / "rover.urdf")
-    fleet = [rover, "robot1", "robot2", "--nodes", mine, "--stack", "mine", "--layout"]
+    fleet = [rover, "robot1", "robot2", "--nodes", mine, "--node-set", "mine", "--layout"]
     assert main(["plan", "--output-kind=table", *fleet, "frames-per-robot"]) == 0
     out, err = capsys.readouterr()
     assert err == ""
@@ -497,8 +497,8 @@ def test_helpers_without_a_node_are_reported(
         (["--namespace", "old"], "'old' is not a full name"),
         (["--namespace", "/a-b"], "namespace '/a-b': character 3, '-', is not a letter"),
         (["--namespace", "/none"], "there is no node to learn below /none"),
-        (["--stack", ""], "'' is not a name of a node set, give one word"),
-        (["--stack", "a\nb"], "is not a name of a node set, give one word"),
+        (["--node-set", ""], "'' is not a name of a node set, give one word"),
+        (["--node-set", "a\nb"], "is not a name of a node set, give one word"),
         (["--timeout", "5"], "--timeout is for the live graph, leave out --from"),
         (["--domain", "5"], "--domain is for the live graph, leave out --from"),
         (["--node"], "argument --node: expected one argument"),
@@ -563,7 +563,7 @@ nodes:
   other:
     note: seen as /other
 
-stacks:
+node_sets:
   mine:
     about: Learned from a running graph
     nodes:

@@ -24,7 +24,7 @@ ALL, FIRST, SECOND = (live_commands.domain(60 + at) for at in range(3))
 FLEET = f"""\
 layout: tf-per-robot
 description: {ROBOTS / "rover.urdf"}
-stack: robot_state
+node_sets: robot_state
 simulator: none
 domains: {{robot1: 11, robot2: 12}}
 crossing: robot_description

@@ -91,7 +91,7 @@ def with_frames(plan: System, *more: Edge) -> Scene:
 
 
 @pytest.mark.slow
-def test_a_ring_and_a_chain_deeper_than_pythons_stack_end() -> None:
+def test_a_ring_and_a_chain_deeper_than_pythons_node_set_end() -> None:
     ring = [Edge(f"r{(at + 1) % 3}", f"r{at}", "/tf", False, ()) for at in range(3)]
     chain = [Edge(f"c{at + 1}", f"c{at}", "/tf", False, ()) for at in range(1500)]
     scene = with_frames(nav2_graphs.nav2(), *ring, *chain)

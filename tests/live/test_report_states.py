@@ -198,7 +198,7 @@ def test_snippets_are_short_and_of_files_that_are_there(tmp_path: Path) -> None:
     (tmp_path / "secret").write_text("a\nb\n")
     os.mkfifo(tmp_path / "pipe.urdf")
     others = (f"{tmp_path}/{it}:2" for it in ("gone.urdf", "binary.urdf", "secret", "pipe.urdf"))
-    found = snippets([f"{file}:1", f"{file}:5", f"{file}:99", *others, "stack nav2", ""])
+    found = snippets([f"{file}:1", f"{file}:5", f"{file}:99", *others, "node set nav2", ""])
     assert set(found) == {f"{file}:1", f"{file}:5"}
     assert [line.split()[0] for line in found[f"{file}:1"]] == ["1", "2", "3"]
     assert [line.split()[0] for line in found[f"{file}:5"]] == ["3", "4", "5", "6", "7"]

@@ -29,7 +29,7 @@ from multibot_rewrite.system.records import (
 ROVERS = """\
 layout: {layout}
 affix: prefix
-stack: nav2
+node_sets: nav2
 description: {description}
 robots: [{{name: robot1}}, {{name: robot2, pose: {{y: 2.0}}}}]
 """

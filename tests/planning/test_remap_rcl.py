@@ -13,8 +13,8 @@ from rcl_names import INSTALL, ask
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.knowledge.node_sets import load_node_set
 from multibot_rewrite.knowledge.records import Endpoint
-from multibot_rewrite.knowledge.stacks import load_stack
 from multibot_rewrite.planning.records import Run, Table
 from multibot_rewrite.planning.table import build_table
 from multibot_rewrite.planning.table_formats import ros_args
@@ -28,7 +28,7 @@ pytestmark = [
     ),
 ]
 ROBOTS = ("robot1", "robot2")
-STACKS = ("nav2", "slam_toolbox", "robot_state", "teleop")
+NODE_SETS = ("nav2", "slam_toolbox", "robot_state", "teleop")
 POLICIES = [
     ("L1", "postfix"),
     ("L2", "prefix"),
@@ -41,7 +41,9 @@ POLICIES = [
 @pytest.fixture(scope="module", params=POLICIES, ids="-".join)
 def table(request: pytest.FixtureRequest) -> Table:
     layout, affix = request.param
-    nodes = dict.fromkeys(node for stack in STACKS for node in load_stack(stack, NEWEST_LTS))
+    nodes = dict.fromkeys(
+        node for node_set in NODE_SETS for node in load_node_set(node_set, NEWEST_LTS)
+    )
     return build_table(ROBOTS, list(nodes), make_naming(layout, affix), release=NEWEST_LTS)
 
 

@@ -15,7 +15,7 @@ from related_file_calls import (
     fill_template,
     make_context,
     make_naming,
-    stack_of,
+    nodes_of_set,
 )
 
 from multibot_rewrite.base.findings.finding import Finding
@@ -24,7 +24,7 @@ from multibot_rewrite.related_files.behavior_tree.rewrite import rewrite_behavio
 
 LAYOUTS = ("L1", "L2", "L3", "L4")
 DECLARED = {"link": {"base_link": None, "tool": None}, "joint": {"wheel": None}}
-FACTS = stack_of(built_in(NEWEST_LTS), "nav2")
+FACTS = nodes_of_set(built_in(NEWEST_LTS), "nav2")
 
 
 def context(layout: str = "L2", distro: str = "jazzy", **more: str) -> Context:

@@ -137,7 +137,7 @@ def test_rules_of_a_hint_by_the_plan_mend_the_fault(
 
 # Of rules that stand in the plan, which is no part of the system.
 OF_THE_PLAN = {
-    "MG108": "a node that the plan lacks: --stack and --nodes are options that write one"
+    "MG108": "a node that the plan lacks: --node-set and --nodes are options that write one"
 }
 NAMES = re.compile(
     r":=|(?<![\w-])--[a-z][\w-]*|(?<!\w)-r /|\.ya?ml\b|\bROS_[A-Z_]+|</?[a-z_]+>|[a-z]+(?:_[a-z0-9]+)+"

@@ -98,7 +98,7 @@ def test_a_prefix_in_front_of_planned_frames(
 
 @pytest.mark.parametrize(
     ("place", "file", "line"),
-    [("a.urdf:12", "a.urdf", 12), ("stack nav2", "", 0), ("c:a.urdf:3", "c:a.urdf", 3)],
+    [("a.urdf:12", "a.urdf", 12), ("node set nav2", "", 0), ("c:a.urdf:3", "c:a.urdf", 3)],
 )
 def test_a_cause_has_its_place(place: str, file: str, line: int) -> None:
     assert caused("why", place)[:3] == ("why", file, line)

@@ -25,7 +25,7 @@ FLEET = f"""\
 layout: tf-per-robot
 distro: jazzy
 description: {EXAMPLE}/hexbase.urdf.xacro
-stack: [nav2]
+node_sets: [nav2]
 robots: [{{name: robot1, pose: {{x: 1}}}}, {{name: robot2, pose: {{x: 2}}}}]
 related_files: {{params: {EXAMPLE}/nav2_params.yaml, bridge: {EXAMPLE}/bridge.yaml}}
 """

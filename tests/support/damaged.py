@@ -142,7 +142,7 @@ PLACES = (
                 "robot2",
                 "--nodes",
                 "nodes.yaml",
-                "--stack",
+                "--node-set",
                 "small",
                 "-o",
                 "out",
@@ -481,8 +481,8 @@ def faults(done: Run, words: tuple[str, ...], file: str, folder: Path) -> list[s
             found.append("left its output")
         if done.out:
             found.append("printed something")
-        # Without its section the stack that was asked for is what is wrong.
-        if file not in text and not (file == "nodes.yaml" and "stack 'small'" in text):
+        # Without its section the node set that was asked for is what is wrong.
+        if file not in text and not (file == "nodes.yaml" and "node set 'small'" in text):
             found.append(f"does not name {file}")
         if lines and len(lines[0]) > 1100:
             found.append(f"a line of {len(lines[0])} characters")

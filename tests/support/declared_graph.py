@@ -66,7 +66,7 @@ def facts(release: str) -> dict[str, list[Fact]]:
 
 
 def names(fact: Fact, node: NodeFacts) -> list[str]:
-    """The names of an endpoint, with the values that the stack gives parameters."""
+    """The names of an endpoint, with the values that the node set gives parameters."""
     if "<" not in fact.name and not fact.parameter:
         return [fact.name]
     alike = [it for it in node.endpoints if is_same(fact._replace(name="<any>"), it)]

@@ -293,7 +293,7 @@ NAMES = (
 RELAYED = ("both", "postfix", "tf-per-robot")
 STEMS = ("robot", "r", "arm", "robot_", "scan", "base_link")
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix", "frame-prefix")
-STACKS = {
+NODE_SETS = {
     MOBILE: (
         *([], ["nav2"], ["localization"], ["slam_toolbox"], ["nav2_slam"], ["robot_localization"]),
         *(["teleop"], ["nav2_composed"], ["navigation"], ["localization", "teleop"]),
@@ -373,7 +373,7 @@ def _make_cell(making: _Making) -> None:
     data |= {"cell": {"name": "workcell"} if maybe(draw) else {}}
     groups = []
     for row in data["robots"]:
-        row["stack"] = draw(st.sampled_from((["moveit"], ["ros2_control", "moveit"])))
+        row["node_sets"] = draw(st.sampled_from((["moveit"], ["ros2_control", "moveit"])))
         row["srdf"] = _written(making, "arm", ".srdf", SRDF.replace("ROBOT", "arm"), row["name"])
         tag = row.get(data["affix"], row["name"])
         groups.append(f"{tag}_arm" if data["affix"] == "prefix" else f"arm_{tag}")
@@ -434,17 +434,17 @@ def _robot_row(making: _Making, name: str, kind: str, words: Mapping[str, str]) 
         row["colour"] = draw(st.sampled_from(("red", "#00ff00", [0, 170, 255])))
     if maybe(draw, 1) and kind != "gz arm":
         row["simulator"] = draw(st.sampled_from(("none", "gazebo")))
-    stacks = [
-        it for it in STACKS[its.what] if data["layout"] != "frame-prefix" or "moveit" not in it
+    node_sets = [
+        it for it in NODE_SETS[its.what] if data["layout"] != "frame-prefix" or "moveit" not in it
     ]
     for key, made in (
-        ("stack", lambda: draw(st.sampled_from(stacks))),
+        ("node_sets", lambda: draw(st.sampled_from(node_sets))),
         ("related_files", lambda: _related_files(making, kind, name)),
     ):
         value = made() if (key, kind) not in shared or maybe(draw, 2) else shared[key, kind]
         shared.setdefault((key, kind), value)
         row |= {key: value} if value else {}
-    if "moveit" in row.get("stack", ()):
+    if "moveit" in row.get("node_sets", ()):
         row["srdf"] = _written(making, "arm", ".srdf", SRDF.replace("ROBOT", "arm"), name)
     return row
 
@@ -619,7 +619,7 @@ def _keep_groups(data: Data) -> None:
         row |= {
             "description": "arm.urdf",
             "srdf": "arm.srdf",
-            "stack": ["moveit"],
+            "node_sets": ["moveit"],
             "pose": {"x": at},
         }
 
@@ -635,7 +635,7 @@ FLEET_CAUSES: dict[str, tuple[Callable[[Data], object], Callable[[Data], bool]]]
         lambda data: (
             data.update(layout="both", params_style="bringup", shared_nodes=["map_server"]),
             data.pop("shape", None),
-            _first(data).update(stack=["nav2"]),
+            _first(data).update(node_set=["nav2"]),
         ),
         started_for_each,
     ),
@@ -653,7 +653,7 @@ FLEET_CAUSES: dict[str, tuple[Callable[[Data], object], Callable[[Data], bool]]]
     "an adapter that finds no robot": (
         lambda data: (
             data.update(free_fleet={"router": "tcp/10.0.0.1:7447", "map": "L1"}),
-            _first(data).pop("stack", None),
+            _first(data).pop("node_sets", None),
         ),
         has_no_adapter,
     ),
@@ -732,9 +732,9 @@ CAUSES = {
     "an unknown key": Cause(
         _with("nmae", "x"), lambda fleet: any("nmae" in it for it in fleet.data["robots"])
     ),
-    "an unknown stack": Cause(
-        _with("stack", ["nav3"]),
-        lambda fleet: any("nav3" in it.get("stack", ()) for it in fleet.data["robots"]),
+    "an unknown node set": Cause(
+        _with("node_sets", ["nav3"]),
+        lambda fleet: any("nav3" in it.get("node_sets", ()) for it in fleet.data["robots"]),
     ),
     "arguments without a xacro": Cause(
         _with("arguments", {"mast": "low"}),
@@ -781,19 +781,19 @@ CAUSES = {
             data.update(layout="frame-prefix", affix="prefix"),
             data.pop("separators", None),
             [row.pop("postfix", None) for row in data["robots"]],
-            _first(data).update(stack=["moveit"], description="arm.urdf", srdf="arm.srdf"),
+            _first(data).update(node_set=["moveit"], description="arm.urdf", srdf="arm.srdf"),
         ),
         lambda fleet: (
             fleet.data["layout"] == "frame-prefix"
-            and any("moveit" in row.get("stack", ()) for row in fleet.data["robots"])
+            and any("moveit" in row.get("node_sets", ()) for row in fleet.data["robots"])
         ),
     ),
     "hardware of a simulator on a real robot": Cause(
         lambda data, _: _first(data).update(
-            description="gz_arm.urdf", simulator="none", stack=["ros2_control"]
+            description="gz_arm.urdf", simulator="none", node_set=["ros2_control"]
         ),
         lambda fleet: any(
-            (kind, it) == ("gz arm", "none") and "ros2_control" in row.get("stack", ())
+            (kind, it) == ("gz arm", "none") and "ros2_control" in row.get("node_sets", ())
             for row, kind, it in rows(fleet)
         ),
     ),
@@ -829,7 +829,7 @@ CAUSES = {
         lambda fleet: any(
             "pose" in row
             and "start_pose.yaml" in row.get("related_files", {}).get("params", ())
-            and {"slam_toolbox", "nav2_slam"}.isdisjoint(row.get("stack", ()))
+            and {"slam_toolbox", "nav2_slam"}.isdisjoint(row.get("node_sets", ()))
             and not is_bringup(fleet.data)
             for row in fleet.data["robots"]
         ),

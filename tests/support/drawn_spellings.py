@@ -23,7 +23,7 @@ SHORT = {
     "postfix": "L4",
     "frame-prefix": "L5",
 }
-OF_ALL = ("description", "join", "srdf", "arguments", "stack", "simulator")
+OF_ALL = ("description", "join", "srdf", "arguments", "node_sets", "simulator")
 PATHS = (
     *(
         "description",
@@ -109,7 +109,7 @@ def _at_the_top(data: Data) -> None:
     # Of one for all and another one at a robot that of the robot counts: both at one robot are a fault.
     has_both = any({"description", "join"} <= row.keys() for row in rows)
     for key in (it for it in OF_ALL if not (has_both and it in ("description", "join"))):
-        _raise(data, rows, key, nothing=[] if key == "stack" else None)
+        _raise(data, rows, key, nothing=[] if key == "node_sets" else None)
     top: Data = {}
     for kind in FILES:
         own = [row.get("related_files", {}) for row in rows]
@@ -137,7 +137,7 @@ def _words(data: Data) -> None:
     """A list of one word is a word."""
     for row in (data, *data["robots"]):
         for own in (row, row.get("related_files", {})):
-            for key in ("stack", *FILES):
+            for key in ("node_sets", *FILES):
                 value = own.get(key)
                 if isinstance(value, list) and len(value) == 1 and isinstance(value[0], str):
                     own[key] = value[0]

@@ -35,7 +35,7 @@ from multibot_rewrite.system.records import (
 
 # As a user names them: messages hold the paths.
 GRAPHS, ROVER = "fixtures/graphs", "fixtures/robots/rover.urdf"
-_NODES = ("--nodes", f"{GRAPHS}/nodes.yaml", "--stack", "small", "--distro", "jazzy")
+_NODES = ("--nodes", f"{GRAPHS}/nodes.yaml", "--node-set", "small", "--distro", "jazzy")
 FLEET = (ROVER, "robot1", "robot2", *_NODES)
 # Layout -> folder of its plan and graphs.
 FOLDERS = {

@@ -436,7 +436,7 @@ def _semantic(inner: str) -> Files:
 _LUA = 'x# = "odom", -- [[ a\\ntracking_frame = "lidar_link",\\n'
 FLEETS: Mapping[str, Files] = {
     "robots": lambda n: {
-        "fleet": "layout: both\nstack: nav2\ndescription: rover.urdf\nrobots:\n"
+        "fleet": "layout: both\nnode_sets: nav2\ndescription: rover.urdf\nrobots:\n"
         + each(n // 8, "- {name: robot#}\n")
     },
     "comments": lambda n: {"fleet": each(n, "## comment # {of [many\n") + COMMON},

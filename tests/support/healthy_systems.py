@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Systems in which nothing is wrong, as graphs: plans of real stacks, and the tools that people run.
+"""Systems in which nothing is wrong, as graphs: plans of real node sets, and the tools that people run.
 
-Nodes, names and types are those of the stacks' facts; tools have what their sources give them.
+Nodes, names and types are those of the node sets' facts; tools have what their sources give them.
 """
 
 from __future__ import annotations
@@ -48,28 +48,37 @@ TWO = ("robot1", "robot2")
 
 @cache
 def plan(
-    stacks: tuple[str, ...],
+    node_sets: tuple[str, ...],
     layout: str = "L1",
     robots: tuple[str, ...] = TWO,
     release: str = "jazzy",
 ) -> System:
-    """The plan of rovers with these stacks, as the command writes it."""
+    """The plan of rovers with these node sets, as the command writes it."""
     with TemporaryDirectory() as folder:
         file = f"{folder}/plan.yaml"
-        given = ["--stack", ",".join(stacks), "--layout", layout, "--distro", release, "-o", file]
+        given = [
+            "--node-set",
+            ",".join(node_sets),
+            "--layout",
+            layout,
+            "--distro",
+            release,
+            "-o",
+            file,
+        ]
         assert multibot.main(["plan", str(ROVER), *robots, *given]) == 0
         return from_yaml(Path(file).read_bytes(), file)
 
 
 @cache
 def started(
-    stacks: tuple[str, ...],
+    node_sets: tuple[str, ...],
     layout: str = "L1",
     robots: tuple[str, ...] = TWO,
     release: str = "jazzy",
 ) -> System:
     """The graph of such a plan, each robot with its tree of frames."""
-    planned = plan(stacks, layout, robots, release)
+    planned = plan(node_sets, layout, robots, release)
     graph = _with_types(as_planned(planned))
     edges = (edge for robot in planned.robots for edge in _edges(robot))
     return sent(graph._replace(edges=tuple(edges)))
@@ -310,7 +319,7 @@ SYSTEMS: Mapping[str, Callable[[], System]] = {
     "one map for all": one_map_for_all,
     "a follower and a convoy": follower,
 }
-# What stands in each release, with its plan: stacks, layout, robots.
+# What stands in each release, with its plan: node sets, layout, robots.
 OF_EACH_RELEASE = (
     (("nav2",), "L1", TWO),
     (("nav2",), "L2", TWO),

@@ -33,7 +33,7 @@ from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.outputs.built_states import with_built
 from multibot_rewrite.fleet.scripts import LoadedFleet
-from multibot_rewrite.knowledge.stacks import load_nodes
+from multibot_rewrite.knowledge.node_sets import load_nodes
 from multibot_rewrite.live.rehearsal import stage, with_substitutes
 from multibot_rewrite.planning.plan import read_plan
 from multibot_rewrite.producers.ros.child import ask, observe, running
@@ -117,8 +117,8 @@ class Cell(NamedTuple):
         return [self.launch, self.release, f"{self.layout}{more}", how, where]
 
     @property
-    def stack(self) -> str:
-        """The stack of the fleet file."""
+    def node_set(self) -> str:
+        """The node set of the fleet file."""
         return f"nav2{'_slam' if self.slam else ''}{'_composed' if self.composed else ''}"
 
 
@@ -165,7 +165,9 @@ def written(cell: Cell, folder: Path, sources: Path) -> LoadedFleet:
     style = "params_style: bringup" if cell.launch == BRINGUP else ""
     affix = "postfix" if cell.layout == "postfix" else "prefix"
     more = f"{style}\n{cell.more}"
-    text = FLEET.format(**cell._asdict() | {"stack": cell.stack, "affix": affix, "more": more})
+    text = FLEET.format(
+        **cell._asdict() | {"node_sets": cell.node_set, "affix": affix, "more": more}
+    )
     (folder / "fleet.yaml").write_text(text)
     return load_fleet(folder / "fleet.yaml")
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the tests of pictures share: plans of real stacks, graphs as planned, and ways to spoil them."""
+"""What tests of pictures share: plans of real node sets, graphs as planned, ways to spoil them."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def nav2(layout: str = "L2", *robots: str) -> System:
     with TemporaryDirectory() as folder:
         file = f"{folder}/plan.yaml"
         names = robots or ("robot1", "robot2")
-        given = ["--stack", "nav2", "--layout", layout, "--distro", "lyrical", "-o", file]
+        given = ["--node-set", "nav2", "--layout", layout, "--distro", "lyrical", "-o", file]
         assert multibot.main(["plan", str(ROVER), *names, *given]) == 0
         return from_yaml(Path(file).read_bytes(), file)
 

@@ -21,7 +21,7 @@ from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.knowledge.stacks import load_stack
+from multibot_rewrite.knowledge.node_sets import load_node_set
 from multibot_rewrite.related_files.context import fill_template, make_context
 from multibot_rewrite.related_files.params.rewrite import rewrite_params
 from multibot_rewrite.related_files.yaml_text import YamlText, read_yaml
@@ -30,7 +30,7 @@ FOLDERS = ("nav2_params", "localization_params", "controllers")
 REFUSALS = FIXTURES / "params_refusals.json"
 ROBOT = "robot1"
 POLICIES = (("L1", "prefix"), ("L2", "prefix"), ("L3", "postfix"), ("L4", "postfix"))
-STACKS = ("nav2", "ros2_control", "robot_localization")
+NODE_SETS = ("nav2", "ros2_control", "robot_localization")
 SHARED = ("map", "world")
 # Frames by the last word of their parameter, in nodes and files of every kind.
 FRAMES = re.compile(r"(base_frame|odom_frame|robot_base_frame|base_link_frame)(_id)?")
@@ -71,7 +71,7 @@ def outcome(data: bytes, file: str, layout: str, affix: str) -> Outcome:
 
 
 def facts() -> list[object]:
-    found = [node for name in STACKS for node in load_stack(name, NEWEST_LTS)]
+    found = [node for name in NODE_SETS for node in load_node_set(name, NEWEST_LTS)]
     return list(dict.fromkeys(found))
 
 

@@ -261,7 +261,10 @@ def _table(it: Outcome) -> Iterator[str]:
     plans = [
         (
             nodes_of(plan),
-            {it.name: f"stack {it.stack}" if it.stack else str(it.place) for it in plan.nodes},
+            {
+                it.name: f"node set {it.node_set}" if it.node_set else str(it.place)
+                for it in plan.nodes
+            },
         )
         for plan in (it.own, it.launched)
     ]

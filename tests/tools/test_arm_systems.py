@@ -27,9 +27,9 @@ from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.base.rosnames import bind, resolve_bound
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.knowledge.node_sets import built_in
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.planning.of_runs import parsed
 from multibot_rewrite.planning.records import Run
 from multibot_rewrite.system.records import TOPIC, Edge, End, Node, System

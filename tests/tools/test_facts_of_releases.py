@@ -14,7 +14,7 @@ import pytest
 from paths import FIXTURES
 
 from multibot_rewrite.base.releases import RELEASES
-from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.knowledge.node_sets import built_in
 from tools.interfaces.compare import (
     OURS,
     THEIRS,

@@ -170,10 +170,8 @@ def _remedy(plan: FleetPlan) -> str:
         if found := switch_for(it.simulated or it.description, given, loads_hardware, BOUNDED):
             name, value = found
             first = f"write arguments: {{{name}: {value!r}}} for the description"
-            return f"{first}, whose plugin starts it; or add ros2_control to `stack:`"
-    return (
-        "add ros2_control to `stack:`, which starts it; or load gz_ros2_control in the description"
-    )
+            return f"{first}, whose plugin starts it; or add ros2_control to `node_sets:`"
+    return "add ros2_control to `node_sets:`, which starts it; or load gz_ros2_control in it"
 
 
 def _known(plan: FleetPlan) -> Knowledge:

@@ -154,11 +154,11 @@ def _of_member(
         yield "launch", (told, (*_launched(member.bringup, apart),))
     if beside.srdf:
         yield "srdf", (here(beside.srdf), ("The planning groups of MoveIt",))
-    if beside.stacks:
-        whys = tuple(f"{stack}: {reason}" for stack, reason in beside.stacks.items())
+    if beside.node_sets:
+        whys = tuple(f"{node_set}: {reason}" for node_set, reason in beside.node_sets.items())
         maps = any(_MAP.search(data_of_file(it)) for it in beside.files.get("params", ()))
-        lacks = not maps and bool({"nav2", "localization"} & beside.stacks.keys())
-        yield "stack", (list(beside.stacks), (*whys, *[_NO_MAP] * lacks))
+        lacks = not maps and bool({"nav2", "localization"} & beside.node_sets.keys())
+        yield "node_sets", (list(beside.node_sets), (*whys, *[_NO_MAP] * lacks))
     files: dict[str, Any] = {
         kind: here(its[0]) if kind == "rviz" and len(its) == 1 else [here(path) for path in its]
         for kind, its in beside.files.items()

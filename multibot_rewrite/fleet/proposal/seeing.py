@@ -68,7 +68,7 @@ class Wanted(NamedTuple):
     apart: float = 0.0
     simulator: str = ""
     launch: tuple[LaunchOrder, ...] | None = None
-    stacks: tuple[str, ...] = ()
+    node_sets: tuple[str, ...] = ()
     file: str = "fleet.yaml"
     tell: Callable[[str], None] = lambda _: None
 

@@ -23,9 +23,9 @@ from multibot_rewrite.fleet.outputs.relays import Relay, relays
 from multibot_rewrite.fleet.robots import start_poses
 from multibot_rewrite.fleet.robots.node_names import NodeNames, Rules, names_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
-from multibot_rewrite.fleet.robots.robot_nodes import stack_nodes
+from multibot_rewrite.fleet.robots.robot_nodes import nodes_of_sets
+from multibot_rewrite.knowledge.node_sets import is_apart
 from multibot_rewrite.knowledge.programs import Program, started_as
-from multibot_rewrite.knowledge.stacks import is_apart
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.planning.of_runs import placed, target_of
 from multibot_rewrite.related_files.names.node_topics import fleet_topics, robot_topic
@@ -79,7 +79,7 @@ class LoadedRobot:
     """One robot of a fleet: what its nodes, its simulator and its tf need, as plain values.
 
     ``namespace`` is absolute; ``tag`` is the prefix or postfix of its frames and joints; ``pose``
-    is None if the fleet file has none; ``stack`` are the nodes of its node sets. It can be copied
+    is None if the fleet file has none; ``node_set`` are the nodes of its node sets. It can be copied
     and pickled, with its fleet."""
 
     def __init__(self, fleet: OfFleet, robot: RewrittenRobot) -> None:
@@ -92,8 +92,8 @@ class LoadedRobot:
         self.pose: Pose | None = spec.pose
         self.use_sim_time: bool | None = spec.use_sim_time
         self.distro: str = fleet.plan.file.distro
-        nodes = stack_nodes(spec, fleet.plan.file)
-        self.stack: tuple[str, ...] = tuple(it.name for it in nodes)
+        nodes = nodes_of_sets(spec, fleet.plan.file)
+        self.node_set: tuple[str, ...] = tuple(it.name for it in nodes)
         namespaced = robot.topics.naming.topics == NAMESPACE
         self.namespace: str = f"/{spec.namespace}" if namespaced else "/"
 

@@ -98,7 +98,7 @@ class NodeNames(NamedTuple):
         if node in self.nodes:
             return self.nodes[node]
         where = f"robot {self.robot!r}" if self.robot else "nodes for all robots"
-        hint = "add its node set to stack: in the fleet file"
+        hint = "add its node set to node_sets: in the fleet file"
         raise UsageError(f"{where}: {unknown('node', node, self.nodes)}; {hint}")
 
 

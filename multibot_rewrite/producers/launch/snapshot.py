@@ -216,7 +216,7 @@ def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[Run]) -> Iterator[Cave
     ]
     if unknown:
         listed = shorten(unknown, SEVERAL)
-        hint = f"describe them in a file of nodes (--nodes, docs/stacks.md){or_read()}"
+        hint = f"describe them in a file of nodes (--nodes, docs/node-sets.md){or_read()}"
         text = f"{plural(len(unknown), 'node')} not known, with all topics and frames: {listed}"
         yield Caveat(NOT_KNOWN, True, f"{text}; {hint}")
     partly = [it for it in nodes if it.is_known and it.fact.untold]

@@ -9,7 +9,7 @@ from functools import partial
 from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.naming import FRAME_KINDS, NAMESPACE, NOT_PLAIN, PREFIX, spelled
-from multibot_rewrite.knowledge.stacks import is_apart
+from multibot_rewrite.knowledge.node_sets import is_apart
 from multibot_rewrite.related_files.context import NAMESPACE_SLOT, TAG_SLOT, Context, number_slot
 from multibot_rewrite.related_files.names.rename_map import is_declared, spell
 

@@ -37,7 +37,7 @@ EKF = ("ekf_filter_node_odom", "ekf_filter_node_map", "navsat_transform")
 
 
 @pytest.mark.parametrize(
-    ("nodes", "stacks"),
+    ("nodes", "node_sets"),
     [
         ("amcl controller_server", ["nav2: amcl and controller_server"]),
         ("/a/amcl /a/controller_server", ["nav2: amcl and controller_server"]),
@@ -55,13 +55,13 @@ EKF = ("ekf_filter_node_odom", "ekf_filter_node_map", "navsat_transform")
         ("driver", []),
     ],
 )  # fmt: skip
-def test_sections_say_the_stacks(nodes: str, stacks: list[str], tmp_path: Path) -> None:
+def test_sections_say_the_node_sets(nodes: str, node_sets: list[str], tmp_path: Path) -> None:
     file = params(tmp_path, "p.yaml", *nodes.split())
     made = related_files_of(looked(tmp_path), Found(params=(file,)), "jazzy")
     # Besides those that the description itself says.
-    bare = related_files_of(looked(tmp_path), Found(), "jazzy").stacks
-    said = {it: f"p.yaml has parameters of {by}" for it, by in (it.split(": ") for it in stacks)}
-    assert {it: why for it, why in made.stacks.items() if it not in bare} == said
+    bare = related_files_of(looked(tmp_path), Found(), "jazzy").node_sets
+    said = {it: f"p.yaml has parameters of {by}" for it, by in (it.split(": ") for it in node_sets)}
+    assert {it: why for it, why in made.node_sets.items() if it not in bare} == said
 
 
 @pytest.mark.parametrize(

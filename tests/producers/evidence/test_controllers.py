@@ -18,7 +18,7 @@ from named_ends import named_ends
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.fleet.build import Outputs
-from multibot_rewrite.knowledge.stacks import load_nodes, load_stack
+from multibot_rewrite.knowledge.node_sets import load_node_set, load_nodes
 from multibot_rewrite.planning.records import Table
 from multibot_rewrite.planning.transforms import sent_by
 from multibot_rewrite.planning.ways import HOST, deliveries, started
@@ -152,7 +152,7 @@ def test_code_of_hardware_exports_what_no_description_names() -> None:
 
 def planned(text: str) -> dict[str, str]:
     given = given_in(text, file="c.yaml")
-    nodes = nodes_of(load_stack("ros2_control", "jazzy"), given, load_nodes("jazzy")).nodes
+    nodes = nodes_of(load_node_set("ros2_control", "jazzy"), given, load_nodes("jazzy")).nodes
     return {it.name: it.when for it in nodes}
 
 
@@ -262,7 +262,7 @@ def nodes_with(folder: Path, arm: str, layout: str, more: str = "") -> Table:
     return planned_fleet(fleet).fleet.table
 
 
-MANAGED = "stack: ros2_control\nrelated_files: {params: [controllers.yaml]}\n"
+MANAGED = "node_sets: ros2_control\nrelated_files: {params: [controllers.yaml]}\n"
 
 
 def test_nodes_that_hardware_makes(tmp_path: Path) -> None:

@@ -174,7 +174,7 @@ def _switch(choice: _Choice, wanted: str) -> tuple[tuple[str, bool]] | None:
     return None
 
 
-# The parameters of an input, and what the stack calls the one of a planner.
+# The parameters of an input, and what the node set calls the one of a planner.
 _INPUT, _OF_PLANNER = "topics.{}.", "navigation"
 # What the output of a mux is called where a drive obeys it.
 _DRIVE = "cmd_vel"
@@ -207,7 +207,7 @@ def through_a_mux(
     others = [it for it in nodes if it.name != node.name]
     obeyed = {topic_of(it, end) for it in others for end in _commands(it, SUBSCRIBES)}
     node, apart = _with_own_inputs(node, outputs | obeyed)
-    # A file has the ids of the inputs, or the stack.
+    # A file has the ids of the inputs, or the node set.
     ids = ((_id(it.parameter), topic_of(node, it)) for it in _commands(node, SUBSCRIBES))
     inputs = {id_ if id_ != "*" else _role(topic, usual): topic for id_, topic in ids}
     heard = {*inputs.values(), *topics_of(others, SUBSCRIBES)}

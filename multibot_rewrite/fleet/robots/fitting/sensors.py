@@ -109,7 +109,7 @@ def hearing_sensors(
         one = len(topics) == 1 and (kind not in OF_CAMERAS or kinds.count(kind) == 1)
         there = {*topics, *sent_as(nodes, kind)} if one else ()
         lost = one and "<" not in end.name and topic_of(node, end) not in there
-        # No file says the name that its stack has.
+        # No file says the name that its node set has.
         named = end.named_from or end.name
         ends.append(end._replace(name=named, remapped=topics[0]) if lost else end)
     return node._replace(endpoints=tuple(ends)) if offered else node

@@ -209,8 +209,8 @@ def _resolved_path(subject: Subject, text: str) -> str:
 def _interfaces(subject: Subject, path: str, is_sure: bool) -> tuple[Interface, ...]:
     """Return the interfaces exported, and claimed by a file's controllers; none of another robot."""
     # Most descriptions have no such file, and a lint of them loads nothing of this.
+    from multibot_rewrite.knowledge.node_sets import load_nodes
     from multibot_rewrite.knowledge.parameters import load_known_nodes
-    from multibot_rewrite.knowledge.stacks import load_nodes
     from multibot_rewrite.producers.evidence.hardware import control_system, exported
     from multibot_rewrite.producers.evidence.parameter_files import given_nodes
     from multibot_rewrite.related_files.yaml_text import read_yaml
