@@ -51,7 +51,7 @@ OTHERS = {"snapshot", "completion"}
 
 @pytest.fixture
 def target(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """What the hostile file in the working directory writes where it is let."""
+    """Return what the hostile file in the working directory writes where it is let."""
     monkeypatch.chdir(tmp_path)
     found = tmp_path / "taken"
     (tmp_path / PATH).write_text(ROBOT.replace("TARGET", str(found)))

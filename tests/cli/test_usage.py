@@ -210,12 +210,8 @@ def test_what_a_snapshot_does_not_take_together() -> None:
     assert said(snapshot._check_use, same).startswith("./g.json is a file that is read")
     assert snapshot._check_use(options(**{**usual, "snapshot": ["g.json"], "output": "n.yaml"}))
     assert not snapshot._check_use(options(**{**usual, "output_kind": "rosgraph"}))
-    for name, given in (
-        ("node", ["/a"]),
-        ("namespace", "/a"),
-        ("node_set", "s"),
-        ("distro", "jazzy"),
-    ):
+    words = {"node": ["/a"], "namespace": "/a", "node_set": "s", "distro": "jazzy"}
+    for name, given in words.items():
         lonely = options(**{**usual, "output_kind": None, name: given})
         hint = f"--{name} is for a description of nodes: add --output-kind nodes".replace("_", "-")
         assert said(snapshot._check_use, lonely) == hint

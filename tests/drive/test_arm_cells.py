@@ -81,7 +81,7 @@ ROWS = [
 
 
 def description(arm: Arm) -> str:
-    """The arm of the example with what moves its joints."""
+    """Return the arm of the example with what moves its joints."""
     text = (EXAMPLE / "arm.urdf").read_text()
     before, _, rest = text.partition("<ros2_control")
     control, end, after = rest.partition("</ros2_control>")
@@ -91,7 +91,7 @@ def description(arm: Arm) -> str:
 
 
 def fleet_of(arm: Arm, more: str, release: str, layout: str) -> str:
-    """The text of the fleet file of two such arms, with the files that an arm has."""
+    """Return the text of the fleet file of two such arms, with the files that an arm has."""
     node_set = ", ".join(filter(None, (arm.node_set, more)))
     files = ["params: controllers.yaml"] if arm.hardware else []
     files += ["moveit: [kinematics.yaml, moveit_controllers.yaml]"] if more else []
@@ -142,6 +142,6 @@ def ends_of(arm: Arm) -> int:
 
 
 def moved_by(found: fleet.Fleet, robot: str) -> set[tuple[str, str, str]]:
-    """What moves an arm, where that moves no other one."""
+    """Return what moves an arm, where that moves no other one."""
     own = {it for it in verdict.heard(found) if it[0] == robot}
     return {it for it in own if verdict.reached(found, *it[1:]) == {robot}}

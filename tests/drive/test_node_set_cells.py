@@ -40,7 +40,7 @@ ROWS = [
 
 
 def with_controllers(cell: Cell, folder: Path) -> str:
-    """The text of its fleet file; a description that names a file of controllers has it beside it."""
+    """Return the text of its fleet file; a file of controllers that the description names is there."""
     if cell.robot != "controlled" or cell.node_set not in CONTROLLED:
         return cell.fleet
     (folder / "config").mkdir(exist_ok=True)

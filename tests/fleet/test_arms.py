@@ -98,7 +98,7 @@ OWN = "arguments: {prefix: '{robot}_'}\n"
 def built(
     folder: Path, more: str = TWO, layout: str = "both", **words: str
 ) -> tuple[dict[str, str], list[Finding]]:
-    """The files of a fleet and its findings; ``words`` replace those of the sources."""
+    """Return the files of a fleet and its findings; ``words`` replace those of the sources."""
     plugin, own, group = (words.get(it, "") for it in ("plugin", "own", "group"))
     files = {
         "arm.urdf.xacro": URDF.replace("PLUGIN", plugin or MOCK),

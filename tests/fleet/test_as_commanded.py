@@ -62,7 +62,7 @@ def commands(made: Outputs) -> str:
 
 
 def changes(text: str) -> Iterator[tuple[str, str]]:
-    """The text with one word of a line changed, or without it."""
+    """Yield the text with one word of a line changed, or without it."""
     lines = text.splitlines()
     for at, line in enumerate(lines):
         words = shlex.split(line) if line.startswith(("ros2 run", "rviz2")) else []

@@ -27,7 +27,7 @@ def camera(topic: str, kind: str = "camera") -> str:
 
 
 def robot(folder: Path, *cameras: str) -> Path:
-    """A description in gz-sim with these cameras."""
+    """Return a description in gz-sim with these cameras."""
     file = folder / "robot.urdf"
     file.write_text(
         '<robot name="rover"><link name="base_link"><inertial><mass value="1"/><inertia ixx="0.1" '
@@ -40,7 +40,7 @@ def robot(folder: Path, *cameras: str) -> Path:
 def built(
     folder: Path, release: str, layout: str, node_set: str, description: Path, more: str = ""
 ) -> Path:
-    """The folder that is built for two robots, without an error."""
+    """Return the folder that is built for two robots, without an error."""
     fleet, out = folder / "fleet.yaml", folder / "out"
     fleet.write_text(
         f"distro: {release}\nlayout: {layout}\nsimulator: gazebo\nnode_sets: [{node_set}]\n"
@@ -52,7 +52,7 @@ def built(
 
 
 def heard(out: Path, node: str, *types: str) -> set[str]:
-    """The topics of these types that a node hears by the plan, whoever listens to it."""
+    """Return the topics of these types that a node hears by the plan, whoever listens to it."""
     plan = read_plan((out / "plan.yaml").read_bytes(), "plan.yaml")
     found = (it for it in ends_of(plan, node) if it.role == "subscribes")
     return {it.name for it in found if it.type in types}

@@ -90,7 +90,7 @@ FILES = {
 
 
 def built(folder: Path, **changed: str) -> tuple[dict[str, bytes], list[Finding]]:
-    """The files and findings of the fleet; ``changed`` are other texts, ``_`` for a dot in names."""
+    """Return the fleet's files and findings; ``changed`` are other texts, ``_`` for a dot in names."""
     for name, text in {
         **FILES,
         **{it.replace("_", "."): text for it, text in changed.items()},

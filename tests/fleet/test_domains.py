@@ -75,7 +75,7 @@ class Bridged(NamedTuple):
 
 
 def as_domain_bridge_reads(text: str) -> tuple[str, list[Bridged]]:
-    """The name and the topics, by parse_domain_bridge_yaml_config.cpp and bridge_topic of
+    """Return the name and the topics, by parse_domain_bridge_yaml_config.cpp and bridge_topic of
     domain_bridge.cpp (c2523e1); what these throw at, or leave out, fails here."""
     root = yaml.compose(text)
     (topics,) = [value for key, value in root.value if key.value == "topics"]

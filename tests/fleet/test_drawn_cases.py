@@ -18,7 +18,7 @@ GZ, CART, XACRO, ARM = "gz rover", "plain cart", "xacro rover", "arm"
 
 
 def fleet(kinds: str, *robots: Data, **keys: object) -> DrawnFleet:
-    """A fleet of robots of these kinds, three metres apart."""
+    """Return a fleet of robots of these kinds, three metres apart."""
     each = tuple(kinds.split(", "))
     texts = {it: KINDS[it].text.replace("ROBOT", "robot") for it in KINDS}
     files = {f"{it.replace(' ', '_')}{KINDS[it].ending}": text for it, text in texts.items()}

@@ -60,7 +60,8 @@ ROBOTS = "robots: [{name: robot1, pose: {y: 0.0}}, {name: robot2, pose: {y: 3.0}
 
 
 def build(folder: Path, text: str, **files: str) -> int:
-    """The exit code of a build of a fleet file of these lines, beside these files, into ``out``."""
+    """Return the exit code of a build of these lines as a fleet file, beside these files, into
+    ``out``."""
     for name, data in files.items():
         (folder / name.replace("_", ".")).write_text(data)
     fleet = folder / "fleet.yaml"
@@ -69,7 +70,7 @@ def build(folder: Path, text: str, **files: str) -> int:
 
 
 def ends(folder: Path, node: str) -> set[tuple[str, str]]:
-    """What the plan says that a node does with topics."""
+    """Return what the plan says that a node does with topics."""
     plan = read_plan((folder / "out" / "plan.yaml").read_bytes(), "plan.yaml")
     return {(it.role, it.name) for it in ends_of(plan, node)}
 

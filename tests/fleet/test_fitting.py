@@ -20,7 +20,7 @@ ROBOTS = "robots: [{name: robot1, pose: {y: 0.0}}, {name: robot2, pose: {y: 3.0}
 
 
 def built(folder: Path, text: str, robot: Path = ROVER) -> Path:
-    """The folder that is built of a fleet file of these lines, without an error."""
+    """Return the folder that is built of a fleet file of these lines, without an error."""
     fleet, out = folder / "fleet.yaml", folder / "out"
     fleet.write_text(f"layout: tf-per-robot\ndescription: {robot}\n{text}\n{ROBOTS}\n")
     assert main(["build", str(fleet), "-o", str(out), "-q"]) == 0
@@ -28,13 +28,13 @@ def built(folder: Path, text: str, robot: Path = ROVER) -> Path:
 
 
 def rows(out: Path) -> dict[str, str]:
-    """The type of each topic of the first robot's bridge."""
+    """Return the type of each topic of the first robot's bridge."""
     bridge = yaml.safe_load((out / "robot1" / "bridge.yaml").read_text())
     return {it["ros_topic_name"]: it["ros_type_name"] for it in bridge}
 
 
 def given(out: Path, parameter: str) -> dict[str, str]:
-    """The value that the launch file itself gives a parameter, by the node's name."""
+    """Return the value that the launch file itself gives a parameter, by the node's name."""
     found, name = {}, ""
     for line in (out / "fleet.launch.py").read_text().splitlines():
         if line.strip().startswith("name='"):
@@ -45,7 +45,7 @@ def given(out: Path, parameter: str) -> dict[str, str]:
 
 
 def planned(out: Path, node: str, role: str, topic: str) -> list[str]:
-    """The types of an end in the plan."""
+    """Return the types of an end in the plan."""
     plan = read_plan((out / "plan.yaml").read_bytes(), "plan.yaml")
     found = [it for it in ends_of(plan, node) if (it.role, it.name) == (role, topic)]
     return [type_ for it in found for type_ in (it.type, *it.also)]
@@ -155,7 +155,7 @@ def test_nav2_sends_to_an_input_of_twist_mux(
 
 
 def muxed(folder: Path, *inputs: str) -> str:
-    """The key of a fleet file for a user's twist_mux with these inputs, each ``id: topic``."""
+    """Return the key of a fleet file for a user's twist_mux with these inputs, each ``id: topic``."""
     lines = [
         f"      {it.replace(': ', ': {topic: ')}, timeout: 0.5, priority: 1}}" for it in inputs
     ]

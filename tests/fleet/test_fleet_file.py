@@ -491,7 +491,7 @@ def test_the_page_has_examples_and_the_line_for_editors() -> None:
 
 
 def fault(given: Any, validator: str, wanted: Any, **schema: Any) -> str:
-    """What is said of an error of jsonschema."""
+    """Return what is said of an error of jsonschema."""
     return _in_words(
         SimpleNamespace(
             instance=given, validator=validator, validator_value=wanted, schema=schema,

@@ -54,7 +54,7 @@ def test_a_section_in_the_namespace_of_its_robot_is_for_that_robot(tmp_path: Pat
 
 
 def spell(layout: str, name: str, word: str, separator: str = "/") -> str:
-    """What these tests expect, computed without the package."""
+    """Return what these tests expect, computed without the package."""
     if layout == "L1":
         return name
     return f"{word}{separator}{name}" if layout == "L2" else f"{name}{separator}{word}"

@@ -52,7 +52,7 @@ def own(text: str, layout: str = "L2", *links: str) -> list[dict[str, Any]]:
 
 
 def one(names: str, layout: str = "L2", *links: str) -> tuple[str, str]:
-    """The ROS and gz name that an entry has for a robot."""
+    """Return the ROS and gz name that an entry has for a robot."""
     rows = "".join(f"  {line}\n" for line in names.split("; "))
     found = own(f"-{rows[1:]}{TYPES}", layout, *links)[0]
     both = found.get("topic_name", "")
@@ -230,7 +230,7 @@ def test_bridge_corpus(bridges: list[Path], layout: str) -> None:
 
 
 def entry_problems(source: str, text: str, shared: str) -> Iterator[str]:
-    """What is wrong with a robot's file: but for names its entries and lines are the source's."""
+    """Yield what is wrong with a robot's file: but for names its entries and lines are the source's."""
     before = yaml.safe_load(source)
     after = [*(yaml.safe_load(text) or []), *(yaml.safe_load(shared) or [])]
     if len(before) != len(after):

@@ -28,7 +28,7 @@ LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 
 
 def of_python(out: Path) -> list[tuple[Any, ...]]:
-    """The processes: program, namespace, name, rules, number of files and of own words."""
+    """Return the processes: program, namespace, name, rules, number of files and of own words."""
     (done,) = performed(str(out / "fleet.launch.py"), [Launching({})])
     assert not done.error
     return sorted(
@@ -125,7 +125,7 @@ def test_a_real_robot_needs_no_simulator(tmp_path: Path) -> None:
 
 
 def of_nav2(folder: Path, distro: str = "jazzy", **keys: str) -> str:
-    """The file for two robots with Nav2's parameters and these keys."""
+    """Return the file for two robots with Nav2's parameters and these keys."""
     for name in ("hexbase.urdf.xacro", "nav2_params.yaml"):
         shutil.copy(ROOT / "examples" / "namespace_and_prefix" / name, folder)
     more = "".join(f"{key}: {value}\n" for key, value in keys.items())
@@ -249,7 +249,7 @@ REAL = pytest.mark.skipif(
 
 
 def programs(out: Path) -> dict[str, str]:
-    """The programs of the launch file with their packages."""
+    """Return the programs of the launch file with their packages."""
     text = (out / "fleet.launch.py").read_text()
     pairs = re.findall(r'package="(\w+)",\s+executable="([\w.]+)"', text)
     return {executable: package for package, executable in pairs}
@@ -303,7 +303,7 @@ def test_tf_is_bridged_where_the_bridge_is_installed(installed: bool, tmp_path: 
 
 
 def chosen(out: Path, text: str) -> list[str] | str:
-    """The robots that are started for ``robots:=`` with this text, or why none is."""
+    """Return the robots that are started for ``robots:=`` with this text, or why none is."""
     (done,) = performed(str(out / "fleet.launch.py"), [Launching({"robots": text})])
     spaces = (it.values.get("namespace", "/").strip("/") for it in done.actions)
     return done.error or [*dict.fromkeys(filter(None, spaces))]

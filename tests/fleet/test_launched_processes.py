@@ -62,7 +62,7 @@ def actions(
     layout: str = "both",
     given: dict[str, str] | None = None,
 ) -> list[Action]:
-    """What the launch file of a build does, but for its own arguments."""
+    """Return what the launch file of a build does, but for its own arguments."""
     text = LAUNCH.replace("SETUP", setup).replace("BODY", body)
     description = DESCRIPTION
     for link in ("base_link", "lidar_link", "wheel") if "gazebo" in more else ():
@@ -87,7 +87,7 @@ def lasts(folder: Path) -> None:
 
 
 def told(found: Sequence[Action]) -> list[str]:
-    """The actions in their order, by what they start; without the robot_state_publisher."""
+    """Return the actions in their order, by what they start; without the robot_state_publisher."""
     words = [_word(it) for it in found]
     return [it for it in words if it != "robot_state_publisher"]
 
@@ -99,7 +99,7 @@ def _word(it: Action) -> str:
 
 
 def of(found: Sequence[Action], word: str) -> dict[str, Any]:
-    """The values of the one action that starts something."""
+    """Return the values of the one action that starts something."""
     (values,) = (it.values for it in found if _word(it) == word)
     return dict(values)
 

@@ -28,7 +28,7 @@ ROBOTS_TWO = "robots: [{name: robot1}, {name: robot2, pose: {y: 2}}]\n"
 
 
 def package(folder: Path, path: str) -> Path:
-    """A package with a robot that loads ``path``; returns the folder of its description."""
+    """Return a package with a robot that loads ``path``; returns the folder of its description."""
     text = (ROBOTS / "rover_gz.urdf").read_text()
     assert text.count("config/controllers.yaml") == 1
     (folder / "config").mkdir(parents=True)

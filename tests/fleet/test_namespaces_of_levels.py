@@ -31,7 +31,7 @@ robots:
 
 
 def planned(folder: Path, layout: str) -> System:
-    """The plan of the fleet, through its file."""
+    """Return the plan of the fleet, through its file."""
     file = folder / "fleet.yaml"
     file.write_text(FLEET.format(layout=layout, rover=ROVER))
     plan = expected(planned_fleet(file).fleet)

@@ -29,7 +29,7 @@ NO_PLUGIN = "robots: [{name: a}, {name: b}]\ndescription: rover.urdf\nlayout: fr
 
 @pytest.fixture
 def rover(tmp_path: Path) -> str:
-    """A description that starts no node itself."""
+    """Return a description that starts no node itself."""
     path = tmp_path / "rover.urdf"
     path.write_text(ROVER)
     return str(path)
@@ -114,7 +114,7 @@ def test_a_table_of_nothing_says_so(rover: str, capsys: pytest.CaptureFixture[st
 
 @pytest.fixture
 def plan(rover: str) -> dict[str, Any]:
-    """A plan of two robots as plain values."""
+    """Return a plan of two robots as plain values."""
     made = expected(make_fleet(rover, ["robot1", "robot2"], [], {}, release=NEWEST_LTS))
     value: dict[str, Any] = yaml.safe_load(to_yaml(made))
     return value

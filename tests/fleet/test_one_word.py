@@ -26,7 +26,7 @@ from multibot_rewrite.system.records import Robot
 
 
 def written(files: dict[str, str], node: Run) -> Run | None:
-    """What the robot's file sets for a node under its full name."""
+    """Return what the robot's file sets for a node under its full name."""
     file = f"{node.robot}/p.yaml"
     known = built_in_nodes(RELEASE)
     own = f"{node.full_name}:\n  ros__parameters: {{}}\n"

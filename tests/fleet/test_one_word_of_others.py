@@ -61,7 +61,7 @@ robots: [{{name: robot1}}, {{name: robot2}}]
 
 
 def bridged(folder: Path, layout: str, affix: str, row: str, read: str) -> tuple[System, list[str]]:
-    """The plan of a fleet with a bridge and a node that reads, and the names in the written rows."""
+    """Return the plan of a fleet with a bridge and a reader, and the names in the written rows."""
     (folder / "robot.urdf").write_text(ROVER.format(row))
     (folder / "p.yaml").write_text(f"slam_toolbox:\n  ros__parameters: {{scan_topic: {read}}}\n")
     words = {"gz_topic_name": row, "ros_topic_name": row, "direction": "GZ_TO_ROS"}
@@ -95,7 +95,7 @@ JOINTS, INTERFACES = ("a", "b", "c"), ("position", "velocity", "effort")
 
 
 def random_arm(draw: random.Random) -> tuple[str, str]:
-    """A description with the hardware of some joints, and controllers of some."""
+    """Return a description with the hardware of some joints, and controllers of some."""
     links = '<link name="l0"/>'
     joints, hardware = "", ""
     for at, name in enumerate(JOINTS):

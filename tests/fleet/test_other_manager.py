@@ -47,7 +47,7 @@ def xacro(folder: Path, argument: str, inside: str, plugin: str = OF_GZ) -> str:
 
 def planned(description: str, **keys: Any) -> FleetPlan:
     data = {
-        "layout": "both",
+        "layout": "L3",
         "affix": "prefix",
         "simulator": "gazebo",
         "node_sets": "gz_ros2_control",

@@ -73,7 +73,7 @@ def fleet(folder: Path, text: str) -> Path:
 
 
 def worth_a_look(findings: Iterable[Finding]) -> list[str]:
-    """The codes of findings above notes: these robots have no drivers."""
+    """Return the codes of findings above notes: these robots have no drivers."""
     return [it.code for it in findings if it.level != NOTE]
 
 

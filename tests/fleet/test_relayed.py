@@ -45,7 +45,7 @@ def fleet(folder: Path, layout: str) -> LoadedFleet:
 
 
 def relayed(plan: System) -> System:
-    """The graph as planned, with what the relays send."""
+    """Return the graph as planned, with what the relays send."""
     graph = as_planned(plan)
     copies = (it._replace(topic="/tf_static" if it.static else "/tf") for it in graph.edges)
     return sent(graph._replace(edges=(*graph.edges, *copies)))

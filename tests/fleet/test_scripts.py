@@ -59,7 +59,7 @@ CHILD = SUPPORT / "rcl_params_child.py"
 
 
 def fleet(folder: Path, layout: str = "L2", text: str = FLEET, params: str = PARAMS) -> LoadedFleet:
-    """The fleet file of a folder, loaded."""
+    """Return the fleet file of a folder, loaded."""
     (folder / "rover.urdf").write_bytes(ROVER.read_bytes())
     (folder / "params.yaml").write_text(params)
     affix = "postfix" if layout == "L4" else "prefix"
@@ -362,7 +362,7 @@ def scalar_cases() -> list[str]:
 
 
 def without_its_own(values: Mapping[str, Any]) -> dict[str, Any]:
-    """A node's parameters but those that every node declares."""
+    """Return a node's parameters but those that every node declares."""
     own = ("use_sim_time", "start_type_description_service")
     return {name: value for name, value in values.items() if name not in own}
 

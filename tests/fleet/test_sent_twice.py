@@ -29,9 +29,8 @@ def test_two_nodes_that_send_one_frame(tmp_path: Path) -> None:
         "amcl: {ros__parameters: {odom_frame_id: odom}}\n"
         "slam_toolbox:\n  ros__parameters: {odom_frame: odom, map_frame: map}\n"
     )
-    text = (
-        f"node_sets: [localization, nav2_slam]\nrelated_files: {{params: params.yaml}}\n{PARENTS}"
-    )
+    sets = "node_sets: [localization, nav2_slam]\n"
+    text = f"{sets}related_files: {{params: params.yaml}}\n{PARENTS}"
     plan = planned(tmp_path, text, params__yaml=params)
     found = [it for it in make_outputs(plan).findings if it.code == "MG408"]
     assert len(found) == 1

@@ -54,7 +54,7 @@ def of_parts() -> frozenset[object]:
 
 
 def named(text: str, own: str) -> Iterator[str]:
-    """What a text names."""
+    """Yield what a text names."""
     words = set(re.findall(r"[\w<>.]+", text))
     known = library()
     nodes = {it.rpartition("/")[2] for it in (*known.nodes, *known.parameters)} - {own}
@@ -77,7 +77,7 @@ def conditions() -> Iterator[str]:
     known = library()
     nodes = (
         *known.nodes.values(),
-        *(it for node_set in known.node_sets.values() for it in node_set.nodes),
+        *(it for a_set in known.node_sets.values() for it in a_set.nodes),
     )
     for node in nodes:
         yield from (node.when, *(it.when for it in node.endpoints))

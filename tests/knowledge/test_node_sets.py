@@ -43,13 +43,13 @@ WANTED = {
 
 
 def endpoint(node: NodeFacts, role: str, name: str) -> Endpoint:
-    """The one endpoint of a role and name."""
+    """Return the one endpoint of a role and name."""
     (found,) = [e for e in node.endpoints if (e.role, e.name) == (role, name)]
     return found
 
 
 def extra(text: str) -> NodeLibrary:
-    """The built-in library with a user's text."""
+    """Return the built-in library with a user's text."""
     return extend(built_in(NEWEST_LTS), text, "mine.yaml")
 
 

@@ -102,7 +102,7 @@ def programs(told: list[dict[str, Any]], name: str) -> list[dict[str, Any]]:
 
 
 def parameters(it: dict[str, Any], node: str) -> dict[str, Any]:
-    """What rcl would make of the parameter files and words of a program; the last one wins."""
+    """Return what rcl would make of the parameter files and words of a program; the last one wins."""
     found: dict[str, Any] = {}
     for flag, word in zip(it["words"], it["words"][1:], strict=False):
         if flag == "--params-file":

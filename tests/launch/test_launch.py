@@ -98,7 +98,7 @@ SIGNATURES = json.loads((FIXTURES / "launch_signatures.json").read_text())
 
 
 def refusing(name: str) -> Any:
-    """A class that refuses the options that the one of launch_ros refuses."""
+    """Return a class that refuses the options that the one of launch_ros refuses."""
 
     def made(self: Started, **options: Any) -> None:
         unknown = sorted(set(options) - {*SIGNATURES[name]})
@@ -124,7 +124,7 @@ def stand_ins(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def frontend(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
-    """What XML can say, in launch or in the stand-in."""
+    """Yield what XML can say, in launch or in the stand-in."""
     stand_ins(monkeypatch)
     made_once = (launch_context.substitution_class, later._action, later._component)
     for it in made_once:
@@ -141,7 +141,7 @@ def context(frontend: Any) -> Any:
 
 @pytest.fixture
 def fleet(tmp_path: Path) -> str:
-    """The path of a fleet file."""
+    """Return the path of a fleet file."""
     (tmp_path / "rover.urdf").write_bytes((FIXTURES / "robots" / "rover.urdf").read_bytes())
     (tmp_path / "params.yaml").write_text(PARAMS)
     (tmp_path / "one.rviz").write_bytes(RVIZ.read_bytes())
@@ -150,14 +150,14 @@ def fleet(tmp_path: Path) -> str:
 
 
 def run(context: Any, action: Any) -> list[Started]:
-    """What an action starts, and what those start that it makes."""
+    """Return what an action starts, and what those start that it makes."""
     made = [it for one in action.visit(context) or () for it in run(context, one)]
     own = isinstance(action, Started) and not isinstance(action, Set) and action.ran
     return [action, *made] if own else made
 
 
 def read(text: str) -> list[Any]:
-    """The actions of an XML launch file."""
+    """Return the actions of an XML launch file."""
     whole = f"<launch>{text}</launch>"
     if not REAL:
         parser: Any = launch_stand_in.Parser()
@@ -170,7 +170,7 @@ def read(text: str) -> list[Any]:
 
 
 def of(name: str) -> Any:
-    """A launch configuration, known when the launch file runs."""
+    """Return a launch configuration, known when the launch file runs."""
     return importlib.import_module("launch.substitutions").LaunchConfiguration(name)
 
 
@@ -289,7 +289,7 @@ class Handler:
 
 
 def later_on(context: Any, handler: Any, event: str) -> Any:
-    """What a handler says when its event comes, as a launch asks it (launch_service.py)."""
+    """Return what a handler says when its event comes, as a launch asks it (launch_service.py)."""
     context._push_locals()
     try:
         return handler.handle(event, context)

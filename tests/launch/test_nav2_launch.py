@@ -46,7 +46,7 @@ def run(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
 
 
 def started(folder: Path, *words: str) -> dict[str, dict[str, Any]]:
-    """What is started, by full name; windows of RViz by their config."""
+    """Return what is started, by full name; windows of RViz by their config."""
     done = run(folder, *words)
     assert done.returncode == 0 and "Caught" not in done.stderr, done.stderr
     rows: Rows = json.loads("[" + f"\n{done.stdout}".rpartition("\n[")[2])
@@ -54,13 +54,13 @@ def started(folder: Path, *words: str) -> dict[str, dict[str, Any]]:
 
 
 def full(row: dict[str, Any]) -> str:
-    """The full name of a node; that of its file for RViz."""
+    """Return the full name of a node; that of its file for RViz."""
     name = row["name"] or "/".join(row["own"][-1:])
     return f"/{row['namespace'].strip('/')}/{name}".replace("//", "/")
 
 
 def values(row: dict[str, Any], node: str) -> dict[str, Any]:
-    """The parameters that files of a process have for a node by its full name."""
+    """Return the parameters that files of a process have for a node by its full name."""
     found: dict[str, Any] = {}
     for text in row["params"].values():
         # What launch_ros makes of lists; rcl does not look at it.

@@ -42,7 +42,7 @@ SHARED = "shared_nodes: [map_server]\nshared_topics: [/map, /clock, /rosout, /pa
 
 
 def read(folder: Path, *words: tuple[str, str], **fleet: str) -> LaunchGraph:
-    """What is started for a fleet, with these launch arguments."""
+    """Return what is started for a fleet, with these launch arguments."""
     file = written(folder, **fleet) / "fleet.yaml"
     with pytest.MonkeyPatch.context() as kept:
         read_here(kept, folder)
@@ -79,7 +79,7 @@ def composed(tmp_path_factory: pytest.TempPathFactory) -> LaunchGraph:
 
 
 def own(node: LaunchedNode) -> dict[str, object]:
-    """What the launch file itself sets, but the clock."""
+    """Return what the launch file itself sets, but the clock."""
     name = f"{node.namespace.rstrip('/')}/{node.name}"
     (*_, told) = ({}, *(yaml.safe_load(it.text) for it in node.parameters))
     if not {*told} <= {"/**", name}:
@@ -88,7 +88,7 @@ def own(node: LaunchedNode) -> dict[str, object]:
 
 
 def clocks(node: LaunchedNode) -> set[object]:
-    """The values of use_sim_time that a node is told."""
+    """Return the values of use_sim_time that a node is told."""
     found = re.findall(r"use_sim_time: (\S+)", "".join(it.text for it in node.parameters))
     return {yaml.safe_load(it) for it in found}
 

@@ -67,7 +67,7 @@ def environment(*caveats: Caveat) -> Environment:
 
 
 def graph(*nodes: NodeFacts, base: str = "", process: str = "") -> System:
-    """What is seen of nodes that run without any rule below ``base``, in one process or in several."""
+    """Return the view of nodes without any rule below ``base``, in one process or in several."""
     found = [(node, *placed(node, base)) for node in nodes]
     seen = [Node(f"{space.rstrip('/')}/{own}", process or node.name) for node, space, own in found]
     ends = [end for one in found for end in shown(*one)]
@@ -88,7 +88,7 @@ def shown(node: NodeFacts, space: str, own: str) -> Iterator[End]:
 
 
 def parts_of(end: Endpoint) -> Iterator[tuple[str, str, str, str]]:
-    """An endpoint as the middleware has it, and the record of the action."""
+    """Yield an endpoint as the middleware has it, and the record of the action."""
     yield end.kind, end.role, end.name, end.type
     topic = PUBLISHES if end.role in (SERVES, PUBLISHES) else SUBSCRIBES
     if end.kind == ACTION:
@@ -107,7 +107,7 @@ def parts_of(end: Endpoint) -> Iterator[tuple[str, str, str, str]]:
 def learned(
     seen: System, *names: str, base: str = "/", library: NodeLibrary = UNKNOWN
 ) -> tuple[LearnedNode, ...]:
-    """What is learned, verified to survive the file."""
+    """Return what is learned, verified to survive the file."""
     found = learn(seen, choose_nodes(seen, names, base), base, library)
     assert to_yaml(found, "mine", library)
     return found
@@ -144,7 +144,7 @@ def with_end(seen: System, *ends: tuple[str, str, str, str, str]) -> System:
 
 
 def bare(node: NodeFacts) -> NodeFacts:
-    """The node as its code is: without what a launch file makes of it, each graph name said once."""
+    """Return the node as its code is: without what a launch file changes, each graph name once."""
     # That a node itself asks above its namespace, or beside an image, is seen in no graph.
     plain = [end for end in node.endpoints if "<" not in end.name]
     ends = [end._replace(remapped="", fixed="", above="", beside="") for end in plain]
@@ -424,7 +424,7 @@ def test_a_file_that_reads_otherwise_is_not_written() -> None:
 
 @pytest.fixture
 def shot(tmp_path: Path) -> Path:
-    """A snapshot of two nodes nobody described, and of a tool."""
+    """Return a snapshot of two nodes nobody described, and of a tool."""
     driver = node(
         publishes("odom"), subscribes("/cmd_vel"), Endpoint(ACTION, SERVES, "dock", FETCH)
     )

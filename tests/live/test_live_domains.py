@@ -53,7 +53,7 @@ def node(name: str, space: str = "/", **ends: list[list[str]]) -> dict[str, Any]
 
 
 def robot(name: str, number: int) -> list[dict[str, Any]]:
-    """A robot with its end of the bridge, and a tool that both domains have."""
+    """Return a robot with its end of the bridge, and a tool that both domains have."""
     bridge = f"{name}_bridge"
     odom = [f"/{name}/odom", "String"]
     return [

@@ -51,7 +51,7 @@ TF = {
 
 
 def domain(offset: int) -> int:
-    """A domain of this test's own."""
+    """Return a domain of this test's own."""
     return live_commands.domain(25 + offset)
 
 
@@ -62,7 +62,7 @@ def multibot(offset: int, *words: str, **more: str) -> subprocess.CompletedProce
 
 @pytest.fixture(scope="module")
 def code(tf2: Build) -> list[dict[str, Any]]:
-    """The nodes as they are written."""
+    """Return the nodes as they are written."""
     return [{**DRIVER, **TF} if tf2 or find_spec("tf2_msgs") else DRIVER, PILOT]
 
 
@@ -70,7 +70,7 @@ def code(tf2: Build) -> list[dict[str, Any]]:
 def files(
     code: list[dict[str, Any]], tf2: Build, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[dict[str, Path]]:
-    """What is learned of the nodes in the root, live, and of the same in a namespace, by a snapshot."""
+    """Yield what is learned of nodes in the root, live, and in a namespace, by a snapshot."""
     folder = tmp_path_factory.mktemp("learned")
     below = [{**node, "namespace": "old"} for node in code]
     found = {name: folder / f"{name}.yaml" for name in ("root", "below")}
@@ -106,7 +106,7 @@ def files(
 
 
 def table(file: Path, layout: str) -> Table:
-    """The table of two robots that run what was learned."""
+    """Return the table of two robots that run what was learned."""
     found = build_table(
         ROBOTS,
         nodes_of_set(user_library(str(file), NEWEST_LTS), "mine"),

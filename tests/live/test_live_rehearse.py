@@ -31,7 +31,7 @@ STATE = (*PAIR, "--node-set", "robot_state", "--layout")
 
 
 def domain(offset: int) -> int:
-    """A domain of this test's own."""
+    """Return a domain of this test's own."""
     return live_commands.domain(80 + offset)
 
 
@@ -42,7 +42,7 @@ def rehearse(offset: int, *arguments: str, **more: str) -> subprocess.CompletedP
 
 
 def words_for(layout: str, folder: Path) -> tuple[str, ...]:
-    """A rehearsal of a layout, with what it writes."""
+    """Return a rehearsal of a layout, with what it writes."""
     written = ("--save-snapshot", str(folder / layout), "--report", str(folder / f"{layout}.html"))
     return (*PAIR, "--node-set", "nav2", "--layout", layout, "--distro", "lyrical", *written)
 
@@ -134,7 +134,7 @@ def test_a_missing_rclpy_is_one_line(tmp_path: Path) -> None:
 
 
 def children(pid: int) -> Iterator[int]:
-    """The processes that ``pid`` started."""
+    """Yield the processes that ``pid`` started."""
     for stat in Path("/proc").glob("[0-9]*/stat"):
         try:
             fields = stat.read_text().rpartition(")")[2].split()

@@ -62,7 +62,7 @@ def rows(cases: Iterable[Case]) -> list[Any]:
 def done(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> dict[Case, CompletedProcess[str]]:
-    """The rehearsals that are asked for, side by side: most of it is waiting."""
+    """Return the rehearsals that are asked for, side by side: most of it is waiting."""
     folder = tmp_path_factory.mktemp("ways")
     asked = [it.callspec.params.get("case") for it in request.session.items if _is_here(it)]
 

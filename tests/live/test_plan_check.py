@@ -26,7 +26,7 @@ FLEET = (
 
 @pytest.fixture(scope="module")
 def nav2_plan(tmp_path_factory: pytest.TempPathFactory) -> bytes:
-    """The plan of two rovers with Nav2."""
+    """Return the plan of two rovers with Nav2."""
     path = tmp_path_factory.mktemp("plan") / "plan.yaml"
     assert main(["plan", *FLEET, "-o", str(path)]) == 0
     return path.read_bytes()
@@ -34,14 +34,14 @@ def nav2_plan(tmp_path_factory: pytest.TempPathFactory) -> bytes:
 
 @pytest.fixture
 def plan(tmp_path: Path, nav2_plan: bytes) -> Path:
-    """The same as a file that a test may edit."""
+    """Return the same as a file that a test may edit."""
     path = tmp_path / "plan.yaml"
     path.write_bytes(nav2_plan)
     return path
 
 
 def as_planned(plan: Path) -> System:
-    """A graph that is the plan; of tf nothing was heard."""
+    """Return a graph that is the plan; of tf nothing was heard."""
     return planned_graph(from_yaml(plan.read_bytes(), "plan"))._replace(edges=())
 
 

@@ -256,9 +256,7 @@ def rewritten(layout: str) -> tuple[Inventory, Naming]:
 
 def sent(layout: str, *node_sets: str) -> dict[str, list[Edge]]:
     inventory, naming = rewritten(layout)
-    nodes = [
-        node for node_set in node_sets for node in nodes_of_set(built_in(NEWEST_LTS), node_set)
-    ]
+    nodes = [node for name in node_sets for node in nodes_of_set(built_in(NEWEST_LTS), name)]
     reading = read(
         inventory.document.source, "rover.urdf", builtin_tree((), NEWEST_LTS).definitions
     )

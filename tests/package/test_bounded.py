@@ -36,7 +36,7 @@ Reader = Callable[[str], object]
 
 
 def bomb(levels: int, width: int = 10) -> str:
-    """Lists of aliases of lists: ``width`` to the power of ``levels`` words in the end."""
+    """Return lists of aliases of lists: ``width`` to the power of ``levels`` words in the end."""
     lines = [f"a0: &a0 [{', '.join('x' * width)}]"]
     for at in range(1, levels):
         lines.append(f"a{at}: &a{at} [{', '.join([f'*a{at - 1}'] * width)}]")

@@ -66,7 +66,7 @@ robots: [{name: robot1}, {name: robot2}]
 
 
 def forget() -> None:
-    """What a look before has remembered would make the small one cheaper alone."""
+    """Clear the caches: what was remembered before would make the small one cheaper alone."""
     re.purge()
     for remembered in REMEMBERED:
         remembered.cache_clear()
@@ -291,7 +291,7 @@ def test_a_place_is_found_from_the_block_it_is_in(
 
 
 def done(words: list[str]) -> None:
-    """A command that reads what it is given, whatever it finds."""
+    """Run a command that reads what it is given, whatever it finds."""
     assert main(words) in (0, 1, 3)
 
 

@@ -137,7 +137,7 @@ def edit(folder: Path, edits: Sequence[Edit]) -> None:
 
 
 def found(row: Row, command: str, capsys: pytest.CaptureFixture[str]) -> list[str]:
-    """What the command says with the code of the row."""
+    """Return what the command says with the code of the row."""
     program, *words = command.split()
     capsys.readouterr()
     MAINS[program](words)

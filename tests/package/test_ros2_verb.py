@@ -16,7 +16,7 @@ from multibot_rewrite.version import __version__
 
 
 def ros2(*words: str) -> int:
-    """What ``ros2 multibot words...`` ends with."""
+    """Return what ``ros2 multibot words...`` ends with."""
     parser = argparse.ArgumentParser(prog="ros2")
     below = parser.add_subparsers(dest="command_of_ros2")
     command = below.add_parser("multibot", formatter_class=argparse.RawDescriptionHelpFormatter)

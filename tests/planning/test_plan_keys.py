@@ -151,7 +151,7 @@ SCHEMA = json.loads((files("multibot_rewrite") / editors.PLAN).read_text())
 
 
 def marked(text: str) -> list[Any]:
-    """What an editor marks in a plan."""
+    """Return what an editor marks in a plan."""
     value = json.loads(text) if text.startswith("{") else yaml.safe_load(text)
     return [*Draft202012Validator(SCHEMA).iter_errors(value)]
 

@@ -41,15 +41,13 @@ POLICIES = [
 @pytest.fixture(scope="module", params=POLICIES, ids="-".join)
 def table(request: pytest.FixtureRequest) -> Table:
     layout, affix = request.param
-    nodes = dict.fromkeys(
-        node for node_set in NODE_SETS for node in load_node_set(node_set, NEWEST_LTS)
-    )
+    nodes = dict.fromkeys(node for name in NODE_SETS for node in load_node_set(name, NEWEST_LTS))
     return build_table(ROBOTS, list(nodes), make_naming(layout, affix), release=NEWEST_LTS)
 
 
 def rules_of(lines: list[str], node: Run) -> list[str]:
-    """What follows each ``-r`` in the line of the ros-args form of the node, or of its host, whose
-    namespace and name are not its own."""
+    """Return what follows each ``-r`` in the line of the ros-args form of the node, or of its
+    host, whose namespace and name are not its own."""
     own = f"# {node.robot}: {node.node}"
     if own not in lines:
         name = f"__node:={node.name}", f"__ns:={node.namespace}"
@@ -89,7 +87,7 @@ def test_every_name_leads_where_the_table_says(table: Table) -> None:
 
 
 def in_code(end: Endpoint, namespace: str) -> str:
-    """What the node asks for: a costmap's filter joins its topic with the namespace above
+    """Return what the node asks for: a costmap's filter joins its topic with the namespace above
     (nav2_costmap_2d lyrical layer.cpp joinWithParentNamespace)."""
     above = namespace.rpartition("/")[0]
     return f"{above}/{end.name.lstrip('/')}" if end.above else end.name

@@ -72,7 +72,7 @@ Name = tuple[Endpoint, str]
 
 
 def hosted(robot: str, *names: Name, **home: str) -> Table:
-    """A node in another one's process, with a rule for ``/y`` alone."""
+    """Return a node in another one's process, with a rule for ``/y`` alone."""
     fact = NodeFacts("map", "acme", (), **{"host": "server", **home})  # type: ignore[arg-type]
     return Table(
         "tf-per-robot",

@@ -52,7 +52,7 @@ def run(known: Knowledge) -> Graph:
 def node(
     program: str, name: str, space: str = "/robot1", rules: object = (), **more: object
 ) -> LaunchedNode:
-    """A launched node; ``container``, ``arguments`` and values of parameters by name."""
+    """Return a launched node; ``container``, ``arguments`` and values of parameters by name."""
     package, executable = program.split("/")
     container, arguments = more.pop("container", ""), more.pop("arguments", ())
     own = yaml.safe_dump({"/**": {"ros__parameters": more}})
@@ -186,7 +186,7 @@ def test_bad_words_are_one_line(
 
 
 def simulated(space: str) -> str:
-    """A description with gz_ros2_control in a namespace."""
+    """Return a description with gz_ros2_control in a namespace."""
     rules = "<remapping>~/odom:=odom</remapping><remapping>/tf:=tf</remapping>"
     home = f"<ros><namespace>{space}</namespace>{rules}</ros>"
     plugin = f'<plugin filename="gz_ros2_control-system" name="gz_ros2_control::\

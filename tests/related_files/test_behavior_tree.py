@@ -42,7 +42,7 @@ def tree(body: str, form: str = ' BTCPP_format="4"') -> str:
 
 
 def one(body: str, layout: str = "L2", form: str = ' BTCPP_format="4"') -> str:
-    """What a node becomes."""
+    """Return what a node becomes."""
     before, behind = tree("|", form).split("|")
     new = run(tree(body, form), context(layout))[0]
     assert new.startswith(before) and new.endswith(behind)

@@ -35,7 +35,7 @@ INTERFACES = ("command_interfaces", "state_interfaces", "interfaces")
 
 
 def value(node: str, line: str, policy: tuple[str, str] = L2, distro: str = "jazzy") -> str:
-    """What becomes of one line of a node's section; the last line is never an inserted one."""
+    """Return what becomes of one line of a node's section; the last line is never an inserted one."""
     text, _ = made(section(node, line), policy, distro)
     return text.splitlines()[-1].strip()
 

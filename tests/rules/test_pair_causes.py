@@ -32,7 +32,7 @@ PLACE = "arm.urdf:12"
 
 
 def plan_of(lines: str, **changes: Any) -> Index:
-    """The plan of an example, with what is changed in the node of its first line."""
+    """Return the plan of an example, with what is changed in the node of its first line."""
     plan, _ = read_example("\n".join(f"planned: {it}" for it in lines.splitlines()))
     name = lines.partition(" ")[0]
     nodes = tuple(it._replace(**changes) if it.name == name else it for it in plan.nodes)

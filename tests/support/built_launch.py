@@ -35,7 +35,7 @@ FLEETS = {
 
 
 def built(folder: Path, kind: str, layout: str) -> Path:
-    """The folder of a fleet that was built."""
+    """Return the folder of a fleet that was built."""
     for name in ("rover.urdf", "rover_gz.urdf", "rover.sdf", "two_finger_arm.urdf"):
         shutil.copy(ROBOTS / name, folder)
     (folder / "c.yaml").write_text(CONTROLLERS)

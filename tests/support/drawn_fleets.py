@@ -136,7 +136,7 @@ def _model(*parts: str) -> str:
 
 
 def _with_argument(text: str) -> str:
-    """A rover whose mast is chosen by an argument, and whose links an argument prefixes."""
+    """Return a rover whose mast is chosen by an argument, and whose links an argument prefixes."""
     head, _, body = text.partition("\n")
     for it in ("base_link", "left_wheel", "right_wheel", "lidar_link", "lidar_joint"):
         body = body.replace(f'"{it}"', f'"${{p}}{it}"').replace(f">{it}<", f">${{p}}{it}<")
@@ -153,7 +153,7 @@ def _with_argument(text: str) -> str:
 
 
 def _joined(text: str, *parts: str) -> str:
-    """A robot with another one on it, whose names begin with up_."""
+    """Return a robot with another one on it, whose names begin with up_."""
     other = re.sub(r'(?:name|link)="(?=\w)', r"\g<0>up_", "".join(parts))
     return text.replace("</robot>", f"{other}</robot>")
 
@@ -318,7 +318,7 @@ class DrawnFleet(NamedTuple):
 
 @st.composite
 def fleets(draw: st.DrawFn) -> DrawnFleet:
-    """A fleet that its pages allow, but for what chance brings together."""
+    """Return a fleet that its pages allow, but for what chance brings together."""
     is_cell = maybe(draw, 1)
     release = draw(st.sampled_from(RELEASES))
     layout = "frames-per-robot" if is_cell else draw(st.sampled_from(LAYOUTS))
@@ -400,7 +400,7 @@ class _Making(NamedTuple):
 
 
 def _kinds(draw: st.DrawFn, release: str, simulator: str) -> list[str]:
-    """The kinds of one simulator; a simulator's hardware is on no real robot."""
+    """Return the kinds of one simulator; a simulator's hardware is on no real robot."""
     left = GZ if maybe(draw, 2) else CLASSIC
     known = [
         it for it, kind in KINDS.items() if kind.simulator != left and release in kind.releases
@@ -409,7 +409,7 @@ def _kinds(draw: st.DrawFn, release: str, simulator: str) -> list[str]:
 
 
 def _own_words(draw: st.DrawFn, key: str, names: list[str], layout: str) -> list[str]:
-    """A word for each robot: of its own, with its name in it, or another robot's name."""
+    """Return a word for each robot: of its own, with its name in it, or another robot's name."""
     if maybe(draw, 2):
         return [*names[1:], names[0]]
     forms = ["{}_x", "x_{}", "w{at}", "{}{at}"]
@@ -450,7 +450,7 @@ def _robot_row(making: _Making, name: str, kind: str, words: Mapping[str, str]) 
 
 
 def _described(making: _Making, kind: str, name: str) -> Data:
-    """What a robot is described by: a file, or the parts that it is joined of."""
+    """Return what a robot is described by: a file, or the parts that it is joined of."""
     if kind not in JOINED:
         return {"description": _description(making, kind, name)}
     base, other = (_description(making, it, name) for it in JOINED[kind])
@@ -459,7 +459,7 @@ def _described(making: _Making, kind: str, name: str) -> Data:
 
 
 def _description(making: _Making, kind: str, name: str) -> str:
-    """The path of a description: called by its kind, like its robot, or like all others."""
+    """Return the path of a description: called by its kind, like its robot, or like all others."""
     draw, its, stem = making.draw, KINDS[kind], kind.replace(" ", "_")
     path = draw(st.sampled_from((stem, stem, name, f"{name}_description/robot", f"urdf/{stem}")))
     title = draw(st.sampled_from((stem, name, "robot"))).replace("world", "rover")
@@ -521,7 +521,7 @@ def rows(fleet: DrawnFleet) -> Iterator[tuple[Data, str, str]]:
 
 
 def simulated(fleet: DrawnFleet) -> list[tuple[Data, str]]:
-    """The robots that are put into a simulator: hardware of ros2_control alone is a real robot's."""
+    """Return the robots that are simulated: hardware of ros2_control alone is a real robot's."""
     return [(row, kind) for row, kind, it in rows(fleet) if it != "none" and (kind != "arm" or it)]
 
 
@@ -537,7 +537,7 @@ def _share_a_word(fleet: DrawnFleet) -> bool:
 
 
 def _stand_in_each_other(fleet: DrawnFleet) -> bool:
-    """The boxes reach a quarter of a metre; robots that are all at the origin are placed by others."""
+    """Return whether robots overlap: boxes of half a metre; robots all at the origin do not count."""
     poses = [row.get("pose", {}) for row, _ in simulated(fleet)]
     places = [tuple(it.get(axis, 0) for axis in "xyz") for it in poses]
     moved = any(any(it) for it in places)
@@ -549,13 +549,13 @@ def _missing(fleet: DrawnFleet) -> bool:
 
 
 def described_by(row: Data) -> list[str]:
-    """The files that a robot is described by."""
+    """Return the files that a robot is described by."""
     own = [row["description"]] if "description" in row else []
     return [*own, *(it["description"] for it in row.get("join", ()))]
 
 
 def _links(fleet: DrawnFleet) -> list[set[str]]:
-    """The links of each robot, as they are called in the whole fleet."""
+    """Return the links of each robot, as they are called in the whole fleet."""
     data, found = fleet.data, []
     between = data.get("separators", {}).get("link", "/")
     for row, kind, _ in rows(fleet):
@@ -589,7 +589,7 @@ def _with(key: str, value: object) -> Callable[[Data, DrawnFleet], object]:
 
 
 def _same(key: str) -> Callable[[Data, DrawnFleet], object]:
-    """The first two robots get one value."""
+    """Return the cause by which the first two robots get one value."""
 
     def put(data: Data, fleet: DrawnFleet) -> None:
         name = data["affix"] if key == "tag" else key
@@ -867,7 +867,7 @@ CAUSES = {
 
 @st.composite
 def faulty(draw: st.DrawFn, cause: str) -> DrawnFleet:
-    """A fleet with a cause put into it."""
+    """Return a fleet with a cause put into it."""
     fleet = draw(fleets())
     data: Data = {**fleet.data, "robots": [dict(row) for row in fleet.data["robots"]]}
     CAUSES[cause].put(data, fleet)
@@ -876,7 +876,7 @@ def faulty(draw: st.DrawFn, cause: str) -> DrawnFleet:
 
 
 def with_kinds(fleet: DrawnFleet, data: Data) -> DrawnFleet:
-    """The fleet with the files that a cause has named, and the kinds that robots then are of."""
+    """Return the fleet with the files that a cause has named, and the kinds that robots then are of."""
     named = {f"{kind.replace(' ', '_')}{it.ending}": kind for kind, it in KINDS.items()}
     named["world.urdf"] = "gz rover"
     files, kinds = {**fleet.files}, []
@@ -897,7 +897,7 @@ def with_kinds(fleet: DrawnFleet, data: Data) -> DrawnFleet:
 
 
 def causes_of(fleet: DrawnFleet) -> list[str]:
-    """The causes that a fleet has."""
+    """Return the causes that a fleet has."""
     return [name for name, it in CAUSES.items() if it.holds(fleet)]
 
 

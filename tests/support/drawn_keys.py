@@ -183,7 +183,7 @@ def _beside(draw: st.DrawFn, data: Data, files: dict[str, str]) -> None:
 
 
 def parts(base: str, other: str, at: str, draw: st.DrawFn) -> list[Data]:
-    """A list of parts: a robot, and another one behind a prefix that is fixed to it."""
+    """Return a list of parts: a robot, and another one behind a prefix that is fixed to it."""
     fixed: Data = {"parent": at}
     if draw(st.booleans()):
         fixed["pose"] = draw(st.sampled_from(({"x": -0.6}, {"z": 0.2, "yaw": 1.57})))
@@ -203,7 +203,7 @@ def in_other_layout(data: Data) -> bool:
 
 
 def in_other_style(data: Data) -> bool:
-    """Does a fleet want another style than its shape?"""
+    """Return whether a fleet wants another style than its shape."""
     return "shape" in data and data.get("params_style", style(data)) != style(data)
 
 
@@ -219,7 +219,7 @@ def shares_no_such_node(data: Data) -> bool:
 
 
 def started_for_each(data: Data) -> bool:
-    """Does nav2_bringup start a node for each robot that all should share?"""
+    """Return whether nav2_bringup starts a node for each robot that all should share."""
     return is_bringup(data) and "map_server" in data.get("shared_nodes", ())
 
 

@@ -39,7 +39,7 @@ def setting(policy: tuple[str, str] = L2, distro: str = "jazzy", **more: object)
 def made(
     text: str, policy: tuple[str, str] = L2, distro: str = "jazzy", **more: object
 ) -> tuple[str, tuple[Finding, ...]]:
-    """The file for robot1 (in the graph) and r1 (in frames), and what is told about it."""
+    """Return the file for robot1 (in the graph) and r1 (in frames), and what is told about it."""
     related_file = rewrite_params(
         read_yaml(text.encode(), "p.yaml"), setting(policy, distro), **more
     )  # type: ignore[arg-type]

@@ -33,7 +33,7 @@ FLEET = FLEET.replace("%s", str(ROBOTS / "rover.urdf"))
 
 
 def written(folder: Path, **words: str) -> Path:
-    """The folder, with fleet.yaml and what it names."""
+    """Return the folder, with fleet.yaml and what it names."""
     given = {"layout": "postfix", "distro": "jazzy", "node_sets": "nav2", "more": "", **words}
     (folder / "fleet.yaml").write_text(FLEET.format(**given))
     (folder / "params.yaml").write_text(PARAMS)

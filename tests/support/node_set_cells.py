@@ -98,7 +98,7 @@ class Cell(NamedTuple):
 
 
 def refused(cell: Cell) -> set[str]:
-    """The codes of the errors of a cell, by what its input lacks or contradicts."""
+    """Return the codes of the errors of a cell, by what its input lacks or contradicts."""
     hardware = cell.robot in ("controlled", "arm")
     wrong = set()
     if cell.node_set == "moveit" and cell.robot != "arm":
@@ -166,7 +166,7 @@ def is_driven(cell: Cell) -> bool:
 
 
 def findings(cell: Cell, folder: Path) -> tuple[Finding, ...]:
-    """What the build of a cell says that is no note."""
+    """Return what the build of a cell says that is no note."""
     file = folder / "fleet.yaml"
     file.write_text(cell.fleet)
     return of_file(file)
@@ -192,13 +192,13 @@ def built(file: Path, out: Path) -> tuple[tuple[Finding, ...], tuple[OutputFile,
 
 
 def faults(cell: Cell, folder: Path) -> list[str]:
-    """What is wrong with a cell: an error that its input does not have, one that is missing, and
-    warnings between what only the build adds."""
+    """Return what is wrong with a cell: an error that its input does not have, one that is
+    missing, and warnings between what only the build adds."""
     return wrong_in(cell, findings(cell, folder))
 
 
 def wrong_in(cell: Cell, found: Sequence[Finding]) -> list[str]:
-    """The same, of what its build has ``found``."""
+    """Return the same, of what its build has ``found``."""
     errors = {it.code for it in found if it.level == ERROR}
     wanted = refused(cell)
     # What follows from hardware of another world may be said of its spawners as well.

@@ -22,7 +22,7 @@ RELEASE = "jazzy"
 
 
 def has_plain_names(node: NodeFacts) -> bool:
-    """A process of its own, whose parameters name topics that rcl resolves as they stand."""
+    """Return whether a node has its own process, and parameters with topics as rcl resolves them."""
     named = [it for it in node.endpoints if it.parameter]
     return not (node.host or node.shared or "/" in node.name) and any(map(is_plain, named))
 

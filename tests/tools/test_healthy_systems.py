@@ -49,11 +49,9 @@ UNFED = {
 
 
 def system(release: str, name: str) -> tuple[list[tuple[str, NodeFacts]], Table, System]:
-    """The nodes with the names that they have in the tables, the remap table, the plan."""
+    """Return the nodes with the names that they have in the tables, the remap table, the plan."""
     library = built_in(release)
-    nodes = tuple(
-        dict.fromkeys(it for node_set in SYSTEMS[name] for it in nodes_of_set(library, node_set))
-    )
+    nodes = tuple(dict.fromkeys(it for word in SYSTEMS[name] for it in nodes_of_set(library, word)))
     naming = make_naming("L2")
     table = build_table(("robot1", "robot2"), nodes, naming, release=NEWEST_LTS)
     kinds = [(KINDS.get(it.name, it.name), it) for it in nodes]

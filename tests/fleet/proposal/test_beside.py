@@ -107,7 +107,7 @@ def generate_launch_description():
 
 
 def workspace(folder: Path, files: dict[str, str]) -> Path:
-    """A folder of packages, each file in one of them."""
+    """Return a folder of packages, each file in one of them."""
     for name, text in files.items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -149,7 +149,7 @@ def test_what_another_robot_is_made_with_is_behind_it(names: str, tmp_path: Path
 
 
 def written(folder: Path) -> str:
-    """The fleet file that init writes for a folder."""
+    """Return the fleet file that init writes for a folder."""
     file = folder / "fleet.yaml"
     assert main(["init", str(folder), "-n", "2", "--yes", "--force", "-o", str(file), "-q"]) == 0
     lines = file.read_text().splitlines()

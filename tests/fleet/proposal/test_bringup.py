@@ -41,7 +41,7 @@ FAILS = "1 / 0"
 
 
 def include(name: str, given: str = "") -> str:
-    """An include of a launch file beside this one."""
+    """Return an include of a launch file beside this one."""
     return f"IncludeLaunchDescription('FOLDER/{name}.launch.py', launch_arguments=[{given}])"
 
 
@@ -166,7 +166,7 @@ GIVEN = "sim:=true wheel:=big prefix:=front_ file:={}/config/control.yaml"
 
 @pytest.fixture
 def package(tmp_path: Path) -> Path:
-    """A package with a xacro."""
+    """Return a package with a xacro."""
     folder = tmp_path / "rover"
     for name, text in {
         "package.xml": "<package><name>rover</name></package>",
@@ -185,7 +185,7 @@ def package(tmp_path: Path) -> Path:
 
 
 def fleet_of(folder: Path, *words: str, code: int = 0) -> Any:
-    """The fleet file of a folder, which builds."""
+    """Return the fleet file of a folder, which builds."""
     file = folder.parent / "fleet.yaml"
     assert main(["init", str(folder), "--yes", "-q", "--force", "-o", str(file), *words]) == code
     if code == 0:
@@ -534,7 +534,7 @@ PLAYS = "ExecuteProcess(cmd=['gz', 'sim', " + PATH.format("worlds/yard.sdf") + "
 
 @pytest.fixture
 def robots(package: Path) -> Path:
-    """A workspace of several robots, of which nothing but a launch file says which is meant."""
+    """Return a workspace of several robots, of which nothing but a launch file says which is meant."""
     for name, text in {
         "rover/dolly/model.sdf": MODEL.format("dolly"),
         "rover/cart/model.sdf": MODEL.format("cart"),

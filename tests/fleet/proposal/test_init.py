@@ -26,7 +26,7 @@ def init(*words: object) -> int:
 
 
 def made(folder: Path, *words: object, code: int = 0) -> Mapping[str, Any]:
-    """The fleet file for these words, which also builds."""
+    """Return the fleet file for these words, which also builds."""
     file = folder / "fleet.yaml"
     assert init(*words, "-o", file) == code
     found = yaml.safe_load(file.read_text())
@@ -339,7 +339,7 @@ CRANE = """\
 
 @pytest.fixture
 def yard(tmp_path: Path) -> Path:
-    """A rover and a crane in one folder, with files for each in another one."""
+    """Return a rover and a crane in one folder, with files for each in another one."""
     (tmp_path / "package.xml").write_text("<package><name>yard</name></package>")
     (tmp_path / "urdf").mkdir()
     (tmp_path / "config").mkdir()
@@ -433,7 +433,7 @@ bicycle_steering_controller:
 
 
 def steered(folder: Path, rule: str = "") -> dict[str, Any]:
-    """A fleet of two cars on Humble; ``rule`` is in the tag of the plugin."""
+    """Return a fleet of two cars on Humble; ``rule`` is in the tag of the plugin."""
     tag = f"<ros><remapping>{rule}</remapping></ros></plugin>" if rule else "</plugin>"
     text = STEERED.replace("</parameters>\n  </plugin>", f"</parameters>\n  {tag}").replace(
         "MASS", MASS

@@ -30,7 +30,7 @@ def files(folder: Path, **texts: str) -> None:
 
 
 def fleet_of(folder: Path, *words: str) -> dict[str, Any]:
-    """The fleet file for these words, which init and build say builds."""
+    """Return the fleet file for these words, which init and build say builds."""
     file = folder / "made" / "fleet.yaml"
     assert main(["init", *words, "--yes", "-o", str(file), "--force"]) == 0
     assert main(["build", str(file), "-o", str(folder / "out"), "-q"]) == 0

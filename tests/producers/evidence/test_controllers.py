@@ -95,7 +95,7 @@ def found(outputs: Outputs, *codes: str) -> list[tuple[str, str]]:
 
 
 def parameters(outputs: Outputs, robot: str) -> dict[str, dict[str, object]]:
-    """Controller -> its parameters, by the names without the robot."""
+    """Return the parameters of each controller, by the names without the robot."""
     path = f"{robot}/controllers.yaml"
     (text,) = (it.data.decode() for it in outputs.files if it.path == path)
     words = yaml.safe_load(text)
