@@ -210,8 +210,7 @@ def _row_json(site: SiteRow, section: PluginDefinition) -> dict[str, object]:
 
 
 def draft(options: argparse.Namespace) -> int:
-    """Write plugin definitions for what a description loads and nothing knows; returns the exit
-    code."""
+    """Write plugin definitions for what a description loads and nothing knows; return the exit code."""
     if plain_words(options) or options.output_kind == JSON:
         raise UsageError("--suggest goes with --definitions only: leave out NAME and --output-kind")
     check_xacro(options, [options.suggest])
@@ -249,8 +248,7 @@ def is_name(word: str) -> bool:
 
 
 def explain(options: argparse.Namespace, words: Sequence[str]) -> int:
-    """Explain rules by their codes, how codes begin, or names; more than a few are listed. Returns the
-    exit code."""
+    """Explain rules by codes, beginnings of codes or names; list many. Return the exit code."""
     known, found = rules(), dict[str, Rule]()
     for word in _split(words):
         asked = find_rules(word, known) if word else []

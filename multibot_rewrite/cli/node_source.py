@@ -49,8 +49,7 @@ def run(options: argparse.Namespace, word: str) -> int:
 
 
 def run_known(options: argparse.Namespace, facts: NodeFacts) -> int:
-    """Show a known node and its package in the release that is asked for, or in all; returns the exit
-    code."""
+    """Show a known node and its package in a release, or in all; return the exit code."""
     releases = [options.distro] if options.distro else [*RELEASES]
     of_package = versions_of(facts.package)
     rows = [

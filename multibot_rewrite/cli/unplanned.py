@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``multibot check`` without a plan: what is wrong with the robots that run now?"""
+"""``multibot check`` without a plan: report what is wrong with the robots that run now."""
 
 from __future__ import annotations
 

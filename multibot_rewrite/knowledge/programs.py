@@ -34,8 +34,7 @@ class Program(NamedTuple):
 
 
 def program_of(node: NodeFacts, release: str) -> Program | None:
-    """Return the program of a node in a release; None if no package is known, and for one that is
-    only a component."""
+    """Return a node's program in a release; None for an unknown package or a pure component."""
     known = node.kind
     if known == CONTAINER:
         return container_of(release)

@@ -105,7 +105,6 @@ def composable_node(name_in_set: Text = "", **options: Any) -> Any:
 
 def spawn(simulator: Text, robot: Text = None, fleet: Text = None, **options: Any) -> Action:
     """Return a robot's spawner: ``gz`` (ros_gz_sim), ``classic`` (gazebo_ros); ``options`` of Node."""
-
     of = RobotRef(robot, fleet)
 
     def program(context: Context) -> tuple[tuple[str, str], list[str]]:

@@ -74,8 +74,7 @@ def container(entity: Any, parser: Any) -> Parsed:
 
 
 def composable_node(entity: Any, parser: Any) -> Parsed:
-    """Parse ``multibot_composable_node node= pkg= plugin=``: loaded into its container, see
-    ``launch.node``."""
+    """Parse ``multibot_composable_node node= pkg= plugin=``, which is loaded into its container."""
     return actions.node, {**action_options(entity, parser), **_component(entity, parser)}
 
 

@@ -199,7 +199,6 @@ def kind_of(name: str) -> str:
 
 
 def nodes_of_nav2(names: Iterable[str]) -> list[str]:
-    """Return those of the nodes that are Nav2's or slam_toolbox, managers last, so that what they
-    manage is there."""
+    """Return the nodes of Nav2 and slam_toolbox among these, managers last: after what they manage."""
     known = (it for it in names if kind_of(it) in NAV2)
     return sorted(known, key=lambda it: NAV2.index(kind_of(it)))

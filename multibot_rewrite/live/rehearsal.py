@@ -108,8 +108,7 @@ def without_doubles(stubs: Iterable[Stub], plan: System) -> Iterator[Stub]:
 
 
 def bridge_stub(topics: Iterable[Topic]) -> Iterator[Stub]:
-    """Yield the bridge to a simulator that a plan needs, if it needs one, with what the simulator's
-    world serves."""
+    """Yield the stand-in of a bridge to a simulator, if the plan needs it, with the world's topics."""
     rows = [
         Endpoint(SERVICE if role == SERVES else TOPIC, role, topic.name, topic.type)
         for topic in topics

@@ -157,8 +157,7 @@ class _RobotOf(NamedTuple):
 def make_scene(
     plan: System, graph: System, found: Sequence[Finding], outcome: Outcome | None = None
 ) -> Scene:
-    """Return the drawing of ``graph`` with its plan and findings; without an outcome it follows from
-    these."""
+    """Return the drawing of ``graph`` with plan and findings; the outcome follows if not given."""
     verdict, held = judge(found, graph), coverage(plan, graph)
     by_plan, seen = side_by_side(plan, graph)
     targets = find_targets(by_plan, seen, found)

@@ -121,8 +121,7 @@ def named_frames(inventory: Inventory) -> tuple[str, ...]:
 
 
 def _placed(nodes: Iterable[Node], table: Table) -> Iterator[Node]:
-    """Yield each node with its plugin and further names, and its way and taker, if it has no
-    --ros-args of its own."""
+    """Yield each node with its plugin, further names, way and taker (without own --ros-args)."""
     known: dict[str, NodeFacts] = {}
     for run in (it for it in table.runs if it.fact.is_known):
         # Also those that it makes for itself.

@@ -52,8 +52,7 @@ def key_of(run: Run) -> Key:
 
 
 def deliveries(table: Table) -> tuple[Delivery, ...]:
-    """Return where the rules of every node are written; a node of several nodes' rules has them in
-    that order."""
+    """Return where each node's rules are written; several nodes' rules are in that order."""
     nodes = merged(table.runs)
     known = {(it.robot, it.node): it for it in nodes}
     # By the full name of a node: what helper nodes of it use.

@@ -197,8 +197,7 @@ def _temporary_folder() -> Iterator[str]:
 
 
 def _lost(graph: LaunchGraph, seen: System, home: str) -> Iterator[Finding]:
-    """Yield missing files that the launch file names, a node without its description, and what rcl
-    refuses to start."""
+    """Yield missing files of the launch file, nodes without description, and what rcl refuses."""
     for note in graph.notes:
         # A file that a plugin names and that is no file of the fleet is told where it is rewritten.
         if not note.parameters or note.file.startswith(f"{home}/"):

@@ -52,8 +52,7 @@ def launched_robot(
 def known_here(
     known: Mapping[str, NodeFacts], orders: Sequence[LaunchOrder], robot: str, release: str
 ) -> dict[str, NodeFacts]:
-    """Return the known nodes, and by their sources those that launch files start; raises as
-    ``launched_robot``."""
+    """Return known nodes and, by source, those of launch files; raises as ``launched_robot``."""
     return with_sources(known, launch_of(orders, robot).nodes if orders else (), orders, release)
 
 

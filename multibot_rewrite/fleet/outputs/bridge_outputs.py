@@ -52,8 +52,7 @@ from multibot_rewrite.related_files.yaml_text import (
 
 
 def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
-    """Return every bridge file of a fleet. Raises InputError for a bridge file that cannot be read
-    or rewritten."""
+    """Return all bridge files of a fleet. Raises InputError for an unreadable bridge file."""
     fleet = plan.fleet
     topics, unbridged = bridged_topics(
         fleet.inventories, fleet.naming, fleet.models, fleet.table.runs, fleet.placed

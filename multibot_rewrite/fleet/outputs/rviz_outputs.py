@@ -215,8 +215,7 @@ USUAL = "/fleet.rviz"
 
 
 class RvizOutput(NamedTuple):
-    """The results of one RViz config, whose path is ``source``; ``name`` is that of a window for
-    several robots."""
+    """The results of the RViz config ``source``; ``name``: that of a window for several robots."""
 
     source: str
     windows: tuple[RvizText, ...]

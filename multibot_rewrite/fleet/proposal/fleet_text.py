@@ -30,8 +30,7 @@ _NO_MAP = "Nav2 waits for a map: write its yaml_filename for map_server into a p
 
 
 def text_of(it: Proposal, file: str) -> str:
-    """Return the text of the fleet file that will be at the path ``file``: what it names is relative to
-    its folder."""
+    """Return the text of a fleet file at the path ``file``, with paths relative to its folder."""
     lines = _lines(it, os.path.dirname(file) or os.curdir, os.path.basename(file))
     return "".join(f"{one_line(line) if line.startswith('#') else line}\n" for line in lines)
 

@@ -186,8 +186,7 @@ def _fitting(robot: Looked, found: Found, release: str, left: dict[str, str]) ->
 def _sections(
     read: Iterable[Fitting], left: dict[str, str]
 ) -> Iterator[tuple[str, frozenset[str]]]:
-    """Yield parameter files with the nodes that they are for; a file with a node of an earlier one
-    is left out."""
+    """Yield parameter files and their nodes, without files that repeat a node of an earlier one."""
     before: dict[str, str] = {}
     for path, names, *_ in read:
         if again := sorted(names & before.keys()):

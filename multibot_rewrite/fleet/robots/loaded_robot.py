@@ -64,15 +64,28 @@ class OfFleet(Protocol):
     kept: KeptFiles
 
     @property
-    def planned(self) -> Fleet: ...
+    def planned(self) -> Fleet:
+        """Return the fleet with its plan."""
+
     @property
-    def placed(self) -> start_poses.StartPoses: ...
+    def placed(self) -> start_poses.StartPoses:
+        """Return where each robot starts."""
+
     @property
-    def files(self) -> Mapping[str, OutputFile]: ...
-    def text(self, path: str) -> str: ...
-    def node_text(self, path: str) -> str: ...
-    def parameters(self, path: str) -> YamlText: ...
-    def robot(self, name: str) -> LoadedRobot: ...
+    def files(self) -> Mapping[str, OutputFile]:
+        """Return the files that a build writes, by path."""
+
+    def text(self, path: str) -> str:
+        """Return the text of a file of the build."""
+
+    def node_text(self, path: str) -> str:
+        """Return the text of a parameter file for nodes that are started one by one."""
+
+    def parameters(self, path: str) -> YamlText:
+        """Return a parameter file of the build as parsed YAML."""
+
+    def robot(self, name: str) -> LoadedRobot:
+        """Return the robot of that name."""
 
 
 class LoadedRobot:
@@ -297,15 +310,13 @@ class LoadedRobot:
 
     @property
     def transform_arguments(self) -> list[str]:
-        """``arguments`` of the ``static_transform_publisher`` of its pose, empty if it needs none;
-        raises nothing."""
+        """Arguments of its pose's ``static_transform_publisher``, if it needs one; raises nothing."""
         made = self._fleet.placed.transforms
         return next((it.start.words for it in made if it.robot == self._graph), [])
 
     @checked
     def start_parameters(self, node: str) -> dict[str, Any]:
-        """Return parameters with the start pose for ``node``, empty if it does not use them; raises
-        as ``frame``."""
+        """Return ``node``'s parameters with the start pose, if it has them; raises as ``frame``."""
         made = self._fleet.placed.initial
         own = (it for it in made if it.robot == self._graph and it.node == node)
         return next((dict(it.values) for it in own), {})

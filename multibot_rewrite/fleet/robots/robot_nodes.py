@@ -206,8 +206,7 @@ def _for_its_wheels(
 def _with_launch(
     it: RobotEvidence, spec: RobotSpec, launched: Launched | None, file: FleetFile
 ) -> RobotEvidence:
-    """Return a robot's evidence with what its launch files start, or without any with what its
-    files leave idle."""
+    """Return a robot's evidence with its launch files, or without any and with what is then idle."""
     if not launched:
         idle = left_idle(it.nodes, it.given, it.known)
         return it._replace(findings=(*it.findings, *idle))

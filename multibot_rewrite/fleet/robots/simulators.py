@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Is a robot simulated? The fleet file says so, or its launch files do; is its hardware, too? Does
-anybody know what moves it?
+"""Whether a robot and its hardware are simulated, by the fleet file or its launch files, and whether
+it is known what moves it.
 
 What a description has for a simulator does nothing on a real robot: plugins start no node, sensors and
 drives need no bridge.

@@ -92,8 +92,7 @@ class _Part(NamedTuple):
 
 
 def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
-    """Return all that the launch starts, and the resulting system; what is unknown makes its view
-    incomplete."""
+    """Return all that the launch starts, and its system, incomplete if something is unknown."""
     nodes, notes, models, published, spawned = running_nodes(graph, known)
     inside = sent_in_simulator(models.found)
     parts, refused = _parts(nodes, inside)

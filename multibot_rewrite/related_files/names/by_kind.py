@@ -129,7 +129,6 @@ def before_frames(between: str) -> Speller:
 
 def words(context: Context, value: str) -> str:
     """Return a text with names of the description renamed: ``joints(shoulder,elbow)``."""
-
     return _WORD.sub(lambda found: _word(context, found[0]), value)
 
 

@@ -34,8 +34,7 @@ from multibot_rewrite.system.words import PLAIN
 
 
 def driving(nodes: Sequence[NodeFacts], own: Collection[str]) -> Sequence[NodeFacts]:
-    """Return the nodes; commands of ``own`` ones that nothing hears go to the one controller that
-    drives."""
+    """Return the nodes with unheard commands of ``own`` ones sent to the one controller that drives."""
     drives = topics_of(controllers(nodes), SUBSCRIBES, COMMANDS)
     if len(drives) != 1:
         return nodes
@@ -249,8 +248,7 @@ def _id(parameter: str) -> str:
 
 
 def _with_own_inputs(node: NodeFacts, taken: Collection[str]) -> tuple[NodeFacts, Sequence[str]]:
-    """Return the twist_mux, its inputs that a file puts on topics that are ``taken`` on other ones, and
-    these."""
+    """Return the twist_mux with its inputs moved off topics that are ``taken``, and the moved ones."""
     apart = {
         it: f"{topic}{_APART}"
         for it in _commands(node, SUBSCRIBES)
@@ -274,8 +272,7 @@ def _name_of_topic(role: str) -> str:
 def _with_inputs(
     node: NodeFacts, roles: Iterable[str], usual: Usual, of_package: NodeFacts
 ) -> NodeFacts:
-    """Return the twist_mux with inputs that the node set has, in addition to those of the user's
-    file."""
+    """Return the twist_mux with the inputs of its node set besides those of the user's file."""
     (like,) = _commands(of_package, SUBSCRIBES)
     for role in roles:
         values = [it for it in usual.items() if it[0].startswith(_INPUT.format(role))]

@@ -40,8 +40,7 @@ _NAMING = make_naming("tf-per-robot")
 
 
 def offered_topics(member: Member, spec: RobotSpec) -> Mapping[str, Sequence[str]]:
-    """Return the topics of the sensors in the description, by what they are, as the robot alone has
-    them."""
+    """Return the topics of a description's sensors by what they are, as for a single robot."""
     sent: list[tuple[str, str]] = []
     if spec.simulator != REAL:
         topics, _ = bridged_topics({"": collect(member.source, member.tree)}, _NAMING)

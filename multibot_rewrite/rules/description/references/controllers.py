@@ -144,8 +144,7 @@ def _joints_of(path: str, seen: set[str]) -> Iterator[tuple[_Element, str]]:
 
 @memoized
 def _claimed(subject: Subject) -> list[tuple[_Element, tuple[Interface, ...]]]:
-    """Return the exported and claimed interfaces of each controller file, with the element that
-    names it."""
+    """Return each controller file's exported and claimed interfaces, with the naming element."""
     systems = subject.elements.tops("ros2_control")
     files = _files(subject, systems[0]) if systems else ()
     found = ((element, _interfaces(subject, path, is_sure)) for element, path, is_sure in files)
