@@ -37,14 +37,14 @@ CASES = {
     # base_link and lidar_link are alike behind a long prefix, and no slip of each other.
     "a prefix that makes frames alike": fleet(
         f"{CART}, {GZ}", {"name": "burger", "prefix": "burger0"}, {"name": "left", "prefix": "left1"},
-        layout="both", separators={"link": "_"}, node_set="teleop",
+        layout="both", separators={"link": "_"}, node_sets="teleop",
         related_files={"params": ["nav.yaml"]},
     ),
     "a drive of the other robot": fleet(
-        f"{CART}, {GZ}", {"name": "r1"}, {"name": "r2"}, layout="tf-per-robot", node_set="nav2"
+        f"{CART}, {GZ}", {"name": "r1"}, {"name": "r2"}, layout="tf-per-robot", node_sets="nav2"
     ),
     "only one of them has a lidar": fleet(
-        f"{CART}, {GZ}", {"name": "r1"}, {"name": "r2"}, layout="both", node_set="localization"
+        f"{CART}, {GZ}", {"name": "r1"}, {"name": "r2"}, layout="both", node_sets="localization"
     ),
     "a robot called as a topic": fleet(
         f"{GZ}, {GZ}", {"name": "gz", "namespace": "gz_x"}, {"name": "cmd_vel", "namespace": "c"},
@@ -72,18 +72,18 @@ CASES = {
         {"name": "r2", "related_files": {"rviz": "arm/one.rviz"}}, layout="frames-per-robot",
     ),
     "costmaps without namespaces, behind a prefix": fleet(
-        f"{CART}, {CART}", {"name": "r1"}, {"name": "r2"}, layout="postfix", node_set="navigation"
+        f"{CART}, {CART}", {"name": "r1"}, {"name": "r2"}, layout="postfix", node_sets="navigation"
     ),
     "a robot called as a node begins": fleet(
         f"{CART}, {CART}", {"name": "robot"}, {"name": "r2"}, layout="postfix", affix="postfix",
-        node_set="localization",
+        node_sets="localization",
     ),
     "a robot called as frames of all end": fleet(
-        f"{GZ}, {GZ}", {"name": "link"}, {"name": "r1"}, layout="tf-per-robot", node_set="localization",
+        f"{GZ}, {GZ}", {"name": "link"}, {"name": "r1"}, layout="tf-per-robot", node_sets="localization",
     ),
     "arms of a cell send one topic of joint states": fleet(
         f"{ARM}, {ARM}", {"name": "left"}, {"name": "right"}, layout="frames-per-robot", cell={},
-        node_set=["ros2_control", "moveit"], srdf="arm.srdf", separators={"link": "_"},
+        node_sets=["ros2_control", "moveit"], srdf="arm.srdf", separators={"link": "_"},
     ),
     "an argument that is the robot's name": fleet(
         f"{XACRO}, {XACRO}", {"name": "low", "arguments": {"mast": "low"}}, {"name": "r2"},
@@ -92,7 +92,7 @@ CASES = {
     # Its bridge, which no plan has, is ros_gz_bridge_map, and the other robot's scan is its driver's.
     "a robot called as the topic of a real one's node": fleet(
         f"{GZ}, {GZ}", {"name": "r1", "simulator": "none"}, {"name": "map"}, layout="postfix",
-        distro="humble", node_set="nav2",
+        distro="humble", node_sets="nav2",
     ),
     # The parameters of a manager with a name are not those of the nodes that its hardware makes.
     "hardware on the machine's time": fleet(
@@ -169,7 +169,7 @@ def test_an_empty_list_of_files_is_none(tmp_path: Path) -> None:
     nobody had files."""
     own: Data = {"name": "r1", "related_files": {"params": []}}
     drawn = fleet(
-        f"{CART}, {GZ}", own, {"name": "r2", "node_sets": []}, layout="both", node_set="localization",
+        f"{CART}, {GZ}", own, {"name": "r2", "node_sets": []}, layout="both", node_sets="localization",
         related_files={"params": ["nav.yaml"]},
     )  # fmt: skip
     judge(drawn, tmp_path)

@@ -139,7 +139,7 @@ BARE = f"{REAL[: REAL.index('<gazebo>')]}</robot>"
 
 @pytest.mark.sample(2)
 @pytest.mark.parametrize("layout", ["postfix", "both"])
-@pytest.mark.parametrize("node_sets", ["controllers", "gz_ros2_control"])
+@pytest.mark.parametrize("node_set", ["controllers", "gz_ros2_control"])
 @pytest.mark.parametrize(
     ("robot", "codes"), [(DRIVEN, {"MF843"}), (REAL, set()), (BARE, {"MG723"})]
 )
@@ -180,7 +180,7 @@ MUX = """twist_mux:
 
 
 @pytest.mark.sample(6)
-@pytest.mark.parametrize("node_sets", ["nav2", "[nav2, teleop]", "[navigation, twist_mux]"])
+@pytest.mark.parametrize("node_set", ["nav2", "[nav2, teleop]", "[navigation, twist_mux]"])
 @pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
 @pytest.mark.parametrize(
     ("behaviors", "mux"),

@@ -205,7 +205,7 @@ def test_slam_toolbox_is_left_to_a_manager_that_lists_it(tmp_path: Path) -> None
 
 @pytest.mark.slow
 def test_relays_of_tf_are_started(tmp_path: Path) -> None:
-    python = of_nav2(tmp_path, layout="both", affix="prefix", node_set="nav2", relayed="true")
+    python = of_nav2(tmp_path, layout="both", affix="prefix", node_sets="nav2", relayed="true")
     told = "{'input_topic': f'/{name}/tf', 'output_topic': '/tf'}"
     assert told in python
     assert python.count("package='topic_tools'") == 2
@@ -214,7 +214,7 @@ def test_relays_of_tf_are_started(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_nodes_of_bringup_are_left_to_it(tmp_path: Path) -> None:
     """Its parameter files have no namespaces, so a node in one would get nothing of them."""
-    python = of_nav2(tmp_path, layout="tf-per-robot", node_set="nav2", params_style="bringup")
+    python = of_nav2(tmp_path, layout="tf-per-robot", node_sets="nav2", params_style="bringup")
     assert "# Not started: amcl (parameter files are in the form of nav2_bringup" in python
     assert "package='nav2_amcl'" not in python
     assert "package='robot_state_publisher'" in python
@@ -336,7 +336,7 @@ def test_more_robots_than_the_file_has_are_built(tmp_path: Path) -> None:
 @pytest.mark.live
 def test_slam_toolbox_is_active_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("rclpy", reason="no rclpy: pip install '.[ros]'")
-    of_nav2(tmp_path, layout="tf-per-robot", node_set="slam_toolbox")
+    of_nav2(tmp_path, layout="tf-per-robot", node_sets="slam_toolbox")
     for name, value in stage(None).items():
         monkeypatch.setenv(name, value)
     out, real = tmp_path / "out", {"sync_slam_toolbox_node": SUPPORT / "lifecycle_stand_in.py"}

@@ -120,6 +120,6 @@ def test_the_plugin_of_classic_is_a_node_besides_its_manager(
 ) -> None:
     """gazebo_ros2_control_plugin.cpp: the node has the plugin's name, the manager its namespace."""
     path = xacro(tmp_path, "", namespace, OF_CLASSIC)
-    found = said(planned(path, node_set="gazebo_ros2_control", distro="humble"))
+    found = said(planned(path, node_sets="gazebo_ros2_control", distro="humble"))
     wanted = {f"/robot{at}/stick/controller_manager" for at in (1, 2)} if wrong else set()
     assert {it.message.split()[3].rstrip(",") for it in found} == wanted

@@ -251,7 +251,7 @@ LATER = ["ax_max", "ax_min", "ay_max", "ay_min", "az_max"]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("node_sets", ["robot_localization, ", ""])
+@pytest.mark.parametrize("node_set", ["robot_localization, ", ""])
 def test_a_filter_whose_file_is_there_runs_or_its_lack_is_told(
     node_set: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

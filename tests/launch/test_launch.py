@@ -793,7 +793,7 @@ def test_xml_for_a_container_with_components(frontend: Any, context: Any) -> Non
     assert made is launch.container and given.pop("describe") is False
     inside = given.pop("composable_node_descriptions")
     assert performed(context, given) == {
-        "package": "rclcpp_components", "executable": "isolated", "of_set": "box",
+        "package": "rclcpp_components", "executable": "isolated", "name_in_set": "box",
         "files": "a.yaml", "robot": "r",
     }  # fmt: skip
     first, second = (it.options for it in inside)
@@ -817,7 +817,7 @@ def test_xml_for_a_component(frontend: Any, context: Any) -> None:
     made, given = frontend.composable_node(entity(text), parser)
     assert made is launch.node and given.pop("describe") is False
     assert performed(context, given) == {
-        "package": "p", "plugin": "p::One", "of_set": "one", "use_sim_time": "true",
+        "package": "p", "plugin": "p::One", "name_in_set": "one", "use_sim_time": "true",
     }  # fmt: skip
     with pytest.raises(AttributeError, match="node"):
         frontend.composable_node(entity(text.replace('node="one"', "")), parser)
@@ -835,10 +835,10 @@ def test_xml_for_a_component(frontend: Any, context: Any) -> None:
 @pytest.mark.parametrize(
     ("text", "made", "known"),
     [
-        ('<n node="a" exec="x" describe="true"/>', "node", {"executable": "x", "of_set": "a"}),
+        ('<n node="a" exec="x" describe="true"/>', "node", {"executable": "x", "name_in_set": "a"}),
         (
             '<n node="a" use_sim_time="false"/>', "lifecycle_node",
-            {"of_set": "a", "use_sim_time": "false"},
+            {"name_in_set": "a", "use_sim_time": "false"},
         ),
         (
             '<n simulator="gz" robot="r" output="screen"/>', "spawn",

@@ -113,7 +113,7 @@ def test_processes_in_namespaces_with_a_map_for_all(tmp_path: Path) -> None:
 
 @in_launch
 @pytest.mark.parametrize(
-    ("words", "node_sets", "said"),
+    ("words", "node_set", "said"),
     [
         (("rviz:=one",), "nav2", "these robots need 2 windows; say relayed: true"),
         (("rviz:=all",), "nav2", "rviz:=all: way 'all' is not known"),

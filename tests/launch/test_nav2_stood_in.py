@@ -74,7 +74,7 @@ def nodes(each: LaunchGraph) -> dict[str, LaunchedNode]:
 @pytest.fixture(scope="module")
 def composed(tmp_path_factory: pytest.TempPathFactory) -> LaunchGraph:
     """Namespaces: in a container of each robot, with a map server for all and tf on one topic."""
-    fleet = {"layout": "both", "node_sets": "nav2_composed", "more": f"relayed: true\n{SHARED}"}
+    fleet = {"layout": "both", "node_set": "nav2_composed", "more": f"relayed: true\n{SHARED}"}
     return read(tmp_path_factory.mktemp("fleet"), ("rviz", "one"), **fleet)
 
 
@@ -235,7 +235,7 @@ def test_tf_of_each_robot_is_relayed(composed: LaunchGraph, nodes: dict[str, Any
     [
         ({"rviz": "one"}, {}, "these robots need 2 windows; say relayed: true"),
         ({"rviz": "all"}, {}, "rviz:=all: way 'all' is not known"),
-        ({}, {"node_sets": "robot_localization"}, "robot 'robot1' has no node of Nav2; add nav2, "),
+        ({}, {"node_set": "robot_localization"}, "robot 'robot1' has no node of Nav2; add nav2, "),
     ],
 )
 def test_what_cannot_be_started_is_said(

@@ -51,7 +51,7 @@ COSTMAP = "local_costmap/local_costmap"
 
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
-    ("release", "node_sets", "words"),
+    ("release", "node_set", "words"),
     [
         ("jazzy", "nav2", "to /robot1/controller_server, whose process it is in: --ros-args -r "),
         ("jazzy", "nav2_composed", "to /robot1/nav2_container, whose process it is in: --ros-args"),
@@ -68,7 +68,7 @@ def test_a_hosted_nodes_rule_is_for_what_its_host_is_started_with(
 
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
-    ("node_sets", "node", "words"),
+    ("node_set", "node", "words"),
     [
         ("nav2", "amcl", "--ros-args -r __ns:=/robot1"),
         ("nav2_composed", "amcl", "namespace='/robot1' of its ComposableNode"),

@@ -76,7 +76,7 @@ def test_a_term_is_found_unless_it_is_plain_english() -> None:
     assert not list(found_in("Joints close a loop"))
     assert not list(found_in("the artefacts of rviz"))
     assert list(found_in("the files beside it", PAGE_TERMS))
-    assert list(found_in("Node sets of nodes", PAGE_TERMS))
+    assert list(found_in("Stacks of nodes", PAGE_TERMS))
     assert not list(found_in("a stand-in for launch", PAGE_TERMS))
 
 

@@ -35,7 +35,7 @@ def codes(
 
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
-    ("release", "rule", "node_sets", "found"),
+    ("release", "rule", "node_set", "found"),
     [
         # Forwarded to the controllers, one of which has the name.
         ("jazzy", "~/odom:=odom", "gz_ros2_control", []),

@@ -66,7 +66,7 @@ controller_manager:
 @pytest.mark.sample(1)
 # gazebo_ros2_control_plugin.cpp has a node of the plugin's name beside it.
 @pytest.mark.parametrize(
-    ("release", "node_sets"),
+    ("release", "node_set"),
     [
         ("humble", "gz_ros2_control"),
         ("jazzy", "gz_ros2_control"),

@@ -336,7 +336,7 @@ LEFT = "no node of its node set or file is started here: name the launch file th
 def test_a_node_set_may_be_in_another_launch_file(
     running: tuple[str, ...], levels: dict[str, str]
 ) -> None:
-    origins = {"amcl": {"node_sets": "nav2"}, "map": {"place": Place("nav2.yaml", 3)}, "own": {}}
+    origins = {"amcl": {"node_set": "nav2"}, "map": {"place": Place("nav2.yaml", 3)}, "own": {}}
     plan = System(
         tuple(Node(f"/{at}/{it}", **of) for it, of in origins.items() for at in ("r1", "r2"))  # type: ignore[arg-type]
     )

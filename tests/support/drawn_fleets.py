@@ -635,7 +635,7 @@ FLEET_CAUSES: dict[str, tuple[Callable[[Data], object], Callable[[Data], bool]]]
         lambda data: (
             data.update(layout="both", params_style="bringup", shared_nodes=["map_server"]),
             data.pop("shape", None),
-            _first(data).update(node_set=["nav2"]),
+            _first(data).update(node_sets=["nav2"]),
         ),
         started_for_each,
     ),
@@ -781,7 +781,7 @@ CAUSES = {
             data.update(layout="frame-prefix", affix="prefix"),
             data.pop("separators", None),
             [row.pop("postfix", None) for row in data["robots"]],
-            _first(data).update(node_set=["moveit"], description="arm.urdf", srdf="arm.srdf"),
+            _first(data).update(node_sets=["moveit"], description="arm.urdf", srdf="arm.srdf"),
         ),
         lambda fleet: (
             fleet.data["layout"] == "frame-prefix"
@@ -790,7 +790,7 @@ CAUSES = {
     ),
     "hardware of a simulator on a real robot": Cause(
         lambda data, _: _first(data).update(
-            description="gz_arm.urdf", simulator="none", node_set=["ros2_control"]
+            description="gz_arm.urdf", simulator="none", node_sets=["ros2_control"]
         ),
         lambda fleet: any(
             (kind, it) == ("gz arm", "none") and "ros2_control" in row.get("node_sets", ())

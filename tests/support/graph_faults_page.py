@@ -101,10 +101,6 @@ def lines() -> Iterator[str]:
         some = [code for code in each if 0 < count[code] < len(each[code])]
         cells = (name, f"{sum(count.values())}", " ".join(none) or "-", " ".join(some) or "-")
         yield f"| {' | '.join(cells)} |"
-    yield ""
-    yield f"Faults by code: {', '.join(f'{code} {len(own)}' for code, own in each.items())}."
-    yield ""
-    yield f"Healthy systems: {', '.join(SYSTEMS)}."
 
 
 def _ways() -> Iterator[tuple[str, Callable[[Fault], bool]]]:

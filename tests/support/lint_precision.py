@@ -37,8 +37,8 @@ No public file has what these rules find. Each rests on the source that `fixture
 names, on its examples and on the defects planted in `tests/lint/`, which it finds alone: {codes}.
 """
 _RULES = """
-| rule | level | found | judged | true | by |
-|---|---|--:|--:|--:|---|
+| rule | level | found | judged | true |
+|---|---|--:|--:|--:|
 """
 PLANTED = {
     "test_lint_gazebo": "below `<gazebo>`, parameters of plugins and hardware",
@@ -134,7 +134,7 @@ def precision_page() -> str:
     parts += [_NEVER_FOUND.format(codes=never), _RULES]
     parts += (
         f"| {it.code} {RULES[it.code].name} | {RULES[it.code].level} | {it.hits} | {it.judged} "
-        f"| {it.true} | {it.referee} |\n"
+        f"| {it.true} |\n"
         for it in found
     )
     return "".join(parts)

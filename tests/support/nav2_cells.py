@@ -165,9 +165,8 @@ def written(cell: Cell, folder: Path, sources: Path) -> LoadedFleet:
     style = "params_style: bringup" if cell.launch == BRINGUP else ""
     affix = "postfix" if cell.layout == "postfix" else "prefix"
     more = f"{style}\n{cell.more}"
-    text = FLEET.format(
-        **cell._asdict() | {"node_sets": cell.node_set, "affix": affix, "more": more}
-    )
+    words = {"node_set": cell.node_set, "affix": affix, "more": more}
+    text = FLEET.format(**cell._asdict() | words)
     (folder / "fleet.yaml").write_text(text)
     return load_fleet(folder / "fleet.yaml")
 
@@ -347,10 +346,8 @@ def rows_of(chosen: list[str], page: str) -> Iterator[str]:
     sources = sources_folder()
     if sources is None:
         raise SystemExit(f"set {VARIABLE} to a folder with sources by release")
-    yield (
-        "| launch file | release | layout | Nav2 | | nodes | parameters | findings | wrong parameters |"
-    )
-    yield "|---|---|---|---|---|--:|--:|--:|--:|"
+    yield "| launch file | release | layout | Nav2 | | nodes | parameters | wrong |"
+    yield "|---|---|---|---|---|--:|--:|--:|"
     for cell in cells():
         if not set(chosen) <= set(cell.words):
             if before := kept.get(tuple(cell.words)):
@@ -359,7 +356,7 @@ def rows_of(chosen: list[str], page: str) -> Iterator[str]:
         with tempfile.TemporaryDirectory() as folder:
             made = outcome(cell, Path(folder), sources)
         assert made.parameters == made.planned, f"{made.parameters} of {made.planned} answered"
-        counts = (made.nodes, made.parameters, len(made.findings), made.wrong)
+        counts = (made.nodes, made.parameters, len(made.findings) + made.wrong)
         for it in made.findings[:12] if "--write" not in sys.argv else ():
             print("   ", it.code, it.level, it.robot, it.node, it.message[:200], file=sys.stderr)
         yield f"| {' | '.join((*cell.words, *map(str, counts)))} |"

@@ -34,7 +34,7 @@ FLEET = FLEET.replace("%s", str(ROBOTS / "rover.urdf"))
 
 def written(folder: Path, **words: str) -> Path:
     """Return the folder, with fleet.yaml and what it names."""
-    given = {"layout": "postfix", "distro": "jazzy", "node_sets": "nav2", "more": "", **words}
+    given = {"layout": "postfix", "distro": "jazzy", "node_set": "nav2", "more": "", **words}
     (folder / "fleet.yaml").write_text(FLEET.format(**given))
     (folder / "params.yaml").write_text(PARAMS)
     (folder / "one.rviz").write_text(RVIZ)

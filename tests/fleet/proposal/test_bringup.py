@@ -372,7 +372,7 @@ MOVES = "Node(package='moveit_ros_move_group', executable='move_group')"
 
 
 @pytest.mark.parametrize(
-    ("starts", "node_sets"), [(MAKES, ["moveit"]), (MOVES, None), (LIDAR, None)]
+    ("starts", "node_set"), [(MAKES, ["moveit"]), (MOVES, None), (LIDAR, None)]
 )
 def test_moveit_has_its_files_where_it_is_started(
     starts: str, node_set: list[str] | None, package: Path
