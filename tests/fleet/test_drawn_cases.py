@@ -79,7 +79,7 @@ CASES = {
         node_sets="localization",
     ),
     "a robot called as frames of all end": fleet(
-        f"{GZ}, {GZ}", {"name": "link"}, {"name": "r1"}, layout="tf-per-robot", node_sets="localization",
+        f"{GZ}, {GZ}", {"name": "link"}, {"name": "r1"}, layout="L1", node_sets="localization",
     ),
     "arms of a cell send one topic of joint states": fleet(
         f"{ARM}, {ARM}", {"name": "left"}, {"name": "right"}, layout="frames-per-robot", cell={},
