@@ -34,7 +34,7 @@ from multibot_rewrite.related_files.yaml_text import read_yaml
 
 ROBOTS = 100
 LINKS = 12
-HEAD = "layout: frames-per-robot\naffix: prefix\nstack: nav2\ndescription: rover.urdf\n"
+HEAD = "layout: frames-per-robot\naffix: prefix\nnode_sets: nav2\ndescription: rover.urdf\n"
 HEAD += "related_files: {params: params.yaml, rviz: nav2.rviz}\nrobots:\n"
 COSTMAP = """
 {name}:

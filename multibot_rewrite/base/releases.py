@@ -97,8 +97,7 @@ def unusual_release(given: str, environment: Mapping[str, str]) -> str:
 
 
 def evidence(text: bytes) -> str:
-    """Return the library that shows that a description is for ``OF_OLD`` or earlier; empty if none
-    does."""
+    """Return the library by which a description is for ``OF_OLD`` or earlier; empty if none does."""
     if not any(it in text for it in _OLD_WORDS):
         return ""
     # Words are found faster than an expression.

@@ -34,7 +34,9 @@ def not_across(fleet: Fleet) -> Iterator[Finding]:
     crossing = crossings(plan, ()) if plan.domains else ()
     if untyped := sorted({it.name for it in crossing if not it.type}):
         message = f"domain_bridge cannot bring {shorten(untyped)}: the type is not known"
-        yield _told(apart, message, "give the type in the file of nodes (docs/stacks.md)", WARNING)
+        yield _told(
+            apart, message, "give the type in the file of nodes (docs/node-sets.md)", WARNING
+        )
 
 
 def _of_simulator(apart: Apart, plan: System) -> Iterator[Finding]:

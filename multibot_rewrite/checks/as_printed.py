@@ -60,7 +60,7 @@ _REST = "rest"
 # More of a value is not shown.
 _SHOWN = 100
 _NOTHING = object()
-# The programs of which each process has its line, unless it is a node of a stack.
+# The programs of which each process has its line, unless it is a node of a node set.
 _TOLD = (
     ("tf2_ros", "static_transform_publisher"),
     ("controller_manager", "spawner"),

@@ -79,7 +79,7 @@ def plan_fleet(
 def make_fleet(
     source: Source,
     robots: Sequence[str],
-    stacks: Sequence[str],
+    node_sets: Sequence[str],
     policy: Policy,
     *,
     nodes: str | None = None,
@@ -107,7 +107,7 @@ def make_fleet(
     release = found[0].prepared.job.release
     library = known_nodes(nodes, release, nodl).library
     known = known_here(library.nodes, launch, robots[0], release)
-    facts = facts_of(stacks, nodes, release, nodl)
+    facts = facts_of(node_sets, nodes, release, nodl)
     usual = load_known_nodes(nodes or "", release)
     launched = launched_robot(facts, launch, known, robots[:1], usual, release)
     runs = nodes_with(launched, facts, given_with(launched, ()), known)

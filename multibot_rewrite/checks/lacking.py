@@ -69,7 +69,7 @@ def lacking(plan: FleetPlan) -> Iterator[Finding]:
                 message = f"robot {robot.spec.name!r} runs {node.name} without a map"
                 yield at_robot(LACKING, robot, message, _MAP, NOTE)
             need = NEEDS.get(node.kind)
-            is_named = not node.origin.stack
+            is_named = not node.origin.node_set
             if need is None or is_named or node.when or node.shared or need.is_there(robot):
                 continue
             message = f"robot {robot.spec.name!r} runs {node.name} ({node.origin}) with {need.what}"
@@ -81,7 +81,7 @@ def without_camera(plan: FleetPlan) -> Iterator[Finding]:
     has several: it is unknown which one they need."""
     for robot in (it for it in plan.robots if it.spec.simulator != REAL and not it.spec.launch):
         nodes = plan.evidence_of(robot).nodes
-        waiting = [it for it in nodes if it.origin.stack and not (it.when or it.shared)]
+        waiting = [it for it in nodes if it.origin.node_set and not (it.when or it.shared)]
         ends = ((it, end) for it in waiting for end in it.endpoints if "<" not in end.name)
         kinds_of = ((it, end, wanted(it, end)) for it, end in ends)
         hears = [row for row in kinds_of if row[2] in OF_CAMERAS]
@@ -102,7 +102,9 @@ def without_camera(plan: FleetPlan) -> Iterator[Finding]:
 
 _NONE = "its description has no camera"
 _TAKE = "take a description with a camera that does, or leave the node set out"
-_HEAR = "name one in `remaps` of a node set of your own (docs/stacks.md), or leave the node set out"
+_HEAR = (
+    "name one in `remaps` of a node set of your own (docs/node-sets.md), or leave the node set out"
+)
 
 
 NOTHING_MOVES = declare("MF865", "commands-without-reader", WARNING, formats=("fleet",))

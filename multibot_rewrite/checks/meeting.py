@@ -129,15 +129,24 @@ class NamesOfFleet(Protocol):
     """What is asked of a fleet: its names, and ``words``: the robot by what stands for it in names."""
 
     @property
-    def naming(self) -> Naming: ...
+    def naming(self) -> Naming:
+        """Return how the robots' names are made."""
+
     @property
-    def inventories(self) -> Mapping[str, Inventory]: ...
+    def inventories(self) -> Mapping[str, Inventory]:
+        """Return each robot's names, by the robot."""
+
     @property
-    def table(self) -> Table: ...
+    def table(self) -> Table:
+        """Return the remap table of all robots."""
+
     @property
-    def edges(self) -> Edges: ...
+    def edges(self) -> Edges:
+        """Return the planned transforms."""
+
     @property
-    def words(self) -> Mapping[str, str]: ...
+    def words(self) -> Mapping[str, str]:
+        """Return the robot by each word that stands for it in names."""
 
 
 def shared_by_nothing(

@@ -170,10 +170,8 @@ def _remedy(plan: FleetPlan) -> str:
         if found := switch_for(it.simulated or it.description, given, loads_hardware, BOUNDED):
             name, value = found
             first = f"write arguments: {{{name}: {value!r}}} for the description"
-            return f"{first}, whose plugin starts it; or add ros2_control to `stack:`"
-    return (
-        "add ros2_control to `stack:`, which starts it; or load gz_ros2_control in the description"
-    )
+            return f"{first}, whose plugin starts it; or add ros2_control to `node_sets:`"
+    return "add ros2_control to `node_sets:`, which starts it; or load gz_ros2_control in it"
 
 
 def _known(plan: FleetPlan) -> Knowledge:
@@ -199,8 +197,7 @@ def _temporary_folder() -> Iterator[str]:
 
 
 def _lost(graph: LaunchGraph, seen: System, home: str) -> Iterator[Finding]:
-    """Yield missing files that the launch file names, a node without its description, and what rcl
-    refuses to start."""
+    """Yield missing files of the launch file, nodes without description, and what rcl refuses."""
     for note in graph.notes:
         # A file that a plugin names and that is no file of the fleet is told where it is rewritten.
         if not note.parameters or note.file.startswith(f"{home}/"):

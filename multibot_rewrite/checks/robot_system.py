@@ -327,8 +327,7 @@ def _plain(robot: RewrittenRobot, export: Exported) -> Exported:
 
 
 def _plainly(robot: RewrittenRobot, given: Run) -> Run:
-    """Return the parameters of a node without what such an argument makes, which a launch file
-    fills in."""
+    """Return a node's parameters without what a launch argument makes, which a launch file fills in."""
     own = _own(robot)
     own = {**{name: own[text] for (_, name), text in robot.names.own.items()}, **own}
     values = {}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``multibot check PLAN``: is the running system what was planned?"""
+"""``multibot check PLAN``: compare the running system with its plan."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``multibot check-launch``: what would be wrong with the robots that a launch file starts?"""
+"""``multibot check-launch``: report what is wrong with the robots that a launch file starts."""
 
 from __future__ import annotations
 

@@ -36,10 +36,10 @@ WRITTEN = ("output", "save_snapshot", "report")
 FLEET_FILES = (".yaml", ".yml")
 # What a fleet file says itself, and how the option is written.
 _OF_FLEET_FILE = (
-    *("robots", "stack", "nodes", "layout", "affix", "topics", "separator", "shared"),
+    *("robots", "node_set", "nodes", "layout", "affix", "topics", "separator", "shared"),
     *("definitions", "launch", "roots"),
 )
-OF_FLEET_FILE = {"words": "ROBOT", **{it: f"--{it}" for it in _OF_FLEET_FILE}}
+OF_FLEET_FILE = {"words": "ROBOT", **{it: f"--{it.replace('_', '-')}" for it in _OF_FLEET_FILE}}
 
 
 def check_use(options: argparse.Namespace, command: str, printed: bool) -> None:
@@ -108,7 +108,7 @@ def _from_words(options: argparse.Namespace) -> Fleet:
     return make_fleet(
         options.input,
         names,
-        options.stack,
+        options.node_set,
         policy(options),
         nodes=nodes,
         nodl=nodl,

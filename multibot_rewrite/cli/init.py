@@ -24,8 +24,8 @@ from multibot_rewrite.cli.output import STANDARD, deliver, detail, goes_to_file,
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.usage import asked_number, plain_words, xacro_args
 from multibot_rewrite.description.sources.expand import kept_expansions
-from multibot_rewrite.knowledge.node_library import stack_of
-from multibot_rewrite.knowledge.stacks import every_release
+from multibot_rewrite.knowledge.node_library import nodes_of_set
+from multibot_rewrite.knowledge.node_sets import every_release
 from multibot_rewrite.producers.launch.records import LaunchOrder, launch_order, order_in_words
 from multibot_rewrite.proposal.fleet_text import text_of
 from multibot_rewrite.proposal.launches import order_text
@@ -121,10 +121,10 @@ def _wanted(options: argparse.Namespace) -> Wanted:
         tuple(options.robots),
         simulator=options.simulator or "",
         launch=_launch(options),
-        stacks=tuple(options.stack),
+        node_sets=tuple(options.node_set),
     )
-    for it in wanted.stacks:
-        stack_of(every_release(), it)
+    for it in wanted.node_sets:
+        nodes_of_set(every_release(), it)
     return wanted._replace(file=options.output) if goes_to_file(options) else wanted
 
 

@@ -32,8 +32,8 @@ PLAN, POLICY = "plan", "sros2"
 # How a plan calls a robot without a name; its frames are those of its description.
 ALONE, LAYOUT_ALONE = NAMELESS.name, "tf-per-robot"
 # What a plan of a description has, and that of a launch file has not.
-_OF_ROBOTS = ("robots", "count", "stack", "launch", "layout", "affix", "topics", "separator")
-NOT_OF_LAUNCH = {it: f"--{it}" for it in (*_OF_ROBOTS, "shared")}
+_OF_ROBOTS = ("robots", "count", "node_set", "launch", "layout", "affix", "topics", "separator")
+NOT_OF_LAUNCH = {it: f"--{it.replace('_', '-')}" for it in (*_OF_ROBOTS, "shared")}
 # A launch file is told by its name: no description or fleet file is called so.
 _LAUNCH = re.compile(r".*(\.py|[._]launch(\.\w+)?|system_model\.yaml)")
 TABLE, BRIDGE = "table", "bridge"

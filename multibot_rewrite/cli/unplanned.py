@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``multibot check`` without a plan: what is wrong with the robots that run now?"""
+"""``multibot check`` without a plan: report what is wrong with the robots that run now."""
 
 from __future__ import annotations
 
@@ -133,7 +133,7 @@ def _suggest(options: argparse.Namespace, each: Mapping[int, Diagnosis]) -> None
     """Write what a fleet begins with, for each domain by itself: a name may be in several of them."""
     if not options.suggest:
         return
-    from multibot_rewrite.knowledge.stacks import built_in
+    from multibot_rewrite.knowledge.node_sets import built_in
     from multibot_rewrite.live.suggestion import SCHEMAS, suggestion
 
     library = built_in(release_here(options.distro))

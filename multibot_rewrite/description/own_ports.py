@@ -214,8 +214,7 @@ def _taken_out(document: Document, robot: str) -> Iterator[Edit]:
 
 
 def number_changes(template: Template, data: bytes) -> Iterator[Change]:
-    """Yield the numbers of a robot's text that differ from the source, with their places there; raises
-    nothing."""
+    """Yield the numbers of a robot's text that differ from the source, with places; raises nothing."""
     source, file, *_ = template.inventory.document
     written = collect(read_document(data, file), template.tree)
     for it, new in zip(ports_of(template.inventory), ports_of(written), strict=False):

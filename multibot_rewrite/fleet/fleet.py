@@ -14,9 +14,9 @@ from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.fleet.file.domains import TOGETHER, Apart
 from multibot_rewrite.fleet.robots.member import Member, line_of
 from multibot_rewrite.knowledge.node_library import with_included
+from multibot_rewrite.knowledge.node_sets import built_in, user_library
 from multibot_rewrite.knowledge.nodl.lookup import NodeKnowledge, find_interfaces, nodes_of
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.knowledge.stacks import built_in, user_stack
 from multibot_rewrite.planning.bridged_topics import AS_ROBOTS, Models
 from multibot_rewrite.planning.domain_bridge import with_bridges
 from multibot_rewrite.planning.plan import expect, named_frames, vacuous
@@ -41,7 +41,7 @@ from multibot_rewrite.system.records import (
 
 NOTHING: Mapping[str, str] = {}
 ALIKE: Mapping[str, Inventory] = {}
-# The stack of a robot whose description is published by something else.
+# The node set of a robot whose description is published by something else.
 NO_STATE_PUBLISHER = f"no_{STATE_PUBLISHER}"
 FRAME_PREFIX = "frame_prefix"
 
@@ -81,7 +81,7 @@ class Fleet(NamedTuple):
 
 
 def facts_of(
-    stacks: Sequence[str], nodes: str | None, release: str, nodl: Sequence[str] = ()
+    node_sets: Sequence[str], nodes: str | None, release: str, nodl: Sequence[str] = ()
 ) -> tuple[NodeFacts, ...]:
     """Return the nodes that a robot with these node sets runs in a release, each once. Raises
     UsageError for an unknown node set, and for one that the release lacks. Every robot runs
@@ -89,15 +89,15 @@ def facts_of(
     set ``no_robot_state_publisher``."""
     known = known_nodes(nodes, release, nodl)
     library = known.library
-    runs = {name: list(nodes_of(known, name)) for name in stacks}
-    named = {node: name for name in reversed(stacks) for node in runs[name]}
-    order = dict.fromkeys(node for name in stacks for node in runs[name])
+    runs = {name: list(nodes_of(known, name)) for name in node_sets}
+    named = {node: name for name in reversed(node_sets) for node in runs[name]}
+    order = dict.fromkeys(node for name in node_sets for node in runs[name])
     # Without its folder: a plan is the same from every working directory.
     files = ((node, os.path.basename(node.interface)) for node in order)
     said = ((node, f", described in {file}" if file else "") for node, file in files)
     found = [node._replace(origin=Origin(f"{named[node]}{where}")) for node, where in said]
     has_publisher = any(node.package == STATE_PUBLISHER for node in found)
-    if not any(NO_STATE_PUBLISHER in with_included(library, name) for name in stacks):
+    if not any(NO_STATE_PUBLISHER in with_included(library, name) for name in node_sets):
         added = () if has_publisher else nodes_of(known, STATE_PUBLISHER)
         return (*found, *added)
     if has_publisher:
@@ -109,7 +109,7 @@ def facts_of(
 def known_nodes(nodes: str | None, release: str, nodl: Sequence[str]) -> NodeKnowledge:
     """Return what is known of nodes in a release: built in, by NoDL, in the user's file ``nodes``."""
     built = built_in(release)
-    library = user_stack(nodes, release) if nodes else built
+    library = user_library(nodes, release) if nodes else built
     own = (name for name, node in library.nodes.items() if node != built.nodes.get(name))
     return NodeKnowledge(library, find_interfaces(nodl), frozenset(own))
 

@@ -56,8 +56,7 @@ Here = tuple[LoadedFleet | None, str | None]
 
 
 def entered(context: Context, group: Here) -> None:
-    """Set the fleet and the robot from here on, also for events and timers set up now; None for
-    none."""
+    """Set the fleet and the robot from here on, also for later events and timers; None for none."""
     _carry(context)
     context.extend_locals(dict(zip((FLEET, ROBOT), group, strict=True)))
 
@@ -184,8 +183,7 @@ def sim_time(context: Context, robot: LoadedRobot, told: Text) -> bool | None:
 
 
 def listed(context: Context, names: Text) -> list[str]:
-    """Return names or paths from a list or a text with commas; launch joins a list with
-    substitutions into one text."""
+    """Return the names of a list or of a text with commas: launch joins lists with substitutions."""
     several = not isinstance(names, str) and isinstance(names, Sequence)
     if several and all(isinstance(it, str | os.PathLike) for it in names):
         return [os.fspath(it) for it in names]
@@ -208,6 +206,7 @@ def _of_launch(context: Context, key: str, make: Callable[[], Any]) -> Any:
 
 
 def written(context: Context, robot: LoadedRobot | None, file: str, text: str) -> str:
+    """Return the path of a file that this launch writes with that text."""
     folder = _of_launch(context, _FOLDER, lambda: _folder(context))
     path = os.path.join(folder.name, robot.name if robot else "all", file)
     os.makedirs(os.path.dirname(path), exist_ok=True)
@@ -265,7 +264,7 @@ WORDS: Mapping[str, Callable[[LoadedRobot, str], str]] = MappingProxyType(
 
 
 def description(robot: Text = None, fleet: Text = None) -> Substitution:
-    """Return a robot's description: ``parameters=[{"robot_description": description()}]``."""
+    """Return a robot's description for ``parameters=[{"robot_description": ...}]``."""
     return value("description", robot=robot, fleet=fleet)
 
 

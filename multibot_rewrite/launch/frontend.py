@@ -74,8 +74,7 @@ def container(entity: Any, parser: Any) -> Parsed:
 
 
 def composable_node(entity: Any, parser: Any) -> Parsed:
-    """Parse ``multibot_composable_node node= pkg= plugin=``: loaded into its container, see
-    ``launch.node``."""
+    """Parse ``multibot_composable_node node= pkg= plugin=``, which is loaded into its container."""
     return actions.node, {**action_options(entity, parser), **_component(entity, parser)}
 
 
@@ -138,7 +137,7 @@ def _ours(entity: Any, parser: Any) -> dict[str, Any]:
     name = parser.parse_substitution(entity.get_attr("node"))
     describe = entity.get_attr("describe", data_type=bool, optional=True, can_be_str=False)
     texts = _texts(entity, parser, "files", "robot", "fleet", SIM_TIME)
-    return {**texts, "of_stack": name, "describe": bool(describe)}
+    return {**texts, "name_in_set": name, "describe": bool(describe)}
 
 
 def _component(entity: Any, parser: Any) -> dict[str, Any]:

@@ -40,7 +40,7 @@ NONE, ONE, EACH = "none", "one", "each"
 MAP_SERVER, STATE = "map_server", "robot_state_publisher"
 TRANSITIONS: Mapping[str, int] = MappingProxyType({"configure": 1, "activate": 3})
 _INFO = "costmap_filter_info_server"
-# Nodes of stacks that are called otherwise than what they are.
+# Nodes of node sets that are called otherwise than what they are.
 _KINDS: Mapping[str, str] = MappingProxyType(
     {f"{it}_filter_mask_server": MAP_SERVER for it in ("keepout", "speed")}
     | {f"{it}_{_INFO}": _INFO for it in ("keepout", "speed")}
@@ -82,10 +82,10 @@ def _is_on(context: Context, argument: str) -> bool:
 
 def _started(robot: LoadedRobot, context: Context) -> list[Action]:
     names = robot.table
-    # Other nodes that its files have sections for may run, too: the stacks say which do.
-    known = nodes_of_nav2(it for it in robot.stack if it in names.nodes)
+    # Other nodes that its files have sections for may run, too: the node sets say which do.
+    known = nodes_of_nav2(it for it in robot.node_set if it in names.nodes)
     if not known:
-        hint = "add nav2, nav2_composed, nav2_slam or nav2_slam_composed to stack:"
+        hint = "add nav2, nav2_composed, nav2_slam or nav2_slam_composed to node_sets:"
         raise UsageError(f"robot {robot.name!r} has no node of Nav2; {hint}")
     with_state = _is_on(context, "robot_state_publisher") and STATE in names.nodes
     processes = [names.container(it) or names.full_name(it) for it in known]
@@ -199,7 +199,6 @@ def kind_of(name: str) -> str:
 
 
 def nodes_of_nav2(names: Iterable[str]) -> list[str]:
-    """Return those of the nodes that are Nav2's or slam_toolbox, managers last, so that what they
-    manage is there."""
+    """Return the nodes of Nav2 and slam_toolbox among these, managers last: after what they manage."""
     known = (it for it in names if kind_of(it) in NAV2)
     return sorted(known, key=lambda it: NAV2.index(kind_of(it)))

@@ -44,16 +44,16 @@ def system_of_description(
     source: Source,
     robots: Sequence[str],
     *,
-    stacks: Sequence[str] = (),
+    node_sets: Sequence[str] = (),
     policy: Policy = AS_USUAL,
     xacro_args: Mapping[str, str] = NO_ARGUMENTS,
     trust: bool = False,
     distro: str = "",
 ) -> System:
-    """Return what robots of a description should run, with the nodes of ``stacks``: a plan.
+    """Return what robots of a description should run, with the nodes of ``node_sets``: a plan.
     ``policy`` are naming options of ``rewrite``. Raises as ``rewrite_all``, and UsageError for an
     unknown node set."""
-    given = (source, robots, stacks, policy)
+    given = (source, robots, node_sets, policy)
     return expected(make_fleet(*given, xacro_args=xacro_args, trust=trust, release=distro))
 
 

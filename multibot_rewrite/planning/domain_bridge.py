@@ -67,7 +67,7 @@ def with_bridges(plan: System, given: Sequence[str] = ()) -> System:
         name, own = bridge_name(robot), [it for it in found if it.robot == robot]
         here, there = f"/{name}_{numbers[robot]}", f"/{name}_{numbers['']}"
         made = [Node(f"/{name}", robot=robot), Node(here, robot=robot), Node(there)]
-        nodes += [it._replace(stack=DOMAIN_BRIDGE, known=DOMAIN_BRIDGE) for it in made]
+        nodes += [it._replace(node_set=DOMAIN_BRIDGE, known=DOMAIN_BRIDGE) for it in made]
         for it in own:
             from_, to = (here, there) if it.out else (there, here)
             ends.append(End(TOPIC, SUBSCRIBES, it.name, it.type, node=from_, code_name=it.name))

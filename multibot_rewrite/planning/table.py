@@ -44,7 +44,7 @@ from multibot_rewrite.planning.way_checks import (
 )
 
 NOTHING: Mapping[str, Sequence[Run]] = {}
-# The full name of a robot's node, by its name in the stack.
+# The full name of a robot's node, by its name in the node set.
 Places: TypeAlias = Mapping[str, str]
 NOWHERE: Places = {}
 
@@ -80,7 +80,7 @@ def build_table(
         is_named = any(it.is_controller for it in nodes)
         for robot in robots:
             copies = [_copy(it, robot) for it in own]
-            # The controllers that get the rules of their plugin; None where no stack names them.
+            # The controllers that get the rules of their plugin; None where no node set names them.
             controllers = [it for it in copies if it.fact.is_controller] or None
             if not controller_way(release).of_manager:
                 controllers = []
@@ -91,7 +91,7 @@ def build_table(
                 if run.fact.of_hardware:
                     runs += [_beside(it, run) for it in managers[:1]]
                     continue
-                # What their controllers publish is the controllers' own, if a stack names those.
+                # What their controllers publish is the controllers' own, if a node set names those.
                 ends = run.fact.endpoints
                 kept = tuple(it for it in ends if not (is_named and is_stand_in(run, it)))
                 runs.append(with_names(run._replace(fact=run.fact._replace(endpoints=kept))))
@@ -112,8 +112,8 @@ def _beside(manager: Run, component: Run) -> Run:
 
 def joined(table: Table, other: Table) -> Table:
     """Return two tables of different robots as one; nodes for all robots are in it once."""
-    # Two descriptions may know other things of a node for all robots; of a robot's node both its stack
-    # and the plugin that makes it may tell.
+    # Two descriptions may differ in what they say of a node for all robots. A robot's node may have
+    # facts from its node set and from the plugin that makes it.
     runs: dict[object, Run] = {}
     for at, it in enumerate((*table.runs, *other.runs)):
         runs.setdefault(at if it.robot else (it.node, it.full_name, it.rules), it)

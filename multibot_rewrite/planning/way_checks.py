@@ -16,8 +16,8 @@ from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming
 from multibot_rewrite.base.rosnames import BoundNode, bind, resolve_bound
 from multibot_rewrite.knowledge.controller_ways import ControllerWay, controller_way
+from multibot_rewrite.knowledge.node_sets import every_release
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
-from multibot_rewrite.knowledge.stacks import every_release
 from multibot_rewrite.planning.of_runs import asked_beside, expanded, parsed, target_of
 from multibot_rewrite.planning.records import Names, Rule, Rules, Run, Table
 from multibot_rewrite.planning.ways import (
@@ -140,7 +140,7 @@ def not_taken(table: Table) -> Iterator[Finding]:
 
     seen: Counter[str] = Counter()
     for it, running in running_nodes(some):
-        # What descriptions decide, of all robots; of the stack's nodes, which all have alike, two.
+        # What descriptions decide, of all robots; of the node set's nodes, which all have alike, two.
         seen[it.node.node] += 1
         is_decided = it.node.fact.plugin or it.node.fact.is_controller
         if not is_decided and seen[it.node.node] > ENOUGH:

@@ -30,8 +30,7 @@ _NO_MAP = "Nav2 waits for a map: write its yaml_filename for map_server into a p
 
 
 def text_of(it: Proposal, file: str) -> str:
-    """Return the text of the fleet file that will be at the path ``file``: what it names is relative to
-    its folder."""
+    """Return the text of a fleet file at the path ``file``, with paths relative to its folder."""
     lines = _lines(it, os.path.dirname(file) or os.curdir, os.path.basename(file))
     return "".join(f"{one_line(line) if line.startswith('#') else line}\n" for line in lines)
 
@@ -154,11 +153,11 @@ def _of_member(
         yield "launch", (told, (*_launched(member.bringup, apart),))
     if beside.srdf:
         yield "srdf", (here(beside.srdf), ("The planning groups of MoveIt",))
-    if beside.stacks:
-        whys = tuple(f"{stack}: {reason}" for stack, reason in beside.stacks.items())
+    if beside.node_sets:
+        whys = tuple(f"{node_set}: {reason}" for node_set, reason in beside.node_sets.items())
         maps = any(_MAP.search(data_of_file(it)) for it in beside.files.get("params", ()))
-        lacks = not maps and bool({"nav2", "localization"} & beside.stacks.keys())
-        yield "stack", (list(beside.stacks), (*whys, *[_NO_MAP] * lacks))
+        lacks = not maps and bool({"nav2", "localization"} & beside.node_sets.keys())
+        yield "node_sets", (list(beside.node_sets), (*whys, *[_NO_MAP] * lacks))
     files: dict[str, Any] = {
         kind: here(its[0]) if kind == "rviz" and len(its) == 1 else [here(path) for path in its]
         for kind, its in beside.files.items()

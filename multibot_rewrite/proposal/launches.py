@@ -63,8 +63,7 @@ class Bringup(NamedTuple):
 
 
 def read_named(order: LaunchOrder) -> Reading:
-    """Return a named launch file, read as it is launched. Raises InputError if it cannot be read,
-    or starts nothing."""
+    """Return a named launch file's nodes. Raises InputError if it is unreadable or starts nothing."""
     graph = launch_of([order], ANY)
     unread = [it.message for it in graph.notes if not it.parameters]
     if unread and not graph.nodes:

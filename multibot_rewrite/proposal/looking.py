@@ -213,8 +213,7 @@ def in_its_world(it: Looked, simulated: bool, reach: Reach) -> Looked:
 
 
 def with_hardware_loaded(it: Looked, reach: Reach) -> Looked:
-    """Return the same with the argument with which a simulator's plugin loads its hardware, if it has
-    one."""
+    """Return the same with the argument by which a simulator's plugin loads its hardware, if any."""
     return _switched(it, lambda root: loads_hardware(root) and suits_simulator(root), reach)
 
 

@@ -110,14 +110,14 @@ def layout_of(members: Sequence[Member]) -> Choice:
     """Return the layout that the files of these robots are made for."""
     if any(it.looked.own_tf for it in members):
         return Choice(PER_ROBOT, "plugins of the description send tf on each robot's own topic")
-    stacks = {name for it in members for name in it.related_files.stacks}
+    node_sets = {name for it in members for name in it.related_files.node_sets}
     launched = {one for it in members if it.bringup for one in it.bringup.graph.packages}
     named = any(ROBOT in value for it in members for _, value in it.looked.arguments)
-    if named or "moveit" in stacks or "moveit_ros_move_group" in launched:
+    if named or "moveit" in node_sets or "moveit_ros_move_group" in launched:
         return Choice(
             FRAMES, "arms and prefixed frames share one /tf, so one RViz shows all robots"
         )
-    if stacks & _OF_NAV2 or any(it.startswith("nav2_") for it in launched):
+    if node_sets & _OF_NAV2 or any(it.startswith("nav2_") for it in launched):
         return Choice(PER_ROBOT, "the launch files of Nav2 always give each robot its own /tf")
     return Choice(FRAMES, "one /tf for all robots, so one RViz shows them all")
 
@@ -258,11 +258,11 @@ def propose(
 
 def _related_files(it: Looked, found: Found, release: str, wanted: Wanted) -> RelatedFiles:
     """Return the files that go with a robot: those of its launch file, otherwise of its folders."""
-    asked = dict.fromkeys(wanted.stacks, MEANT)
+    asked = dict.fromkeys(wanted.node_sets, MEANT)
     if it.bringup:
         return related_files_launched(it, it.bringup, found, release, asked)
     made = related_files_of(it, found, release)
-    return made._replace(stacks={**made.stacks, **asked})
+    return made._replace(node_sets={**made.node_sets, **asked})
 
 
 def _member(it: Looked, beside: RelatedFiles, names: tuple[str, ...], reach: Reach) -> Member:

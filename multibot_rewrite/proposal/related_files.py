@@ -14,8 +14,8 @@ from typing import NamedTuple
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.knowledge.node_sets import load_node_set
 from multibot_rewrite.knowledge.parameters import load_known_nodes
-from multibot_rewrite.knowledge.stacks import load_stack
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.proposal.choosing import is_srdf_launched, loaded
 from multibot_rewrite.proposal.launches import Bringup
@@ -56,7 +56,7 @@ class RelatedFiles(NamedTuple):
 
     files: Mapping[str, tuple[str, ...]]
     srdf: str
-    stacks: Mapping[str, str]
+    node_sets: Mapping[str, str]
     left: Mapping[str, str]
 
     @property
@@ -95,7 +95,7 @@ def related_files_of(robot: Looked, found: Found, release: str) -> RelatedFiles:
     files["moveit"] = moveit_beside(robot, srdf, every, left)
     nodes = {name: path for path, names in sections.items() for name in names}
     chosen = {kind: its for kind, its in files.items() if its}
-    return RelatedFiles(chosen, srdf, dict(_stacks(robot, nodes, srdf)), left)
+    return RelatedFiles(chosen, srdf, dict(_node_sets(robot, nodes, srdf)), left)
 
 
 def srdf_of(robot: Looked, found: Found) -> str:
@@ -186,8 +186,7 @@ def _fitting(robot: Looked, found: Found, release: str, left: dict[str, str]) ->
 def _sections(
     read: Iterable[Fitting], left: dict[str, str]
 ) -> Iterator[tuple[str, frozenset[str]]]:
-    """Yield parameter files with the nodes that they are for; a file with a node of an earlier one
-    is left out."""
+    """Yield parameter files and their nodes, without files that repeat a node of an earlier one."""
     before: dict[str, str] = {}
     for path, names, *_ in read:
         if again := sorted(names & before.keys()):
@@ -239,18 +238,21 @@ def _loaded(robot: Looked) -> Iterator[str]:
         yield os.path.abspath((it.text or "").strip())
 
 
-def _stacks(robot: Looked, nodes: Mapping[str, str], srdf: str) -> Iterator[tuple[str, str]]:
+def _node_sets(robot: Looked, nodes: Mapping[str, str], srdf: str) -> Iterator[tuple[str, str]]:
     """Yield the node sets that a robot runs, each with the reason."""
     bare = {name.rpartition("/")[2]: path for name, path in nodes.items()}
-    for stack, with_, lacking in known_names()["stacks"]:
+    for node_set, with_, lacking in known_names()["node_sets"]:
         if set(with_) <= bare.keys() and not set(lacking) & bare.keys():
             first = with_[0]
-            yield stack, f"{os.path.basename(bare[first])} has parameters of {' and '.join(with_)}"
+            yield (
+                node_set,
+                f"{os.path.basename(bare[first])} has parameters of {' and '.join(with_)}",
+            )
     if robot.control:
-        stack = _CONTROL[robot.simulator]
+        node_set = _CONTROL[robot.simulator]
         where = bare.get(_MANAGER)
         why = f" and {os.path.basename(where)} has controllers" if where else ""
-        yield stack, f"the description has <ros2_control>{why}"
+        yield node_set, f"the description has <ros2_control>{why}"
     elif robot.simulator == NO_SIMULATOR:
         yield "robot_state", "joint_state_publisher sends the joints until a driver does"
     if srdf:
@@ -274,7 +276,7 @@ def related_files_launched(
     lost = [it for it in graph.includes if not os.path.isabs(it.file)]
     handed = "\n".join(value for it in lost for _, value in it.arguments)
     params = [it for it in found.params if it in found.meant or os.path.realpath(it) in handed]
-    params += _of_stacks(related_files_of(robot, found, release), asked, release) if asked else []
+    params += _of_sets(related_files_of(robot, found, release), asked, release) if asked else []
     starts = any(it.executable == _MOVEIT for it in graph.nodes)
     # A launch file may start a move_group by a package that is not here.
     texts = (text_of(it) for it in (bringup.order.file, *(one.file for one in graph.includes)))
@@ -286,14 +288,14 @@ def related_files_launched(
         srdf = srdf_of(robot, found._replace(srdf=own))
         files["moveit"] = [*moveit_beside(robot, srdf, found, {})]
     why = f"{bringup.name} starts it by {_UTILITIES}, which is not installed here"
-    stacks = {"moveit": why} if srdf and not starts else {}
+    node_sets = {"moveit": why} if srdf and not starts else {}
     files["params"] = [*dict.fromkeys(params)]
     kept = {kind: tuple(its) for kind, its in files.items() if its}
-    return RelatedFiles(kept, srdf, {**stacks, **asked}, {})
+    return RelatedFiles(kept, srdf, {**node_sets, **asked}, {})
 
 
-def _of_stacks(guessed: RelatedFiles, stacks: Mapping[str, str], release: str) -> list[str]:
+def _of_sets(guessed: RelatedFiles, node_sets: Mapping[str, str], release: str) -> list[str]:
     """Return the parameter files that have a node of the node sets."""
-    nodes = {os.path.basename(it.name) for one in stacks for it in load_stack(one, release)}
+    nodes = {os.path.basename(it.name) for one in node_sets for it in load_node_set(one, release)}
     every = guessed.files.get("params", ())
     return [it for it in every if any(f"{name}:" in text_of(it) for name in nodes)]

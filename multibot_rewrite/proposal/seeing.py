@@ -68,7 +68,7 @@ class Wanted(NamedTuple):
     apart: float = 0.0
     simulator: str = ""
     launch: tuple[LaunchOrder, ...] | None = None
-    stacks: tuple[str, ...] = ()
+    node_sets: tuple[str, ...] = ()
     file: str = "fleet.yaml"
     tell: Callable[[str], None] = lambda _: None
 
@@ -146,8 +146,7 @@ def _seen(wanted: Wanted, found: Found) -> Seen:
 
 
 def _refuse_to_guess(found: Found) -> None:
-    """Raise UsageError where the part of a launch file is not known that publishes a description of
-    several."""
+    """Raise UsageError if it is not known which of several descriptions a launch file publishes."""
     several, graphs = len(found.descriptions), [it.graph for it in found.read]
     unread = [it for graph in graphs for it in graph.notes if not it.parameters and it.missing]
     if several > 1 and unread and not any(STATE_PUBLISHER in it.packages for it in graphs):

@@ -44,7 +44,7 @@ _OWN_SPACE = re.compile(rb"namespace", re.IGNORECASE)
 
 
 class Space(NamedTuple):
-    """The argument for a namespace; do xacros take it?"""
+    """The argument for a namespace, and whether xacros take it."""
 
     name: str
     of_xacro: bool
@@ -52,7 +52,7 @@ class Space(NamedTuple):
 
 class LaunchEdit(NamedTuple):
     """A launch file with the argument; ``data`` is None where it is not changed, ``left`` says why.
-    ``filled`` are the parameter files that it fills in now; is it ``spaced`` by a namespace?"""
+    ``filled`` are the parameter files that it fills in now, ``spaced``: a namespace is set."""
 
     data: bytes | None
     left: tuple[Left, ...]

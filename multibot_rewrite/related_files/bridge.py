@@ -143,8 +143,7 @@ WORLD = frozenset({"clock", "stats"})
 
 
 class BridgeFile(NamedTuple):
-    """A bridge file: the entries of each robot with slots, the text of those that all share, and both
-    with slots."""
+    """A bridge file: each robot's entries with slots, the shared text, and both with slots."""
 
     own: RelatedFile
     shared: str

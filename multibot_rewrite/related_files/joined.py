@@ -74,8 +74,7 @@ _SOME = frozenset(("joints", "interfaces"))
 
 
 class PartFile(NamedTuple):
-    """A parameter file of a part as its prefix spells it: its sections, and the nodes in it that serve
-    all parts."""
+    """A part's parameter file as its prefix names it: its sections, and nodes that serve all parts."""
 
     file: str
     sections: tuple[RawSection, ...]

@@ -239,7 +239,7 @@ def _without_bridges(system: System, plan: System) -> System:
 
 
 def _bridges(plan: System) -> set[str]:
-    return {it.name for it in plan.nodes if it.stack == DOMAIN_BRIDGE}
+    return {it.name for it in plan.nodes if it.node_set == DOMAIN_BRIDGE}
 
 
 def _with_domain(it: Finding, number: int, plan: System, seen: Mapping[int, System]) -> Finding:

@@ -154,16 +154,20 @@ class Placed(Protocol):
     """A record with the place where a file has it."""
 
     @property
-    def place(self) -> Place: ...
+    def place(self) -> Place:
+        """Return the file and line that the finding is about."""
 
 
 class OnLine(Protocol):
     """What has a place in a text; lines and columns count from 1."""
 
     @property
-    def line(self) -> int: ...
+    def line(self) -> int:
+        """Return the line, from 1."""
+
     @property
-    def column(self) -> int: ...
+    def column(self) -> int:
+        """Return the column, from 1."""
 
 
 def remark(at: OnLine, message: str, hint: str = "", level: str = "") -> Finding:

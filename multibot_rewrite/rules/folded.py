@@ -214,7 +214,7 @@ def _users(seen: Index, it: Finding) -> Sequence[str]:
 
 
 def is_about_a_clock(seen: Index, it: Finding) -> bool:
-    """Is it about the time that nodes get?"""
+    """Return whether it is about the time that nodes get."""
     return any(end.type == "rosgraph_msgs/msg/Clock" for end in _ends(seen, it.names))
 
 

@@ -123,7 +123,7 @@ words/word  uses topic form=list releases=jazzy
 """
 
 
-def test_a_section_of_the_definitions_as_docs_stacks_md_has_it(tmp_path: Path) -> None:
+def test_a_section_of_the_definitions_as_docs_node_sets_md_has_it(tmp_path: Path) -> None:
     for insert in ("yes", "no"):
         file = tmp_path / f"{insert}.vocab"
         file.write_text(SECTION.format(insert))
@@ -276,11 +276,11 @@ def test_what_a_fleet_was_made_from_is_not_written_over(tmp_path: Path) -> None:
 
 def test_what_a_fleet_file_says_itself() -> None:
     names = (
-        "robots", "stack", "nodes", "layout", "affix", "topics", "separator", "shared",
+        "robots", "node_set", "nodes", "layout", "affix", "topics", "separator", "shared",
         "definitions", "launch", "roots",
     )  # fmt: skip
     assert {
-        "words": "ROBOT", **{it: f"--{it}" for it in names},
+        "words": "ROBOT", **{it: f"--{it}".replace("_", "-") for it in names},
     } == commands_of_fleets.OF_FLEET_FILE  # fmt: skip
 
 
@@ -301,7 +301,7 @@ def test_a_launch_file_is_told_by_its_name(name: str, it_is: bool) -> None:
 
 def test_options_that_a_plan_of_a_launch_file_has_not() -> None:
     assert plan.NOT_OF_LAUNCH == {
-        "robots": "--robots", "count": "--count", "stack": "--stack", "launch": "--launch",
+        "robots": "--robots", "count": "--count", "node_set": "--node-set", "launch": "--launch",
         "layout": "--layout",
         "affix": "--affix", "topics": "--topics", "separator": "--separator", "shared": "--shared",
     }  # fmt: skip
@@ -447,6 +447,7 @@ def test_headings_and_names_are_painted() -> None:
         (["a", "b"], "unexpected b"),
         # A part of it says what it is, another first letter does not.
         (["--form", "b"], "unknown option --form; use --output-kind KIND"),
+        (["--stack", "b"], "unknown option --stack; use --node-set NAME"),
         (["--output-form", "b"], "unknown option --output-form; did you mean '--output-kind'?"),
         (["--norm"], "unknown option --norm"),
         # A short option, alone or with its value; what is no option is a value.

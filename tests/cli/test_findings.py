@@ -28,7 +28,7 @@ Said = Callable[..., tuple[int, str, str]]
 
 @pytest.fixture
 def said(capsys: pytest.CaptureFixture[str]) -> Said:
-    """Runs one of the three programs; exit code, standard output, standard error."""
+    """Run one of the three programs; return exit code, standard output, standard error."""
     programs = {"urdf-postfix": urdf_postfix.main, "urdf-lint": urdf_lint.main}
 
     def run(*words: str) -> tuple[int, str, str]:
@@ -41,7 +41,7 @@ def said(capsys: pytest.CaptureFixture[str]) -> Said:
 
 @pytest.fixture
 def fleet(tmp_path: Path) -> Path:
-    """A fleet file whose description has a warning."""
+    """Return a fleet file whose description has a warning."""
     path = tmp_path / "fleet.yaml"
     path.write_text(f"robots:\n  - {{name: robot1, description: {SIBLINGS}}}\n")
     return path
@@ -49,9 +49,9 @@ def fleet(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def check(tmp_path: Path, said: Said) -> list[str]:
-    """A check of twenty robots, each without its robot_state_publisher."""
+    """Return a check of twenty robots, each without its robot_state_publisher."""
     plan, graph = tmp_path / "plan.yaml", tmp_path / "graph.json"
-    words = ["plan", ROVER, *TWENTY, "--stack", "robot_state", "--layout", "L2", "-o", str(plan)]
+    words = ["plan", ROVER, *TWENTY, "--node-set", "robot_state", "--layout", "L2", "-o", str(plan)]
     assert said("multibot", *words)[0] == 0
     wanted = from_yaml(plan.read_bytes(), "plan")
     found = as_planned(wanted)
@@ -66,7 +66,7 @@ def codes(text: str) -> list[str]:
 
 
 def commands(tmp_path: Path, fleet: Path) -> dict[str, list[str]]:
-    """A command line of each kind with findings, its result in a file."""
+    """Return a command line of each kind with findings, its result in a file."""
     out = str(tmp_path / "out")
     return {
         "urdf-postfix": ["urdf-postfix", SIBLINGS, "robot1", "-o", out],

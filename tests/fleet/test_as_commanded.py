@@ -29,7 +29,7 @@ TOLD = (
 )
 TWO = "robots: [{name: r1, model: red}, {name: r2, pose: {x: 2}}]\n"
 FLEETS = {
-    "gz": f"layout: both\ndescription: rover_gz.urdf\nstack: gz_ros2_control\n{TWO}",
+    "gz": f"layout: both\ndescription: rover_gz.urdf\nnode_sets: gz_ros2_control\n{TWO}",
     "classic": f"layout: frames-per-robot\ndescription: rover.urdf\n{TWO}",
     "relayed": f"layout: tf-per-robot\nrelayed: true\ndescription: rover.urdf\n{TWO}",
     "copied": f"layout: both\nrelayed: true\ndescription: rover.urdf\n{TWO}",
@@ -62,7 +62,7 @@ def commands(made: Outputs) -> str:
 
 
 def changes(text: str) -> Iterator[tuple[str, str]]:
-    """The text with one word of a line changed, or without it."""
+    """Yield the text with one word of a line changed, or without it."""
     lines = text.splitlines()
     for at, line in enumerate(lines):
         words = shlex.split(line) if line.startswith(("ros2 run", "rviz2")) else []

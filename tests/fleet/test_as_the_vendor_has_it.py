@@ -186,7 +186,7 @@ def test_a_fault_of_a_file_of_the_vendor_is_told_and_built(
     (fleet.parent / "up.launch.py").write_text(LAUNCH.replace("ekf('ekf_map'", READER))
     if not by_launch:
         text = FLEET.format("both", LAYOUTS["both"]).replace("launch: up.launch.py\n", "")
-        fleet.write_text(f"{text}stack: [nav2]\nrelated_files: {{params: [nav2.yaml]}}\n")
+        fleet.write_text(f"{text}node_sets: [nav2]\nrelated_files: {{params: [nav2.yaml]}}\n")
     code = main(["build", str(fleet), "-o", str(fleet.parent / "out")])
     (told,) = (it for it in capsys.readouterr().err.splitlines() if "MB120" in it)
     assert "nav2.yaml:4:" in told and ("for one robot, too" in told) is by_launch

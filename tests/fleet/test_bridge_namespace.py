@@ -27,7 +27,7 @@ FILTER = "ekf_filter_node: {ros__parameters: {imu0: sensors/imu_0/data, odom_fra
 FLEET = """\
 layout: L1
 description: r.urdf
-stack: robot_localization
+node_sets: robot_localization
 robots:
   - {name: robot1, model: robot1/robot}
   - {name: robot2, model: robot2/robot}

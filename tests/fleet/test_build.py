@@ -56,13 +56,13 @@ def held(folder: Path) -> Files:
 
 
 def leftovers(folder: Path) -> list[str]:
-    """What only a killed build leaves."""
+    """Return what only a killed build leaves."""
     return [it.name for it in folder.rglob("*") if "multibot-build" in it.name or ".tmp" in it.name]
 
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with a fleet that was built once."""
+    """Return a folder with a fleet that was built once."""
     folder = tmp_path_factory.mktemp("built")
     fleet_folder(folder)
     assert build(folder) == 0

@@ -30,7 +30,7 @@ FLEET = f"""\
 layout: {{layout}}
 affix: prefix
 description: {ROVER}
-stack: nav2
+node_sets: nav2
 distro: jazzy
 simulator: none
 shared_topics: [/map, /clock, /rosout, /parameter_events, /diagnostics]
@@ -75,7 +75,7 @@ class Bridged(NamedTuple):
 
 
 def as_domain_bridge_reads(text: str) -> tuple[str, list[Bridged]]:
-    """The name and the topics, by parse_domain_bridge_yaml_config.cpp and bridge_topic of
+    """Return the name and the topics, by parse_domain_bridge_yaml_config.cpp and bridge_topic of
     domain_bridge.cpp (c2523e1); what these throw at, or leave out, fails here."""
     root = yaml.compose(text)
     (topics,) = [value for key, value in root.value if key.value == "topics"]
@@ -169,7 +169,7 @@ def test_free_fleet_gets_a_bridge_and_the_robots_of_its_adapter(made: Outputs) -
         "# The robots of the fleet adapter: put them below rmf_fleet of its configuration.\n"
         "rmf_fleet:\n  robots:\n"
     ) + "".join(
-        f'    {it}:\n      charger: "{it}_charger"\n      navigation_stack: 2\n'
+        f'    {it}:\n      charger: "{it}_charger"\n      navigation_node_set: 2\n'
         f'      initial_map: "L1"\n      map_frame: "map"\n'
         f'      robot_frame: "{it}/base_footprint"\n'
         for it in ("robot1", "robot2")
@@ -186,7 +186,7 @@ def test_the_adapter_of_free_fleet_finds_each_robot(layout: str, tmp_path: Path)
     robots = yaml.safe_load(text(made, "free_fleet/robots.yaml"))["rmf_fleet"]["robots"]
     edges = [it for it in made.planned.edges if not it.static]
     for robot, told in robots.items():
-        assert told["navigation_stack"] == 2 and told["initial_map"]
+        assert told["navigation_node_set"] == 2 and told["initial_map"]
         file = zenoh.Config.from_json5(text(made, f"free_fleet/{robot}.json5"))
         allow = json.loads(file.get_json("plugins/ros2dds/allow"))
         assert not any(own for what, own in allow.items() if what not in ALLOWED)
@@ -266,13 +266,13 @@ def test_what_a_fleet_file_may_not_say(more: str, said: str, tmp_path: Path) -> 
     [
         ("both", "tf_static,", "odometry,", "no robot has a topic 'odometry'"),
         ("frames-per-robot", "", "", "take layout tf-per-robot or both"),
-        ("both", "stack: nav2", "stack: robot_state", "no node of robot1 serves"),
+        ("both", "node_sets: nav2", "node_sets: robot_state", "no node of robot1 serves"),
     ],
 )
 def test_what_no_plan_fulfils(layout: str, old: str, new: str, said: str, tmp_path: Path) -> None:
     file = tmp_path / "fleet.yaml"
     given = FLEET.format(layout=layout).replace(old, new)
-    if new == "stack: robot_state":
+    if new == "node_sets: robot_state":
         given = given.replace("shared_nodes: map_server\n", "").replace(", /robot1/scan", "")
     file.write_text(given)
     with pytest.raises(UsageError, match=said):
@@ -317,17 +317,17 @@ def test_what_a_launch_file_loads_or_brings_up_is_reached_from_one_domain(tmp_pa
     """Components are loaded by a service, slam_toolbox is activated by one; processes need none."""
     (tmp_path / "robot.urdf").write_text('<robot name="r"><link name="base_link"/></robot>')
     head = "description: robot.urdf\ndistro: jazzy\nsimulator: none\n"
-    for stack, numbers, told in (
+    for node_set, numbers, told in (
         ("nav2_composed", (11, 12), True),
         ("slam_toolbox", (11, 12), True),
         ("slam_toolbox", (11, 11), False),
         ("nav2", (11, 12), False),
     ):
         domains = "domains: {{robot1: {}, robot2: {}}}\n".format(*numbers)
-        (tmp_path / "fleet.yaml").write_text(f"{head}stack: {stack}\n{domains}{SMALL}")
+        (tmp_path / "fleet.yaml").write_text(f"{head}node_sets: {node_set}\n{domains}{SMALL}")
         made = built_fleet(tmp_path / "fleet.yaml")
         found = [it for it in made.findings if it.code == "MF849"]
-        assert [it.line for it in found] == [5] * told, stack
+        assert [it.line for it in found] == [5] * told, node_set
 
 
 NODES = """\
@@ -339,11 +339,11 @@ nodes:
   front:
     package: acme
     calls: {/get_plan: nav_msgs/srv/GetPlan}
-stacks: {own: {about: ours, nodes: [planner, front]}}
+node_sets: {own: {about: ours, nodes: [planner, front]}}
 """
 OWN = """\
 nodes: nodes.yaml
-stack: own
+node_sets: own
 simulator: none
 shared_topics: [/get_plan]
 shared_nodes: front

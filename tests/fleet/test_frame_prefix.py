@@ -45,7 +45,7 @@ ekf_filter_node:
 """
 FLEET = """\
 layout: frame-prefix
-stack: [localization, robot_localization]
+node_sets: [localization, robot_localization]
 description: rover.urdf
 robots: [{name: robot1}, {name: robot2, namespace: graph2, prefix: frames2}]
 related_files: {params: params.yaml, rviz: one.rviz}

@@ -114,7 +114,7 @@ def test_the_command_takes_a_launch_file_beside_robots(
 ) -> None:
     written(tmp_path)
     model, description = str(tmp_path / "system_model.yaml"), str(tmp_path / "robot.urdf")
-    words = ["plan", description, "robot1", "--layout", "L1", "--stack", "robot_localization"]
+    words = ["plan", description, "robot1", "--layout", "L1", "--node-set", "robot_localization"]
     assert main([*words, "--launch", f"{model} namespace:=x"]) == 0
     out, err = capsys.readouterr()
     assert "  - name: /robot1/amcl\n    place: system_model.yaml:3\n" in out

@@ -28,7 +28,7 @@ MODEL = '<sdf version="1.6"><model name="drone"><link name="base"/>{}</model></s
 def _built(
     folder: Path, plugins: dict[str, str], distro: str = "jazzy"
 ) -> tuple[list[str], list[Finding]]:
-    """The texts of the robots' models, and what is said."""
+    """Return the texts of the robots' models, and what is said."""
     for name, plugin in plugins.items():
         (folder / f"{name}.sdf").write_text(MODEL.format(plugin))
     robots = "".join(f"  - {{name: {it}, description: {it}.sdf}}\n" for it in plugins)

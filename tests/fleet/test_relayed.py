@@ -34,7 +34,7 @@ Displays:
 def fleet(folder: Path, layout: str) -> LoadedFleet:
     (folder / "one.rviz").write_text(RVIZ)
     text = (
-        f"layout: {layout}\nrelayed: true\nstack: robot_state_publisher\n"
+        f"layout: {layout}\nrelayed: true\nnode_sets: robot_state_publisher\n"
         "robots:\n"
         f"  - {{name: robot1, description: {ROBOTS / 'rover.urdf'}}}\n"
         f"  - {{name: robot2, description: {ROBOTS / 'rover.urdf'}}}\n"
@@ -45,7 +45,7 @@ def fleet(folder: Path, layout: str) -> LoadedFleet:
 
 
 def relayed(plan: System) -> System:
-    """The graph as planned, with what the relays send."""
+    """Return the graph as planned, with what the relays send."""
     graph = as_planned(plan)
     copies = (it._replace(topic="/tf_static" if it.static else "/tf") for it in graph.edges)
     return sent(graph._replace(edges=(*graph.edges, *copies)))

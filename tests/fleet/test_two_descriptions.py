@@ -192,7 +192,7 @@ def test_two_robots_of_one_model_and_of_none(tmp_path: Path) -> None:
             {
                 "description": "rover.sdf.xacro",
                 "simulated": "",
-                "stack": ["no_robot_state_publisher", "slam_toolbox"],
+                "node_sets": ["no_robot_state_publisher", "slam_toolbox"],
             },
             [],
         ),

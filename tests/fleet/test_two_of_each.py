@@ -39,7 +39,7 @@ def five(*names: str) -> tuple[FleetPlan, Outputs]:
 
 
 def left(edit: Edit | None = None, names: tuple[str, ...] = NAMES) -> frozenset[str]:
-    """The robots that are not read."""
+    """Return the robots that are not read."""
     plan, made = five(*names)
     made = edited(made, edit) if edit else made
     return two_of_each(made, [it.spec for it in plan.robots]).left

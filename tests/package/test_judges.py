@@ -36,14 +36,14 @@ _NAME = re.compile(r"'([^']+)'")
 
 
 def named(findings: Iterable[Finding]) -> set[str]:
-    """The names that these findings say are shared."""
+    """Return the names that these findings say are shared."""
     found = [it for it in findings if it.code in CODES]
     quoted = {text for it in found if not it.names for text in _NAME.findall(it.message)[:1]}
     return quoted | {name for it in found for name in it.names}
 
 
 def verdicts(path: Path, layout: str, folder: Path) -> dict[str, set[str]]:
-    """What each of the five says; empty where the description is refused."""
+    """Return what each of the five says; empty where the description is refused."""
     # A fleet is one of ROS 2: where nobody says so, the others may take plugins for those of ROS 1.
     release = release_said("", path.read_bytes(), str(path)).release
     try:

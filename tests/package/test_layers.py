@@ -59,7 +59,7 @@ LATE = (*HEAVY, "yaml", "rich", "numpy", "difflib")
 
 @cache
 def imports_of(file: str) -> tuple[str, ...]:
-    """What a module of the package imports."""
+    """Return what a module of the package imports."""
     return tuple(imports(sources()[file]))
 
 
@@ -74,7 +74,7 @@ def imports(tree: ast.AST) -> Iterator[str]:
 
 
 def room(file: str) -> str:
-    """The module or folder right below the package that a file belongs to."""
+    """Return the module or folder right below the package that a file belongs to."""
     return file.partition("/")[0].removesuffix(".py")
 
 
@@ -86,7 +86,7 @@ def floor(room_: str) -> int:
 
 @cache
 def inner(file: str) -> set[str]:
-    """The files of the package that a file imports."""
+    """Return the files of the package that a file imports."""
     found = set()
     for name in imports_of(file):
         parts = name.split(".")
@@ -156,7 +156,7 @@ def test_heavy_packages_have_one_door_each() -> None:
 
 
 def loaded(code: str) -> set[str]:
-    """The modules a fresh interpreter has after running ``code``, beyond those of a bare start."""
+    """Return the modules that ``code`` loads in a fresh interpreter, beyond those of a bare start."""
     end = "; import sys; print(*sys.modules)"
     run = [sys.executable, "-c"]
     after = subprocess.run([*run, code + end], capture_output=True, text=True, check=True)

@@ -83,7 +83,7 @@ def rules(found: Table, robot: str, node: str) -> dict[str, str]:
 
 
 def plugin(*given: tuple[str, str]) -> dict[str, list[Run]]:
-    """A plugin with /scan in each robot's description, with these rules."""
+    """Return a plugin with /scan in each robot's description, with these rules."""
     facts = NodeFacts("lidar", "lidar", (Endpoint(TOPIC, PUBLISHES, "/scan"),))
     return {
         robot: [

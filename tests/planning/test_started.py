@@ -17,9 +17,9 @@ from multibot_rewrite.planning.ways import arguments, started
 GZ = str(ROBOTS / "rover_gz.urdf")
 
 
-def table(release: str, *stacks: str, layout: str = "tf-per-robot") -> Table:
+def table(release: str, *node_sets: str, layout: str = "tf-per-robot") -> Table:
     policy: Policy = {"layout": layout}
-    return make_fleet(GZ, ["robot1", "robot2"], stacks, policy, release=release).table
+    return make_fleet(GZ, ["robot1", "robot2"], node_sets, policy, release=release).table
 
 
 @pytest.mark.more

@@ -99,7 +99,7 @@ def test_a_name_made_at_run_time_gets_no_postfix(name: str) -> None:
 
 
 def alike(*pairs: tuple[str, Sequence[Endpoint]]) -> Table:
-    """What two robots' descriptions start: each a node that asks for names which no rule moves."""
+    """Return the table of two robots' plugins, whose nodes ask for names which no rule moves."""
     plugins = {
         robot: [Run(robot, "p", "/", f"{robot}_plugin", (), node(f"{robot}_plugin", *ends))]
         for robot, ends in pairs

@@ -425,7 +425,7 @@ COMPONENT = f"{PARTS} !pkg=package !plugin !name namespace <extra_arg>=extra_arg
 
 
 def read_of(form: frontend.Form) -> set[str]:
-    """What a form reads, as in ELEMENTS."""
+    """Return what a form reads, as in ELEMENTS."""
     values = {f"{'!' * (it in form.needs)}{it}={key}" for it, (key, _) in form.values.items()}
     below = {f"<{it}>={key}" for it, (key, _) in form.below.items()}
     return values | below | ({f"<*>={form.actions}"} if form.actions else set())
@@ -570,7 +570,7 @@ def test_only_the_blanks_of_a_command_line_separate(line: str, words: list[list[
 
 
 def visited(actions: list[Any], context: LaunchContext) -> list[str]:
-    """What the nodes of these actions are called, each with its namespace."""
+    """Return what the nodes of these actions are called, each with its namespace."""
     seen = []
     for it in actions:
         below = it.visit(context)

@@ -135,7 +135,7 @@ def by_both(
     beside: Mapping[str, str] = ROVER,
     distro: str = NEWEST_LTS,
 ) -> tuple[list[str], list[str]]:
-    """What the lint says of a file in a package (of the rover, where it has none), and what a build."""
+    """Return what the lint and a build say of a file in a package (the rover's, if it has none)."""
     file, key = RELATED_FILES[kind]
     for name, content in {**ROVER, **beside, file: text}.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)

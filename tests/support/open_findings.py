@@ -19,7 +19,7 @@ BESIDE = ("MB105", "MF7", "MB4", "MR")
 def found(
     folder: Path, files: dict[str, str], layout: str = "frames-per-robot"
 ) -> tuple[list[Finding], list[Finding]]:
-    """What a build says, and what a plan says."""
+    """Return what a build says, and what a plan says."""
     for name, text in files.items():
         (folder / name).write_text(text)
     fleet = folder / "fleet.yaml"

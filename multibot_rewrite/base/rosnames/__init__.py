@@ -96,8 +96,7 @@ def read_remap(text: str) -> RemapRule | NameFault:
 def _sides(
     text: str, node: str, scheme: str, source: tuple[int, int], form: re.Pattern[str]
 ) -> RemapRule | NameFault:
-    """Return the rule with a left side up to ``source[1]`` and a right side of ``form``, or its
-    fault."""
+    """Return the rule with its left side up to ``source[1]`` and its right side, or its fault."""
     start, end = source
     if not text.startswith(":=", end):
         return _refused(text, end, "':='")

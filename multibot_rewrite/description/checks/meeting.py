@@ -122,8 +122,7 @@ def shared_with(
 
 
 def _same_text(document: Document, naming: Naming, definitions: Definitions) -> Iterator[Problem]:
-    """Yield a problem if all robots get the same text, and something in it is not kept apart by a
-    namespace."""
+    """Yield a problem if all robots get one text with names that no namespace keeps apart."""
     parts = list(active_parts(document.root, definitions))
     for part in parts:
         if part.opens_something and not (naming.topics == NAMESPACE and part.is_apart):

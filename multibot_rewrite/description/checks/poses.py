@@ -143,8 +143,7 @@ def _rolled(origin: _Element | None) -> Quaternion | None:
 
 
 def link_poses(robot: Robot) -> Mapping[str, Pose]:
-    """Return each link's pose in the root of its tree; those below an origin that is no number are
-    left out."""
+    """Return each link's pose in the root of its tree, without those below an invalid origin."""
     found = {it.name: HERE for it in roots(robot)}
     todo = list(found)
     for name in todo:  # grows

@@ -109,8 +109,7 @@ def _three(values: Iterable[float]) -> Vector:
 
 
 def way_out(shape: _Element, start: Vector, along: Vector) -> float:
-    """Return the distance from a point inside a shape to its face; 0 from a point outside. All in
-    its frame."""
+    """Return the distance from a point inside a shape to its face, in its frame; 0 if outside."""
     half = _half(shape)
     if half is None:
         return 0.0

@@ -46,8 +46,7 @@ _ESCAPED = lazy_compile(rb"%|-(?=-|\Z)|(?<=:) ")
 
 
 class KeptText(NamedTuple):
-    """A part as a joined text holds it: its ``text`` has its prefix still, and prefixed names of
-    ``materials``."""
+    """A part inside a joined text: its ``text`` with its prefix, and its prefixed ``materials``."""
 
     name: str
     prefix: str

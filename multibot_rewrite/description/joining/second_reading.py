@@ -44,7 +44,7 @@ class Mounted(NamedTuple):
 
     @property
     def is_without_world(self) -> bool:
-        """Does its link ``world`` give way?"""
+        """Whether its link ``world`` gives way to the base."""
         return bool(self.at) and self.part.root == WORLD
 
 
@@ -151,8 +151,7 @@ def _check_tree(root: _Element) -> None:
 
 
 def taken_out(it: KeptText, file: str, tree: Tree) -> bytes:
-    """Return a part of a joined text as it was before; raises InputError if the text was edited by
-    hand."""
+    """Return a part of a joined text as it was; raises InputError if the text was edited by hand."""
     word = word_of(it.name, it.prefix)
     text = bare(it.text, file, word, it.materials) if it.materials else it.text
     if not it.prefix:

@@ -54,8 +54,7 @@ def _holds(host: etree._Element, condition: str) -> bool:
 
 
 def filled(host: etree._Element, default: str) -> str:
-    """Return the default with its names filled in, ``MODEL`` for that of the model; empty if one is
-    missing."""
+    """Return the default with names filled in (``MODEL``: the model's); empty if one is missing."""
     words = {it: _own(host, it) for it in _SLOT.findall(default)}
     return _SLOT.sub(lambda slot: words[slot[1]], default) if all(words.values()) else ""
 

@@ -86,8 +86,7 @@ def read_alone(source: Source, xacro_args: Mapping[str, str], trust: bool = Fals
 
 
 def read_model(path: str) -> bytes:
-    """Return the bytes of a description that is no xacro, with the models that it includes; raises as
-    ``read_file``."""
+    """Return a plain description's bytes with the models it includes; raises as ``read_file``."""
     data = read_file(path)
     if b"<include" not in data:  # few have one
         return data

@@ -34,8 +34,7 @@ Systems = tuple[tuple[str, str], ...]
 
 
 def set_aside(source: bytes, file: str, tree: Tree) -> tuple[bytes, Systems]:
-    """Return the description with its world systems as comments, and their names and texts. Raises
-    InputError."""
+    """Return the description with world systems as comments, and their texts. Raises InputError."""
     if not any(_may_load(it, tree) for it in {*_TAGS.findall(source)}):
         return source, ()
     document = read_document(source, file)

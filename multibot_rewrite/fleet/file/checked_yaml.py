@@ -28,7 +28,7 @@ SHOWN = 60
 # The key under which a fleet file names the files beside a description.
 BELOW = "related_files"
 # What fleet files of 0.2.0 call otherwise.
-_OLD_KEYS = {"companions": BELOW, "vocabulary": "definitions"}
+_OLD_KEYS = {"companions": BELOW, "vocabulary": "definitions", "stack": "node_sets"}
 
 
 class CheckedYaml(NamedTuple):

@@ -23,7 +23,7 @@ from multibot_rewrite.fleet.file.robot_spec import WORLD_LINK, RobotSpec, is_sim
 from multibot_rewrite.fleet.outputs.zenoh_configuration import Setup, zenoh_of
 
 KINDS = ("params", "rviz", "moveit", "bridge", "behavior_trees", "lua")
-LISTS = ("include", "stack", "nodl", "definitions", "shared_frames", "shared_topics")
+LISTS = ("include", "node_sets", "nodl", "definitions", "shared_frames", "shared_topics")
 POLICY = tuple(Policy.__annotations__)
 # What ``params_style`` says of parameter files for nav2_bringup.
 BRINGUP = "bringup"

@@ -116,8 +116,7 @@ def _functions(group: Sequence[RobotStarts]) -> list[Function]:
 
 
 class _Merging(NamedTuple):
-    """The names of robots of one kind, and the parameters that are known by now: by name the value of
-    each robot."""
+    """Names of robots of one kind, and the parameters known so far: each robot's value by name."""
 
     names: tuple[str, ...]
     parameters: dict[str, tuple[str, ...]]

@@ -81,8 +81,10 @@ Values: TypeAlias = Mapping[tuple[str, str], Mapping[str, Any]]
 # Started by hand, or once for all robots.
 _BY_HAND = (*BY_HAND, "ros_gz_bridge", start_poses.NODE)
 # What helps where a node is not started.
-_DESCRIBE = "describe it in a file of nodes, with `{}:` (docs/stacks.md)"
-_NAME = "if it runs, add it to a `stack:`, name its launch file under `launch:`, or start it here"
+_DESCRIBE = "describe it in a file of nodes, with `{}:` (docs/node-sets.md)"
+_NAME = (
+    "if it runs, add it to a `node_sets:`, name its launch file under `launch:`, or start it here"
+)
 _OTHERWISE = "give it another value behind its file under `launch:`, and build again"
 _NO_NAME = "unnamed"
 _OF_MOVEIT = ("move_group", "servo_node")

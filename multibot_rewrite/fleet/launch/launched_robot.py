@@ -29,7 +29,7 @@ NOT_SPAWNED = "no spawner of the launch files loads it"
 
 
 def launched_robot(
-    stack: Sequence[NodeFacts],
+    node_set: Sequence[NodeFacts],
     orders: Sequence[LaunchOrder],
     known: Mapping[str, NodeFacts],
     words: Sequence[str],
@@ -46,14 +46,13 @@ def launched_robot(
     # What stands for the robot besides its own words: its namespace in a launch.
     values = (value.strip("/") for it in mine for _, value in it.arguments)
     every = {*words, *filter(None, values)}
-    return with_launched(stack, graph, known, every, parameters, release)
+    return with_launched(node_set, graph, known, every, parameters, release)
 
 
 def known_here(
     known: Mapping[str, NodeFacts], orders: Sequence[LaunchOrder], robot: str, release: str
 ) -> dict[str, NodeFacts]:
-    """Return the known nodes, and by their sources those that launch files start; raises as
-    ``launched_robot``."""
+    """Return known nodes and, by source, those of launch files; raises as ``launched_robot``."""
     return with_sources(known, launch_of(orders, robot).nodes if orders else (), orders, release)
 
 
@@ -133,13 +132,13 @@ def _own(orders: Sequence[LaunchOrder], robot: str) -> list[LaunchOrder]:
 
 def nodes_with(
     launched: Launched | None,
-    stack: Sequence[NodeFacts],
+    node_set: Sequence[NodeFacts],
     given: Sequence[Run],
     known: Mapping[str, NodeFacts],
 ) -> RobotNodes:
     """Return the nodes that a robot runs, by its launch files, its other files and its node sets."""
     if launched is None:
-        return nodes_of(stack, given, known)
+        return nodes_of(node_set, given, known)
     # Controllers of which launch files say whether they run -> the condition; empty for always.
     later = {name: it.later for name, it in launched.spawned.items()}
     if later and launched.whole:

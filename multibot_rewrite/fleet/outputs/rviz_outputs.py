@@ -276,7 +276,7 @@ def _as_rviz_robot(plan: FleetPlan) -> RvizRobot:
     names = robot.names._replace(robot=spec.tag)
     topics = robot.topics._replace(robot=spec.namespace)
     known = fleet_topics(plan.fleet.table, plan.fleet.facts, spec.namespace)
-    # The name and the rules of an rviz2 that the robot's stacks start.
+    # The name and the rules of an rviz2 that the robot's node sets start.
     own = next((it for it in plan.fleet.table.runs if it.robot and it.node == RVIZ), None)
     rules = own.rules if own else ()
     if own and not plan.fleet.naming.layout.namespaced:

@@ -100,8 +100,7 @@ def own_world(
 
 
 def world_topics(path: str) -> dict[str, str]:
-    """Return the gz topics of a user's world, or of Gazebo's empty one, each with its type: empty
-    if unknown."""
+    """Return the gz topics of a user's world, or of Gazebo's empty one, with types; empty: unknown."""
     root = read_document(read_file(path), path).root if path else None
     world = root.find("world") if root is not None else None
     if root is None or world is None:

@@ -67,8 +67,7 @@ class NodeNames(NamedTuple):
         return self.full_name(it.node.fact.container) if it and it.way == COMPONENT else ""
 
     def inside(self, node: str) -> list[str]:
-        """Return the other nodes in the process that is started for this one: costmaps, components;
-        raises nothing."""
+        """Return the other nodes in this one's process: costmaps, components; raises nothing."""
         homes = {it.node: it.fact.host or it.fact.container for it in self.nodes.values()}
         found = []
         for name in homes:
@@ -98,7 +97,7 @@ class NodeNames(NamedTuple):
         if node in self.nodes:
             return self.nodes[node]
         where = f"robot {self.robot!r}" if self.robot else "nodes for all robots"
-        hint = "add its node set to stack: in the fleet file"
+        hint = "add its node set to node_sets: in the fleet file"
         raise UsageError(f"{where}: {unknown('node', node, self.nodes)}; {hint}")
 
 

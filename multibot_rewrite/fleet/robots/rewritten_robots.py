@@ -135,8 +135,7 @@ def read_jobs(
     trust: bool,
     release: str,
 ) -> dict[Sources, Jobs]:
-    """Read every description and SRDF once; raises as ``read_job``. ``trust`` lets xacro files do
-    anything."""
+    """Read each description and SRDF once, as ``read_job``; ``trust``: xacro without the sandbox."""
 
     @cache
     def read_in(source: str, urdf: str | None, file: str) -> Reader:

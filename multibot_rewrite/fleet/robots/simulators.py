@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Is a robot simulated? The fleet file says so, or its launch files do; is its hardware, too? Does
-anybody know what moves it?
+"""Whether a robot and its hardware are simulated, by the fleet file or its launch files, and whether
+it is known what moves it.
 
 What a description has for a simulator does nothing on a real robot: plugins start no node, sensors and
 drives need no bridge.
@@ -38,7 +38,7 @@ from multibot_rewrite.fleet.file.simulator_switch import (
 )
 from multibot_rewrite.fleet.robots.member import has_parts_for_simulator, is_for_simulator
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot, robot_with_text
-from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence, stack_nodes
+from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence, nodes_of_sets
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.planning.bridged_topics import DIRECTIONS, bridged_topics
 from multibot_rewrite.producers.evidence.semantics import FIXED
@@ -52,13 +52,13 @@ def other_hardware(robots: Sequence[RewrittenRobot], file: FleetFile) -> Iterato
     """Find hardware that is not of the world that the robots are in, once for each description."""
     told = set()
     for it in robots:
-        wrong = _of_other_world(it, stack_nodes(it.spec, file))
+        wrong = _of_other_world(it, nodes_of_sets(it.spec, file))
         if wrong and it.spec.sources not in told:
             told.add(it.spec.sources)
             yield _other(it, wrong)
 
 
-def _of_other_world(robot: RewrittenRobot, stack: Iterable[NodeFacts]) -> str:
+def _of_other_world(robot: RewrittenRobot, node_set: Iterable[NodeFacts]) -> str:
     """Return the first hardware class of a robot that is not of its world. What a simulator's plugin
     does not load waits for ros2_control_node, and a real robot's controllers wait for it as well."""
     root: etree._Element = robot.member.inventory.document.root
@@ -70,7 +70,7 @@ def _of_other_world(robot: RewrittenRobot, stack: Iterable[NodeFacts]) -> str:
         return next((it for it in classes if not may_be_simulated(it)), "")
     waiting = any(
         MANAGER in (it.kind, it.host) if simulator == REAL else it.kind == MANAGER and not it.plugin
-        for it in stack
+        for it in node_set
     )
     return next(filter(of_simulator, classes), "") if waiting else ""
 

@@ -20,7 +20,7 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.knowledge.conditions import NODL, OPEN_KIND
-from multibot_rewrite.knowledge.node_library import NodeLibrary, stack_of
+from multibot_rewrite.knowledge.node_library import NodeLibrary, nodes_of_set
 from multibot_rewrite.knowledge.nodl.document import Document, Include, Parameter, parse
 from multibot_rewrite.knowledge.records import TRANSPORTS, Endpoint, FrameParameter, NodeFacts
 from multibot_rewrite.system.records import SERVES, SERVICE, SUBSCRIBES, TOPIC
@@ -231,12 +231,16 @@ class NodeKnowledge(NamedTuple):
     own: frozenset[str] = frozenset()
 
 
-def nodes_of(known: NodeKnowledge, stack: str) -> Iterator[NodeFacts]:
+def nodes_of(known: NodeKnowledge, node_set: str) -> Iterator[NodeFacts]:
     """Yield the nodes of a node set, each by its NoDL document if there is one. A name that is no
     node set of the library may be that of a document. Raises UsageError."""
     library = known.library
-    alone = None if stack in library.stacks or stack in library.nodes else _alone(known, stack)
-    yield from [alone] if alone else (declared(known, it) for it in stack_of(library, stack))
+    alone = (
+        None
+        if node_set in library.node_sets or node_set in library.nodes
+        else _alone(known, node_set)
+    )
+    yield from [alone] if alone else (declared(known, it) for it in nodes_of_set(library, node_set))
 
 
 def declared(known: NodeKnowledge, node: NodeFacts) -> NodeFacts:

@@ -81,10 +81,12 @@ def _one_of(given: KeyValue, allowed: Sequence[str]) -> str:
 
 
 def targets(given: KeyValue) -> tuple[str, ...]:
+    """Return the targets that a key lists; raises for an unknown one."""
     return tuple(_one_of(given._replace(value=it), TARGETS) for it in _texts(given))
 
 
 def checked_robots(robots: Sequence[str], where: str) -> tuple[str, ...]:
+    """Return the robots' names; raises UsageError for one that is not valid."""
     try:
         return check_robot_names(robots)
     except UsageError as error:

@@ -38,8 +38,7 @@ PART, SLIPS = 4, 2
 
 
 class Pair(NamedTuple):
-    """The robot of an SRDF's URDF and what that declares; ``misses`` of the SRDF's names are not in
-    it."""
+    """The robot of an SRDF's URDF with what it declares, without the SRDF's names in ``misses``."""
 
     robot: Robot | None
     declared: Declared

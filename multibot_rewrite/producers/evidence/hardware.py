@@ -210,8 +210,7 @@ def claimed(claims: Iterable[Claim], values: Mapping[str, Given]) -> Iterator[Cl
 
 
 def claimed_twice(claims: Iterable[Claim], node: Run) -> Iterator[tuple[Claimed, Place]]:
-    """Yield command interfaces that two parameters of a controller name; the second with the place
-    of the first."""
+    """Yield command interfaces that two parameters of a controller claim, with the first's place."""
     values, first = {**node.values, TYPE: Given(node.program, node.place)}, dict[str, Place]()
     for claim in (it for it in claims if it.kind == COMMAND):
         for made in _names(claim.template, _Made("", claim.condition, None), values):

@@ -43,8 +43,7 @@ _TF, _CLASSIC_TF = "tf_topic", "/tf"
 
 
 class Published(NamedTuple):
-    """A description that a node of the launch publishes, on which topic, and where the launch file says
-    it."""
+    """A description that a launched node publishes, its topic, and the place in the launch file."""
 
     text: str
     topic: str

@@ -79,8 +79,7 @@ class Parameter(NamedTuple):
 
 
 class Looked(NamedTuple):
-    """A frame that a program asks tf for, or writes: ``role`` is "looked up" or the end of the
-    ``variable``."""
+    """A frame that a program asks tf for or writes; ``role``: "looked up", or its end's."""
 
     role: str
     text: str

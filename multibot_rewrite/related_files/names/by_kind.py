@@ -9,7 +9,7 @@ from functools import partial
 from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.naming import FRAME_KINDS, NAMESPACE, NOT_PLAIN, PREFIX, spelled
-from multibot_rewrite.knowledge.stacks import is_apart
+from multibot_rewrite.knowledge.node_sets import is_apart
 from multibot_rewrite.related_files.context import NAMESPACE_SLOT, TAG_SLOT, Context, number_slot
 from multibot_rewrite.related_files.names.rename_map import is_declared, spell
 
@@ -129,7 +129,6 @@ def before_frames(between: str) -> Speller:
 
 def words(context: Context, value: str) -> str:
     """Return a text with names of the description renamed: ``joints(shoulder,elbow)``."""
-
     return _WORD.sub(lambda found: _word(context, found[0]), value)
 
 

@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.naming import NAMESPACE, NOT_PLAIN
 from multibot_rewrite.base.rosnames import bind, check_name_in_code, expand, resolve_bound
+from multibot_rewrite.knowledge.node_sets import built_in, is_apart
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.knowledge.stacks import built_in, is_apart
 from multibot_rewrite.planning.of_runs import asked_alone, parsed, placed, target_of
 from multibot_rewrite.planning.records import Table
 from multibot_rewrite.planning.table import run_of
@@ -41,7 +41,7 @@ class TopicText(NamedTuple):
 def built_in_facts(release: str) -> Facts:
     """Return facts by node, as in the node sets; nodes with their own remap rules first."""
     library = built_in(release)
-    facts = [node for stack in library.stacks.values() for node in stack.nodes]
+    facts = [node for node_set in library.node_sets.values() for node in node_set.nodes]
     facts.sort(key=lambda it: not any(endpoint.remapped for endpoint in it.endpoints))
     found: dict[str, NodeFacts] = {}
     for node in (*facts, *library.nodes.values()):
@@ -112,7 +112,7 @@ def _ruled_text(
     naming = context.topics.naming
     table = run_of(NAMESPACE_SLOT, node, naming, context.nodes)
     bound = bind(table.name, table.namespace, parsed(table.rules))
-    # The robot's name for the topic that the text means for a single robot with the stack's rules.
+    # The robot's name for the topic that the text means for a single robot with the node set's rules.
     meant = expand(texts[1], "/", "")
     remapped = {expand(it.name, "/", ""): it.remapped for it in node.endpoints}.get(meant, "")
     wanted = _spelled(context, kind, expand(remapped or meant, "/", ""), True)
@@ -157,15 +157,15 @@ def robot_topic(names: RelatedNames, value: str, known: Mapping[str, str] = NOTH
 def fleet_topics(table: Table, facts: Iterable[NodeFacts], robot: str) -> dict[str, str]:
     """Return by the topics of a single robot's nodes those of ``robot`` in a fleet's table."""
     ours = {node.name for node in facts if not node.shared}
-    stack = {
+    node_set = {
         node.full_name: node.node
         for node in table.runs
         if node.robot == robot and node.node in ours
     }
     found: dict[str, str] = {}
     for run, end, name in table.ends:
-        if run.robot == robot and run.full_name in stack and end.kind in (TOPIC, ACTION):
-            above, _, node = stack[run.full_name].rpartition("/")
+        if run.robot == robot and run.full_name in node_set and end.kind in (TOPIC, ACTION):
+            above, _, node = node_set[run.full_name].rpartition("/")
             asked = end.remapped or asked_alone(run.fact, end)
             found.setdefault(expand(asked, above, node), name)
     return found

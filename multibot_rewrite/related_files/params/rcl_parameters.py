@@ -75,6 +75,7 @@ def _flat(document: YamlText, body: yaml.Node) -> Iterator[tuple[str, Value]]:
 
 
 def value_of(document: YamlText, node: yaml.Node) -> Value:
+    """Return the value that rcl reads from a YAML node."""
     if isinstance(node, yaml.ScalarNode):
         return _scalar(document, node)
     assert isinstance(node, yaml.SequenceNode)

@@ -16,9 +16,9 @@ import yaml
 from multibot_rewrite.base.conventions import PLACEHOLDER, ROWS, WORLD_NODES
 from multibot_rewrite.base.model import FOR_ROS_1, InputError
 from multibot_rewrite.base.naming import spelled
+from multibot_rewrite.knowledge.node_sets import apart_nodes, is_apart
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import NodeParameters
-from multibot_rewrite.knowledge.stacks import apart_nodes, is_apart
 from multibot_rewrite.related_files.context import NAMESPACE_SLOT, Context, full_name
 from multibot_rewrite.related_files.names.placeholders import without_robot
 from multibot_rewrite.related_files.yaml_text import YamlText, anchors, names_below, pairs, refused

@@ -158,7 +158,7 @@ WRONG_TARGET = declare(
     "parameter-topic-remapped",
     WARNING,
     formats=("params",),
-    options={"stack": "own", "nodes": "nodes.yaml"},
+    options={"node_sets": "own", "nodes": "nodes.yaml"},
 )
 
 MADE_ABSOLUTE = declare(

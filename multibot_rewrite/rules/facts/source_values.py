@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How a value was written before xacro expanded it: can a caller set another one for each robot?"""
+"""How a value was written before xacro expanded it, and whether a caller can set it for each robot."""
 
 from __future__ import annotations
 

@@ -113,8 +113,7 @@ _WORLD = "/world/"
 
 
 class GzTopics(NamedTuple):
-    """The topics of the sensors and plugins of the robot that a bridge is for, and of its world, by
-    name."""
+    """The gz topics of the robot's sensors and plugins, and of its world, by name."""
 
     topics: Mapping[str, GzTopic]
 

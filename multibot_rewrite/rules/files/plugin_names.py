@@ -167,8 +167,7 @@ def _critics(it: Demand) -> Iterator[Finding]:
 
 
 def without_plugin(file: NamedFile) -> Iterator[Finding]:
-    """Report words of a list of plugins without NAME.plugin, sources without parameters,
-    controllers without a type."""
+    """Report plugin names without NAME.plugin, unset sources, and controllers without a type."""
     for it in demands(file, "classes", "blocks"):
         ids, words, whole = it.words[1:], words_of(it.given), it.section.whole
         blocks = it.check == "blocks"
@@ -277,8 +276,7 @@ def _required(file: NamedFile, section: Section, fact: Declared, words: str) -> 
 
 
 def _blocks(section: Section, path: str) -> Iterator[tuple[str, yaml.ScalarNode]]:
-    """Yield each block of a file that a path is in, with a key; for a path of the node itself one
-    without a name."""
+    """Yield each block of a file for a path, with a key; one without a name for the node itself."""
     above = path.rpartition(".")[0]
     if "<" not in path:
         if section.given:

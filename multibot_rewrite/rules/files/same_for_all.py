@@ -177,10 +177,10 @@ def section_of_one_robot(file: NamedFile) -> Iterator[Finding]:
         if section.path != "/".join(it.value.strip("/") for it in section.keys):
             continue  # what is below the robot's own namespace is meant to be there
         tails = ["/".join(tokens[at:]) for at in range(1, len(tokens))]
-        stack = next((tail for tail in tails if tail in context.nodes), "")
-        if stack or (tokens[-1] in ANY and tokens[0] not in ANY):
+        node_set = next((tail for tail in tails if tail in context.nodes), "")
+        if node_set or (tokens[-1] in ANY and tokens[0] not in ANY):
             message = f"section {section.path} is for one robot only: its name includes a namespace"
-            hint = f"write {stack or '/**'}: instead; the build adds each robot's namespace"
+            hint = f"write {node_set or '/**'}: instead; the build adds each robot's namespace"
             yield remark_at(key, message, hint)
         elif tails and not section.wild and not tokens[-1].startswith(tokens[0]):
             what = "has a namespace; it is placed below each robot's namespace"
@@ -193,7 +193,7 @@ def section_of_one_robot(file: NamedFile) -> Iterator[Finding]:
     "section-of-shared-node",
     WARNING,
     formats=(PARAMS,),
-    options={"build": True, "stack": "own", "nodes": "nodes.yaml"},
+    options={"build": True, "node_sets": "own", "nodes": "nodes.yaml"},
 )
 def shared_section(file: NamedFile) -> Iterator[Finding]:
     """Report each node that serves all robots, at its first section."""

@@ -18,9 +18,9 @@ from multibot_rewrite.description.sources.packages import entries, is_for_ros_1
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.sources.trace import alike
 from multibot_rewrite.knowledge.declared import EVERY_NODE, Declared, declared_by, stands_for
+from multibot_rewrite.knowledge.node_sets import load_nodes
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.records import NodeFacts, NodeParameters
-from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.planning.records import Run
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.related_files.moveit.file_kind import find_kind, parameter_above

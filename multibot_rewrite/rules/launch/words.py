@@ -24,7 +24,7 @@ from multibot_rewrite.base.nearest import SLIP, differ_in_numbers, nearest
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.checks.numbers import number
 from multibot_rewrite.description.sources.packages import packages_below, sources_around
-from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.knowledge.node_sets import built_in
 from multibot_rewrite.planning.records import Run
 from multibot_rewrite.planning.way_checks import RULE_WITHOUT_NAME
 from multibot_rewrite.producers.launch.handed_on import document_of

@@ -160,8 +160,7 @@ def _of_another(name: str, section: Values, definitions: Definitions) -> str:
 def _counterparts(
     library: str, of_ros_1: bool, definitions: Definitions
 ) -> tuple[tuple[str, bool], ...]:
-    """Return those of the same name or subject: in the other ROS, in Gazebo for one of Classic, and
-    the reverse."""
+    """Return plugins of the same name or subject: in the other ROS, or the other Gazebo."""
     own = _topic_of_library(library)
     of_gz = library.startswith(GZ)
     start = GAZEBO_ROS if of_gz else GZ

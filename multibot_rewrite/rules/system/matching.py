@@ -13,7 +13,7 @@ from multibot_rewrite.base.conventions import EVERYBODYS, STAMP_SWITCHES, switch
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Setting
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import shorten
-from multibot_rewrite.knowledge.stacks import older_node
+from multibot_rewrite.knowledge.node_sets import older_node
 from multibot_rewrite.rules.declaration import see, system_rule, where
 from multibot_rewrite.rules.system.causes import Cause, caused, plugin_of, to_set
 from multibot_rewrite.system import words

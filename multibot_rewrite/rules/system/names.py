@@ -84,8 +84,7 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
 
 
 def _of_robots(seen: Index, end: End) -> Sequence[str]:
-    """Return the robots' topics of a name that a node outside of them reads: sensor data, odometry,
-    a map."""
+    """Return the robots' topics that a node outside of them reads: sensors, odometry, a map."""
     kind = words.kind_of_data(end.name, end.type)
     outside = not (seen.robot(end.node) or seen.robot(end.name) or seen.is_tool(end.node))
     if not (outside and kind) or is_from_outside(end.name) or words.moves(end.name, end.type):

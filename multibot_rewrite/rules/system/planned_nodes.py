@@ -116,7 +116,7 @@ def unplanned_node(plan: Index, seen: Index) -> Iterator[Finding]:
             foreign = [it for it in names if it not in shared and plan.robot(it) != robot]
             uses = f"; it uses {shorten(foreign)}, without the name of {robot}" if foreign else ""
             message = f"is a node of {robot}, but not in the plan{uses}"
-            cause = "add it to the plan: with --stack or --nodes, or by hand"
+            cause = "add it to the plan: with --node-set or --nodes, or by hand"
         else:
             message = "is of no robot, and not in shared_nodes of the plan"
             cause = "add it there if it serves all robots; otherwise give it its robot's namespace"

@@ -18,7 +18,8 @@ from multibot_rewrite.proposal.seeing import Wanted
 
 @pytest.fixture
 def asked(monkeypatch: pytest.MonkeyPatch) -> Callable[..., list[tuple[str, str]]]:
-    """Sets the answers; what was asked, with its default. An empty answer takes the default."""
+    """Return a function that sets the answers and returns what was asked, with its default. An
+    empty answer takes the default."""
 
     def answering(*answers: str) -> list[tuple[str, str]]:
         left, questions = [*answers], list[tuple[str, str]]()

@@ -26,7 +26,7 @@ def text(links: str, moving: str = "", name: str = "r", tag: str = "robot") -> s
 
 @pytest.fixture
 def made(tmp_path: Path) -> Made:
-    """A description in a file: its links and moving joints are letters."""
+    """Return a description in a file: its links and moving joints are letters."""
 
     def looked(
         path: str, links: str = "ab", moving: str = "j", name: str = "", **more: object

@@ -26,7 +26,7 @@ GZ = (
 
 @pytest.fixture
 def tetra(tmp_path: Path) -> Path:
-    """A bare base that can be read, and the simulated robot, which cannot."""
+    """Return a bare base that can be read, and the simulated robot, which cannot."""
     (tmp_path / "package.xml").write_text(PACKAGE.format("acme_tetra"))
     (tmp_path / "base.urdf").write_text(robot("tetra", "left", "right"))
     (tmp_path / "tetra_gz.xacro").write_text(GZ)

@@ -21,8 +21,10 @@ from multibot_rewrite.proposal.seeing import Wanted
 OF_NAV2 = ("nav2", "nav2_slam", "navigation", "localization", "slam_toolbox")
 
 
-def member(*stacks: str, radius: float = 0.5, names: tuple[str, ...] = (), **looked: Any) -> Member:
-    beside = RelatedFiles({}, "", dict.fromkeys(stacks, ""), {})
+def member(
+    *node_sets: str, radius: float = 0.5, names: tuple[str, ...] = (), **looked: Any
+) -> Member:
+    beside = RelatedFiles({}, "", dict.fromkeys(node_sets, ""), {})
     return Member(Looked("/p/a.urdf", **looked), beside, names, radius)
 
 

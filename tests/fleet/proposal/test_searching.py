@@ -109,7 +109,7 @@ def test_a_folder_with_too_many_files_is_refused(
 
 
 def _refusal(path: str) -> str:
-    """What a file is refused with that is named alone; empty for one that is taken."""
+    """Return what a file is refused with that is named alone; empty for one that is taken."""
     try:
         taken = search([path]).descriptions
     except InputError as error:

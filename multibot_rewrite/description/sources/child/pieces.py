@@ -50,6 +50,7 @@ class PiecedText(str):
     pieces: tuple[Piece, ...]
 
     def __new__(cls, text: str, pieces: Iterable[Piece]) -> PiecedText:
+        """Return the text with its pieces."""
         self = super().__new__(cls, text)
         self.pieces = tuple(pieces)
         return self

@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""
-
-What is left computes, asks for memory, and reads and writes what is open. Where Landlock says which
-files may be opened, so do the calls that open files and folders. Sources: Linux,
-Documentation/userspace-api/seccomp_filter.rst, arch/x86/entry/syscalls/syscall_64.tbl,
-include/uapi/asm-generic/unistd.h."""
+"""A filter of system calls (seccomp) that leaves those which compute, ask for memory, and read and
+write open files. Where Landlock says which files may be opened, calls that open files and folders are
+left, too. Sources: Linux, Documentation/userspace-api/seccomp_filter.rst,
+arch/x86/entry/syscalls/syscall_64.tbl, include/uapi/asm-generic/unistd.h."""
 
 from __future__ import annotations
 

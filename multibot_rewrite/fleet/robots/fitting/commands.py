@@ -34,8 +34,7 @@ from multibot_rewrite.system.words import PLAIN
 
 
 def driving(nodes: Sequence[NodeFacts], own: Collection[str]) -> Sequence[NodeFacts]:
-    """Return the nodes; commands of ``own`` ones that nothing hears go to the one controller that
-    drives."""
+    """Return the nodes with unheard commands of ``own`` ones sent to the one controller that drives."""
     drives = topics_of(controllers(nodes), SUBSCRIBES, COMMANDS)
     if len(drives) != 1:
         return nodes
@@ -174,7 +173,7 @@ def _switch(choice: _Choice, wanted: str) -> tuple[tuple[str, bool]] | None:
     return None
 
 
-# The parameters of an input, and what the stack calls the one of a planner.
+# The parameters of an input, and what the node set calls the one of a planner.
 _INPUT, _OF_PLANNER = "topics.{}.", "navigation"
 # What the output of a mux is called where a drive obeys it.
 _DRIVE = "cmd_vel"
@@ -207,7 +206,7 @@ def through_a_mux(
     others = [it for it in nodes if it.name != node.name]
     obeyed = {topic_of(it, end) for it in others for end in _commands(it, SUBSCRIBES)}
     node, apart = _with_own_inputs(node, outputs | obeyed)
-    # A file has the ids of the inputs, or the stack.
+    # A file has the ids of the inputs, or the node set.
     ids = ((_id(it.parameter), topic_of(node, it)) for it in _commands(node, SUBSCRIBES))
     inputs = {id_ if id_ != "*" else _role(topic, usual): topic for id_, topic in ids}
     heard = {*inputs.values(), *topics_of(others, SUBSCRIBES)}
@@ -249,8 +248,7 @@ def _id(parameter: str) -> str:
 
 
 def _with_own_inputs(node: NodeFacts, taken: Collection[str]) -> tuple[NodeFacts, Sequence[str]]:
-    """Return the twist_mux, its inputs that a file puts on topics that are ``taken`` on other ones, and
-    these."""
+    """Return the twist_mux with its inputs moved off topics that are ``taken``, and the moved ones."""
     apart = {
         it: f"{topic}{_APART}"
         for it in _commands(node, SUBSCRIBES)
@@ -274,8 +272,7 @@ def _name_of_topic(role: str) -> str:
 def _with_inputs(
     node: NodeFacts, roles: Iterable[str], usual: Usual, of_package: NodeFacts
 ) -> NodeFacts:
-    """Return the twist_mux with inputs that the node set has, in addition to those of the user's
-    file."""
+    """Return the twist_mux with the inputs of its node set besides those of the user's file."""
     (like,) = _commands(of_package, SUBSCRIBES)
     for role in roles:
         values = [it for it in usual.items() if it[0].startswith(_INPUT.format(role))]

@@ -247,7 +247,7 @@ def _anonymous(it: Any, context: LaunchContext) -> str:
 
 
 class AllSubstitution(Substitution):
-    """Are all of them true?"""
+    """Whether all of them are true."""
 
     def __init__(self, *args: Text) -> None:
         self.args = args
@@ -260,7 +260,7 @@ class AllSubstitution(Substitution):
 
 
 class AnySubstitution(AllSubstitution):
-    """Is one of them true?"""
+    """Whether one of them is true."""
 
     def perform(self, context: LaunchContext) -> str:
         return _is(any(self.truths(context)))

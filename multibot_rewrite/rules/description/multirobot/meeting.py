@@ -50,8 +50,7 @@ def _of_code(code: str, subject: Subject) -> Iterator[Problem]:
 
 
 def _left(known: Rule, naming: Naming = APART) -> Rule:
-    """Return a rule of running systems for what a rewrite would leave as it is; the examples are
-    descriptions."""
+    """Return a rule of running systems for names that a rewrite leaves; its examples are URDFs."""
     options = {"robots": TWO, "naming": naming}
     own = known._replace(examples=f"{known.code}-urdf", formats=(URDF,), options=options)
     return own._replace(level=WARNING, check=partial(_of_code, known.code))

@@ -43,8 +43,7 @@ _OPTICAL = lazy_compile(r"(?:^|[_/-])optical(?:[_/-]?(?:frame|link|joint))?(?:[_
 
 @rule("MB625", "optical-frame-not-rotated", WARNING)
 def optical_frame_not_rotated(subject: Subject) -> Iterator[Problem]:
-    """Report links with optical at the end of their names that are not rotated, nor is what they
-    are fixed to."""
+    """Report optical links that are not rotated, and whose parents are not rotated either."""
     for link in subject.robot.links:
         if not _OPTICAL.search(link.name.lower()):
             continue

@@ -144,8 +144,7 @@ def _joints_of(path: str, seen: set[str]) -> Iterator[tuple[_Element, str]]:
 
 @memoized
 def _claimed(subject: Subject) -> list[tuple[_Element, tuple[Interface, ...]]]:
-    """Return the exported and claimed interfaces of each controller file, with the element that
-    names it."""
+    """Return each controller file's exported and claimed interfaces, with the naming element."""
     systems = subject.elements.tops("ros2_control")
     files = _files(subject, systems[0]) if systems else ()
     found = ((element, _interfaces(subject, path, is_sure)) for element, path, is_sure in files)
@@ -209,8 +208,8 @@ def _resolved_path(subject: Subject, text: str) -> str:
 def _interfaces(subject: Subject, path: str, is_sure: bool) -> tuple[Interface, ...]:
     """Return the interfaces exported, and claimed by a file's controllers; none of another robot."""
     # Most descriptions have no such file, and a lint of them loads nothing of this.
+    from multibot_rewrite.knowledge.node_sets import load_nodes
     from multibot_rewrite.knowledge.parameters import load_known_nodes
-    from multibot_rewrite.knowledge.stacks import load_nodes
     from multibot_rewrite.producers.evidence.hardware import control_system, exported
     from multibot_rewrite.producers.evidence.parameter_files import given_nodes
     from multibot_rewrite.related_files.yaml_text import read_yaml

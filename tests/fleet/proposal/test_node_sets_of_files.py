@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which stacks files say, and which of several files goes with a description; by hand."""
+"""Which node sets files say, and which of several files goes with a description; by hand."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ STATE = ("robot_state", "joint_state_publisher sends the joints until a driver d
         ("gz", False, True, []), ("none", False, False, [STATE]),
     ],
 )  # fmt: skip
-def test_the_stacks_that_a_description_says(
+def test_the_node_sets_that_a_description_says(
     simulator: str, control: bool, manager: bool, found: list[tuple[str, str]]
 ) -> None:
     robot = Looked("r.urdf", simulator=simulator, control=control)
     nodes = {"controller_manager": "p/c.yaml"} if manager else {}
-    assert list(related_files._stacks(robot, nodes, "")) == found
+    assert list(related_files._node_sets(robot, nodes, "")) == found
     moveit = ("moveit", "there is r.srdf")
-    assert list(related_files._stacks(robot, nodes, "p/r.srdf")) == [*found, moveit]
+    assert list(related_files._node_sets(robot, nodes, "p/r.srdf")) == [*found, moveit]
 
 
 def test_the_nearest_file_is_the_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

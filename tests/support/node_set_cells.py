@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every stack x release x layout x simulator, with a description and no further file.
+"""Every node set x release x layout x simulator, with a description and no further file.
 
-python tests/support/stack_cells.py [WORD ...]     what is wrong; only cells with these words
+python tests/support/node_set_cells.py [WORD ...]     what is wrong; only cells with these words
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from multibot_rewrite.fleet.file.robot_choice import Choice
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 
 ROOT = Path(__file__).parents[2]
-STACKS = tuple(yaml.safe_load(own_text(knowledge.__file__, "stacks.yaml"))["stacks"])
+NODE_SETS = tuple(yaml.safe_load(own_text(knowledge.__file__, "node_sets.yaml"))["node_sets"])
 LAYOUTS = ("postfix", "tf-per-robot", "both", "frames-per-robot", "frame-prefix")
 SIMULATORS = ("gazebo", "none")
 # A drive of gz-sim; one of Gazebo Classic, whose root is base_footprint; an SDF whose drive has its
@@ -40,17 +40,17 @@ ROBOTS = {
     "arm": "examples/two_arms_moveit/arm.urdf",
 }
 SRDF = ROOT / "examples/two_arms_moveit/arm.srdf"
-# Stacks of controllers whose manager something else makes.
+# Node sets of controllers whose manager something else makes.
 OF_MANAGERS = ("controllers", "gz_ros2_control", "gazebo_ros2_control")
 OF_ARMS = ("moveit", "rviz_moveit", "ros2_control", "robot_state", "static_tf", *OF_MANAGERS)
 NOTHING = "no node"
-# Stacks of which each says alone where the robot is on the map: two contradict each other.
+# Node sets of which each says alone where the robot is on the map: two contradict each other.
 ON_MAP = {
     **dict.fromkeys(("localization", "nav2", "nav2_composed"), "amcl"),
     **dict.fromkeys(("nav2_slam", "nav2_slam_composed", "slam_toolbox"), "slam_toolbox"),
     **{it: it for it in ("cartographer", "rtabmap", "robot_localization_gps")},
 }
-# Two stacks -> the codes that their user is told, since the stacks contradict each other.
+# Two node sets -> the codes that their user is told, since the node sets contradict each other.
 CONTRADICTING = {
     # One joystick has the drive's own topic and that of the mux.
     frozenset({"teleop", "teleop_direct"}): {"MG102"}
@@ -65,7 +65,7 @@ OF_DESCRIPTIONS = {
 }
 
 
-# A description and a stack -> the codes of warnings about what the description lacks.
+# A description and a node set -> the codes of warnings about what the description lacks.
 LACKING = {
     # Its one sensor is a colour camera: no scanner, no depth.
     ("sdf", "rtabmap"): {"MF861"},
@@ -76,10 +76,10 @@ WITHOUT_CAMERA = {("gz", "image_proc"): {"MF861"}}
 
 
 class Cell(NamedTuple):
-    """Two robots of a description with one stack."""
+    """Two robots of a description with one node set."""
 
     robot: str
-    stack: str
+    node_set: str
     release: str
     layout: str
     simulator: str
@@ -92,28 +92,28 @@ class Cell(NamedTuple):
         robots = ", ".join(f"{{name: robot{at + 1}{it}}}" for at, it in enumerate(apart))
         return (
             f"distro: {self.release}\nlayout: {self.layout}\nsimulator: {self.simulator}\n"
-            f"stack: [{self.stack}]\ndescription: {ROOT / ROBOTS[self.robot]}\n{srdf}"
+            f"node_sets: [{self.node_set}]\ndescription: {ROOT / ROBOTS[self.robot]}\n{srdf}"
             f"robots: [{robots}]\n"
         )
 
 
 def refused(cell: Cell) -> set[str]:
-    """The codes of the errors of a cell, by what its input lacks or contradicts."""
+    """Return the codes of the errors of a cell, by what its input lacks or contradicts."""
     hardware = cell.robot in ("controlled", "arm")
     wrong = set()
-    if cell.stack == "moveit" and cell.robot != "arm":
+    if cell.node_set == "moveit" and cell.robot != "arm":
         wrong.add("MF857")  # no SRDF
-    if cell.stack == "ros2_control" and not hardware:
+    if cell.node_set == "ros2_control" and not hardware:
         wrong.add("MF857")  # no <ros2_control>
-    controlled = cell.stack in ("ros2_control", *OF_MANAGERS)
+    controlled = cell.node_set in ("ros2_control", *OF_MANAGERS)
     if cell.robot == "controlled" and cell.simulator == "none" and controlled:
         wrong.add("MF843")  # the hardware of a simulator on a real robot
-    if cell.stack in OF_MANAGERS and cell.robot != "controlled":
+    if cell.node_set in OF_MANAGERS and cell.robot != "controlled":
         wrong.add("MG723")  # nothing starts a controller manager
-    if cell.stack == "no_robot_state_publisher" and cell.simulator == "none":
+    if cell.node_set == "no_robot_state_publisher" and cell.simulator == "none":
         wrong.add(NOTHING)  # its only word is that a node is left out: no node is left
     # move_group reads the links as the URDF has them, and this layout renames them at run time only.
-    if cell.layout == "frame-prefix" and (cell.stack == "moveit" or cell.robot == "arm"):
+    if cell.layout == "frame-prefix" and (cell.node_set == "moveit" or cell.robot == "arm"):
         wrong.add("MF837")
     return wrong
 
@@ -127,34 +127,34 @@ def shares_rules(release: str, layout: str) -> bool:
 
 
 def pairs() -> Iterator[tuple[str, str]]:
-    """Yield every two stacks of which one does not leave out what the other one is."""
-    for one, other in combinations(STACKS, 2):
+    """Yield every two node sets of which one does not leave out what the other one is."""
+    for one, other in combinations(NODE_SETS, 2):
         if {one, other} != {"robot_state", "no_robot_state_publisher"}:
             yield one, other
 
 
 def pair_faults(one: str, other: str, release: str, folder: Path) -> list[str]:
-    """Return what is wrong with two stacks of one robot between ends that the build adds."""
+    """Return what is wrong with two node sets of one robot between ends that the build adds."""
     cell = Cell("gz", f"{one}, {other}", release, "tf-per-robot", "gazebo")
     known = CONTRADICTING.get(frozenset({one, other}), set())
     places = {ON_MAP.get(one), ON_MAP.get(other)}
     if None not in places and len(places) == 2:
         known = {"MG323", "MG408"}
-    for stack in (one, other):
-        known = known | refused(cell._replace(stack=stack))
-        known = known | WITHOUT_CAMERA.get((cell.robot, stack), set())
+    for node_set in (one, other):
+        known = known | refused(cell._replace(node_set=node_set))
+        known = known | WITHOUT_CAMERA.get((cell.robot, node_set), set())
     return [str(it) for it in findings(cell, folder) if it.code not in known]
 
 
 def lives(cell: Cell) -> bool:
     """Is there such a robot? Gazebo Classic ends with Humble, and an arm does not drive."""
-    return {"classic": has_release("humble", cell.release), "arm": cell.stack in OF_ARMS}.get(
+    return {"classic": has_release("humble", cell.release), "arm": cell.node_set in OF_ARMS}.get(
         cell.robot, True
     )
 
 
 def cells(robot: str) -> Iterator[Cell]:
-    every = product((robot,), STACKS, RELEASES, LAYOUTS, SIMULATORS)
+    every = product((robot,), NODE_SETS, RELEASES, LAYOUTS, SIMULATORS)
     return (it for it in (Cell(*words) for words in every) if lives(it))
 
 
@@ -166,7 +166,7 @@ def is_driven(cell: Cell) -> bool:
 
 
 def findings(cell: Cell, folder: Path) -> tuple[Finding, ...]:
-    """What the build of a cell says that is no note."""
+    """Return what the build of a cell says that is no note."""
     file = folder / "fleet.yaml"
     file.write_text(cell.fleet)
     return of_file(file)
@@ -192,13 +192,13 @@ def built(file: Path, out: Path) -> tuple[tuple[Finding, ...], tuple[OutputFile,
 
 
 def faults(cell: Cell, folder: Path) -> list[str]:
-    """What is wrong with a cell: an error that its input does not have, one that is missing, and
-    warnings between what only the build adds."""
+    """Return what is wrong with a cell: an error that its input does not have, one that is
+    missing, and warnings between what only the build adds."""
     return wrong_in(cell, findings(cell, folder))
 
 
 def wrong_in(cell: Cell, found: Sequence[Finding]) -> list[str]:
-    """The same, of what its build has ``found``."""
+    """Return the same, of what its build has ``found``."""
     errors = {it.code for it in found if it.level == ERROR}
     wanted = refused(cell)
     # What follows from hardware of another world may be said of its spawners as well.

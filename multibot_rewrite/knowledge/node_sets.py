@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Known nodes and node sets of a release, from ``nodes/*.yaml``, ``stacks.yaml`` and files of
+"""Known nodes and node sets of a release, from ``nodes/*.yaml``, ``node_sets.yaml`` and files of
 users: what a release lacks is left out, what came late is conditional."""
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from multibot_rewrite.base.conventions import SENT_FRAMES
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import RELEASES, has_release, releases_with, since_version
 from multibot_rewrite.knowledge.conditions import VERSION, joined, of_release
-from multibot_rewrite.knowledge.node_library import NodeLibrary, extend, stack_of
+from multibot_rewrite.knowledge.node_library import NodeLibrary, extend, nodes_of_set
 from multibot_rewrite.knowledge.packages import older
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 
 HERE = os.path.dirname(__file__)
 # What the others refer to is read first.
-PARTS, STACKS = "parts.yaml", "stacks.yaml"
+PARTS, NODE_SETS = "parts.yaml", "node_sets.yaml"
 
 
 def load_nodes(release: str) -> dict[str, NodeFacts]:
@@ -28,10 +28,10 @@ def load_nodes(release: str) -> dict[str, NodeFacts]:
 
 
 @lru_cache
-def load_stack(name: str, release: str) -> tuple[NodeFacts, ...]:
+def load_node_set(name: str, release: str) -> tuple[NodeFacts, ...]:
     """Return the nodes of a built-in node set, or a built-in node. Raises UsageError for an unknown
     name, and for a node set that the release lacks."""
-    return stack_of(built_in(release), name)
+    return nodes_of_set(built_in(release), name)
 
 
 @lru_cache
@@ -40,15 +40,15 @@ def built_in(release: str) -> NodeLibrary:
     return in_release(every_release(), release)
 
 
-def user_stack(path: str, release: str) -> NodeLibrary:
-    """Return the built-in nodes and node sets and those of a file; ``stack_of`` selects one. A
+def user_library(path: str, release: str) -> NodeLibrary:
+    """Return the built-in nodes and node sets and those of a file; ``nodes_of_set`` selects one. A
     built-in node that the file changes is changed in the file's own node sets only. Raises
     UsageError with file and line for errors in the file."""
     return _extended_in_release(_text_of(path), path, release)
 
 
 def with_file(path: str) -> NodeLibrary:
-    """Return the built-in library of all releases with that of a file; raises as ``user_stack``."""
+    """Return the built-in library of all releases with that of a file; raises as ``user_library``."""
     return _extended(_text_of(path), path)
 
 
@@ -97,7 +97,7 @@ def every_release() -> NodeLibrary:
     library = NodeLibrary({}, {}, {}, sent=frozenset(SENT_FRAMES))
     folder = os.path.join(HERE, "nodes")
     names = sorted(os.listdir(folder), key=lambda it: (it != PARTS, it))
-    for path in (*(os.path.join(folder, it) for it in names), os.path.join(HERE, STACKS)):
+    for path in (*(os.path.join(folder, it) for it in names), os.path.join(HERE, NODE_SETS)):
         library = extend(library, read_text(path), os.path.basename(path), own=True)
     return library
 
@@ -114,38 +114,38 @@ def older_node(name: str, release: str, type_: str = "") -> str:
 def in_release(library: NodeLibrary, release: str) -> NodeLibrary:
     """Return what of ``library`` is in ``release``. What came into the release with a later version
     of its package has that as its condition, so an installed older version lacks nothing."""
-    # Nodes and stacks that the release lacks, and the releases that have them.
+    # Nodes and node sets that the release lacks, and the releases that have them.
     elsewhere = {
         name: ", ".join(releases_with(node.releases))
         for name, node in library.nodes.items()
-        if name not in library.stacks and not has_release(node.releases, release)
+        if name not in library.node_sets and not has_release(node.releases, release)
     }
-    stacks = {}
-    for name, stack in library.stacks.items():
-        if _has_stack(library, name, release):
-            include = (it for it in stack.include if _has_stack(library, it, release))
-            nodes = tuple(_nodes(stack.nodes, release))
-            stacks[name] = stack._replace(include=tuple(include), nodes=nodes)
+    node_sets = {}
+    for name, node_set in library.node_sets.items():
+        if _has_set(library, name, release):
+            include = (it for it in node_set.include if _has_set(library, it, release))
+            nodes = tuple(_nodes(node_set.nodes, release))
+            node_sets[name] = node_set._replace(include=tuple(include), nodes=nodes)
         else:
-            elsewhere[name] = ", ".join(it for it in RELEASES if _has_stack(library, name, it))
+            elsewhere[name] = ", ".join(it for it in RELEASES if _has_set(library, name, it))
     return library._replace(
         parts={name: _endpoints(it, "", release) for name, it in library.parts.items()},
         nodes={it.name: it for it in _nodes(library.nodes.values(), release)},
-        stacks=stacks,
+        node_sets=node_sets,
         release=release,
         elsewhere=elsewhere,
     )
 
 
-def _has_stack(library: NodeLibrary, name: str, release: str) -> bool:
+def _has_set(library: NodeLibrary, name: str, release: str) -> bool:
     """Return whether a node of the node set is in the release. A node set may have none in any."""
-    stack = library.stacks[name]
-    if not has_release(stack.releases, release):
+    node_set = library.node_sets[name]
+    if not has_release(node_set.releases, release):
         return False
-    if not stack.nodes and not stack.include:
+    if not node_set.nodes and not node_set.include:
         return True
-    nodes = any(has_release(it.releases, release) for it in stack.nodes)
-    return nodes or any(_has_stack(library, it, release) for it in stack.include)
+    nodes = any(has_release(it.releases, release) for it in node_set.nodes)
+    return nodes or any(_has_set(library, it, release) for it in node_set.include)
 
 
 def _nodes(nodes: Iterable[NodeFacts], release: str) -> Iterator[NodeFacts]:

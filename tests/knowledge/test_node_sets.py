@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Known nodes and stacks: the data is whole, and a user's own file is read or refused in words."""
+"""Known nodes and node sets: the data is whole, and a user's own file is read or refused in words."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER
-from multibot_rewrite.knowledge.node_library import NodeLibrary, extend, stack_of
+from multibot_rewrite.knowledge.node_library import NodeLibrary, extend, nodes_of_set
+from multibot_rewrite.knowledge.node_sets import built_in, load_node_set, load_nodes, user_library
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
-from multibot_rewrite.knowledge.stacks import built_in, load_nodes, load_stack, user_stack
 from multibot_rewrite.system.records import SERVICE, TOPIC
 
 WANTED = {
@@ -43,24 +43,24 @@ WANTED = {
 
 
 def endpoint(node: NodeFacts, role: str, name: str) -> Endpoint:
-    """The one endpoint of a role and name."""
+    """Return the one endpoint of a role and name."""
     (found,) = [e for e in node.endpoints if (e.role, e.name) == (role, name)]
     return found
 
 
 def extra(text: str) -> NodeLibrary:
-    """The built-in library with a user's text."""
+    """Return the built-in library with a user's text."""
     return extend(built_in(NEWEST_LTS), text, "mine.yaml")
 
 
 @pytest.mark.parametrize("name", WANTED)
-def test_a_stack_has_its_nodes(name: str) -> None:
-    assert {node.name for node in load_stack(name, NEWEST_LTS)} >= WANTED[name]
+def test_a_node_set_has_its_nodes(name: str) -> None:
+    assert {node.name for node in load_node_set(name, NEWEST_LTS)} >= WANTED[name]
 
 
-@pytest.mark.parametrize("name", sorted(built_in(NEWEST_LTS).stacks))
-def test_a_stack_names_each_node_once(name: str) -> None:
-    names = [node.name for node in load_stack(name, NEWEST_LTS)]
+@pytest.mark.parametrize("name", sorted(built_in(NEWEST_LTS).node_sets))
+def test_a_node_set_names_each_node_once(name: str) -> None:
+    names = [node.name for node in load_node_set(name, NEWEST_LTS)]
     assert names or name == NO_STATE_PUBLISHER
     assert sorted(set(names)) == sorted(names)
 
@@ -69,7 +69,7 @@ def test_shared_nodes_are_those_that_serve_all() -> None:
     shared = {name for name, node in load_nodes(NEWEST_LTS).items() if node.shared}
     bridges = {"domain_bridge", "foxglove_bridge", "ros_gz_bridge", "rosbridge_websocket"}
     assert shared == {*bridges, "rviz2", "map_merge", "map_merging", "Ros2Supervisor"}
-    assert [node.shared for node in load_stack("rviz_nav2", NEWEST_LTS)] == [False]
+    assert [node.shared for node in load_node_set("rviz_nav2", NEWEST_LTS)] == [False]
 
 
 def test_a_host_is_a_node() -> None:
@@ -85,8 +85,8 @@ def test_a_name_made_at_run_time_is_out_of_reach(name: str) -> None:
     assert [e.name for e in made if not e.fixed] == []
 
 
-def test_a_stack_says_what_is_made_at_run_time() -> None:
-    nodes = {node.name: node for node in load_stack("nav2", NEWEST_LTS)}
+def test_a_node_set_says_what_is_made_at_run_time() -> None:
+    nodes = {node.name: node for node in load_node_set("nav2", NEWEST_LTS)}
     scan = endpoint(nodes["global_costmap/global_costmap"], "subscribes", "/scan")
     assert (scan.fixed, scan.also) == ("", ("sensor_msgs/msg/PointCloud2",))
     manager = nodes["lifecycle_manager_localization"]
@@ -101,7 +101,7 @@ def test_only_a_process_wide_rule_reaches_the_tf_of_a_costmap() -> None:
 
 
 def test_what_launch_files_remap_is_kept_in_mind() -> None:
-    nodes = {node.name: node for node in load_stack("nav2", NEWEST_LTS)}
+    nodes = {node.name: node for node in load_node_set("nav2", NEWEST_LTS)}
     leads = {
         name: [e.remapped for e in node.endpoints if e.name == "cmd_vel"]
         for name, node in nodes.items()
@@ -118,10 +118,12 @@ def leads(node: NodeFacts, asked: Endpoint) -> str:
     return expand(asked.remapped or asked.name, f"/{above}", name)
 
 
-def met(stack: str, asking: str, giving: str) -> tuple[set[str], set[str]]:
+def met(node_set: str, asking: str, giving: str) -> tuple[set[str], set[str]]:
     """Where all endpoints of two roles lead, those of one role and those of the other."""
     found = [
-        (e.role, leads(node, e)) for node in load_stack(stack, NEWEST_LTS) for e in node.endpoints
+        (e.role, leads(node, e))
+        for node in load_node_set(node_set, NEWEST_LTS)
+        for e in node.endpoints
     ]
     one, other = ({name for role, name in found if role == wanted} for wanted in (asking, giving))
     return {name for name in one if "<" not in name}, other
@@ -158,16 +160,20 @@ def test_frames_are_reported_with_their_defaults() -> None:
 
 
 def test_the_example_of_the_page_is_read() -> None:
-    text = (ROOT / "docs" / "stacks.md").read_text().partition("```yaml\n")[2].partition("```")[0]
-    nodes = {node.name: node for node in stack_of(extra(text), "cell")}
+    text = (
+        (ROOT / "docs" / "node-sets.md").read_text().partition("```yaml\n")[2].partition("```")[0]
+    )
+    nodes = {node.name: node for node in nodes_of_set(extra(text), "cell")}
     assert {"move_group", "gripper_driver", "table_to_base", "twist_mux"} <= nodes.keys()
     assert endpoint(nodes["gripper_driver"], "publishes", "/gripper/image").transport
     assert endpoint(nodes["twist_mux"], "subscribes", "pad_vel").fixed == ""
 
 
-def test_unknown_stack_is_reported_with_the_nearest() -> None:
-    with pytest.raises(UsageError, match=r"stack 'nav' is not known; did you mean 'nav2'\? known:"):
-        load_stack("nav", NEWEST_LTS)
+def test_unknown_node_set_is_reported_with_the_nearest() -> None:
+    with pytest.raises(
+        UsageError, match=r"node set 'nav' is not known; did you mean 'nav2'\? known:"
+    ):
+        load_node_set("nav", NEWEST_LTS)
 
 
 def test_a_type_may_be_left_out() -> None:
@@ -212,25 +218,25 @@ def test_an_empty_file_adds_nothing() -> None:
             "nodes: {a: {publishes: {b: std_srvs/srv/Empty}}}",
             "publishes 'b': std_srvs/srv/Empty is the type of a service",
         ),
-        ("stacks: {a: {nodes: [amlc]}}", "node 'amlc' is not known; did you mean 'amcl'?"),
-        ("stacks: {a: {nodes: [{as: b}]}}", "the entry has no node"),
-        ("stacks: {a: {nodes: [{node: amcl, as: a-b}]}}", "node name 'a-b': "),
+        ("node_sets: {a: {nodes: [amlc]}}", "node 'amlc' is not known; did you mean 'amcl'?"),
+        ("node_sets: {a: {nodes: [{as: b}]}}", "the entry has no node"),
+        ("node_sets: {a: {nodes: [{node: amcl, as: a-b}]}}", "node name 'a-b': "),
         (
-            "stacks: {a: {nodes: [{node: amcl, names: {scam: x}}]}}",
+            "node_sets: {a: {nodes: [{node: amcl, names: {scam: x}}]}}",
             "name 'scam' is not known; did you mean 'scan'?",
         ),
         (
-            "stacks: {a: {nodes: [{node: amcl, remaps: {scam: x}}]}}",
+            "node_sets: {a: {nodes: [{node: amcl, remaps: {scam: x}}]}}",
             "name 'scam' is not known; did you mean 'scan'?",
         ),
-        ("stacks: {a: {nodes: [{node: amcl, remaps: {scan: x//y}}]}}", "name 'x//y': "),
-        ("stacks: {a: {include: [nav]}}", "stack 'nav' is not known; did you mean 'nav2'?"),
+        ("node_sets: {a: {nodes: [{node: amcl, remaps: {scan: x//y}}]}}", "name 'x//y': "),
+        ("node_sets: {a: {include: [nav]}}", "node set 'nav' is not known; did you mean 'nav2'?"),
         (
-            "stacks:\n  a: {include: [b]}\n  b: {include: [a]}",
+            "node_sets:\n  a: {include: [b]}\n  b: {include: [a]}",
             "mine.yaml:2: node set 'a' includes itself: a -> b -> a",
         ),
         (
-            "stacks: {a: {nodes: [amcl, {node: map_server, as: amcl}]}}",
+            "node_sets: {a: {nodes: [amcl, {node: map_server, as: amcl}]}}",
             "node set 'a' has two different nodes called 'amcl'",
         ),
     ],
@@ -245,32 +251,32 @@ def test_what_is_wrong_is_reported_with_its_place(text: str, message: str) -> No
 
 def test_a_file_that_cannot_be_read_is_reported(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"none\.yaml: cannot be read: No such file"):
-        user_stack(str(tmp_path / "none.yaml"), NEWEST_LTS)
+        user_library(str(tmp_path / "none.yaml"), NEWEST_LTS)
     (tmp_path / "latin.yaml").write_bytes(b"about: \xe4")
     with pytest.raises(UsageError, match="it is not UTF-8"):
-        user_stack(str(tmp_path / "latin.yaml"), NEWEST_LTS)
+        user_library(str(tmp_path / "latin.yaml"), NEWEST_LTS)
 
 
 @pytest.mark.more
-def test_yaml_is_loaded_where_a_stack_is_asked_for_only() -> None:
-    code = "import sys, multibot_rewrite.knowledge.stacks; print('yaml' in sys.modules)"
+def test_yaml_is_loaded_where_a_node_set_is_asked_for_only() -> None:
+    code = "import sys, multibot_rewrite.knowledge.node_sets; print('yaml' in sys.modules)"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout == "False\n"
 
 
 RULES = """\
-stacks:
+node_sets:
   here: {include: [nav2], remaps: {amcl: {scan: front/scan}, controller_server: {odom: wheels}}}
   there: {include: [here], remaps: {amcl: {scan: rear/scan}}}
 """
 
 
-def test_a_stack_remaps_names_of_the_nodes_that_it_includes() -> None:
+def test_a_node_set_remaps_names_of_the_nodes_that_it_includes() -> None:
     """The outer rule counts; the other rules of the node stay."""
     ends = {
         (name, it.name, end.name): end.remapped
         for name in ("nav2", "here", "there")
-        for it in stack_of(extra(RULES), name)
+        for it in nodes_of_set(extra(RULES), name)
         for end in it.endpoints
     }
     assert ends["nav2", "amcl", "scan"] == ""
@@ -290,7 +296,7 @@ def test_a_stack_remaps_names_of_the_nodes_that_it_includes() -> None:
         ("{amcl: {scan: [x]}}", "remaps scan is a list; "),
     ],
 )
-def test_a_rule_of_a_stack_that_cannot_be_meant_is_told(remaps: str, message: str) -> None:
+def test_a_rule_of_a_node_set_that_cannot_be_meant_is_told(remaps: str, message: str) -> None:
     with pytest.raises(UsageError) as caught:
-        extra(f"stacks: {{here: {{include: [nav2], remaps: {remaps}}}}}")
+        extra(f"node_sets: {{here: {{include: [nav2], remaps: {remaps}}}}}")
     assert message in str(caught.value)

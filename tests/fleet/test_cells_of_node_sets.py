@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""With a stack and no further file a fleet builds, whatever its release, layout and simulator; what its
+"""With a node set and no further file a fleet builds for each release, layout and simulator; what its
 own input lacks is refused in one line."""
 
 from __future__ import annotations
@@ -7,16 +7,16 @@ from __future__ import annotations
 from itertools import groupby
 from pathlib import Path
 
+import node_set_cells
 import pytest
-import stack_cells
-from stack_cells import ROBOTS, Cell
+from node_set_cells import ROBOTS, Cell
 
 from multibot_rewrite.cli.multibot import main
 
 ROWS = [
     (name, tuple(its))
     for robot in ROBOTS
-    for name, its in groupby(stack_cells.cells(robot), lambda it: it[:3])
+    for name, its in groupby(node_set_cells.cells(robot), lambda it: it[:3])
 ]
 
 
@@ -27,23 +27,23 @@ def test_nothing_that_the_build_adds_refuses_a_robot(
     row: tuple[tuple[str, ...], tuple[Cell, ...]], tmp_path: Path
 ) -> None:
     """Those that drive are built and asked the same by the drive test."""
-    cells = [it for it in row[1] if not stack_cells.is_driven(it)]
-    assert not {it[3:]: found for it in cells if (found := stack_cells.faults(it, tmp_path))}
+    cells = [it for it in row[1] if not node_set_cells.is_driven(it)]
+    assert not {it[3:]: found for it in cells if (found := node_set_cells.faults(it, tmp_path))}
 
 
 @pytest.mark.slow
 @pytest.mark.sample(59)
 @pytest.mark.parametrize("release", ["jazzy", "lyrical"])
-@pytest.mark.parametrize("pair", [*stack_cells.pairs()], ids="-".join)
-def test_two_stacks_fit_each_other(pair: tuple[str, str], release: str, tmp_path: Path) -> None:
-    assert not stack_cells.pair_faults(*pair, release, tmp_path)
+@pytest.mark.parametrize("pair", [*node_set_cells.pairs()], ids="-".join)
+def test_two_node_sets_fit_each_other(pair: tuple[str, str], release: str, tmp_path: Path) -> None:
+    assert not node_set_cells.pair_faults(*pair, release, tmp_path)
 
 
 @pytest.mark.parametrize(
     "pair", [("nav2", "teleop"), ("navigation", "rtabmap"), ("static_tf", "nav2")], ids="-".join
 )
-def test_stacks_that_did_not_fit(pair: tuple[str, str], tmp_path: Path) -> None:
-    assert not stack_cells.pair_faults(*pair, "lyrical", tmp_path)
+def test_node_sets_that_did_not_fit(pair: tuple[str, str], tmp_path: Path) -> None:
+    assert not node_set_cells.pair_faults(*pair, "lyrical", tmp_path)
 
 
 @pytest.mark.parametrize(
@@ -57,7 +57,7 @@ def test_stacks_that_did_not_fit(pair: tuple[str, str], tmp_path: Path) -> None:
 def test_odometry_of_a_real_robots_driver_is_no_fault_of_its_localizer(
     cell: Cell, tmp_path: Path
 ) -> None:
-    assert not stack_cells.faults(cell, tmp_path)
+    assert not node_set_cells.faults(cell, tmp_path)
 
 
 FOUR = (
@@ -91,18 +91,18 @@ def test_the_built_folder_agrees_with_its_plan(cell: Cell, tmp_path: Path) -> No
 )
 def test_what_the_input_lacks_is_one_line(cell: Cell, tmp_path: Path) -> None:
     """Of each robot; what follows from it is no second error."""
-    errors = [it for it in stack_cells.findings(cell, tmp_path) if it.level == "error"]
-    assert {it.code for it in errors} == stack_cells.refused(cell)
+    errors = [it for it in node_set_cells.findings(cell, tmp_path) if it.level == "error"]
+    assert {it.code for it in errors} == node_set_cells.refused(cell)
     assert len(errors) == len({it.robot or str(it) for it in errors}) <= 2
 
 
-@pytest.mark.parametrize("layout", stack_cells.LAYOUTS)
+@pytest.mark.parametrize("layout", node_set_cells.LAYOUTS)
 def test_hardware_that_no_plugin_of_the_simulator_loads_is_an_error(
     layout: str, tmp_path: Path
 ) -> None:
     """ros2_control_node cannot load a class of the simulator."""
     cell = Cell("controlled", "ros2_control", "jazzy", layout, "gazebo")
-    source = stack_cells.ROOT / ROBOTS["controlled"]
+    source = node_set_cells.ROOT / ROBOTS["controlled"]
     text = source.read_text()
     at = text.index('  <gazebo>\n    <plugin name="gz_ros2_control')
     (tmp_path / "robot.urdf").write_text(f"{text[:at]}</robot>\n")
@@ -110,7 +110,7 @@ def test_hardware_that_no_plugin_of_the_simulator_loads_is_an_error(
     fleet.write_text(cell.fleet.replace(str(source), "robot.urdf"))
     assert main(["build", str(fleet), "-o", str(tmp_path / "out"), "-q"]) == 1
     assert not (tmp_path / "out").exists()
-    found = [it for it in stack_cells.of_file(fleet) if it.level == "error"]
+    found = [it for it in node_set_cells.of_file(fleet) if it.level == "error"]
     assert [it.code for it in found] == ["MF843"]
     assert "no plugin of robot 'robot1' loads it" in found[0].message
 
@@ -127,6 +127,6 @@ def test_a_fault_between_two_ends_of_the_build_is_seen(
     for wrong, (nothing, said) in wrongs.items():
         with monkeypatch.context() as patch:
             patch.setattr(f"multibot_rewrite.fleet.robots.{wrong}", nothing)
-            stack = "robot_localization" if said == "MG408" else "nav2"
-            cell = Cell("gz", stack, "lyrical", "tf-per-robot", "gazebo")
-            assert said in " ".join(stack_cells.faults(cell, tmp_path))
+            node_set = "robot_localization" if said == "MG408" else "nav2"
+            cell = Cell("gz", node_set, "lyrical", "tf-per-robot", "gazebo")
+            assert said in " ".join(node_set_cells.faults(cell, tmp_path))
