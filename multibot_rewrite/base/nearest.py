@@ -144,6 +144,21 @@ def _one_typo(words: Sequence[str], others: Sequence[str]) -> bool:
     return max(len(one), len(two)) == 1 or (len(one) == 2 and one == two[::-1])
 
 
+def typing_mistakes(one: str, other: str, most: int = 3) -> int:
+    """Return how many letters are wrong, missing, too many or swapped with the next, up to ``most``."""
+    before = last = list(range(len(other) + 1))
+    if abs(len(one) - len(other)) >= most:
+        return most
+    for at, letter in enumerate(one, 1):
+        row = [at]
+        for to, wanted in enumerate(other, 1):
+            swapped = at > 1 < to and one[at - 2 : at] == other[to - 2 : to][::-1]
+            found = [last[to], row[-1], last[to - 1] - (letter == wanted)]
+            row.append(1 + min(found + [before[to - 2]] * swapped))
+        before, last = last, row
+    return min(last[-1], most)
+
+
 @cache
 def other_words(what: str) -> Mapping[str, str]:
     """Return the table of ``commands``, ``options`` or ``keys``: each word, and what does it."""

@@ -34,10 +34,11 @@ OF_OLD = "humble"
 # MoveIt's adapters of planning requests have had another package since Jazzy (moveit2 MIGRATION.md).
 _ADAPTERS = b"default_planner_request_adapters/"
 CLASSIC = "libgazebo_"
-_OLD_WORDS = (CLASSIC.encode(), b"ignition-", b"ign_ros2_control", _ADAPTERS)
+# The plugins and the type of sensor of Field-Robotics-Lab/ds_sim (gazebo_src, src) are of Classic.
+_OLD_WORDS = (CLASSIC.encode(), b"ignition-", b"ign_ros2_control", b"dsros_", _ADAPTERS)
 # Two expressions: of one for both every character of a text is tried.
 _OLD = lazy_compile(
-    rb"[>\"'](libgazebo_[\w.-]+|(?:lib)?ignition-gazebo[\w.-]*|(?:lib)?ign_ros2_control[\w.-]*)"
+    rb"[>\"'](libgazebo_[\w.-]+|(?:lib)?(?:dsros_|ignition-gazebo|ign_ros2_control)[\w.-]*)"
 )
 _OLD_ADAPTER = lazy_compile(rb"(" + _ADAPTERS + rb"\w+)")
 _NEW_WORDS = (b"gz-sim", b"gz::sim", b"gz_ros2_control", b"default_planning_request_adapters/")

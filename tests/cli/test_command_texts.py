@@ -434,7 +434,7 @@ def test_headings_and_names_are_painted() -> None:
         (["--quite"], "unknown option --quite; did you mean '--quiet'?"),
         (["--from=a"],
          "unknown option --from; multibot check, multibot snapshot, multibot view take it"),
-        (["--changed"], "unknown option --changed"),
+        (["--changed"], "unknown option --changed; urdf-lint takes --changed-since"),
         (["--dry-run"],
          "unknown option --dry-run; --diff does that,"
          " which urdf-postfix, urdf-lint, multibot rename take"),
@@ -445,7 +445,7 @@ def test_headings_and_names_are_painted() -> None:
         # Dashes are not counted.
         (["--oxtput-kxnd"], "unknown option --oxtput-kxnd; did you mean '--output-kind'?"),
         (["a", "b"], "unexpected b"),
-        # A part of it says what it is, another first letter does not.
+        # A part of it says what it is, another first letter of a short one does not.
         (["--form", "b"], "unknown option --form; use --output-kind KIND"),
         (["--stack", "b"], "unknown option --stack; use --node-set NAME"),
         (["--output-form", "b"], "unknown option --output-form; did you mean '--output-kind'?"),

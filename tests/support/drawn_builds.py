@@ -32,8 +32,8 @@ from multibot_rewrite.producers.launch import child
 from multibot_rewrite.producers.launch.read import read_own
 from multibot_rewrite.producers.launch.records import LaunchGraph
 
-# What tells of a fault of the build itself.
-FAULT = "MF823"
+# What tells of a fault of the build itself. As a note it says that a stand-in read a launch file.
+FAULT = "error: MF823"
 # Of so many fleets one is built a second time, as a whole.
 WHOLE = 8
 # In memory where there is such a folder: a build waits until its files are on the disk.

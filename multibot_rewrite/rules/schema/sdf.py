@@ -18,6 +18,7 @@ from lxml.etree import _Element
 from multibot_rewrite.base.conventions import ROWS
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.nearest import MISTYPED, nearest, slip_of
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.checks.links_and_joints import Robot
 from multibot_rewrite.description.checks.problem import Problem, fault
 from multibot_rewrite.description.rewriters.text import text_of
@@ -240,7 +241,7 @@ def _word(element: _Element, at: str, name: str, text: str, version: Version) ->
     near = nearest(text, known)
     if not near and version <= CLASSIC and name == "sensor/@type":
         return  # Gazebo Classic lets plugins add types of sensors
-    hint = f"did you mean {near!r}?" if near else ""
+    hint = f"did you mean {near!r}?" if near else f"SDF knows {shorten(known)}"
     message = f"{_named(element, at)} is {shortened(text)!r}, which SDF does not know"
     yield fault("word", element, at, message, hint)
 

@@ -28,6 +28,7 @@ from multibot_rewrite.system.records import (
     Topic,
     alternatives,
 )
+from multibot_rewrite.system.words import is_viewer
 
 
 @planned_rule("MG101", "missing-node", ERROR, absence=True, drawn="missing")
@@ -71,12 +72,11 @@ def _waiting(plan: Index, seen: Index, node: str) -> str:
 
 
 def _missing(plan: Index, seen: Index, robot: Robot) -> list[str]:
-    """Return the missing nodes; an optional one is missing only if it runs under another name."""
-    return [
-        node
-        for node in plan.own[robot.name]
-        if node not in seen.nodes and (node not in plan.may_miss or node in matches(plan, seen))
-    ]
+    """Return the missing nodes; an optional one is missing only if it runs under another name.
+    A viewer is not: one outside the robot shows all robots."""
+    moved = {it for it in matches(plan, seen) if not is_viewer(it)}
+    due = (it for it in plan.own[robot.name] if it in moved or it not in plan.may_miss)
+    return [it for it in due if it not in seen.nodes]
 
 
 def is_absent(plan: Index, seen: Index, robot: str) -> bool:
