@@ -295,6 +295,28 @@ def test_a_publisher_of_what_cannot_be_read_has_the_description_of_the_fleet(
     assert "warning: MG401" in told and "for one robot, too" in told
 
 
+ASKED = "Command(['ros2 param get --hide-type /robot_state_publisher robot_description'])"
+MANAGER = """        Node(package='controller_manager', executable='ros2_control_node',
+             parameters=[{'robot_description': GIVEN}]),
+"""
+
+
+@pytest.mark.parametrize("given", [ASKED, "ROBOT.read_text()"])
+def test_a_manager_that_asks_for_the_description_of_a_node_has_it(
+    given: str, fleet: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A manager of Humble subscribes to none then (controller_manager.cpp, init_resource_manager)."""
+    imports = "from launch.substitutions import Command\n"
+    text = LAUNCH.replace("        ekf('ekf_global'),\n", MANAGER.replace("GIVEN", given))
+    (fleet.parent / "robot.urdf").write_text(TWO_LINKS)
+    (fleet.parent / "up.launch.py").write_text(imports + text)
+    fleet.write_text(fleet.read_text().replace("jazzy", "humble"))
+    assert main(["build", str(fleet), "-o", str(fleet.parent / "out")]) == 0
+    assert not any("controller_manager" in it for it in capsys.readouterr().err.splitlines())
+    started = (fleet.parent / "out/fleet.launch.py").read_text().partition("ros2_control_node")[2]
+    assert "'robot_description': text(" in started.partition("Node(")[0]
+
+
 def test_what_the_vendor_is_warned_of_excuses_no_error(
     fleet: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -312,10 +312,29 @@ def test_a_manager_of_a_plugin_is_there_beside_another_description(tmp_path: Pat
         assert (found.level, found.robots) == ("error", ("r1",)), others
 
 
+LOADS = """
+from launch import LaunchDescription
+from launch_ros.actions import ComposableNodeContainer, LoadComposableNodes, Node
+from launch_ros.descriptions import ComposableNode
+def generate_launch_description():
+    box = dict(package='rclcpp_components', executable='component_container', name='box')
+    part = ComposableNode(package='image_proc', plugin='image_proc::RectifyNode', name='rectify')
+    return LaunchDescription([{}])
+"""
+
+
 @pytest.mark.more
 def test_what_a_launch_file_loads_or_brings_up_is_reached_from_one_domain(tmp_path: Path) -> None:
     """Components are loaded by a service, slam_toolbox is activated by one; processes need none."""
     (tmp_path / "robot.urdf").write_text('<robot name="r"><link name="base_link"/></robot>')
+    box = "ComposableNodeContainer(**box, namespace='', composable_node_descriptions=[{}])"
+    later = "LoadComposableNodes(target_container='box', composable_node_descriptions=[part])"
+    for name, actions in (
+        ("part", box.format("part")),
+        ("part_later", f"{box.format('')}, {later}"),
+    ):
+        (tmp_path / f"{name}.launch.py").write_text(LOADS.format(actions))
+    (tmp_path / "box.launch.py").write_text(LOADS.format("Node(**box)"))
     head = "description: robot.urdf\ndistro: jazzy\nsimulator: none\n"
     for node_set, numbers, told in (
         ("nav2_composed", (11, 12), True),

@@ -237,7 +237,7 @@ def main(words: Sequence[str]) -> int:
     parser.add_argument("folder", type=Path)
     parser.add_argument(
         "--half",
-        choices=("work", "kept", "fresh", "third", "try", "fourth", "fifth", "six"),
+        choices=("work", "kept", "fresh", "third", "try", "fourth", "fifth", "sixth", "six"),
         default="work",
     )
     parser.add_argument("--only", nargs="*", default=[""], help="parts of the names")

@@ -246,11 +246,15 @@ def _started(given: _Given, name: str) -> Start:
 
 
 def _program(given: _Given, name: str) -> Program | None:
-    """Return a node's program, or a component's class; None if it is unknown."""
+    """Return a node's program, or a component's class, by its facts or its launch file; None if it is
+    unknown."""
     program = started_as(given.facts[name], given.release)
-    is_component = given.names.started[name].way == COMPONENT
-    known = program and (program.plugin if is_component else program.executable)
-    return program if known else None
+    if given.names.started[name].way != COMPONENT:
+        return program if program and program.executable else None
+    if program and program.plugin:
+        return program
+    own = given.plan.evidence_of(given.robot).handed_on.get(name)
+    return Program(own.program[0], "", own.program[1]) if own else None
 
 
 def _made(given: _Given, name: str) -> Start:

@@ -8,6 +8,7 @@ import time
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from functools import lru_cache
+from itertools import chain
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.rosnames import RemapRule
@@ -98,7 +99,8 @@ def why_not(graph: LaunchGraph) -> str:
     """Return why a fleet is not made of a launch file that was read; empty if it is."""
     hint = "source its workspace, or put its sources into this src/ (or below launch_roots:)"
     found = (f"it imports the Python package {it!r}, which is not here" for it in graph.imports)
-    return next((f"{it}; {hint}" for it in found), "")
+    ends = (f"the launch ends with {it.message}" for it in graph.notes if it.fails)
+    return next(chain((f"{it}; {hint}" for it in found), ends), "")
 
 
 def keep(order: LaunchOrder, graph: LaunchGraph) -> None:

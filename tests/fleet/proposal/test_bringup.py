@@ -433,6 +433,10 @@ def test_the_launch_file_is_named(words: list[str], launch: str | None, package:
 LONG = "\n".join(f"x{at} = {at}" for at in range(10_000))
 BAD = {
     "it raises": ("x = 1 / 0", "ZeroDivisionError"),
+    "it raises while it is launched": (
+        "x = GroupAction([Node(package='a', executable='b'),"
+        " OpaqueFunction(function=lambda context: 1 / 0)])", "the launch ends with ZeroDivisionError",
+    ),
     "it needs an argument": (
         "x = DeclareLaunchArgument('ip')", "it has to be given ip; write ip:=VALUE after it",
     ),
@@ -605,7 +609,9 @@ def test_what_a_launch_file_starts_is_named_where_its_description_cannot_be_read
     spawner = (
         "Node(package='controller_manager', executable='spawner', arguments=['left', 'right'])"
     )
-    fails = "OpaqueFunction(function=lambda _: [Node(package=1 / 0, executable='hidden')])"
+    fails = (
+        "OpaqueFunction(function=lambda _: [Node(package=open('/x').read(), executable='hidden')])"
+    )
     actions = f"{READS.format('other', 'example.urdf.xacro')}; {DRIVER}; {spawner}; {fails}"
     (file,) = write(robots / "other/launch", {"up": actions})
     assert main(["init", str(robots), "--yes", "--launch", file, "-o", str(robots / "f.yaml")]) == 2
