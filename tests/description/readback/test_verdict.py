@@ -87,6 +87,11 @@ def test_every_reason_is_a_warning_of_a_rewrite() -> None:
     [
         (LIDAR.format("scan"), ()),
         (LIDAR.format("{name}/scan"), ("1 topic shared by all robots",)),
+        # gz-sim Contact.cc and Classic's ContactSensor.cc read the topic in <contact> alone.
+        (
+            LIDAR.format("{name}/scan").replace("gpu_lidar", "contact"),
+            ("1 description the same for all robots",),
+        ),
         (DRIVE.format("demo"), ()),
         (DRIVE.format(""), ()),
         (DRIVE.format("<!-- c -->demo"), ()),
