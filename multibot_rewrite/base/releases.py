@@ -144,8 +144,10 @@ def release_doubt(given: str | None = None) -> str:
     return unusual_release(given or "", os.environ)
 
 
-def facts_of_release(release: str, why: str = "") -> str:
+def facts_of_release(release: str, why: str = "", ros: str = ROS_2) -> str:
     """Return the end of a summary: the release and the reason for it; empty without one."""
+    if ros == ROS_1:
+        return " (ROS 1: its plugins or its package.xml say so)"
     return f" (ROS 2 {release}{why and f': {why}'})" if release else ""
 
 

@@ -193,5 +193,5 @@ def summary(
     aside = dict(first.prepared.job.aside)
     verified = " ".join(filter(None, ["Verified", given(first.findings, aside)]))
     end = f"Not verified: {', '.join(why)}" if why else verified
-    end += facts_of_release(first.distro, of_release)
+    end += facts_of_release(first.distro, of_release, first.prepared.job.ros)
     return f"{who}: {renamed}{added}. {end}"

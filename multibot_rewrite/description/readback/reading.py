@@ -197,8 +197,10 @@ def _of_sensors(root: _Element, definitions: Definitions) -> Iterator[RuntimeNam
     for number, sensor in enumerate(root.iter("sensor")):
         # What is known about every sensor, and about those of this type.
         of_type = definitions.find("sensor", sensor.get("type", "").strip())
+        unread = {it.path for section in of_type for it in section.sites if it.role == "keep"}
         for section in (*definitions.find("element", "sensor"), *of_type):
-            host = _Host(sensor, number, section)
+            sites = tuple(it for it in section.sites if it.path not in unread)
+            host = _Host(sensor, number, section._replace(sites=sites) if unread else section)
             yield from _topics(host, "sensor", definitions.release)
             yield from _opened(host, "sensor")
 
