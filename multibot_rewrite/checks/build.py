@@ -184,7 +184,7 @@ def _tables(plan: FleetPlan, fleet: Fleet, planned: System) -> Iterator[OutputFi
     if plan.file.apart.free_fleet:
         yield from (OutputFile(*it) for it in free_fleet_files(planned, plan.file.apart.free_fleet))
     yield from (OutputFile(*it) for it in bridge_files(planned))
-    yield OutputFile(TABLE, _remappings(fleet.table).encode())
+    yield OutputFile(TABLE, _remappings(fleet.named_table).encode())
 
 
 def _from(folder: str, place: Place) -> Place:

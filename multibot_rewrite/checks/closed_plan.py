@@ -78,7 +78,7 @@ def contradicted(plan: FleetPlan, whole: System, expected: System) -> Iterator[F
     whose, copies = whose_by_plan(expected), copying_nodes(expected)
     met = {(it.code, name) for it in plan.fleet.table.problems for name in it.names}
     shared = {f"/{it}" for it in plan.fleet.naming.shared_topics}
-    robots = {it.spec.namespace: it for it in plan.robots}
+    robots = {it.spec.name: it for it in plan.robots}
     # A robot with a description of its own is not to be equal to the others.
     kinds = Counter(it.spec.description for it in plan.robots)
     for it in contradictions(index(whole, whose)):

@@ -10,7 +10,7 @@ from typing import Protocol
 
 from multibot_rewrite.base.conventions import SHARED_TOPICS, WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, declare
-from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
+from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.naming import FRAME_KINDS, TF_TOPICS, TOPIC_KINDS, Naming
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.description.readback.meeting import (
@@ -49,8 +49,8 @@ def robots_meet(
     domains: Mapping[str, int] = ONE_DOMAIN,
 ) -> Iterator[Finding]:
     """Yield an error for each name that two robots have and that is not shared. ``written`` are the
-    files of robots, by namespace, ``domains`` theirs if they are not in one. Controllers of a node
-    set are in the table, with their spawners' rules."""
+    files of robots, by namespace, ``domains`` theirs by name if they are not in one. Controllers of
+    a node set are in the table, with their spawners' rules."""
     shared = [it for member in members for it in member.shared]
     spawned = {it.robot for it in table.runs if it.fact.is_controller}
     if not spawned.issuperset(it.robot for it in members):
@@ -62,10 +62,13 @@ def robots_meet(
             yield one._replace(level=WARNING if one.code == OPENED else _level(one.code))
         return
     by_robot = {it.robot: it for it in members}
+    names = {it.robot: it.name for it in members}
     for it in meetings(_named(table, members), naming):
-        if it.name.kind in _OF_ROS and domains.get(it.robot) != domains.get(it.other):
+        robot, other = (names.get(one, one) for one in (it.robot, it.other))
+        if it.name.kind in _OF_ROS and domains.get(robot) != domains.get(other):
             continue
-        yield _finding(it, by_robot.get(it.robot), written.get(it.robot))
+        called = it._replace(robot=robot, other=other)
+        yield _finding(called, by_robot.get(it.robot), written.get(it.robot))
 
 
 def _named(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence[RuntimeName]]:
@@ -126,7 +129,7 @@ NOBODYS = declare("MF838", "shared-by-nothing", WARNING, formats=("fleet",))
 
 
 class NamesOfFleet(Protocol):
-    """What is asked of a fleet: its names, and ``words``: the robot by what stands for it in names."""
+    """What is asked of a fleet: its names, and the ``tags`` of robots in frames where these differ."""
 
     @property
     def naming(self) -> Naming:
@@ -191,7 +194,6 @@ def shared_by_nothing(
 
 def _described(fleet: NamesOfFleet, kinds: Collection[str]) -> set[str]:
     """Return the names of some kinds in the descriptions, with and without the robot's name."""
-    words = lists_by_key((robot, word) for word, robot in fleet.words.items())
     found: set[str] = set()
     for robot, inventory in fleet.inventories.items():
         named = (it for names in inventory.names for it in names)
@@ -201,5 +203,6 @@ def _described(fleet: NamesOfFleet, kinds: Collection[str]) -> set[str]:
             if it.kind in kinds or any(kind in kinds for kind in it.kinds)
         }
         found |= texts
-        found |= {text.replace(word, "").strip(_BETWEEN) for text in texts for word in words[robot]}
+        for word in {robot, fleet.tags.get(robot, robot)}:
+            found |= {text.replace(word, "").strip(_BETWEEN) for text in texts}
     return found

@@ -51,7 +51,7 @@ def as_the_vendor_has_it(
 ) -> Iterator[Finding]:
     """Yield the findings about a fleet (``seen``); an error that the launch files of one robot have by
     themselves, between the same nodes, is a warning. What only several robots have stays an error."""
-    specs = {it.spec.namespace: it for it in plan.robots if it.spec.launch}
+    specs = {it.spec.name: it for it in plan.robots if it.spec.launch}
     alone = cache(lambda robot: _errors_of(specs[robot], seen, known))
     for it in found:
         # What names no robot, as the interfaces of its hardware, is asked of all.
@@ -136,7 +136,7 @@ def _is_of_one_name(it: Finding, seen: Index, robot: RewrittenRobot) -> bool:
     second one has a number behind its name."""
     nodes = [node for parts in _parts(it, seen.system).values() for _, node in parts]
     names = {_SECOND.sub("", node.rpartition("/")[2]) for node in nodes}
-    if len(names) != 1 or {seen.robot(node) for node in nodes} != {robot.spec.namespace}:
+    if len(names) != 1 or {seen.robot(node) for node in nodes} != {robot.spec.name}:
         return False
     started = launch_of(robot.spec.launch, robot.spec.words[0]).nodes
     return [node.name or node.executable for node in started].count(*names) > 1

@@ -124,8 +124,8 @@ def _one_device_each(plan: FleetPlan) -> Iterator[Finding]:
     told = {name for it in plan.fleet.table.problems if it.code == OPENED for name in it.names}
     known = load_known_nodes(plan.file.nodes, plan.file.distro)
     definitions = load_definitions(plan.file.definitions, plan.file.distro)
-    hardware = {it.spec.namespace: tuple(_of_hardware(it, told, definitions)) for it in robots}
-    by_name = {it.spec.namespace: it for it in robots}
+    hardware = {it.spec.name: tuple(_of_hardware(it, told, definitions)) for it in robots}
+    by_name = {it.spec.name: it for it in robots}
     count = Counter((it.name, it.value) for its in hardware.values() for it in its)
     hints: dict[Sources, str] = {}
     for it in _met(robots, [one for its in hardware.values() for one in its]):
@@ -147,7 +147,7 @@ def _one_device_each(plan: FleetPlan) -> Iterator[Finding]:
 
 
 def _met(robots: Sequence[RewrittenRobot], addresses: Sequence[Address]) -> Iterator[Finding]:
-    named = tuple(Robot(it.spec.namespace) for it in robots)
+    named = tuple(Robot(it.spec.name, namespace=it.spec.namespace) for it in robots)
     fleet = System(robots=named, addresses=tuple(addresses))
     found = judge(index(fleet, whose_by_plan(fleet))) if addresses else ()
     yield from (it for it in found if it.code == one_device.code)

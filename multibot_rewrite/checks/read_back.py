@@ -104,7 +104,7 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
         known = _known(plan)
         start = launched(graph, known)
         seen = start.system
-        real = frozenset(it.spec.namespace for it in plan.robots if it.spec.simulator == REAL)
+        real = frozenset(it.spec.name for it in plan.robots if it.spec.simulator == REAL)
         whole, started = start.with_bridged, made.starts.nodes
         wrong = [*not_as_planned(made.planned, whole, started, made.findings, real)]
         told = (*wrong, *made.findings, *plan.fleet.table.problems)

@@ -160,7 +160,7 @@ def as_written(fleet: Fleet, robot: RewrittenRobot, texts: Sequence[OutputFile])
     by_process = (it for it in _system(plugins).ends if it.sure != RUNS)
     return made._replace(
         ends=(*made.ends, *by_process),
-        robots=(Robot(name),),
+        robots=(Robot(robot.spec.name),),
         heard=tuple(_heard(fleet, robot, bridges)),
     )
 

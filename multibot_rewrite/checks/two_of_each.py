@@ -43,7 +43,7 @@ class _Sort(NamedTuple):
 
 class Sample(NamedTuple):
     """The outputs with two robots of each sort. ``left`` are the words of the robots that are left out,
-    ``alike`` has for the namespace of each other one those of its sort, its own first."""
+    ``alike`` has for each other one those of its sort, its own first."""
 
     made: Outputs
     left: frozenset[str] = frozenset()
@@ -67,15 +67,15 @@ def two_of_each(made: Outputs, robots: Sequence[RobotSpec]) -> Sample:
     for it in robots:
         row, part = rows.get(it.name, ""), parts.get(it.name, "")
         is_whole = bool(part) == (f"start_{it.name}" in row)
-        if not (row and is_whole and it.namespace in plans):
+        if not (row and is_whole and it.name in plans):
             return Sample(made)
-        own = _sort(it, (row, part, plans[it.namespace]), files)
+        own = _sort(it, (row, part, plans[it.name]), files)
         at = next((at for at, one in enumerate(sorts) if _alike(one, own)), len(sorts))
         sorts += [own] if at == len(sorts) else []
         of_sort[at].append(it)
     left = [it for several in of_sort.values() for it in several[_OF_EACH:]]
     alike: dict[str, tuple[str, ...]] = {}
-    for names in ([it.namespace for it in one] for one in of_sort.values()):
+    for names in ([it.name for it in one] for one in of_sort.values()):
         alike |= {it: tuple(dict.fromkeys((it, *names))) for it in names[:_OF_EACH]}
     return Sample(_without(made, left), frozenset(word for it in left for word in it.words), alike)
 
@@ -139,7 +139,7 @@ def _without(made: Outputs, left: Sequence[RobotSpec]) -> Outputs:
         if it.path == LAUNCH:
             above, table, rows = _FUNCTION.sub(kept, it.text).partition(_TABLE)
             files[at] = it._replace(data=f"{above}{table}{_ROW.sub(kept, rows)}".encode())
-    planned = _planned(made.planned, {it.namespace for it in left})
+    planned = _planned(made.planned, names)
     return made._replace(files=tuple(files), planned=planned) if left else made
 
 

@@ -38,7 +38,7 @@ from multibot_rewrite.fleet.outputs.manifest import (
     read_manifest,
 )
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
-from multibot_rewrite.system.coverage import Coverage
+from multibot_rewrite.system.coverage import Coverage, coverage
 
 
 def run(options: argparse.Namespace) -> int:
@@ -60,8 +60,8 @@ def run(options: argparse.Namespace) -> int:
         for it in made.findings
         if it._replace(level=ERROR) not in back and (it.code, it.names) not in again
     )
-    held = plan.held(made.planned)
-    every = (*told, *plan.with_names((*back, *plan.fleet.table.problems)))
+    held = coverage(made.planned)
+    every = (*told, *back, *plan.fleet.table.problems)
     # A key of the fleet file in place of the option of urdf-postfix.
     both = dict.fromkeys(it._replace(hint=it.hint.replace("--topics ", "topics: ")) for it in every)
     ordered = sorted(both, key=lambda it: (it.file, it.line, it.column, it.code, it.place))

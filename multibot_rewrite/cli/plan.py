@@ -99,25 +99,26 @@ def _of_launch(options: argparse.Namespace) -> int:
 
 def deliver_rules(options: argparse.Namespace, made: Fleet) -> None:
     """Write the rules in the form that is asked for."""
-    known = {node.robot for node in made.table.runs}
-    nothing = [robot for robot in made.inventories if robot not in known]
+    table = made.named_table
+    known = {node.robot for node in table.runs}
+    nothing = [name for name in map(made.name, made.inventories) if name not in known]
     if nothing:
         hint = f"name a node set of its nodes, or leave out {NO_STATE_PUBLISHER}"
         note(options, f"no node of {', '.join(nothing)} is known, so no rule is for it; {hint}")
     if options.output_kind == TABLE:
         rows = [
             (robot, it.node.node, it.node.full_name, text, given_to(it))
-            for robot, given in standing_by_robot(made.table)
+            for robot, given in standing_by_robot(table)
             for it in given
             for text in ([f"{source} -> {target}" for source, target in it.rules] or ["no rule"])
         ]
-        head = f"layout {made.table.layout}{facts_of_release(made.table.release)}"
+        head = f"layout {table.layout}{facts_of_release(table.release)}"
         grid = Grid(("robot", "node", "runs as", "rule", "given to"), rows)
         deliver_report(options, (head, grid))
     elif options.output_kind == BRIDGE:
         deliver(options, _bridge(options, made).encode())
     else:
-        deliver(options, FORMS[options.output_kind](made.table).encode())
+        deliver(options, FORMS[options.output_kind](table).encode())
 
 
 def _bridge(options: argparse.Namespace, made: Fleet) -> str:
@@ -126,7 +127,7 @@ def _bridge(options: argparse.Namespace, made: Fleet) -> str:
     )
     for item in left:
         message = f"line {item.line}: {item.what} is not bridged: {item.why}"
-        note(options, f"{item.robot}: warning: {message} ({item.hint})")
+        note(options, f"{made.name(item.robot)}: warning: {message} ({item.hint})")
     if not any(it.robot for it in carried):
         note(options, "no robot has a topic in Gazebo to bridge")
         return ""

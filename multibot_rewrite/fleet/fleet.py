@@ -19,7 +19,7 @@ from multibot_rewrite.knowledge.nodl.lookup import NodeKnowledge, find_interface
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.planning.bridged_topics import AS_ROBOTS, Models
 from multibot_rewrite.planning.domain_bridge import with_bridges
-from multibot_rewrite.planning.plan import expect, named_frames, vacuous
+from multibot_rewrite.planning.plan import expect, named_frames, vacuous, words_of
 from multibot_rewrite.planning.records import Run, Table
 from multibot_rewrite.planning.table import build_table, joined, plugin_nodes
 from multibot_rewrite.planning.transforms import STATE_PUBLISHER, Edges, edges_of, frames_of
@@ -48,8 +48,9 @@ FRAME_PREFIX = "frame_prefix"
 
 class Fleet(NamedTuple):
     """A fleet's remap table, what each robot's rewritten description holds, and the transforms that
-    each robot's nodes publish. ``facts`` are the nodes of the node sets, ``tags`` the robots whose
-    prefix or postfix differs from their namespace, with it. ``read`` are the files that were read
+    each robot's nodes publish. All have the robots by their namespaces: ``tags`` has the prefix or
+    postfix of those where it differs, ``names`` the name. ``facts`` are the nodes of the node sets.
+    ``read`` are the files that were read
     for descriptions, ``gaps`` what is open in the robots, ``bridged`` what a ros_gz_bridge has to
     bridge; ``maybe_real`` are robots of which nothing says that they are simulated, ``clocks`` the
     ``use_sim_time`` of robots for which the fleet file says it, ``described`` the descriptions of
@@ -64,6 +65,7 @@ class Fleet(NamedTuple):
     edges: Edges
     facts: tuple[NodeFacts, ...]
     tags: dict[str, str]
+    names: dict[str, str]
     read: tuple[str, ...]
     gaps: tuple[Finding, ...] = ()
     bridged: tuple[Topic, ...] = ()
@@ -76,8 +78,18 @@ class Fleet(NamedTuple):
 
     @property
     def words(self) -> dict[str, str]:
-        """The words that stand for each robot."""
-        return {**{it: it for it in self.inventories}, **{tag: it for it, tag in self.tags.items()}}
+        """The words that stand for robots in texts, each with the name of its robot."""
+        return words_of({self.name(it): (it, self.tags.get(it, it)) for it in self.inventories})
+
+    def name(self, robot: str) -> str:
+        """Return the name of the robot with this namespace."""
+        return self.names.get(robot, robot)
+
+    @property
+    def named_table(self) -> Table:
+        """The table with the robots by their names, for people."""
+        runs = (it._replace(robot=self.name(it.robot)) for it in self.table.runs)
+        return self.table._replace(runs=tuple(runs)) if self.names else self.table
 
 
 def facts_of(
@@ -140,6 +152,7 @@ def assemble(
         edges,
         facts,
         {it.robot: it.tag for it in members if it.tag != it.robot},
+        {it.robot: it.name for it in members if it.name != it.robot},
         tuple(dict.fromkeys(path for it in members for path in it.read)),
         described={it.robot: it.described for it in members if it.described is not it.inventory},
     )
@@ -172,6 +185,7 @@ def merge(fleets: Sequence[Fleet]) -> Fleet:
             {**first.edges, **other.edges},
             tuple(dict.fromkeys((*first.facts, *other.facts))),
             {**first.tags, **other.tags},
+            {**first.names, **other.names},
             tuple(dict.fromkeys((*first.read, *other.read))),
             described={**first.described, **other.described},
         )
@@ -198,7 +212,8 @@ def planned(fleet: Fleet) -> System:
         for robot, found in {**fleet.inventories, **fleet.described}.items()
     }
     named = {robot: named_frames(found) for robot, found in fleet.inventories.items()}
-    plan = expect(fleet.table, fleet.naming, frames, named, fleet.tags, fleet.maybe_real)
+    how = (fleet.table, fleet.naming, frames, named, fleet.tags, fleet.maybe_real)
+    plan = expect(*how, fleet.names)
     # What could not be read of launch files: the nodes in it are not in the plan.
     asked = ((NOT_READ, WARNING), (NOT_KNOWN_PROCESS, NOTE))
     not_read = (it for it in fleet.table.problems if (it.code, it.level) in asked)

@@ -3,8 +3,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import Finding
@@ -46,6 +45,8 @@ from multibot_rewrite.fleet.robots.simulators import (
 )
 from multibot_rewrite.system.coverage import Coverage, coverage
 from multibot_rewrite.system.records import System
+from multibot_rewrite.planning.plan import words_of
+from multibot_rewrite.planning.way_checks import UNREACHABLE_NAME
 
 
 class FleetPlan(NamedTuple):
@@ -76,31 +77,9 @@ class FleetPlan(NamedTuple):
 
     @property
     def words(self) -> dict[str, str]:
-        """Return the words that stand for robots in texts, each with the name of its robot: the names
-        first; another word only where it stands for one robot."""
-        specs = [it.spec for it in self.robots]
-        names = {it.name: it.name for it in specs}
-        others = {word: it.name for it in specs for word in (it.namespace, it.tag, it.model)}
-        robots = Counter(word for it in specs for word in {it.namespace, it.tag, it.model})
-        return names | {
-            it: name for it, name in others.items() if robots[it] == 1 and it not in names
-        }
-
-    def with_names(self, findings: Iterable[Finding]) -> Iterator[Finding]:
-        """Yield the findings with the names of robots; about nodes and frames they have namespaces."""
-        names = self._names()
-        for it in findings:
-            robots = tuple(names.get(one, one) for one in it.robots) if it.robot else it.robots
-            yield it._replace(robot=names.get(it.robot, it.robot), robots=robots)
-
-    def held(self, planned: System) -> Coverage:
-        """Return how much the plan holds, with the names of robots."""
-        names, all_held = self._names(), coverage(planned)
-        rows = (it._replace(robot=names.get(it.robot, it.robot)) for it in all_held.robots)
-        return all_held._replace(robots=tuple(rows))
-
-    def _names(self) -> Mapping[str, str]:
-        return {it.spec.namespace: it.spec.name for it in self.robots}
+        """Return the words that stand for robots in texts, each with the name of its robot."""
+        specs = (it.spec for it in self.robots)
+        return words_of({it.name: (it.namespace, it.tag, it.model) for it in specs})
 
 
 def make_plan(

@@ -171,7 +171,7 @@ def errors_of(
     asked = (it for it in back if of_sources or it not in told)
     errors = sorted((it for it in (*found, *asked) if it.level == ERROR), key=by_place)
     lines = []
-    for it in grouped(plan.with_names(errors), plan.words):
+    for it in grouped(errors, plan.words):
         who = f"{it.node}: " if it.node else ""
         file = os.path.abspath(it.file) if it.file else ""
         lines.append((file, f"{who}{it.code} {said(it)}"))

@@ -145,7 +145,7 @@ def is_alone(plan: System) -> bool:
     """Return whether it is the plan of one robot, whose name no node or end has."""
     if len(plan.robots) != 1:
         return False
-    word = plan.robots[0].name
+    word = plan.robots[0].space
     names = (*(it.name for it in plan.nodes), *(it.name for it in plan.ends))
     return bool(plan.nodes) and not any(word in name for name in names)
 
@@ -153,7 +153,7 @@ def is_alone(plan: System) -> bool:
 def without_name(plan: System) -> System:
     """Return the plan of a robot without its namespace: its nodes and names are in the root."""
     (robot,) = plan.robots
-    space = f"/{robot.name}"
+    space = f"/{robot.space}"
 
     def bare(name: str) -> str:
         return (name.removeprefix(space) or "/") if f"{name}/".startswith(f"{space}/") else name
@@ -214,11 +214,13 @@ def name_ownership(plan: System) -> NameOwnership:
     """Return the ownership of graph names: nodes, topics, services, actions."""
     nodes = {it.name: it.robot for it in plan.nodes if it.robot}
     planned = [(w.name, nodes[w.node]) for w in plan.ends if w.node in nodes]
-    robots = {robot.name: robot.name for robot in plan.robots}
+    robots = {robot.space: robot.name for robot in plan.robots}
+    tags = {robot.name: robot.namespace for robot in plan.robots if robot.namespace}
     tf = ((robot.tf_topic, robot.name) for robot in plan.robots)
-    last = _is_last({*nodes.items(), *planned, *tf})
-    levels = max((name.count("/") + 1 for name in robots), default=1)
-    draft = NameOwnership({}, nodes, robots, frozenset(), last, levels=levels)
+    every = {*nodes.items(), *planned, *tf}
+    last = _is_last((name, tags.get(robot, robot)) for name, robot in every)
+    levels = max((space.count("/") + 1 for space in robots), default=1)
+    draft = NameOwnership({}, nodes, robots, frozenset(), last, tags, levels)
     # The topics of which a plan says more, each with the robot whose tag is at its place there, or in
     # the topic that it is below: of /scan/a/points that of /scan/a.
     topics: dict[str, str] = {}

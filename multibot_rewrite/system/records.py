@@ -139,8 +139,8 @@ class Qos(NamedTuple):
 class Robot(NamedTuple):
     """One robot: its tf topic, the frames of its description.
 
-    ``other_frames`` are further frames that its nodes may send. ``tag`` is its name in
-    frames, where that is another one than its name.
+    ``other_frames`` are further frames that its nodes may send. ``tag`` is its name in frames,
+    ``namespace`` that in nodes and topics, where it is another one than its name.
     """
 
     name: str
@@ -148,6 +148,12 @@ class Robot(NamedTuple):
     tf_topic: FullName = "/tf"
     other_frames: tuple[str, ...] = ()
     tag: str = ""
+    namespace: str = ""
+
+    @property
+    def space(self) -> str:
+        """Its name in nodes and topics, without a slash in front."""
+        return self.namespace or self.name
 
 
 class Node(NamedTuple):

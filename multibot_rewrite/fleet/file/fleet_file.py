@@ -109,7 +109,7 @@ def read_fleet(
         zenoh_of(read),
         data.get("simulator_world", ""),
         read.places.get(("simulator_world",), (read.file, 1)),
-        apart_of(read, {it.name: it.namespace for it in robots}),
+        apart_of(read, [it.name for it in robots]),
         why,
         tuple((it, read.places[it,]) for it in LISTS if (it,) in read.places),
         _nodes(data, "own_nodes"),

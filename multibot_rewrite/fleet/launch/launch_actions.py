@@ -546,9 +546,9 @@ def _qos(plan: FleetPlan, robot: RewrittenRobot, space: str) -> Iterator[tuple[s
 
 def _domain_bridge(robot: RewrittenRobot, files: Collection[str]) -> Iterator[Start]:
     """Yield the process that brings topics between the robot's domain and that of all robots."""
-    path = bridge_path(robot.spec.namespace)
+    path = bridge_path(robot.spec.name)
     if path in files:
-        name = bridge_name(robot.spec.namespace)
+        name = bridge_name(robot.spec.name)
         yield Start("domain_bridge", "domain_bridge", "", name, arguments=(File(path),))
 
 

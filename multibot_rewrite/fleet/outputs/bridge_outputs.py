@@ -88,7 +88,7 @@ def bridge_outputs(plan: FleetPlan) -> FilesToCheck:
                 written = robot.member.inventory.document.root.iter(it.tag)
                 number = [cast("int", one.sourceline) for one in written].index(it.line)
                 line = line_of(robot.member.source, it.tag, number)
-                message = f"{it.what} of {it.robot} is not bridged: {it.why}"
+                message = f"{it.what} of {robot.spec.name} is not bridged: {it.why}"
                 yield NO_TOPIC.finding(message, it.hint, file=robot.spec.description, line=line)
     yield from _for_all([files for _, files in groups], topics, simulators(plan) == ["gz"])
 

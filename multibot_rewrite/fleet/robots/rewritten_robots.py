@@ -247,7 +247,7 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
             _final(semantic, robot, naming) if semantic else b"",
             names,
             names._replace(robot=robot.namespace),
-            made,
+            made._replace(name=robot.name),
             # These the fleet says, of the robots that it has.
             tuple(it for it in found if it.code not in (*SHARED_CODES, UNREAD)),
             simulated,

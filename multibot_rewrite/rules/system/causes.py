@@ -167,7 +167,8 @@ def why_other_name(plan: Index, node: str, match: str) -> Cause:
     robot = plan.robot_of[node]
     plugin, place = plugin_of(plan, node)
     plain = plan.of_names.without_robot(node, robot)
-    namespaced = node == f"/{robot}{plain}"
+    space = plan.of_names.tag(robot)
+    namespaced = node == f"/{space}{plain}"
     if match not in (plain, f"/{plain.rpartition('/')[2]}"):
         return Cause(f"{match} is running; is it this node under another name?")
     if plugin:
@@ -178,12 +179,12 @@ def why_other_name(plan: Index, node: str, match: str) -> Cause:
         return Cause(f"{match} is running in the process of {taker}: start {taker} as planned")
     missing, rule = "name", Remap(match, "__node", node.rpartition("/")[2])
     if namespaced:
-        missing, rule = "namespace", Remap(match, "__ns", f"/{robot}")
+        missing, rule = "namespace", Remap(match, "__ns", f"/{space}")
     option = f"--ros-args -r {rule.old}:={rule.new}"
     if way == COMPONENT:
         option = f"{missing}={rule.new!r} of its ComposableNode"
     elif namespaced:
-        option = f"namespace={robot!r} in the launch file, or {option}"
+        option = f"namespace={space!r} in the launch file, or {option}"
     why = f"{match} is running: it was started without the robot's {missing}"
     return Cause(f"{why}; use {option}", remaps=(rule,))
 

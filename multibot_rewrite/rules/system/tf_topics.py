@@ -249,7 +249,7 @@ def _elsewhere(
     message = f"{shorten(nodes)} {does} tf on {topic}, but the tf of {robot} is on {home}"
     other = seen.robot(topic)
     # tf2 asks for /tf: a rule for the name that another rule made is none.
-    target = "tf" if home.startswith(f"/{robot}/") else home
+    target = "tf" if home.startswith(f"/{seen.of_names.tag(robot)}/") else home
     rules = f"-r /{TF}:={target} -r {static_topic(f'/{TF}')}:={static_topic(target)}"
     hint = f"pass {rules}: to the whole process, where the node shares one"
     if home == f"/{TF}":
