@@ -49,10 +49,11 @@ def plan_fleet(
         naming = plan.fleet.naming
         members = [it.member for it in robots]
         written = {it.spec.namespace: it.written for it in robots}
-        domains = {it.robot: it.number for it in file.apart.domains}
-        own_domains = [it.number for it in file.apart.domains if it.robot]
+        domains = file.apart.numbers
+        own_domains = [number for robot, number in domains.items() if robot]
         never_meet = bool(own_domains) and len({*own_domains}) == len(own_domains)
-        met = (*table.problems, *robots_meet(table, members, naming, written, domains))
+        named = (it._replace(robot=plan.fleet.name(it.robot)) for it in table.problems)
+        met = (*named, *robots_meet(table, members, naming, written, domains))
         every = (it for it in met if it.code != UNREACHABLE_NAME.code or not never_meet)
         simulated = [it.member for it in robots if is_simulated(it)]
         said = [it.member for it in robots if is_said(it)]

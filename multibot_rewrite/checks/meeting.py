@@ -148,8 +148,8 @@ class NamesOfFleet(Protocol):
         """Return the planned transforms."""
 
     @property
-    def words(self) -> Mapping[str, str]:
-        """Return the robot by each word that stands for it in names."""
+    def tags(self) -> Mapping[str, str]:
+        """Return the prefix or postfix of robots in frames, where it is not the robot's name."""
 
 
 def shared_by_nothing(

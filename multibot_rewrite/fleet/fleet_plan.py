@@ -43,10 +43,7 @@ from multibot_rewrite.fleet.robots.simulators import (
     note,
     without_world_systems,
 )
-from multibot_rewrite.system.coverage import Coverage, coverage
-from multibot_rewrite.system.records import System
 from multibot_rewrite.planning.plan import words_of
-from multibot_rewrite.planning.way_checks import UNREACHABLE_NAME
 
 
 class FleetPlan(NamedTuple):

@@ -336,17 +336,24 @@ def test_what_a_launch_file_loads_or_brings_up_is_reached_from_one_domain(tmp_pa
         (tmp_path / f"{name}.launch.py").write_text(LOADS.format(actions))
     (tmp_path / "box.launch.py").write_text(LOADS.format("Node(**box)"))
     head = "description: robot.urdf\ndistro: jazzy\nsimulator: none\n"
-    for node_set, numbers, told in (
-        ("nav2_composed", (11, 12), True),
-        ("slam_toolbox", (11, 12), True),
-        ("slam_toolbox", (11, 11), False),
-        ("nav2", (11, 12), False),
+    for source, numbers, told in (
+        ("node_sets: nav2_composed", (11, 12), True),
+        ("node_sets: slam_toolbox", (11, 12), True),
+        ("node_sets: slam_toolbox", (11, 11), False),
+        ("node_sets: nav2", (11, 12), False),
+        ("launch: part.launch.py", (11, 12), True),
+        ("launch: part_later.launch.py", (11, 12), True),
+        ("launch: part_later.launch.py", (11, 11), False),
+        ("launch: box.launch.py", (11, 12), False),
     ):
         domains = "domains: {{robot1: {}, robot2: {}}}\n".format(*numbers)
-        (tmp_path / "fleet.yaml").write_text(f"{head}node_sets: {node_set}\n{domains}{SMALL}")
+        (tmp_path / "fleet.yaml").write_text(f"{head}{source}\n{domains}{SMALL}")
         made = built_fleet(tmp_path / "fleet.yaml")
         found = [it for it in made.findings if it.code == "MF849"]
-        assert [it.line for it in found] == [5] * told, node_set
+        assert [it.line for it in found] == [5] * told, source
+        # The class of this one is known from the launch file alone.
+        loaded = {it.plugin for it in made.starts.every}
+        assert ("image_proc::RectifyNode" in loaded) == ("part" in source), source
 
 
 NODES = """\

@@ -7,7 +7,6 @@ import os
 from collections.abc import Iterator, Sequence
 
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.fleet.outputs.manifest import folders_of
 from multibot_rewrite.fleet.outputs.params_style import ZONES
 from multibot_rewrite.producers.evidence.parameter_files import named_values
 from multibot_rewrite.related_files.params.sections import PARAMETERS

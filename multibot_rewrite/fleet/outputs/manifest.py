@@ -43,7 +43,6 @@ def manifest(
     data = {
         "format": BUILD,
         "distro": plan.file.distro,
-        "robots": {it.spec.namespace: it.spec.name for it in plan.robots},
         "inputs": {os.path.relpath(path, folder): hash_of(inputs[path]) for path in sorted(inputs)},
         "outputs": {it.path: hash_of(it.data) for it in files},
     }
@@ -52,22 +51,13 @@ def manifest(
 
 def inputs_of(folder: str) -> Mapping[str, str]:
     """Return the hashes of what a build into ``folder`` read, by path; none without its manifest."""
-    found = _section(folder, "inputs").items()
-    return {os.path.normpath(os.path.join(folder, path)): hash_ for path, hash_ in found}
-
-
-def folders_of(folder: str) -> Mapping[str, str]:
-    """Return the folder that a build wrote for each robot, by the robot's name in its plan."""
-    return _section(folder, "robots")
-
-
-def _section(folder: str, name: str) -> Mapping[str, str]:
     path = os.path.join(folder, MANIFEST)
     try:
-        found = load_json(read_file(path))[name] if os.path.isfile(path) else {}
-        return {str(key): str(value) for key, value in found.items()}
+        found = load_json(read_file(path))["inputs"] if os.path.isfile(path) else {}
+        paths = {os.path.normpath(os.path.join(folder, it)): str(found[it]) for it in found}
     except (ValueError, KeyError, TypeError, AttributeError):
         return {}
+    return paths
 
 
 def read_manifest(data: bytes, file: str) -> Mapping[str, str]:
