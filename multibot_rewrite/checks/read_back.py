@@ -145,7 +145,7 @@ def _of_launch(
 
     seen = index(found.system, whose)
     judged = inconclusive_where_in_doubt(judge(seen), found.system)
-    between = placed((as_sure(it, found, seen) for it in judged), found)
+    between = placed((as_sure(it, found, seen) for it in judged), found, seen)
     every = (*judge_launch(found), *bridge_findings(found), *between)
     asked = (it for it in every if not elsewhere & {*it.names})
     yield from (it for it in asked if it.level == ERROR and it.code not in told)

@@ -64,9 +64,9 @@ def _fleet_keys(wrong: str) -> list[str]:
 
 
 def _part(wrong: str, known: Iterable[str]) -> str:
-    """Return the known option that is a part of the word (output-format: format); or ""."""
+    """Return the option, known or of old, that is a part of the word (output-format: format); or ""."""
     parts = (f"--{it}" for it in reversed(wrong.lstrip("-").split("-")[1:]))
-    return next((it for it in parts if it in known), "")
+    return next((it for it in parts if it in known or it in other_words("options")), "")
 
 
 def _mistyped(wrong: str, known: Collection[str]) -> str:

@@ -10,6 +10,7 @@ from multibot_rewrite.base.editors import PLAN as PLAN_SCHEMA
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import facts_of_release, release_told
 from multibot_rewrite.cli import fleet
+from multibot_rewrite.cli.check_launch import plan_beside
 from multibot_rewrite.cli.output import deliver, goes_to_file, note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.tables import Grid, deliver_report
@@ -87,7 +88,7 @@ def _of_launch(options: argparse.Namespace) -> int:
         check_target(options.output, [it.file for it in orders])
         check_folder(options.output)
     made = launched_by(orders, release_told(options.distro), *fleet.own_nodes(options)).system
-    seen = diagnose(made)
+    seen = diagnose(made, names=plan_beside(orders))
     if not made.nodes:
         raise UsageError(f"{orders[0].file}: it starts no node, so there is no plan")
     for caveat in doubts(made):

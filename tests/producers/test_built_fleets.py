@@ -157,3 +157,19 @@ def test_what_a_vendors_launch_files_start_is_left_to_them(
     launched = ["check-launch", str(out / "fleet.launch.py"), "--plan", str(out / "plan.yaml")]
     assert main(launched) == 3
     assert "error: MG101" not in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("affix", ["prefix", "postfix"])
+def test_a_built_folder_says_whose_each_name_is(
+    affix: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The plan beside the launch file knows the robots that no namespace shows."""
+    (tmp_path / "arm.urdf").write_text('<robot name="arm"><link name="base_link"/></robot>')
+    fleet = tmp_path / "fleet.yaml"
+    head = f"layout: postfix\naffix: {affix}\ndistro: jazzy\ndescription: {tmp_path}/arm.urdf\n"
+    fleet.write_text(f"{head}robots: [{{name: left}}, {{name: right}}]\n")
+    assert main(["build", str(fleet), "-o", str(tmp_path / "out"), "-q"]) == 0
+    assert main(["check-launch", str(tmp_path / "out/fleet.launch.py")]) == 0
+    told = capsys.readouterr().err
+    assert "2 robots by the plan beside it: left, right; layout: postfix" in told
+    assert "2 robots, 1 node each: all known" in told
