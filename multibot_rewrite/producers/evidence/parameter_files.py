@@ -146,7 +146,7 @@ def _controllers(
     for section in sections:
         above, _, last = section.name.rpartition("/")
         # A renamed one is called controller_manager_robot1, for example.
-        if MANAGER not in last and section.name not in managers:
+        if MANAGER not in last and not any(is_for(section.raw.path, it) for it in managers):
             continue
         # What is for every node is for the manager, too; those of MoveIt are below a name there.
         own = f"/{section.name}"
