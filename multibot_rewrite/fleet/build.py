@@ -76,8 +76,7 @@ TABLE = "remappings.yaml"
 
 
 class Outputs(NamedTuple):
-    """Every file of a fleet, in the order of paths, the findings about them, what its launch file
-    starts, and the plan."""
+    """Every file of a fleet by path, the findings, what its launch file starts, and the plan."""
 
     files: tuple[OutputFile, ...]
     findings: tuple[Finding, ...]
@@ -293,8 +292,7 @@ def read_manifest(data: bytes, file: str) -> Mapping[str, str]:
 def output_changes(
     files: Iterable[OutputFile], known: Mapping[str, str], there: Mapping[str, str]
 ) -> OutputChanges:
-    """Return what a build must change; ``known`` are the hashes of the last build, ``there`` those
-    of the files on disk."""
+    """Return what a build must change; ``known``: hashes of the last build, ``there``: of the disk."""
     wanted = {it.path: hash_of(it.data) for it in files}
     write = [path for path, hash_ in wanted.items() if there.get(path) != hash_]
     remove = [path for path in known if path not in wanted and path in there]

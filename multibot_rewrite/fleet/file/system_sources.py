@@ -14,7 +14,7 @@ from multibot_rewrite.base.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.base.file_kinds import PLAN, recognised
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.naming import Policy
-from multibot_rewrite.base.releases import release_told
+from multibot_rewrite.base.releases import release_chosen_here
 from multibot_rewrite.description.sources.read import Source, read_file
 from multibot_rewrite.description.sources.release_said import release_of_launch
 from multibot_rewrite.fleet.checks.closed_plan import closed_plan
@@ -77,7 +77,7 @@ def system_of_launch(
     from multibot_rewrite.producers.launch.records import LaunchOrder
 
     order = LaunchOrder(os.fspath(path), tuple(arguments.items()), tuple(roots), trust)
-    return launched_by([order], release_told(distro)).system
+    return launched_by([order], release_chosen_here(distro)).system
 
 
 def launched_by(
