@@ -97,8 +97,7 @@ def bytes_if_read(path: str) -> bytes:
 
 
 def read_text(path: str) -> str:
-    """Return the text of a file with newlines as line ends; raises what ``read_bytes`` raises, and
-    UnicodeDecodeError."""
+    """Return a file's text with plain line ends; raises as ``read_bytes``, or UnicodeDecodeError."""
     text = read_bytes(path).decode().removeprefix("\ufeff")  # utf-8-sig is a module to be loaded
     return text.replace("\r\n", "\n").replace("\r", "\n") if "\r" in text else text
 

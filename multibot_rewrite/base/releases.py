@@ -62,7 +62,7 @@ def chosen_release(given: str, environment: Mapping[str, str]) -> str:
     raise UsageError(f"{VARIABLE} is {found!r}, which is not known; {hint}")
 
 
-def told_release(given: str, environment: Mapping[str, str]) -> str:
+def release_for_description(given: str, environment: Mapping[str, str]) -> str:
     """Return the release for one description: the one asked for, otherwise that of ROS_DISTRO,
     otherwise of the sourced ROS; empty where none of them is known."""
     if given:
@@ -72,9 +72,9 @@ def told_release(given: str, environment: Mapping[str, str]) -> str:
     return known if known in RELEASES else ""
 
 
-def why_told(given: str, environment: Mapping[str, str]) -> str:
-    """Return what sets the release of ``told_release``: an option or variable; empty for neither."""
-    if not told_release(given, environment):
+def why_release(given: str, environment: Mapping[str, str]) -> str:
+    """Return what sets ``release_for_description``: an option or variable; empty for neither."""
+    if not release_for_description(given, environment):
         return ""
     by_variable = VARIABLE if environment.get(VARIABLE) else "that ROS is sourced"
     return "--distro" if given else by_variable
@@ -129,14 +129,14 @@ def release_here(given: str | None = None) -> str:
     return chosen_release(given or "", os.environ)
 
 
-def release_told(given: str | None = None) -> str:
-    """Return ``told_release`` with this process's environment: for commands and public calls."""
-    return told_release(given or "", os.environ)
+def release_chosen_here(given: str | None = None) -> str:
+    """Return ``release_for_description`` in this process: for commands and public calls."""
+    return release_for_description(given or "", os.environ)
 
 
 def why_here(given: str | None = None) -> str:
     """Return ``why_told`` with this process's environment."""
-    return why_told(given or "", os.environ)
+    return why_release(given or "", os.environ)
 
 
 def release_doubt(given: str | None = None) -> str:

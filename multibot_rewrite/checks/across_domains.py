@@ -29,12 +29,12 @@ def not_across(fleet: Fleet) -> Iterator[Finding]:
     for (node, own, other), names in called.items():
         message = f"{node} of domain {own} calls {shorten(names)}, which domain {other} has"
         hint = "run both in one domain: services and actions do not cross"
-        yield _told(apart, message, hint, WARNING)
+        yield _finding(apart, message, hint, WARNING)
     # Topics without a known type that a node of one domain reads and another domain sends.
     crossing = crossings(plan, ()) if plan.domains else ()
     if untyped := sorted({it.name for it in crossing if not it.type}):
         message = f"domain_bridge cannot bring {shorten(untyped)}: the type is not known"
-        yield _told(
+        yield _finding(
             apart, message, "give the type in the file of nodes (docs/node-sets.md)", WARNING
         )
 
@@ -54,7 +54,7 @@ def _of_simulator(apart: Apart, plan: System) -> Iterator[Finding]:
         )
         robots = dict.fromkeys(it.robot for it in own)
         message = f"{own[0].name} {where}, and its robot is in {numbers[own[0].robot]}"
-        yield _told(apart, message, hint, level)._replace(robots=tuple(robots))
+        yield _finding(apart, message, hint, level)._replace(robots=tuple(robots))
 
 
 def one_launch_each(apart: Apart, starts: FleetStarts) -> Iterator[Finding]:
@@ -69,9 +69,9 @@ def one_launch_each(apart: Apart, starts: FleetStarts) -> Iterator[Finding]:
         names = shorten(it.name for it in reached)
         message = f"the launch file loads or activates nodes of {names}, from one domain"
         first = f"ros2 launch fleet.launch.py robots:={reached[0].name}"
-        yield _told(apart, message, f"start each robot by itself: {first}", WARNING)
+        yield _finding(apart, message, f"start each robot by itself: {first}", WARNING)
 
 
-def _told(apart: Apart, message: str, hint: str, level: str) -> Finding:
+def _finding(apart: Apart, message: str, hint: str, level: str) -> Finding:
     file, line = apart.place
     return NOT_ACROSS.finding(message, hint, level=level, file=file, line=line)

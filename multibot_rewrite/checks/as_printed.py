@@ -228,7 +228,7 @@ class _Planned(NamedTuple):
         time = {SIM_TIME: clock}
         own, *inner = (one._replace(parameters=(*one.parameters, time)) for one in it.every)
         environment = self.environment(robot)
-        values = self.value(_given(own._replace(components=tuple(inner)), environment))
+        values = self.value(_keywords(own._replace(components=tuple(inner)), environment))
         kind = "ComposableNodeContainer" if inner else "LifecycleNode" if it.brought_up else "Node"
         yield Action(kind, {**values, "output": "screen", "environment": environment})
         if it.brought_up:
@@ -260,7 +260,7 @@ class _Planned(NamedTuple):
                 "LoadComposableNodes", self.value(keywords(it._replace(components=(*inner,))))
             )
         if not it.process.is_include:
-            own = self.value(_given(it, environment))
+            own = self.value(_keywords(it, environment))
             return Action("ExecuteProcess", {**own, "output": "screen", "environment": environment})
         source = f"{share(it.package)}/{it.executable}"
         words = self.value(it.arguments)
@@ -290,7 +290,7 @@ def _with_shares(text: str) -> str:
     return "".join(share(it) if at % 2 else it for at, it in enumerate(in_shares(text)))
 
 
-def _given(it: Start, there: Mapping[str, str]) -> dict[str, Any]:
+def _keywords(it: Start, there: Mapping[str, str]) -> dict[str, Any]:
     """Return the keywords of a process in an environment."""
     own = {name: with_rest(text, there.get(name, "")) for name, text in it.environment.items()}
     return {name: own if name == "additional_env" else one for name, one in keywords(it).items()}

@@ -73,8 +73,7 @@ TABLE = "remappings.yaml"
 
 
 class Outputs(NamedTuple):
-    """Every file of a fleet, in the order of paths, the findings about them, what its launch file
-    starts, and the plan."""
+    """Every file of a fleet by path, the findings, what its launch file starts, and the plan."""
 
     files: tuple[OutputFile, ...]
     findings: tuple[Finding, ...]

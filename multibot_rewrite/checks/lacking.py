@@ -131,14 +131,14 @@ def unmoved(robot: RewrittenRobot, facts: Sequence[NodeFacts], system: System) -
     needed = (it for it in system.ends if it.role == SUBSCRIBES and is_needed(it))
     sensed = (it for it in needed if it.type.startswith(_SENSED) and it.type != _JOINTS)
     asked = [it for it in sensed if it.name not in sent]
-    said = [f"nothing reads {_words(orders)}"] if orders else []
-    said += [f"nothing sends {_words(asked)}"] if asked else []
+    said = [f"nothing reads {_names_with_nodes(orders)}"] if orders else []
+    said += [f"nothing sends {_names_with_nodes(asked)}"] if asked else []
     if said:
         who = f"robot {robot.spec.name!r}: all that it runs is known, and"
         yield at_robot(NOTHING_MOVES, robot, f"{who} {' and '.join(said)}", _HINT)
 
 
-def _words(ends: Iterable[End]) -> str:
+def _names_with_nodes(ends: Iterable[End]) -> str:
     """Return the names in the code, each with its node, for a message."""
     each = (f"{it.code_name or it.name} of {it.node.rpartition('/')[2]}" for it in ends)
     return shorten(dict.fromkeys(each))

@@ -12,12 +12,12 @@ from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.planning.records import Run
 from multibot_rewrite.rules.declaration import at
 from multibot_rewrite.rules.launch.started import (
+    bond_message,
     is_managed,
     keeps_no_bond,
     moves_nothing,
     no_joints,
     not_listed,
-    said_of_bond,
 )
 
 
@@ -57,7 +57,7 @@ def _unbonded(nodes: Sequence[NodeFacts], own: Mapping[str, Run]) -> Iterator[Fi
         timeout = given.values.get("bond_timeout")
         for it in nodes if timeout is None or timeout.value != 0 else ():
             if it.name in listed and keeps_no_bond(it):
-                said = said_of_bond(manager.name, it.name)
+                said = bond_message(manager.name, it.name)
                 yield at(not_listed, given.place, *said, level=WARNING)
 
 

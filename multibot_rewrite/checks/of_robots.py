@@ -137,13 +137,13 @@ def _one_device_each(plan: FleetPlan) -> Iterator[Finding]:
             keys = ((one, (one.get("name", ""), (one.text or "").strip())) for one in params)
             met = [one for one, key in keys if count.get(key, 0) > 1]
             hints[sources] = own_value(sources_of(robot.written, robot.member, met))
-        yield _said(it, "; ".join(filter(None, (it.hint, hints[sources]))))
+        yield _of_the_fleet(it, "; ".join(filter(None, (it.hint, hints[sources]))))
     of_all = Counter(path for it in robots for path in it.spec.related_files.get("params", ()))
     # What a file for several robots has is told there, or numbered.
     shared = frozenset(path for path, count in of_all.items() if count > 1)
     given = [one for it in robots for one in _of_nodes(it, plan.evidence_of(it), known, shared)]
     given += [one for it in robots for one in _of_words(it, plan.evidence_of(it))]
-    yield from (_said(it, it.hint) for it in _met(robots, given))
+    yield from (_of_the_fleet(it, it.hint) for it in _met(robots, given))
 
 
 def _met(robots: Sequence[RewrittenRobot], addresses: Sequence[Address]) -> Iterator[Finding]:
@@ -153,7 +153,7 @@ def _met(robots: Sequence[RewrittenRobot], addresses: Sequence[Address]) -> Iter
     yield from (it for it in found if it.code == one_device.code)
 
 
-def _said(it: Finding, hint: str) -> Finding:
+def _of_the_fleet(it: Finding, hint: str) -> Finding:
     return it._replace(message=f"{it.node} {it.message}", hint=hint, node="", robot="")
 
 

@@ -127,7 +127,7 @@ def of_sources(robot: RewrittenRobot, evidence: RobotEvidence, srdf: Job | None 
     edges += (it for it in edges_off(given, evidence.known) if it.child not in moved)
     # What a file asks is told at its place.
     order = {name: at for at, name in enumerate(sections)}
-    said = _said(srdf.data if srdf else b"", srdf.file if srdf else "", source.root)
+    said = _semantics(srdf.data if srdf else b"", srdf.file if srdf else "", source.root)
     lookups = [
         it
         for run in sorted(alone, key=lambda it: order.get(it.node, len(order)))
@@ -182,7 +182,7 @@ def with_controllers(
     given = given_nodes([it.yaml for it in own if PARAMETERS in it.text], known)
     written = read_document(robot.description, robot.member.source.file)
     path = path_for(robot, expanded_name(robot.spec.srdf))
-    said = _said(robot.srdf, path, written.root)
+    said = _semantics(robot.srdf, path, written.root)
     exports = exported(written.root, robot.member.source.file)
     moveit = (it.yaml for it in own if SIMPLE in it.text)
     return _controlled(system, given, evidence, exports, moveit, said)
@@ -289,7 +289,7 @@ def _heard(fleet: Fleet, robot: RewrittenRobot, bridges: Iterable[OutputFile]) -
             yield Heard(end.name, it.frame, link=old.link, place=place)
 
 
-def _said(data: bytes, file: str, root: _Element) -> Semantics:
+def _semantics(data: bytes, file: str, root: _Element) -> Semantics:
     """Return what an SRDF, which may be empty, declares for the description."""
     return semantics(read_document(data, file).root, root, file) if data else Semantics((), ())
 

@@ -75,7 +75,7 @@ def written_findings(
     bridges = [it for it in own if it.path == f"{robot.spec.name}/{BRIDGE_FILE}"]
     memo: dict[object, object] = {GzTopics: GzTopics(_gz_topics(plan, robot) if bridges else {})}
     for text in bridges:
-        yield from _asked(no_gz_topic, BRIDGE, text, context, memo)
+        yield from _findings_of_rule(no_gz_topic, BRIDGE, text, context, memo)
     opened = {it.file for it in known if it.code == undeclared_controller.code}
     moveit = [it for it in own if SIMPLE in it.text and opened.isdisjoint(it.sources)]
     # What the parameter files of the robot set as they are written.
@@ -84,11 +84,11 @@ def written_findings(
     memo = {Beside: Beside(tuple(given), plan.evidence_of(robot).known)}
     for text in moveit:
         kind = PARAMS if PARAMETERS in text.text else MOVEIT
-        for it in _asked(undeclared_controller, kind, text, context, memo):
+        for it in _findings_of_rule(undeclared_controller, kind, text, context, memo):
             yield it._replace(level=ERROR)
 
 
-def _asked(
+def _findings_of_rule(
     rule: Rule, kind: str, text: OutputFile, context: Context, memo: dict[object, object]
 ) -> Iterator[Finding]:
     written = NamedFile(kind, text.path, text.text, context, memo, document=text.yaml)

@@ -14,6 +14,8 @@ from multibot_rewrite.base.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.model import InputError, MultibotError
 from multibot_rewrite.base.releases import release_told
+from multibot_rewrite.base.model import MultibotError
+from multibot_rewrite.base.releases import release_chosen_here
 from multibot_rewrite.cli import check, pictures, unplanned
 from multibot_rewrite.cli.fleet import orders_of, own_nodes
 from multibot_rewrite.cli.output import note
@@ -49,7 +51,7 @@ def run(options: argparse.Namespace) -> int:
     if options.output:
         check_target(options.output, [*filter(None, [options.plan]), *(it.file for it in orders)])
     plan, own = check.plan_of(options) if options.plan else None, own_nodes(options)
-    told = release_told(options.distro) or (plan.release if plan else "")
+    told = release_chosen_here(options.distro) or (plan.release if plan else "")
     read = partial(launched_by, told=told, nodes=own[0], nodl=own[1])
     made = read(orders)
     for it in made.system.environment.caveats:

@@ -14,7 +14,7 @@ from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import release_doubt
 from multibot_rewrite.checks.judged_plan import make_fleet
 from multibot_rewrite.cli.output import note
-from multibot_rewrite.cli.report import About, check_report, chosen, report_beside
+from multibot_rewrite.cli.report import About, check_report, chosen, report_findings_too
 from multibot_rewrite.cli.usage import (
     asked_number,
     check_order,
@@ -139,7 +139,7 @@ def report_table(options: argparse.Namespace, made: Fleet) -> bool:
     """Report what is wrong with the table and open in the robots; return whether that is a failure."""
     found = chosen(options, (*made.table.problems, *made.gaps))
     about = About([options.input], made.words, made.table.release)
-    return report_beside(options, found, about)
+    return report_findings_too(options, found, about)
 
 
 def orders_of(options: argparse.Namespace, words: Sequence[str]) -> list[LaunchOrder]:

@@ -246,8 +246,7 @@ def _with_files_asked_for(
 def _of_these(
     shown: Sequence[str], question: str, default: str, or_none: bool = True
 ) -> int | None:
-    """Return which of these was chosen, by its number, None for the word ``none``: numbers are
-    easier to type than paths."""
+    """Return which of these was chosen by its number; None for the word ``none``."""
     for at, it in enumerate(shown, 1):
         say(f"  {at}: {it}", PROGRAM)
     numbers = [str(at) for at in range(1, len(shown) + 1)]
@@ -269,7 +268,7 @@ def _with_names(wanted: Wanted) -> Wanted:
     text = _valid("Robots: how many, or their names", given, _is_robots)
     if text.strip().isdigit():
         return wanted._replace(each=int(text))
-    names = tuple(_words(text))
+    names = tuple(_split_list(text))
     return wanted._replace(each=len(names), names=names)
 
 
@@ -304,12 +303,12 @@ def _left_out(made: Proposal) -> list[str]:
     numbers = {str(at): path for at, path in enumerate(paths, 1)}
 
     def fits(text: str) -> bool:
-        return text in ("none", "all") or all(it in numbers for it in _words(text))
+        return text in ("none", "all") or all(it in numbers for it in _split_list(text))
 
     text = _valid("Files to leave out: numbers, all, or none", "none", fits)
     if text == "all":
         return paths
-    return [numbers[it] for it in _words(text)] if text != "none" else []
+    return [numbers[it] for it in _split_list(text)] if text != "none" else []
 
 
 def _apart(made: Proposal) -> float:
@@ -330,7 +329,7 @@ def _in_layout(made: Proposal) -> Proposal:
     return made if word == layout.value else in_layout(made, Choice(word, MEANT))
 
 
-def _words(text: str) -> list[str]:
+def _split_list(text: str) -> list[str]:
     return text.replace(",", " ").split()
 
 
@@ -339,7 +338,7 @@ def _is_count(text: str) -> bool:
 
 
 def _is_robots(text: str) -> bool:
-    names = _words(text)
+    names = _split_list(text)
     apart = len(set(names)) == len(names)
     return _is_count(text) or (bool(names) and apart and all(map(_NAME.fullmatch, names)))
 

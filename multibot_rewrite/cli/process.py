@@ -69,7 +69,7 @@ def _refused(options: argparse.Namespace, error: RewriteRefused) -> int:
         NO_ROBOTS,
         About,
         by_themselves,
-        report_beside,
+        report_findings_too,
         report_first,
     )
     from multibot_rewrite.cli.usage import robots
@@ -77,7 +77,9 @@ def _refused(options: argparse.Namespace, error: RewriteRefused) -> int:
     given = vars(options)
     read = given.get("input") or given.get("fleet") or given.get("plan") or ""
     about = About([read], by_themselves(robots(options)) if "robots" in given else NO_ROBOTS)
-    (report_first if options.findings_first else report_beside)(options, error.findings, about)
+    (report_first if options.findings_first else report_findings_too)(
+        options, error.findings, about
+    )
     return STOPPED
 
 

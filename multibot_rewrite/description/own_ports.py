@@ -100,11 +100,11 @@ def numbered(robots: Mapping[str, tuple[bytes, Sequence[Port]]]) -> Numbered:
         edits = _edits(robot, ((it, new[it.number]) for it in own))
         changed |= {it.name for it in own if new[it.number] != it.number}
         texts.append(b"".join(cut(text, edits)) if edits else text)
-    notes = tuple(said_of_numbers(it, given[it]) for it in sorted(changed))
+    notes = tuple(numbers_message(it, given[it]) for it in sorted(changed))
     return Numbered(tuple(texts), notes)
 
 
-def said_of_numbers(name: str, given: Iterable[tuple[str, int]]) -> tuple[str, str]:
+def numbers_message(name: str, given: Iterable[tuple[str, int]]) -> tuple[str, str]:
     """Return which number each robot got for a port, and what to do; raises nothing."""
     words = [f"{robot} {number}" for robot, number in given]
     more = f" and {len(words) - _NAMED} more" if words[_NAMED:] else ""

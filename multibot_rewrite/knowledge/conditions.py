@@ -59,7 +59,7 @@ def joined(text: str, other: str) -> str:
 
 def said(text: str) -> str:
     """Return the condition as people read it."""
-    return OR.join(AND.join(map(_said, it.split(AND))) for it in text.split(OR))
+    return OR.join(AND.join(map(_readable_term, it.split(AND))) for it in text.split(OR))
 
 
 @lru_cache(maxsize=4096)  # so many facts, so few conditions
@@ -91,7 +91,7 @@ def words_in(text: str, kind: str) -> Iterator[str]:
         )
 
 
-def _said(term: str) -> str:
+def _readable_term(term: str) -> str:
     """Return a term as people read it; another reason, such as a file of parameters, as it is."""
     if _TERM.fullmatch(term) is None and term.partition(": ")[0] not in KINDS:
         return term
@@ -111,7 +111,7 @@ def _one(text: str) -> Condition:
             near = did_you_mean_one_of(kind["kind"], KINDS)
             known = f"{near}{near and ' '}known: {', '.join(KINDS)}"
             raise UsageError(f"{text!r} is of no kind that is known; {known}")
-        words = _words(kind["words"])
+        words = _terms(kind["words"])
         if kind["kind"] == OPEN_KIND and (len(words) > 1 or words[0] not in OPEN):
             raise UsageError(f"open: {ALSO.join(words)!r} is none of {', '.join(OPEN)}")
         return Condition(kind["kind"], ":", words)
@@ -121,10 +121,10 @@ def _one(text: str) -> Condition:
         raise UsageError(f"{text!r} is no condition; {hint}")
     if found["state"]:
         return Condition(found["parameter"], found["state"], ())
-    return Condition(found["parameter"], found["how"] or "=", _words(found["value"] or "true"))
+    return Condition(found["parameter"], found["how"] or "=", _terms(found["value"] or "true"))
 
 
-def _words(text: str) -> tuple[str, ...]:
+def _terms(text: str) -> tuple[str, ...]:
     return tuple(it.strip() for it in text.split(ALSO))
 
 

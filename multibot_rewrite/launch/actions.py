@@ -96,7 +96,7 @@ def composable_node(name_in_set: Text = "", **options: Any) -> Any:
 
     def made(context: Context) -> dict[str, Any]:
         name, its = perform(context, name_in_set), robot_of(context, own["of"])
-        return _made(context, name, own, _with_program(its, name, first, component=True))
+        return _node_options(context, name, own, _with_program(its, name, first, component=True))
 
     placeholders = {"package": "later", "plugin": "later"}
     base = of_launch_ros("descriptions").ComposableNode
@@ -140,10 +140,10 @@ def _node(word: str, base: Any, name_in_set: Text, options: Mapping[str, Any]) -
     def made(context: Context) -> later.Made:
         called, its = perform(context, name_in_set), robot_of(context, own["of"])
         if its.table.is_controller(called):
-            return _made(context, called, own, first)
+            return _node_options(context, called, own, first)
         box = its.table.container(called)
         programmed = _with_program(its, called, first, component=bool(box))
-        given = _made(context, called, own, programmed)
+        given = _node_options(context, called, own, programmed)
         return _loaded(box, given, programmed) if box else given
 
     known = {key: it for key, it in first.items() if key != "plugin"}
@@ -174,7 +174,7 @@ def _check_options(word: str, options: Mapping[str, Any]) -> None:
             raise UsageError(f"{word}: {it} comes from the fleet file; {first}remove {it}=")
 
 
-def _made(
+def _node_options(
     context: Context, name: str, own: Mapping[str, Any], options: Mapping[str, Any]
 ) -> dict[str, Any]:
     """Return the options with those of the node, or of a controller's spawner, in this launch.

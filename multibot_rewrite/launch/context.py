@@ -106,7 +106,7 @@ def fleet_of(context: Context, fleet: Text = None) -> LoadedFleet:
     enclosing, _ = here(context)
     if fleet is None and enclosing:
         return enclosing
-    path = _said(context, FLEET, "fleet") if fleet is None else perform(context, fleet)
+    path = _launch_argument(context, FLEET, "fleet") if fleet is None else perform(context, fleet)
     known: dict[str, LoadedFleet] = _of_launch(context, _FLEETS, dict)
     words = (TRUST, DISTRO, ROBOTS, COUNT)
     trust, distro, robots, count = (str(context.launch_configurations.get(it, "")) for it in words)
@@ -130,7 +130,7 @@ def robot_of(context: Context, of: RobotRef = HERE) -> LoadedRobot:
     """Return a robot; raises as ``fleet_of``, and UsageError for an unknown robot."""
     _, enclosing = here(context)
     if of.robot is None:
-        name = enclosing or _said(context, ROBOT, "robot")
+        name = enclosing or _launch_argument(context, ROBOT, "robot")
     else:
         name = perform(context, of.robot)
     return fleet_of(context, of.fleet).robot(name)
@@ -190,7 +190,7 @@ def listed(context: Context, names: Text) -> list[str]:
     return [it for it in map(str.strip, perform(context, names).split(",")) if it]
 
 
-def _said(context: Context, key: str, what: str) -> str:
+def _launch_argument(context: Context, key: str, what: str) -> str:
     if key not in context.launch_configurations:
         hint = f"set {what}, or put it into multibot_robots or each_robot"
         raise UsageError(f"no {what} is given; {hint}")

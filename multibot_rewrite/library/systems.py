@@ -17,6 +17,7 @@ from multibot_rewrite.base.naming import Policy
 from multibot_rewrite.base.releases import release_told
 from multibot_rewrite.checks.closed_plan import closed_plan
 from multibot_rewrite.checks.judged_plan import make_fleet, plan_fleet
+from multibot_rewrite.base.releases import release_chosen_here
 from multibot_rewrite.description.sources.read import Source, read_file
 from multibot_rewrite.description.sources.release_said import release_of_launch
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
@@ -77,7 +78,7 @@ def system_of_launch(
     from multibot_rewrite.producers.launch.records import LaunchOrder
 
     order = LaunchOrder(os.fspath(path), tuple(arguments.items()), tuple(roots), trust)
-    return launched_by([order], release_told(distro)).system
+    return launched_by([order], release_chosen_here(distro)).system
 
 
 def launched_by(

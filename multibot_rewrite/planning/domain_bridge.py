@@ -85,7 +85,7 @@ def beyond(plan: System) -> dict[str, str]:
 def crossings(plan: System, given: Sequence[str]) -> list[Crossing]:
     """Return the topics that a node reads and no node of its domain sends, and those requested."""
     numbers = domain_of(plan)
-    found = [*_needed(surely(plan), numbers), *_given(plan, numbers, given)]
+    found = [*_needed(surely(plan), numbers), *_crossings(plan, numbers, given)]
     return sorted(dict.fromkeys(found))
 
 
@@ -113,7 +113,9 @@ def _robots(plan: System) -> Mapping[str, str]:
     return defaultdict(str, {it.name: it.robot for it in plan.nodes})
 
 
-def _given(plan: System, numbers: Mapping[str, int], given: Sequence[str]) -> Iterator[Crossing]:
+def _crossings(
+    plan: System, numbers: Mapping[str, int], given: Sequence[str]
+) -> Iterator[Crossing]:
     robot_of = _robots(plan)
     known: dict[str, dict[str, Crossing]] = defaultdict(dict)
     sent = {(robot_of[it.node], it.name) for it in plan.ends if it.role == PUBLISHES}

@@ -25,8 +25,8 @@ from multibot_rewrite.knowledge.records import (
 )
 from multibot_rewrite.planning.of_runs import (
     asked_alone,
-    asked_beside,
     expanded,
+    name_made_of_other_end,
     parsed,
     placed,
     target_of,
@@ -89,7 +89,7 @@ def build_table(
             managers = [it for it in copies if it.fact.kind == MANAGER and not it.fact.plugin]
             for run in plugins.get(robot, ()):
                 if run.fact.of_hardware:
-                    runs += [_beside(it, run) for it in managers[:1]]
+                    runs += [_component_node(it, run) for it in managers[:1]]
                     continue
                 # What their controllers publish is the controllers' own, if a node set names those.
                 ends = run.fact.endpoints
@@ -99,7 +99,7 @@ def build_table(
         return made._replace(problems=(*made.problems, *not_taken(made)))
 
 
-def _beside(manager: Run, component: Run) -> Run:
+def _component_node(manager: Run, component: Run) -> Run:
     """Return the node of a hardware component where its controller manager makes it."""
     fact = component.fact._replace(host=manager.node, when=component.fact.when or manager.fact.when)
     home = manager.namespace
@@ -155,7 +155,7 @@ def run_of(
     rules: dict[str, Rule] = {}
     named = [it for it in node.endpoints if not it.fixed]
     for endpoint in sorted(named, key=lambda it: bool(it.beside)):
-        asked = _asked(endpoint, node, (name, namespace, rules.values()))
+        asked = _end_as_asked(endpoint, node, (name, namespace, rules.values()))
         for source, target in _targets(asked, place):
             rules.setdefault(expand(source, namespace, name), (source, target))
     made = Run(robot, node.name, namespace, name, tuple(rules.values()), node)
@@ -163,13 +163,15 @@ def run_of(
     return with_names(made._replace(host_name=host_name))
 
 
-def _asked(endpoint: Endpoint, node: NodeFacts, at: tuple[str, str, Iterable[Rule]]) -> Endpoint:
+def _end_as_asked(
+    endpoint: Endpoint, node: NodeFacts, at: tuple[str, str, Iterable[Rule]]
+) -> Endpoint:
     """Return the endpoint under the name that its node asks for by the rules of the others; what is
     made of another's name has to lead where the robot alone has it."""
     if not endpoint.beside:
         return endpoint
     name, namespace, rules = at
-    asked = asked_beside(endpoint, bind(name, namespace, parsed(rules)))
+    asked = name_made_of_other_end(endpoint, bind(name, namespace, parsed(rules)))
     name = asked.removeprefix(f"{namespace.rstrip('/')}/")
     return endpoint._replace(name=name, remapped=endpoint.remapped or asked_alone(node, endpoint))
 

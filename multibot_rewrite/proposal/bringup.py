@@ -98,7 +98,7 @@ def bringup_of(robot: Robot, launch: Sequence[str], trust: bool) -> Bringup | No
     likely = [it for it in publishing if not _is_of_another(it.graph, robot)]
     starting = [it for it in likely if _reads(it.graph) & robot.files] or likely
     if not starting:
-        return _beside(roots, robot, trust)
+        return _only_launch_file(roots, robot, trust)
     starting = sorted(starting, key=_rank)[:_MOST]
     read = _with_own_arguments(starting, every, robot, trust)
     # What is not said is simulated where a launch file does it.
@@ -195,7 +195,7 @@ def _is_bringup(graph: LaunchGraph, robot: Robot) -> bool:
     return len(homes) < 2 and (starts_simulator(graph) or not shows)
 
 
-def _beside(roots: Sequence[Reading], robot: Robot, trust: bool) -> Bringup | None:
+def _only_launch_file(roots: Sequence[Reading], robot: Robot, trust: bool) -> Bringup | None:
     """Return the only launch file that starts something of a robot, if none publishes its
     description: a build does that, but spawns no controllers. None otherwise."""
     own = (it for it in roots if not _is_of_another(it.graph, robot))

@@ -141,8 +141,7 @@ def is_called_like_a_part(path: str) -> bool:
 
 
 def names_its_package(path: str) -> bool:
-    """Return whether the package of a description is named after it, as tetra_description or acme_tetra
-    after tetra.xacro."""
+    """Return whether a package is named after its description, as acme_tetra after tetra.xacro."""
     words = _package(path).lower().split("_")
     inner = (words, words[:-1], words[1:], words[1:-1])
     return _stem(path).lower() in {"_".join(it) for it in inner} - {""}

@@ -57,7 +57,7 @@ def _lines(it: Proposal, folder: str, name: str) -> Iterator[str]:
         yield ""
         yield from (f"# {line}" for line in whys)
         yield from _block(key, value)
-    left = dict(_left(it, folder))
+    left = dict(_unused_files(it, folder))
     first = {os.path.relpath(path, folder) for path in (*it.refused, *it.broken)}
     home = os.path.relpath(it.members[0].looked.path, folder)
     if left:
@@ -97,7 +97,7 @@ def _capped(lines: Iterable[str]) -> Iterator[str]:
     yield from (f"# {line}" for line in _some(lines))
 
 
-def _left(it: Proposal, folder: str) -> Iterator[tuple[str, str]]:
+def _unused_files(it: Proposal, folder: str) -> Iterator[tuple[str, str]]:
     """Yield what was refused, what cannot be read, and the files of the robots' packages that no robot
     has, each with the reason."""
     for path, why in {**it.refused, **it.broken}.items():

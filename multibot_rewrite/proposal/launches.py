@@ -127,8 +127,7 @@ def not_read(read: Iterable[Reading]) -> Iterator[Row]:
 
 
 def started(nodes: Iterable[LaunchedNode]) -> Iterator[Row]:
-    """Yield what is started for robots, each once at its first place: no simulator, and no program
-    that ends or only looks."""
+    """Yield what is started for robots, each once: no simulators, no programs that end or only look."""
     known = set()
     for it in (one for one in nodes if one.executable and is_of_robot(one)):
         text = said_of(it)

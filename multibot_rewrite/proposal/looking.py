@@ -114,7 +114,7 @@ def _look(path: str, given: Mapping[str, str], reach: Reach) -> Looked:
     try:
         xacro = path.endswith(".xacro")
         text = expand(path, filled(given, ANY), None, reach) if xacro else read_model(path)
-        return _looked(path, text, tuple(given.items()) if xacro else ())
+        return _description_in(path, text, tuple(given.items()) if xacro else ())
     except InputError as error:
         return Looked(path, fault=str(error))
 
@@ -146,8 +146,7 @@ def with_bringup(
 
 
 def _own_values(given: Iterable[tuple[str, str]], path: str) -> dict[str, str]:
-    """Return the arguments of a xacro that name no robot and no file that a launch makes; paths are as
-    from its folder."""
+    """Return a xacro's arguments that name no robot and no file of a launch, paths by its folder."""
     folder = os.path.dirname(path)
     return {
         name: os.path.relpath(value, folder) if os.path.isabs(value) else value
@@ -260,7 +259,7 @@ def with_model(it: Looked, sdf: Looked) -> Looked:
     )
 
 
-def _looked(path: str, text: bytes, arguments: tuple[tuple[str, str], ...]) -> Looked:
+def _description_in(path: str, text: bytes, arguments: tuple[tuple[str, str], ...]) -> Looked:
     root = read_document(text, path).root
     model = root if root.tag != "sdf" else next(root.iter("model"), root)
     rules = root.iter("remapping", "argument")

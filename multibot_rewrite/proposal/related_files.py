@@ -92,7 +92,7 @@ def related_files_of(robot: Looked, found: Found, release: str) -> RelatedFiles:
     files["params"] = tuple(sections)
     srdf = _best_srdf(robot, found)
     left |= {it: "another SRDF was taken" for it in found.srdf if it != srdf}
-    files["moveit"] = moveit_beside(robot, srdf, every, left)
+    files["moveit"] = moveit_files(robot, srdf, every, left)
     nodes = {name: path for path, names in sections.items() for name in names}
     chosen = {kind: its for kind, its in files.items() if its}
     return RelatedFiles(chosen, srdf, dict(_node_sets(robot, nodes, srdf)), left)
@@ -121,7 +121,7 @@ def _controllers_of_others(robot: Looked, sections: Mapping[str, frozenset[str]]
     return {path: reason for path, names in sections.items() if _MANAGER in names}
 
 
-def moveit_beside(robot: Looked, srdf: str, found: Found, left: dict[str, str]) -> tuple[str, ...]:
+def moveit_files(robot: Looked, srdf: str, found: Found, left: dict[str, str]) -> tuple[str, ...]:
     """Return MoveIt's files of the folder with most names of the robot and its groups, then of
     others; those ``left`` out get a reason there."""
     if not srdf:
@@ -286,7 +286,7 @@ def related_files_launched(
         read = {it.file for it in graph.read}
         own = tuple(it for it in found.srdf if os.path.realpath(it) in read) or found.srdf
         srdf = srdf_of(robot, found._replace(srdf=own))
-        files["moveit"] = [*moveit_beside(robot, srdf, found, {})]
+        files["moveit"] = [*moveit_files(robot, srdf, found, {})]
     why = f"{bringup.name} starts it by {_UTILITIES}, which is not installed here"
     node_sets = {"moveit": why} if srdf and not starts else {}
     files["params"] = [*dict.fromkeys(params)]

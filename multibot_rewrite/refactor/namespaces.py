@@ -144,7 +144,9 @@ def _fault(
             wanted = next(pipeline.render(it.template, [TRIED_SPACE], again=True))
     except InputError as error:
         return str(error)
-    both = zip_longest(_said(made), _said(wanted), fillvalue=(0, "/robot", (), ""))
+    both = zip_longest(
+        _readable_elements(made), _readable_elements(wanted), fillvalue=(0, "/robot", (), "")
+    )
     other = next((one for one, two in both if one != two), None)
     if other is None:
         return ""
@@ -153,7 +155,7 @@ def _fault(
     return f"with {argument}:={TRIED_SPACE} it has <{words}>{text}"
 
 
-def _said(data: bytes) -> list[tuple[int, str, tuple[tuple[str, str], ...], str]]:
+def _readable_elements(data: bytes) -> list[tuple[int, str, tuple[tuple[str, str], ...], str]]:
     """Return depth, tag, attributes and text of each element: all that its readers see."""
     return [
         (

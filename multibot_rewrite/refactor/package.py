@@ -143,8 +143,7 @@ _WORD = re.compile(r"['\"]([^'\"]*)['\"]")
 def configurations(
     it: Description, how: Expanding, tree: Tree, urdfs: Sequence[Inventory], unread: dict[str, str]
 ) -> Iterator[Description]:
-    """Yield the other configurations of a xacro that make another text; those that do not expand
-    are noted in ``unread``."""
+    """Yield a xacro's other configurations with other texts; failures are noted in ``unread``."""
     assert it.read is not None
     known = {it.inventory.document.source}
     for name, value in islice(_values(it.read.sources, how.arguments), MOST):

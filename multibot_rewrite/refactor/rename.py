@@ -146,7 +146,7 @@ def _renamed(symbol: _Symbol, package: Package, folder: str, how: Expanding) -> 
             why = others if line else "the name cannot be changed alone"
             then = f"then there would be {line}; change what makes it by hand"
             raise InputError(f"{it.path}: {why}: {then}")
-    beside = dict(_beside(package, symbol, changes, after))
+    beside = dict(_changed_related_files(package, symbol, changes, after))
     places = len(edits) + sum(count for _, count in beside.values())
     after |= {path: data for path, (data, _) in beside.items()}
     found = tuple(_mentions(package, symbol.old, {os.path.realpath(it) for it in after}))
@@ -201,7 +201,7 @@ def _edits(it: Description, changes: Sequence[ValueEdit]) -> Iterator[SourceEdit
         yield found._replace(file=os.path.realpath(found.file))
 
 
-def _beside(
+def _changed_related_files(
     package: Package,
     symbol: _Symbol,
     changes: Mapping[str, Sequence[ValueEdit]],

@@ -109,7 +109,6 @@ def make_context(
 
 
 def full_name(node: str, naming: Naming, apart: bool = False) -> str:
-    """Return the full name that a robot's node runs under, with a slot for the robot; ``apart`` is that
-    of ``NodeFacts``."""
+    """Return the full name of a robot's node, with a slot for the robot; ``apart``: ``NodeFacts``."""
     namespace, name = placed(NAMESPACE_SLOT, node, naming, apart)
     return f"{namespace.rstrip('/')}/{name}"

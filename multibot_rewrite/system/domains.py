@@ -148,13 +148,13 @@ def named(view: System, domain: int) -> System:
 def unnamed(it: Finding) -> Finding:
     """Return a finding about such a view in the names that run: ``/amcl of domain 11``."""
     return it._replace(
-        message=_said(it.message),
-        hint=_said(it.hint),
-        robot=_said(it.robot),
+        message=_with_domain_last(it.message),
+        hint=_with_domain_last(it.hint),
+        robot=_with_domain_last(it.robot),
         node=_FULL.sub(r"\2", it.node),
         names=tuple(_FULL.sub(r"\2", name) for name in it.names),
     )
 
 
-def _said(text: str) -> str:
+def _with_domain_last(text: str) -> str:
     return _SHORT.sub(r"domain \1", _FULL.sub(r"\2 of domain \1", text))

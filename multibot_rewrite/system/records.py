@@ -283,8 +283,7 @@ class Parameter(NamedTuple):
 
 
 class Controller(NamedTuple):
-    """A controller of the controller manager ``manager``, a node; ``claims`` are command interfaces,
-    while it is active."""
+    """A controller of the node ``manager``; ``claims``: command interfaces while it is active."""
 
     manager: FullName
     name: str

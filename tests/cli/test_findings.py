@@ -17,7 +17,7 @@ from paths import FIXTURES
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.formats import FORMATS
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
-from multibot_rewrite.cli.report import About, report_beside
+from multibot_rewrite.cli.report import About, report_findings_too
 from multibot_rewrite.system.json import from_yaml, to_json
 
 ROVER = str(FIXTURES / "robots" / "rover.urdf")
@@ -181,7 +181,7 @@ def test_of_many_notes_three_are_told_and_the_lines_of_the_rest(
         program="multibot", command="build",
     )  # fmt: skip
     found = [*notes, notes[0]._replace(message="of the file", line=0), *others]
-    report_beside(options, found, About(["a.yaml"], {}))
+    report_findings_too(options, found, About(["a.yaml"], {}))
     said = capsys.readouterr().err
     told = [it for it in range(1, 7) if f"note {it}" in said]
     assert told == [1, 2, 3] and "of the file" in said

@@ -367,7 +367,7 @@ def test_a_diff_is_one_that_patch_reads() -> None:
 
 def test_files_that_options_name_to_be_read() -> None:
     given = options(input="a", plan="b", snapshot=["c", "d"], urdf=None, nodes="", config="e")
-    assert [path for _, path in output._given(given)] == ["a", "b", "c", "d", "e"]
+    assert [path for _, path in output._read_files(given)] == ["a", "b", "c", "d", "e"]
     known = (
         "input",
         "plan",

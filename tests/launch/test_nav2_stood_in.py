@@ -260,7 +260,7 @@ def test_a_window_needs_a_config(tmp_path: Path) -> None:
 def test_what_windows_are_started_with(clock: bool | None, monkeypatch: pytest.MonkeyPatch) -> None:
     """The options of launch_ros's Node, whole."""
     fleet = SimpleNamespace(robots=["first", "second"])
-    monkeypatch.setattr(nav2, "_said", lambda word: word)
+    monkeypatch.setattr(nav2, "_configuration", lambda word: word)
     monkeypatch.setattr(nav2, "fleet_of", lambda _, said: {"fleet": fleet}[said])
     monkeypatch.setattr(
         nav2, "sim_time", lambda _, robot, told: {("first", None): clock}[robot, told]

@@ -253,8 +253,7 @@ def outside_frames(inventory: Inventory, renames: RenameMap) -> Iterator[Problem
 
 
 def reordered(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
-    """Yield joints whose order changes: urdfdom sorts siblings by name, and pinocchio's
-    configuration vector has that order."""
+    """Yield joints that urdfdom sorts by name: pinocchio's configuration vector has that order."""
     if renames.naming.affix != POSTFIX or "joint" not in renames.naming.separators:
         return
     # Those of an SRDF are in its URDF.

@@ -205,8 +205,7 @@ GIVEN = {
 
 
 def given(findings: Iterable[Finding], of_world: Iterable[str] = ()) -> str:
-    """Return the conditions of ``verified``: of controllers, and of systems that were left to the
-    world; empty without any."""
+    """Return the conditions of ``verified``: of controllers and systems of the world; empty if none."""
     codes = {it.code for it in findings}
     said = [words for code, words in GIVEN.items() if code in codes]
     systems = ", ".join(sorted(set(of_world)))

@@ -69,17 +69,19 @@ def placed_box(box: Extent, pose: Pose) -> Extent:
 def _half(shape: _Element) -> Vector | None:
     """Return half of a shape's size along its own axes."""
     if shape.tag == "box":
-        size = vector(_said(shape, "size"))
+        size = vector(_written_size(shape, "size"))
         return None if size is None or min(size) <= 0 else scaled(size, 0.5)
     if shape.tag not in ("cylinder", "sphere"):
         return None
-    sizes = numbers(f"{_said(shape, 'radius') or '?'} {_said(shape, 'length') or '0'}")
+    sizes = numbers(
+        f"{_written_size(shape, 'radius') or '?'} {_written_size(shape, 'length') or '0'}"
+    )
     if not sizes or sizes[1:2] == () or sizes[0] <= 0:
         return None
     return sizes[0], sizes[0], (sizes[0] if shape.tag == "sphere" else sizes[1] / 2)
 
 
-def _said(shape: _Element, key: str) -> str | None:
+def _written_size(shape: _Element, key: str) -> str | None:
     """Return a size as it is written: an attribute in URDF, an element in SDF."""
     value = shape.get(key)
     return shape.findtext(key) if value is None else value

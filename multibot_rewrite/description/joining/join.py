@@ -137,8 +137,7 @@ _ENDS = 5
 
 
 class JoinedText(NamedTuple):
-    """One description of several: ``notes`` are what a person should know, ``findings`` are about
-    names that have no prefix."""
+    """One description of several; ``notes`` for people, ``findings`` about names without prefix."""
 
     data: bytes
     parts: tuple[Mounted, ...]

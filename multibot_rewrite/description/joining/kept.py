@@ -83,13 +83,13 @@ def left_out(spans: Spans, element: _Element) -> Edit:
 def section(it: KeptText, start: int, end: int) -> bytes:
     """Return a part for a joined text; ``start`` and ``end`` delimit the content of its root."""
     names = ",".join(quote(name, safe="") for name in it.materials).replace("--", "-%2D")
-    words = _words(it.name, prefix=it.prefix, materials=names)
+    words = _comment(it.name, prefix=it.prefix, materials=names)
     first = b"  <!-- multibot part %s %s -->" % (words, _hidden(it.text[:start]))
     last = _END % it.name.encode() + _hidden(it.text[end:]) + b" -->\n"
     return first + it.text[start:end] + last
 
 
-def _words(name: str, **more: str) -> bytes:
+def _comment(name: str, **more: str) -> bytes:
     return " ".join([name, *(f"{key}={text}" for key, text in more.items() if text)]).encode()
 
 
@@ -100,7 +100,7 @@ def placed(text: bytes, name: str, prefix: str, more: bytes) -> bytes:
         at = text.index(b" -->\n", last) + len(b" -->\n")
         return text[:at] + more + text[at:]
     at = silenced(text).rindex(b"</")
-    mark = b"  <!-- multibot base %s -->\n" % _words(name, prefix=prefix)
+    mark = b"  <!-- multibot base %s -->\n" % _comment(name, prefix=prefix)
     return text[:at] + mark + more + text[at:]
 
 

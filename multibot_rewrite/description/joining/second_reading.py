@@ -94,10 +94,10 @@ def _stands_for_it(it: _Element, mounted: Mounted, root: _Element) -> bool:
         return on_world and _moved(it, mounted, root)
     if it.tag == "material":
         return any(other.get("name") == name for other in root.iterchildren("material"))
-    return it.tag == "gazebo" and not it.get("reference") and _is_said(it, root)
+    return it.tag == "gazebo" and not it.get("reference") and _has_block(it, root)
 
 
-def _is_said(block: _Element, root: _Element) -> bool:
+def _has_block(block: _Element, root: _Element) -> bool:
     """Return whether the whole text has all of a block, and of a plugin all parameter files."""
     blocks = [it for it in root.iterchildren("gazebo") if not it.get("reference")]
     said = [it for block in blocks for it in block.iterchildren("*")]

@@ -55,7 +55,7 @@ class JoinedSemantics(NamedTuple):
     notes: tuple[str, ...]
 
 
-def spelled_srdf(part: ReadPart, data: bytes, file: str, tree: Tree) -> PartSemantics:
+def renamed_srdf(part: ReadPart, data: bytes, file: str, tree: Tree) -> PartSemantics:
     """Return the SRDF of a part with its prefix; raises InputError."""
     declared = declarations(part.data, part.file, tree)
     found = collect(read_document(data, file), tree, declared)

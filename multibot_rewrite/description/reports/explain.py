@@ -276,11 +276,11 @@ def _made_on(it: _Line, document: Document, explain: OnLine) -> Iterator[Explana
             if at is not None:
                 line, column = locate(it.read.sources[it.file], at)
                 plain = len(pieces) < 2 and all(one.kind == LITERAL for one in pieces)
-                made_of = () if plain else tuple(_words(it.read, pieces))
+                made_of = () if plain else tuple(_piece_lines(it.read, pieces))
                 yield found._replace(line=line, column=column, made_of=made_of)
 
 
-def _words(read: Expansion, pieces: tuple[Piece, ...]) -> Iterator[str]:
+def _piece_lines(read: Expansion, pieces: tuple[Piece, ...]) -> Iterator[str]:
     """Yield each piece, what wrote it, and where."""
     for piece in pieces:
         if piece.kind == GIVEN:

@@ -82,8 +82,7 @@ class Loaded(NamedTuple):
 
 
 def suggest(inventory: Inventory) -> list[SuggestedSection]:
-    """Return a section for each unknown plugin, and each unknown hardware class with parameters, in the
-    order of the file."""
+    """Return a section for each unknown plugin and hardware class with parameters, in file order."""
     hosts: dict[tuple[str, str, str], list[Host]] = {}
     for host in inventory.hosts:
         thing = loaded_by(host)

@@ -72,7 +72,7 @@ class Pattern:
             raise PatternError(f"longer than {_LENGTH} characters")
         pieces = deque(piece[0] for piece in pieces_of(_bytes(pattern)))
         self._states: list[_State] = [(None, ())]
-        first = _either(pieces, 0)(self._states, 0)
+        first = _alternatives(pieces, 0)(self._states, 0)
         if pieces:
             raise PatternError("a bracket is not opened")
         self._first = self._reached((first,), {_BEGIN})
@@ -113,7 +113,7 @@ def _bytes(text: str) -> str:
     return text.encode("utf-8", "surrogateescape").decode("latin-1")
 
 
-def _either(pieces: deque[str], depth: int) -> _Piece:
+def _alternatives(pieces: deque[str], depth: int) -> _Piece:
     if depth > _DEPTH:
         raise PatternError(f"nested deeper than {_DEPTH} levels")
     ways = [_row(pieces, depth)]
@@ -144,7 +144,7 @@ def _row(pieces: deque[str], depth: int) -> _Piece:
 
 def _atom(piece: str, pieces: deque[str], depth: int) -> _Piece:
     if piece in ("(", "(?:"):
-        inner = _either(pieces, depth + 1)
+        inner = _alternatives(pieces, depth + 1)
         if not pieces:
             raise PatternError("a bracket is not closed")
         pieces.popleft()

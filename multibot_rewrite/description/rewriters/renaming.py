@@ -192,7 +192,7 @@ def respelled(value: str, spelling: Spelling, robot: str) -> str:
     return value
 
 
-def spelled_names(declared: Declared, naming: Naming, robot: str) -> Declared:
+def renamed_names(declared: Declared, naming: Naming, robot: str) -> Declared:
     """Return declarations by the names they have after a rewrite for ``robot``."""
     return {
         kind: {spelled(naming, robot, kind, name): claim for name, claim in names.items()}

@@ -80,14 +80,16 @@ class Access:
         """Return the folder for $(find NAME), which may be read from now on; raises LookupError."""
         if os.path.basename(name) != name or name in ("", os.curdir, os.pardir):
             raise LookupError(f"{name!r} is no name of a package")
-        folder = (self.find and self.find(name)) or _installed(name) or self._beside(name)
+        folder = (
+            (self.find and self.find(name)) or _installed(name) or self._package_in_workspace(name)
+        )
         if not folder:
             why = "" if _prefixes() or self.find else ": AMENT_PREFIX_PATH is not set"
             raise LookupError(f"package {name!r} is not found{why}")
         self.roots.append(real_path(folder))
         return folder
 
-    def _beside(self, name: str) -> str:
+    def _package_in_workspace(self, name: str) -> str:
         """Return a package of the same repository or workspace: no ROS has to be sourced."""
         repository = _repository(os.path.dirname(_real(self.path)[0]))
         # A workspace has its repositories side by side in src.

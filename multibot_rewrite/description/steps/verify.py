@@ -25,7 +25,7 @@ from multibot_rewrite.description.rewriters.renaming import (
     ROBOT_SLOT,
     ResolvedName,
     is_reached,
-    spelled_names,
+    renamed_names,
 )
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.rewriters.tree import Tree
@@ -83,7 +83,7 @@ def verify(
     ``slots`` says how often the robot's name was put in; ``urdf_declarations`` is what the URDF of
     an SRDF declares."""
     file = inventory.document.file
-    beside = spelled_names(urdf_declarations, naming, robot)
+    beside = renamed_names(urdf_declarations, naming, robot)
     # Byte offsets of elements are needed only if more than affixes has to be removed.
     asks_places = MARKER in output or bool(naming.own) or _replaces(plan)
     try:

@@ -149,8 +149,7 @@ class _Merging(NamedTuple):
         return first
 
     def label(self, owner: Any, field: str, above: str) -> str:
-        """Return what a value may be called: the name of a node is not that of the robot, a path is
-        what it is given as."""
+        """Return a variable's name for a value; a node's is not the robot's, a path's is its role."""
         if isinstance(owner, Start):
             return "node_name" if field == _NAME else field
         return above if field == "path" else field

@@ -109,7 +109,7 @@ def of_robot(
     facts = {it.name: it for it in one.evidence_of(robot).nodes}
     readers = dict(_readers(one, robot))
     given = _Given(one, robot, names, facts, files, bridged, values, readers, {})
-    given = given._replace(left=dict(_left(given)))
+    given = given._replace(left=dict(_not_started(given)))
     processes = (_started(given, it) for it in given.running if names.started[it].way != COMPONENT)
     relayed = [it.start for it in relays(robot.spec.namespace, one.fleet.naming, one.file)]
     launched = sorted((*processes, *_processes(one, robot)), key=lambda it: it.number)
@@ -168,9 +168,8 @@ class _Given(NamedTuple):
         return [it for it in self.names.started if it not in self.left]
 
 
-def _left(given: _Given) -> Iterator[tuple[str, str]]:
-    """Yield the nodes that are not started, each with the reason; it is empty for those that are
-    started by something else."""
+def _not_started(given: _Given) -> Iterator[tuple[str, str]]:
+    """Yield nodes that are not started, with the reason; empty if something else starts them."""
     naming, file = given.plan.fleet.naming, given.plan.file
     relayed = {it.run.node for it in relays(given.robot.spec.namespace, naming, file)}
     for name in given.names.started:
@@ -215,7 +214,7 @@ def _started(given: _Given, name: str) -> Start:
     it, facts = given.names.started[name], given.facts[name]
     if it.way == SPAWNER:
         return controller(given.plan, it)
-    made = _made(given, name)
+    made = _start_of_node(given, name)
     own = given.values.get((given.robot.spec.name, name), {})
     words = made.arguments
     if made.name and names_its_process(facts.kind, given.release):
@@ -235,7 +234,7 @@ def _started(given: _Given, name: str) -> Start:
     return made._replace(
         arguments=tuple(words),
         components=tuple(
-            _made(given, one)
+            _start_of_node(given, one)
             for one in given.running
             if (started := given.names.started[one]).way == COMPONENT
             and started.node.fact.container == name
@@ -257,7 +256,7 @@ def _program(given: _Given, name: str) -> Program | None:
     return Program(own.program[0], "", own.program[1]) if own else None
 
 
-def _made(given: _Given, name: str) -> Start:
+def _start_of_node(given: _Given, name: str) -> Start:
     """Return the process or component of a node, with its parameters and its launch file's."""
     program = _program(given, name)
     assert program is not None
@@ -303,8 +302,7 @@ def _processes(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[Start]:
 
 
 def _of_one(it: LaunchedNode, space: str, naming: Naming) -> tuple[str, ...]:
-    """Return the command and its words; those of ``ros2`` name nodes and topics of its robot, in a
-    line for a shell, too."""
+    """Return a command and its words; names of nodes and topics for ``ros2`` are its robot's."""
     words, verb = (it.executable, *it.arguments), ""
     found: list[str] = []
     for at, word in enumerate(words):

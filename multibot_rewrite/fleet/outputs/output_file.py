@@ -90,10 +90,10 @@ def name_among(source: str, every: Iterable[str]) -> str:
     name = os.path.basename(source)
     alike = {os.path.abspath(it) for it in every if os.path.basename(it) == name}
     one_of_several = len(alike) > 1 and os.path.abspath(source) in alike
-    return _told_apart(os.path.abspath(source), alike) if one_of_several else name
+    return _shortest_own_end(os.path.abspath(source), alike) if one_of_several else name
 
 
-def _told_apart(path: str, alike: Collection[str]) -> str:
+def _shortest_own_end(path: str, alike: Collection[str]) -> str:
     """Return the shortest end of a path below the folder of all, in whole steps, that no other one ends
     with: where that folder is makes no difference."""
     steps = os.path.relpath(path, os.path.commonpath(map(os.path.dirname, alike))).split(os.sep)
@@ -109,8 +109,7 @@ def expanded_name(path: str) -> str:
 
 
 def params_paths(robot: RewrittenRobot, files: Collection[str]) -> tuple[str, ...]:
-    """Return where a robot's parameter files are among the ``files`` of a build; the default one if
-    it has no others."""
+    """Return a robot's parameter files among the ``files`` of a build; the default one if none."""
     named = robot.spec.related_files.get("params", ())
     paths = tuple(path_for(robot, it) for it in named or (DEFAULTS,))
     return tuple(it for it in paths if it in files)

@@ -14,6 +14,8 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.base.nearest import meant_name
 from multibot_rewrite.description.own_ports import said_of_numbers
+from multibot_rewrite.description.own_ports import numbers_message
+from multibot_rewrite.checks.written_files import wrong_in_file
 from multibot_rewrite.fleet.file.fleet_file import BRINGUP
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import (
@@ -177,7 +179,7 @@ def _files(plan: FleetPlan, group: RobotGroup, key: str, path: str) -> FilesToCh
     for site in made.file.names if len(numbers) > 1 else ():
         if site.kind == PORT and site.text.isdecimal() and int(site.text):
             given = {name: int(site.text) + at * NUMBER_STEP for name, at in numbers.items()}
-            message, hint = said_of_numbers(site.key, given.items())
+            message, hint = numbers_message(site.key, given.items())
             yield found_in(made.file.file, site.slot, OWN_PORTS, message, hint)
     for robot in group.robots:
         spec = robot.spec

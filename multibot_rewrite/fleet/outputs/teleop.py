@@ -44,8 +44,7 @@ class Teleop(NamedTuple):
 
 
 def teleops(plan: FleetPlan) -> tuple[Teleop, ...]:
-    """Return how to drive each robot that reads velocity commands. Raises InputError for a bridge
-    file that cannot be read."""
+    """Return how to drive each robot that reads velocities. Raises InputError for a bad bridge file."""
     found = []
     for robot in plan.robots:
         # Something reads velocity commands, or sends them to a base that is not in the plan.
@@ -80,8 +79,7 @@ def teleop(plan: FleetPlan, robot: RewrittenRobot) -> Teleop:
 
 
 def _commands(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[CommandEnd]:
-    """Yield the ends of a robot with velocities: those of its nodes, then the bridges to the simulator,
-    which have no name."""
+    """Yield a robot's ends with velocities: those of nodes, then of bridges, which have no name."""
     for node, end, name in _ends(plan, robot):
         if end.kind == TOPIC and end.type in (PLAIN, STAMPED) and not end.when:
             yield CommandEnd(node, end.role, name, end.type, end.parameter, end.name)

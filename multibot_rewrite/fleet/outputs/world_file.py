@@ -85,7 +85,7 @@ def own_world(
         names = kind.names | {name for one in gone if (name := _name(one))}
         for one in gone:
             edits.append(Edit(*it.spans.of(one), b"", None))
-            findings.append(_said(it, one, f"the world's {_name(one)!r} is left out", NOTE))
+            findings.append(_finding(it, one, f"the world's {_name(one)!r} is left out", NOTE))
         inside = {below for one in gone for below in one.iter()}
         for plugin in world.iter("plugin"):
             if plugin not in inside:
@@ -157,7 +157,7 @@ def _in_plugin(it: _Text, plugin: _Element, kind: _Kind) -> Iterator[Edit | Find
         who = plugin.get("name") or plugin.get("filename") or "plugin"
         first = kind.robots[0].spec.name
         message = f"{who} of the world names one robot in <{named[0].tag}>: now {first} alone"
-        yield _said(it, named[0], message, WARNING)
+        yield _finding(it, named[0], message, WARNING)
 
 
 def _block(it: _Text, block: _Element, kind: _Kind, robot: RewrittenRobot) -> bytes:
@@ -214,7 +214,7 @@ def _own_paths(it: _Text) -> Iterator[Edit]:
                 yield Edit(*slot, f"file://{path}".encode(), None)
 
 
-def _said(it: _Text, one: _Element, message: str, level: str) -> Finding:
+def _finding(it: _Text, one: _Element, message: str, level: str) -> Finding:
     place = f"{it.document.file}:{one.sourceline}"
     hint = f"{place}; robots are spawned by the launch file" if level == NOTE else f"see {place}"
     return WORLD_ROBOT.finding(message, hint, level=level, file=it.file, line=it.line)

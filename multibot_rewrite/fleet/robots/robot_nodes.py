@@ -337,8 +337,7 @@ def related_file_nodes(
 
 
 def launched_nodes(evidence: RobotEvidence, others: Iterable[NodeFacts]) -> Iterator[NodeFacts]:
-    """Yield the other nodes that surely run, with the ends that their files call as their code does:
-    their rules move these."""
+    """Yield the other nodes that surely run, with ends under the names in their code."""
     found = {it.name for it in others}
     for it in evidence.nodes:
         if it.name not in found and it.kind in evidence.known and not it.when:

@@ -175,7 +175,7 @@ def _bindings(
         found = [
             {**binding, name: word}
             for binding in found
-            for word in _words(values.get(_put(ids[name], binding)))
+            for word in _items(values.get(_put(ids[name], binding)))
         ]
     yield from found
 
@@ -189,7 +189,7 @@ def _in_order(ids: Mapping[str, str], wanted: Iterable[str]) -> list[str]:
     return order
 
 
-def _words(given: Given | None) -> list[str]:
+def _items(given: Given | None) -> list[str]:
     """Return the items of a list; a text is a list of its words."""
     if given is None:
         return []
@@ -216,8 +216,7 @@ def _bound(endpoint: Endpoint, binding: Ids) -> Endpoint:
 
 
 def _ending(node: NodeFacts, raw: Endpoint) -> str:
-    """Return what the node appends to the topic of a parameter, such as ``_updates``: another
-    endpoint has the topic itself."""
+    """Return what a node appends to a parameter's topic for another endpoint, such as ``_updates``."""
     alike = (it.named_from or it.name for it in node.endpoints if it.parameter == raw.parameter)
     bases = [it for it in alike if raw.name.startswith(it)] if raw.parameter else []
     return raw.name.removeprefix(min(bases, key=len)) if bases else ""
@@ -246,7 +245,7 @@ def _set_names(parameter: str, values: Mapping[str, Given]) -> Iterator[tuple[st
         found = []
         for name in _called(one, values):
             value = values[name].value
-            topics = _words(values[name]) if isinstance(value, list) else [str(value)]
+            topics = _items(values[name]) if isinstance(value, list) else [str(value)]
             found += ((name, it) for it in topics if not it or not check_name_in_code(it))
         if any(topic for _, topic in found):
             break

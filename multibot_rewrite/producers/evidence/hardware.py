@@ -150,8 +150,7 @@ def control_system(
     exports: Iterable[Exported],
     active: Collection[str] = (),
 ) -> System:
-    """Return the controllers that files declare, and all interfaces; ``active`` are those that
-    launch files start active."""
+    """Return the controllers in files, and all interfaces; ``active``: started so by launch files."""
     declared = [it for it in given if it.host_name]
     own = [Interface(it.kind, it.name, f"/{MANAGER}", EXPORTS, it.place) for it in exports]
     controllers = []

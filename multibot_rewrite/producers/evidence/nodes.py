@@ -241,8 +241,7 @@ def alternatives(given: Iterable[Run], known: Mapping[str, NodeFacts]) -> dict[s
 
 
 def remapped(node: NodeFacts, rules: Iterable[tuple[str, str]], namespace: str) -> NodeFacts:
-    """Return the node with the remap rules of its launch file, started in a namespace; those of tf
-    belong to the layout."""
+    """Return the node with its launch file's remap rules and namespace; tf rules are the layout's."""
     above = namespace.rstrip("/")
     below, _, name = node.name.rpartition("/")
     home = above.removesuffix(f"/{below}") if below else above
@@ -267,8 +266,7 @@ def under_plugin(node: NodeFacts, rules: Iterable[RemapRule], release: str) -> N
 
 
 def _target(new: str, above: str, home: str) -> str:
-    """Return the target of a rule as its robot has it, for a node in the namespace ``above`` whose
-    robot is in ``home``."""
+    """Return a rule's target for a robot in ``home``, for a node in the namespace ``above``."""
     inner = above != home and not new.startswith(("/", "~"))
     full = f"{above}/{new}" if inner else new
     mine = full.removeprefix(f"{home}/") if home else full

@@ -134,7 +134,7 @@ def with_launched(
     hosted = list(_hosted(pairs, known, {it.name for it in kept}))
     inside = [*hosted, *(it for it in kept if it.host)]
     given = list(_controllers(under, pairs, words, parameters))
-    given += [it for pair in pairs for it in _given(pair, inside, words, parameters)]
+    given += [it for pair in pairs for it in _launched_values(pair, inside, words, parameters)]
     unknown = {it.facts.name: it.node for it in pairs if not it.facts.is_known}
     of_all = graph.environment
     own = state_publisher_of([it.facts for it in pairs])
@@ -426,7 +426,7 @@ def _full_name(node: LaunchedNode, facts: NodeFacts) -> str:
     return expand(facts.name.rpartition("/")[2], node.namespace, "")
 
 
-def _given(
+def _launched_values(
     pair: _Pair, inside: Iterable[NodeFacts], words: Collection[str], parameters: KnownNodes
 ) -> Iterator[Run]:
     """Yield what the launch file's parameters set for a node, the nodes in it and its controllers."""

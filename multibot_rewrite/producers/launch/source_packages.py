@@ -76,8 +76,7 @@ def add_empty(name: str, folder: str) -> None:
 
 
 def add_file(error: BaseException, folder: str) -> bool:
-    """Make the file empty that could not be read of such a package: what is in it is not known. False
-    for another error."""
+    """Add an empty file of an added package for one that was not found; False for other errors."""
     # launch has its own error around what a launch file raises (jazzy invalid_launch_file_error.py).
     lost: BaseException | None = error
     while lost is not None and not isinstance(lost, FileNotFoundError):

@@ -53,8 +53,7 @@ _SOMETIMES: dict[type, tuple[str, ...]] = {
 
 
 class _Part(NamedTuple):
-    """A piece of the tree: the function that it is in, the text of the nearest condition around it, and
-    all conditions."""
+    """A piece of a syntax tree: its function, the nearest condition's text, and all conditions."""
 
     node: ast.AST
     function: str
@@ -92,8 +91,7 @@ def _imported(tree: ast.AST) -> Iterator[tuple[str, str]]:
 
 
 def _modules(tree: ast.AST) -> Iterator[str]:
-    """Yield what is imported, also the parts of a module, which may be modules. What is next to the
-    file starts with a dot."""
+    """Yield imported modules, and parts that may be modules; relative ones start with a dot."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             yield from (it.name for it in node.names)
@@ -212,7 +210,7 @@ def _walk(part: _Part) -> Iterator[_Part]:
 
 def _under(part: _Part, test: ast.expr, wrong: bool) -> _Part:
     text = ast.unparse(test)
-    asked = _asked(test)
+    asked = _condition(test)
     if text.replace('"', "'") == "__name__ == '__main__'":
         return part
     return part._replace(
@@ -244,9 +242,9 @@ def _may_leave(node: ast.AST) -> bool:
     return any(_may_leave(it) for it in ast.iter_child_nodes(node) if not isinstance(it, inner))
 
 
-def _asked(node: ast.expr) -> str:
+def _condition(node: ast.expr) -> str:
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
-        return negated(_asked(node.operand))
+        return negated(_condition(node.operand))
     is_plain = isinstance(node, (ast.Name, ast.Attribute, ast.Call))
     return _text(node) if is_plain and _text(node) != ANY else OTHERWISE
 

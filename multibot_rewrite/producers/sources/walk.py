@@ -183,7 +183,7 @@ def _function(walk: _Walk, spot: Spot) -> Iterator[Event]:
             yield Looked(frame_in(it), text, it.variable, spot.asked, it.place, spot)
 
 
-def _asked(names: Names, spot: Spot, call: Call) -> str:
+def _conditions_of(names: Names, spot: Spot, call: Call) -> str:
     """Return all conditions of a call, with the values of their names."""
     own = []
     for it in filter(None, call.asked.split("&")):
@@ -194,7 +194,7 @@ def _asked(names: Names, spot: Spot, call: Call) -> str:
 
 
 def _call(walk: _Walk, spot: Spot, call: Call) -> Iterator[Event]:
-    names, asked = walk.names, _asked(walk.names, spot, call)
+    names, asked = walk.names, _conditions_of(walk.names, spot, call)
     here = spot._replace(asked=asked)
     name, types = _behind_aliases(names, spot, call)
     own = next((it for key, it in OF_TF.items() if name in key), None)
@@ -231,7 +231,7 @@ def _is_new_node(names: Names, text: str) -> bool:
     return any(last(it) in NODES for one in rows for it in _chain(names, one)[1])
 
 
-def _looked(names: Names, spot: Spot, call: Call) -> Iterator[Looked]:
+def _lookups(names: Names, spot: Spot, call: Call) -> Iterator[Looked]:
     for it in call.given[:2]:
         yield Looked("looked up", text_in(names, spot, it), "", spot.asked, call.place, spot)
 
@@ -241,7 +241,7 @@ def _sent(names: Names, spot: Spot, call: Call) -> Iterator[Sent]:
 
 
 OF_TF: dict[tuple[str, ...], Callable[[Names, Spot, Call], Iterator[Event]]] = {
-    _LOOKS_UP: _looked,
+    _LOOKS_UP: _lookups,
     ("sendTransform", "send_transform"): _sent,
 }
 

@@ -119,18 +119,18 @@ def read_qos(text: str) -> Qos:
         raise _Malformed
     reliability, durability, history, deadline, lifespan, liveliness = parts[:6]
     return Qos(
-        _word(HISTORY, history[0], "KEEP_LAST"),
+        _text_of_number(HISTORY, history[0], "KEEP_LAST"),
         _number(history[1], _DEFAULT_DEPTH),
-        _word(RELIABILITY, reliability[0], "RELIABLE"),
-        _word(DURABILITY, durability[0], "VOLATILE"),
+        _text_of_number(RELIABILITY, reliability[0], "RELIABLE"),
+        _text_of_number(DURABILITY, durability[0], "VOLATILE"),
         _seconds(*deadline),
         _seconds(*lifespan),
-        _word(LIVELINESS, liveliness[0], "AUTOMATIC"),
+        _text_of_number(LIVELINESS, liveliness[0], "AUTOMATIC"),
         _seconds(*liveliness[1:]),
     )
 
 
-def _word(known: Sequence[str], text: str, default: str) -> str:
+def _text_of_number(known: Sequence[str], text: str, default: str) -> str:
     number = _number(text, known.index(default))
     if number >= len(known):
         raise _Malformed

@@ -129,10 +129,10 @@ def before_frames(between: str) -> Speller:
 
 def words(context: Context, value: str) -> str:
     """Return a text with names of the description renamed: ``joints(shoulder,elbow)``."""
-    return _WORD.sub(lambda found: _word(context, found[0]), value)
+    return _WORD.sub(lambda found: _renamed_word(context, found[0]), value)
 
 
-def _word(context: Context, value: str) -> str:
+def _renamed_word(context: Context, value: str) -> str:
     kinds = (kind for kind in ("joint", "link") if is_declared(context.names, kind, value))
     kind = next(kinds, "")
     return spell(context.names, kind, value) if kind else value

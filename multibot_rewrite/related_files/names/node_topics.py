@@ -66,7 +66,7 @@ def spell_topic(
     apart = facts[node].apart if node in facts else is_apart(node, context.distro)
     if (reach == FROM_PARENT or apart) and context.topics.naming.topics != NAMESPACE:
         meant = expand(value, f"/{node.rpartition('/')[0]}" if reach == FROM_NODE else "/", "")
-    text = _spelled(context, kind, meant, reach == IN_FULL)
+    text = _name_for_robot(context, kind, meant, reach == IN_FULL)
     made_absolute = reach == IN_FULL and not value.startswith("/")
     is_started = node in context.nodes or facts is not built_in_facts(context.distro)
     ruled = _ruled_node(facts.get(node), value, context) if is_started else None
@@ -77,7 +77,7 @@ def spell_topic(
     )
 
 
-def _spelled(context: Context, kind: str, value: str, absolute: bool) -> str:
+def _name_for_robot(context: Context, kind: str, value: str, absolute: bool) -> str:
     """Return the name for a robot; ``absolute`` if it is not resolved in the robot's namespace."""
     naming = context.topics.naming
     lead = "" if value.startswith("/") else "/"
@@ -115,7 +115,7 @@ def _ruled_text(
     # The robot's name for the topic that the text means for a single robot with the node set's rules.
     meant = expand(texts[1], "/", "")
     remapped = {expand(it.name, "/", ""): it.remapped for it in node.endpoints}.get(meant, "")
-    wanted = _spelled(context, kind, expand(remapped or meant, "/", ""), True)
+    wanted = _name_for_robot(context, kind, expand(remapped or meant, "/", ""), True)
     wanted = wanted if wanted.startswith("/") else f"/{wanted}"
     parent = placed(NAMESPACE_SLOT, "node", naming, node.apart)[0]
     root = parent if reach == FROM_PARENT else table.namespace

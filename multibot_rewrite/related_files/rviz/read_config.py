@@ -116,7 +116,7 @@ def _shown(document: YamlText, node: yaml.Node | None, what: str) -> Iterator[Rv
         # RViz keeps links and frames that it has seen once: those are keys.
         for path, kind in names.items() if cls != GROUP else ():
             lead = "/" if kind in (TOPIC, GRAPH_NAMESPACE) else ""
-            for at in _found(item, path.split(".")):
+            for at in _scalars_at(item, path.split(".")):
                 text = without_robot(str(at.value), lead)
                 places.append(site_at(at, kind, text, path, "*" in path))
         known = what != "displays" or cls == GROUP or cls in data["displays"]
@@ -125,7 +125,7 @@ def _shown(document: YamlText, node: yaml.Node | None, what: str) -> Iterator[Rv
         yield RvizItem(block, item, cls, name, flag, known, tuple(places), tuple(below))
 
 
-def _found(node: yaml.Node | None, path: Sequence[str]) -> Iterator[yaml.ScalarNode]:
+def _scalars_at(node: yaml.Node | None, path: Sequence[str]) -> Iterator[yaml.ScalarNode]:
     """Yield the scalars at a path; ``*`` gives keys."""
     if not path:
         node = value(node, "Value") if isinstance(node, yaml.MappingNode) else node
@@ -136,9 +136,9 @@ def _found(node: yaml.Node | None, path: Sequence[str]) -> Iterator[yaml.ScalarN
             if key.value not in rviz_data()["fixed_keys"]:
                 yield key
             if path[0] == "**":
-                yield from _found(below, path)
+                yield from _scalars_at(below, path)
     else:
-        yield from _found(value(node, path[0]), path[1:])
+        yield from _scalars_at(value(node, path[0]), path[1:])
 
 
 def value(node: yaml.Node | None, key: str) -> yaml.Node | None:

@@ -55,7 +55,7 @@ def is_fixed(subject: Subject, start: int, attribute: str, *, constants: bool = 
     for call in origin.calls:
         if raw is None or b"$" not in raw:
             break
-        raw = _given(raw, _attributes(subject.sources[call.file], call.start))
+        raw = _passed_value(raw, _attributes(subject.sources[call.file], call.start))
     return raw is not None and b"$" not in raw
 
 
@@ -83,7 +83,7 @@ def _raw(source: bytes, start: int, attribute: str) -> bytes | None:
     return source[end : source.find(b"<", end)]
 
 
-def _given(raw: bytes, call: Mapping[bytes, bytes]) -> bytes | None:
+def _passed_value(raw: bytes, call: Mapping[bytes, bytes]) -> bytes | None:
     """Return what a macro's call passes for the names in ``raw``; None if it does not pass one."""
     if b"$(" in raw:
         return None

@@ -119,8 +119,7 @@ class GzTopics(NamedTuple):
 
 
 class GzTopic(NamedTuple):
-    """A topic of a sensor or plugin: its type, the direction of a row for it, and its line; empty where
-    they are not known."""
+    """A sensor's or plugin's topic: type, direction of its row, line; empty where unknown."""
 
     type: str
     direction: str

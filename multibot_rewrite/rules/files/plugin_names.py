@@ -37,7 +37,12 @@ from multibot_rewrite.related_files.yaml_text import pairs
 from multibot_rewrite.rules.declaration import remark_at
 from multibot_rewrite.rules.files.demands import Demand, demands, value_of
 from multibot_rewrite.rules.files.parameter_files import of_release
-from multibot_rewrite.rules.files.section_facts import Section, Setting, is_set_beside, sections
+from multibot_rewrite.rules.files.section_facts import (
+    Section,
+    Setting,
+    is_set_in_other_file,
+    sections,
+)
 
 _CONTROLLER = "controller_interface::ControllerInterface"
 _DWB, _CRITIC = "dwb_critics", "Critic"
@@ -179,7 +184,7 @@ def without_plugin(file: NamedFile) -> Iterator[Finding]:
             below = f"{above}{word}."
             given = blocks and any(name.startswith(below) for name in whole)
             found = given or f"{below}plugin" in whole
-            elsewhere = not found and is_set_beside(file, it.section.title, f"{below}plugin")
+            elsewhere = not found and is_set_in_other_file(file, it.section.title, f"{below}plugin")
             if not found and not elsewhere and not _is_misspelt(it, word, words):
                 what = "parameters" if blocks else "plugin"
                 message = f"{it.section.title}: {it.given.name} has {word}, which has no {what}"
@@ -250,7 +255,8 @@ def missing_parameters(file: NamedFile) -> Iterator[Finding]:
             for words in (words for check, words in fact.checks if check == "required_or"):
                 names = (fact.path, *words.split())
                 there = (
-                    it in section.whole or is_set_beside(file, section.title, it) for it in names
+                    it in section.whole or is_set_in_other_file(file, section.title, it)
+                    for it in names
                 )
                 if section.given and not any(there):
                     message = f"{section.title}: none of these is set: {', '.join(names)}"
@@ -269,7 +275,7 @@ def _required(file: NamedFile, section: Section, fact: Declared, words: str) -> 
         _, _, word = block.rpartition(".")
         name = f"{block}.{fact.path.rpartition('.')[2]}" if block else fact.path
         there = f"{section.at}{name}" in section.whole
-        there = there or is_set_beside(file, section.title, f"{section.at}{name}")
+        there = there or is_set_in_other_file(file, section.title, f"{section.at}{name}")
         if not there and (listed is None or (isinstance(listed, list) and word in listed)):
             message = f"{section.title}: {name} is missing"
             yield remark_at(first, message, f"the node asks for it; see {fact.source}", WARNING)

@@ -211,7 +211,7 @@ def not_listed(launched: Launched) -> Iterator[Finding]:
     for name, manager in listed.items() if _is_known(launched) else ():
         runs = started.get(name)
         if runs and keeps_no_bond(runs.fact) and manager.value("bond_timeout") != 0:
-            yield at(not_listed, manager.place, *said_of_bond(manager.full_name, name))
+            yield at(not_listed, manager.place, *bond_message(manager.full_name, name))
         if name not in started:
             near = nearest(name, started).rpartition("/")[2]
             hint = f"did you mean {near}?" if near else "start it, or leave it out"
@@ -227,7 +227,7 @@ def keeps_no_bond(node: NodeFacts) -> bool:
     return f"~{_CHANGE}" in names and _BOND not in names
 
 
-def said_of_bond(manager: str, name: str) -> tuple[str, str]:
+def bond_message(manager: str, name: str) -> tuple[str, str]:
     """Return the message that a manager waits for the bond of a node, and the hint."""
     hint = "set use_lifecycle_manager: true for the node, or bond_timeout: 0.0 for the manager"
     return f"{manager} waits for a bond with {name}, which keeps none", hint

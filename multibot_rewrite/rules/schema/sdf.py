@@ -183,7 +183,7 @@ def _value(
     if not text or "$" in text:
         return
     if row.type == "string":
-        yield from _word(element, at, f"{known.name}/{row.name}", text, version)
+        yield from _unknown_word(element, at, f"{known.name}/{row.name}", text, version)
         return
     turned = row.type == "pose" and element.get("rotation_format") == QUATERNION
     if wrong := misread(QUATERNION if turned else row.type, text):
@@ -230,7 +230,9 @@ def _range(element: _Element, at: str, row: SdfRow, text: str) -> Iterator[Probl
         yield fault("range", element, at, f"{_where(element, at, text)} {message}", hint)
 
 
-def _word(element: _Element, at: str, name: str, text: str, version: Version) -> Iterator[Problem]:
+def _unknown_word(
+    element: _Element, at: str, name: str, text: str, version: Version
+) -> Iterator[Problem]:
     """Yield a fault for a word that the library does not know."""
     known, row = words(name), described(f"{WORDS} {name}")
     folded = row is not None and "folded" in row.words
@@ -274,12 +276,12 @@ def _unknown(
     if near:
         yield fault("misspelt", child, None, message, f"did you mean <{near}>?")
     else:
-        homes = [it for it in _homes(tag) if it != home] or _beside(child, known)
+        homes = [it for it in _homes(tag) if it != home] or _siblings_with(child, known)
         hint = f"move it into <{'> or <'.join(homes)}>" if homes else ""
         yield fault("misplaced" if homes else "not-read", child, None, message, hint)
 
 
-def _beside(child: _Element, known: SdfPart) -> tuple[str, ...]:
+def _siblings_with(child: _Element, known: SdfPart) -> tuple[str, ...]:
     """Return the sibling elements that have such a child."""
     parent, found = child.getparent(), []
     for it in parent.iterchildren("*") if parent is not None else ():

@@ -305,7 +305,7 @@ def several_command_senders(seen: Index) -> Iterator[Finding]:
 
 
 @system_rule("MG313", "bag-beside-a-robot", ERROR)
-def bag_beside_a_robot(seen: Index) -> Iterator[Finding]:
+def bag_played_to_robot(seen: Index) -> Iterator[Finding]:
     """Yield bags that are played to topics with other senders, or that a robot obeys."""
     mixed: dict[str, list[str]] = defaultdict(list)
     played = {end.name for end in seen.system.ends if words.PLAYER in end.node}
@@ -321,7 +321,7 @@ def bag_beside_a_robot(seen: Index) -> Iterator[Finding]:
         message = f"plays {shorten(sorted(names))} into the running system"
         rules = [Remap(player, it, f"{it}_of_bag") for it in sorted(names)]
         listed = " ".join(f"{it.old}:={it.new}" for it in rules)
-        yield bag_beside_a_robot.finding(
+        yield bag_played_to_robot.finding(
             message, f"play it in another ROS_DOMAIN_ID, or with --remap {listed}",
             robot=only(robots_of(seen, names)), node=player, names=tuple(sorted(names)),
             remaps=tuple(rules),

@@ -352,8 +352,7 @@ def has_likes_of(seen: Index, robot: str, node: str) -> bool:
 
 @once
 def _first_to_do(seen: Index) -> Mapping[tuple[str, str, str, str], str]:
-    """Return the first node for what is done with a name of its own robot: by kind, name without
-    the robot's, type and role."""
+    """Return the first node for each use of its robot's names, by kind, plain name, type and role."""
     first: dict[tuple[str, str, str, str], str] = {}
     for ends in seen.by_name.values():
         robot = seen.robot(ends.name) if ends.kind in (TOPIC, ACTION) else ""

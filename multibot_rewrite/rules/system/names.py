@@ -145,7 +145,7 @@ def _published_instead(
     same = (it for it in hidden if it in unheard and unheard[it].type == end.type)
     if found := next(filter(is_of_another, same), ""):
         return found
-    return alike(end.name, _spelled(seen).get(end.type, NONE), end.type, is_of_another)
+    return alike(end.name, _topics_by_type(seen).get(end.type, NONE), end.type, is_of_another)
 
 
 def _is_of_other_robot(seen: Index, name: str, other: str) -> bool:
@@ -155,7 +155,7 @@ def _is_of_other_robot(seen: Index, name: str, other: str) -> bool:
 
 
 @once
-def _spelled(seen: Index) -> Mapping[str, Spelled]:
+def _topics_by_type(seen: Index) -> Mapping[str, Spelled]:
     """Return the published topics by type, for a search by similar name."""
     return {type_: Spelled(it.name for it in own) for type_, own in _published(seen).items()}
 

@@ -209,8 +209,7 @@ _BRIDGES = ("bridge", "parameter_bridge")
 
 @planned_rule("MG121", "sender-not-planned", ERROR, drawn="cross-talk", nodes=False)
 def sender_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Report each node that may not send; of too many senders one a topic, at one that is not
-    planned if there is one."""
+    """Report each node that may not send; of too many senders of a topic one, an unplanned one."""
     if not seen.nodes:
         yield from _too_many_recorded(plan, seen)
         return

@@ -58,7 +58,7 @@ def tf_tree_in_pieces(seen: Index) -> Iterator[Finding]:
 
 def _by_usual_names(seen: Index) -> Iterator[Finding]:
     """Report trees in pieces by usual names, unless an unknown node may join the pieces."""
-    yield from told_not_to(seen)
+    yield from forbidden_transforms(seen)
     if seen.in_doubt:
         for tree in seen.trees:
             yield from _senders_apart(seen, tree)
@@ -131,7 +131,7 @@ def _near(seen: Index, frames: Collection[str]) -> Callable[[str, str], str]:
         robot = seen.frame_robot(frame)
         known = (own[robot] | own[""] if robot else {*frames}) - {but}
         left[robot] -= len(known)
-        return _meant(frame, known) if left[robot] > 0 else ""
+        return _near_frame(frame, known) if left[robot] > 0 else ""
 
     def near(frame: str, but: str) -> str:
         found = nearest_of(frame)
@@ -140,7 +140,7 @@ def _near(seen: Index, frames: Collection[str]) -> Callable[[str, str], str]:
     return near
 
 
-def _meant(name: str, others: Collection[str]) -> str:
+def _near_frame(name: str, others: Collection[str]) -> str:
     """Return the frame with nearly this name; names that differ in numbers alone are two things."""
     near = nearest(name, sorted(others), MISTYPED)
     slip = near and near not in name and name not in near and not differ_in_numbers(name, near)
@@ -172,7 +172,7 @@ def in_pieces(robot: str, topic: str, roots: Sequence[str]) -> str:
     return f"{whose} on {topic} has {len(roots)} roots: {', '.join(roots)}"
 
 
-def told_not_to(seen: Index) -> Iterator[Finding]:
+def forbidden_transforms(seen: Index) -> Iterator[Finding]:
     """Yield transforms that no node sends, because parameters of those that could forbid it."""
     sent = {(tree.topic, edge.child) for tree in seen.trees for edge in tree.edges}
     off: dict[tuple[str, str], list[Edge]] = defaultdict(list)
@@ -233,7 +233,7 @@ def is_sure(seen: Index, found: Finding, moved: bool) -> bool:
     lacking = [(odom, it) for odom, root in loose for it in found.names if it not in (odom, root)]
     if (loose and not moved) or any(sent_elsewhere(seen, found.robot, *it) for it in lacking):
         return False
-    return any(it.robot == found.robot for it in (*told_not_to(seen), *_by_frames(seen)))
+    return any(it.robot == found.robot for it in (*forbidden_transforms(seen), *_by_frames(seen)))
 
 
 def is_of_description(seen: Index, edge: Edge) -> bool:

@@ -154,8 +154,7 @@ def _named_frames(seen: Index, tree: Tree) -> Iterator[str]:
 
 
 def _apart(seen: Index, tree: Tree, robots: Sequence[str]) -> Cause:
-    """Return how frames of several robots on one topic get apart: by their names where some have them,
-    else by topics, too."""
+    """Return how robots' frames on one topic get apart: by names if some have them, else by topics."""
     senders = f"the senders are {shorten(tree.senders, SEVERAL)}"
     named = "put the robot's name into these frames (urdf-postfix; a node's in its parameters)"
     if any(_named_frames(seen, tree)):

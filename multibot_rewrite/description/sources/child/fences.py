@@ -90,8 +90,7 @@ class Files(NamedTuple):
 
 
 def put_up(wanted: Collection[str], seconds: float, files: Files | None = None) -> list[str]:
-    """Restrict this process for good; return the restrictions that this system has. Without
-    ``files`` it can open none."""
+    """Restrict this process for good; return the restrictions in force. Without ``files``: no file."""
     memory = _memory()
     ways: Mapping[str, Callable[[], bool]] = {
         frames.LIMITS: lambda: limit(seconds, memory, files is not None),

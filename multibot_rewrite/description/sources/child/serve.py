@@ -64,13 +64,13 @@ def main() -> None:
     gc.disable()
     gc.freeze()
     children: set[int] = set()
-    while _asked(control, children):
+    while _serve_next(control, children):
         pass
     for pid in children:
         _end(pid)
 
 
-def _asked(control: socket.socket, children: set[int]) -> bool:
+def _serve_next(control: socket.socket, children: set[int]) -> bool:
     """Do what the parent asks for next; return whether there is more to come."""
     ready, _, _ = select.select([control], [], [], None if children else IDLE_SECONDS)
     if not ready:

@@ -116,7 +116,7 @@ def _choices(
     known: Mapping[str, NodeFacts],
 ) -> Iterator[_Choice]:
     for node in nodes:
-        ends = [*_either(known.get(node.kind, node)), *_either(node)]
+        ends = [*_ends_of_either_type(known.get(node.kind, node)), *_ends_of_either_type(node)]
         if ends:
             last = f"/{node.name}"
             sections = (it.values for it in given if f"/{it.node}".endswith(last))
@@ -127,7 +127,7 @@ def _choices(
             yield _Choice(node, ends, chosen, is_set, is_free)
 
 
-def _either(node: NodeFacts) -> Iterator[Endpoint]:
+def _ends_of_either_type(node: NodeFacts) -> Iterator[Endpoint]:
     """Yield the ends of a node that are of either type, as a parameter says; no open ones."""
     ends = (it for it in node.endpoints if it.types and not it.when)
     yield from (it for it in ends if {it.type, *it.also}.issuperset(COMMANDS))
@@ -143,7 +143,7 @@ def _wanted(
 ) -> str:
     """Return the type of the robot's commands: what a file sets, what its bridge or driver takes, what
     the nodes of its files have, and what all nodes have; else the plain one."""
-    topics = {topic_of(it.node, end) for it in choices for end in _either(it.node)}
+    topics = {topic_of(it.node, end) for it in choices for end in _ends_of_either_type(it.node)}
     said = [it.type for it in choices if it.is_set]
     rows = [
         end.type

@@ -224,8 +224,7 @@ def described(member: Member, spec: RobotSpec) -> Described:
 
 
 def free_nodes(own: Iterable[str], given: Iterable[Run]) -> frozenset[str]:
-    """Return those of the nodes that no parameter file has a section for: what they are set to is the
-    build's to choose."""
+    """Return the nodes without a section in parameter files: the build chooses their values."""
     filed = [f"/{it.node}" for it in given]
     return frozenset(it for it in own if not any(one.endswith(f"/{it}") for one in filed))
 

@@ -41,8 +41,7 @@ def topic_of(node: NodeFacts, end: Endpoint) -> str:
 
 
 def topics_of(nodes: Iterable[NodeFacts], role: str, types: Collection[str] = ()) -> list[str]:
-    """Return the topics of this role that the nodes have for certain; only those of ``types``, where
-    these are given."""
+    """Return the topics of this role that the nodes surely have, of ``types`` if given."""
     ends = ((node, it) for node in nodes for it in node.endpoints if it.role == role)
     return [topic_of(*it) for it in ends if not it[1].when and (not types or it[1].type in types)]
 

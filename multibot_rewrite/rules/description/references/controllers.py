@@ -38,11 +38,11 @@ _YAML = (".yaml", ".yml")
 def _not_exported(subject: Subject) -> Iterator[Problem]:
     for element, known in _claimed(subject):
         # Few descriptions need them.
-        from multibot_rewrite.rules.system.states import said_of_missing
+        from multibot_rewrite.rules.system.states import missing_message
 
         for it in missing_in(subject, known):
             # Lines of an expanded xacro are in no file.
-            message, hint = said_of_missing(it, None if subject.origins else "line {0.line}".format)
+            message, hint = missing_message(it, None if subject.origins else "line {0.line}".format)
             yield Problem(element, f"{_at(it.claims[0])}: {message}", _place(element), hint)
 
 
@@ -98,7 +98,7 @@ def _of_no_node(subject: Subject) -> Iterator[Problem]:
         with suppress(InputError):
             sections = raw_sections(read_yaml(read_file(path), path)) if manager else ()
             if section := meant_for(sections, manager, ()):
-                message, hint = declaration.said_of_section(section.path, [manager])
+                message, hint = declaration.section_message(section.path, [manager])
                 yield Problem(element, f"{os.path.basename(path)}: {message}", "", hint)
 
 
