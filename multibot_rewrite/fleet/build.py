@@ -2,8 +2,6 @@
 """A planned fleet -> every file that ``multibot build`` writes, in memory: one step a kind of file; and
 the hashes of what it read and wrote: what the next build must change, and what it must not."""
 
-from __future__ import annotations
-
 import itertools
 import json
 import os

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Files of nodes and node sets -> records; errors name file and line."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from typing import NamedTuple

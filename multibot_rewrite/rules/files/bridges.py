@@ -4,8 +4,6 @@
 Source: gazebosim/ros_gz ros_gz_bridge/src/bridge_config.cpp (parseEntry, and its messages).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
@@ -116,7 +114,7 @@ class GzTopics(NamedTuple):
     """The topics of the sensors and plugins of the robot that a bridge is for, and of its world, by
     name."""
 
-    topics: Mapping[str, GzTopic]
+    topics: "Mapping[str, GzTopic]"
 
 
 class GzTopic(NamedTuple):

@@ -6,8 +6,6 @@ files may be opened, so do the calls that open files and folders. Sources: Linux
 Documentation/userspace-api/seccomp_filter.rst, arch/x86/entry/syscalls/syscall_64.tbl,
 include/uapi/asm-generic/unistd.h."""
 
-from __future__ import annotations
-
 import ctypes
 import errno
 import os
