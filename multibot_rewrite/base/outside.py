@@ -6,8 +6,6 @@ function is noted with a digest of its answer. ``answer_now`` asks again, so a r
 still holds where all answers are the same.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

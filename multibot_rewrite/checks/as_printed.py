@@ -9,8 +9,6 @@ and so have programs that only a person starts.
 Sources: launch and launch_ros jazzy; lifecycle_msgs msg/Transition.msg.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import shlex

@@ -7,8 +7,6 @@ Sources: moveit2 jazzy moveit_ros/planning/rdf_loader/src/rdf_loader.cpp (no rob
 no model), ros2_control jazzy hardware_interface/src/component_parser.cpp ("no ros2_control tag").
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 

@@ -2,8 +2,6 @@
 """What is wrong with the launch files of one robot already, as its vendor starts them: a fleet of such
 robots has it as well, and is built."""
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Set

@@ -6,8 +6,6 @@ those of the other with its own words put in; numbers may differ as their poses 
 makes its robot a sort of its own. What two robots of a sort do to each other, any two of them do.
 """
 
-from __future__ import annotations
-
 import re
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Mapping, Sequence

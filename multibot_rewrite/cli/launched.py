@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """``multibot inspect FLEET``: each process that the launch files of a fleet start, for whom and why."""
 
-from __future__ import annotations
-
 import argparse
 import os
 from collections.abc import Iterator

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The findings of a command: selected, grouped over robots, in the format asked for, where they go."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections import Counter
@@ -37,7 +35,7 @@ class About(NamedTuple):
     files: Sequence[str]
     robots: Mapping[str, str] = NO_ROBOTS
     release: str = ""
-    coverage: Coverage | None = None
+    coverage: "Coverage | None" = None
 
 
 def counted_findings(findings: Sequence[Finding]) -> str:
@@ -46,7 +44,7 @@ def counted_findings(findings: Sequence[Finding]) -> str:
     return plural(len(findings), "note" if only_notes else "finding")
 
 
-def with_coverage(held: Coverage | None, text: str) -> str:
+def with_coverage(held: "Coverage | None", text: str) -> str:
     """Return a verdict behind how much of the robots it is about."""
     return "; ".join(filter(None, (held.in_words if held else "", text)))
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which files a command reads when it is given files and folders."""
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence

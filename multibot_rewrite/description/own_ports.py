@@ -13,8 +13,6 @@ libraries/AP_HAL_SITL/SITL_cmdline.cpp (10 for each instance, ``sim_vehicle.py -
 launch/multi_uav_mavros_sitl.launch (1 for each instance); of hardware see its section.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A description, its robots and their node sets -> the remap table and the expected graph."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple

@@ -3,8 +3,6 @@
 ``README.md`` has how they are written.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache
 from typing import NamedTuple

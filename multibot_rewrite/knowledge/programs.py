@@ -6,8 +6,6 @@ launch/*.py of humble (1.1.20), jazzy (1.3.13), kilted (1.4.2), lyrical (1.5.1) 
 slam_toolbox launch/online_sync_launch.py.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from multibot_rewrite.base.releases import has_release

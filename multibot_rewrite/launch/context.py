@@ -6,8 +6,6 @@ A launch keeps each fleet and a folder for files that goes at its end. A robot o
 given is that of the enclosing group. It is among the locals of the context: launch keeps these for
 timers, and here for event handlers (launch jazzy launch_service.py, timer_action.py)."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Safe edits -> the fixed text, and the proof that nothing else changed and no finding is new."""
 
-from __future__ import annotations
-
 import re
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -92,7 +90,7 @@ class Meaning(NamedTuple):
     attributes: Mapping[str, str]
     numbers: Sequence[float]
     texts: tuple[str, str]
-    children: tuple[Meaning, ...]
+    children: "tuple[Meaning, ...]"
 
 
 def same_meaning(one: _Element, other: _Element) -> bool:

@@ -8,8 +8,6 @@ not read from a file of its own is told where the launch file has it.
 That is every error, and what Gazebo leaves out of a robot that runs in it. Where the description is
 only sent, nothing counts that only a simulator reads. The build and check-launch ask it."""
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A graph -> its robots, the layout that it looks like, and what is wrong with it. Pure."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 

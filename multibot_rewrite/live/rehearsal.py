@@ -8,8 +8,6 @@ Pure; ``graph.live.stub_nodes`` runs them. Parameters are taken to be set as the
 QoS is the default, and endpoints that depend on a condition are left out.
 """
 
-from __future__ import annotations
-
 import json
 import os
 from collections import defaultdict

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is drawn of a checked graph, each part with its state. Pure, and without any drawing."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple

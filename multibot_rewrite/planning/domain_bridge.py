@@ -7,8 +7,6 @@ alone, each once; services and actions do not cross (parse_domain_bridge_yaml_co
 latched keeps the last ten messages unless the file says more (qos_options.hpp).
 """
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple

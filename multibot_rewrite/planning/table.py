@@ -5,8 +5,6 @@ A rule is made only for a name that would otherwise be the same for every robot.
 by resolving every name with its rules as rcl does (``rosnames``), not by trusting the rules.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple, TypeAlias
 

@@ -4,8 +4,6 @@ where they are written, and those that a node needs and does not get there, by r
 
 The first match counts: a node's own arguments come before those of its process."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cache

@@ -9,8 +9,6 @@ that loads it, from its spawner, or from its plugin's tag. Sources: ros2_control
 navigation2 ``nav2_costmap_2d/src/costmap_2d_ros.cpp``; gz_ros2_control ``gz_ros2_control_plugin.cpp``.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple, TypeAlias
 

@@ -3,8 +3,6 @@
 spawner, no other file includes it, and it is for the simulator, or for the real robot, as it is wanted.
 """
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence

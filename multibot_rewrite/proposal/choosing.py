@@ -2,8 +2,6 @@
 """Which of several descriptions is the robot: what launch files load that start one, and whose
 names their related files have. Where nothing says it, the likeliest has rivals."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple

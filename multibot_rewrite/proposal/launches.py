@@ -2,8 +2,6 @@
 """The launch files of a repository, read behind fences: what each starts with any arguments, and what
 one starts with those that it is given."""
 
-from __future__ import annotations
-
 import os
 import shlex
 from collections.abc import Iterable, Iterator, Sequence

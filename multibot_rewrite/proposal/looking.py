@@ -2,8 +2,6 @@
 """A description -> what a fleet file has to know of it: simulator, xacro arguments, and the values for
 these that launch files have where nobody gave any."""
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -91,7 +89,7 @@ def filled_for_any(it: Looked) -> tuple[tuple[str, str], ...]:
     return tuple(filled(dict(it.arguments), ANY).items())
 
 
-def look(path: str, given: Mapping[str, str], reach: Reach, values: NeededValues) -> Looked:
+def look(path: str, given: Mapping[str, str], reach: Reach, values: "NeededValues") -> Looked:
     """Return what a description is; ``given`` are values for arguments of xacros, others that it
     needs get those of ``values``."""
     known = dict(given)
@@ -170,7 +168,7 @@ def with_own_arguments(it: Looked, tree: Tree, reach: Reach) -> Looked:
     return it._replace(arguments=tuple({**kept, **own}.items()))
 
 
-def with_semantic_arguments(it: Looked, srdf: str, reach: Reach, values: NeededValues) -> Looked:
+def with_semantic_arguments(it: Looked, srdf: str, reach: Reach, values: "NeededValues") -> Looked:
     """Return the description with the arguments that its SRDF requires, where a value is known."""
     more: dict[str, str] = {}
     for _ in range(MOST_ARGUMENTS if srdf.endswith(".xacro") else 0):

@@ -2,8 +2,6 @@
 """Which related files of a description belong to another one, by place and by what they name, and
 which of several parameter files for one node goes with it."""
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence

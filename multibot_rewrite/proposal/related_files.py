@@ -4,8 +4,6 @@
 Where several files are for the same thing (parameters of a node, an RViz config), the nearest is taken.
 """
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Callable, Collection, Container, Iterable, Iterator, Mapping, Sequence

@@ -4,8 +4,6 @@
 A xacro counts as a description if it names a robot and no other file includes it.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import shlex

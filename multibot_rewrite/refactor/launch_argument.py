@@ -6,8 +6,6 @@ Edited is what people write: ``Command(["xacro ", path])`` in a launch file in P
 list of its actions, and ``$(command 'xacro ...')`` in XML. What else runs xacro is left for its author.
 Sources: ros2/launch launch/substitutions/command.py, launch_xml; ros2/xacro README."""
 
-from __future__ import annotations
-
 import ast
 import os
 import re

@@ -10,8 +10,6 @@ file is a substitution). What else reads the file, as a plugin of Gazebo, would 
 launch file alone may name it.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -53,7 +51,7 @@ class Trial(NamedTuple):
     argument: str
     prefix: str
     trust: bool
-    parameters: Mapping[str, Filled]
+    parameters: "Mapping[str, Filled]"
     space: Space | None
 
 
@@ -143,7 +141,7 @@ def _copy(home: str, root: str, files: Mapping[str, bytes]) -> None:
             out.write(data)
 
 
-def _verdict(order: LaunchOrder, how: Trial, filled: Sequence[Filled]) -> _Verdict:
+def _verdict(order: LaunchOrder, how: Trial, filled: "Sequence[Filled]") -> _Verdict:
     argument, prefix = how.argument, how.prefix
     try:
         graph = launch_graph(order)

@@ -5,8 +5,6 @@ What a rewrite below a namespace changes in plugins and sensors is asked of the 
 absolute names, and elements that are not written. Without a namespace nothing changes. Proved by
 expansion: with one the description is what the rewrite makes of it."""
 
-from __future__ import annotations
-
 import os
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence

@@ -6,8 +6,6 @@ A switch is turned; an argument that an expression compares with a word gets tha
 name a property or a macro has it. Several at a time are not tried.
 """
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence

@@ -6,8 +6,6 @@ name: ``<parent link="${prefix}${parent}"/>``. Where the same place is also that
 robots share, as ``world``, it goes where the name is made: ``parent="${prefix}base_link"`` in the call
 of the macro. Then every other place that uses this piece has to take it from there as well."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import accumulate

@@ -5,8 +5,6 @@ A value is put together from pieces (``description/sources/trace.py``). A change
 of it is in one piece that stands in a file as it is; what an expression computes is left to its author.
 """
 
-from __future__ import annotations
-
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple

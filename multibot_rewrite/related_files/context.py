@@ -3,8 +3,6 @@
 with slots for a robot's namespace and tag: made once, filled for each robot.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple

@@ -11,8 +11,6 @@ it does not show yet follow as a group with the part's name.
 Source: joint_state_broadcaster.cpp: without ``joints`` and ``interfaces`` it takes all joints.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple

@@ -5,8 +5,6 @@ Cartographer reads its frames from Lua only (cartographer_ros node_options, traj
 topics are fixed relative names that remap rules move. Comments and other strings stay.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A related file: its kind, which its text tells, and its names as a list."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -79,15 +77,15 @@ class NamedFile(NamedTuple):
     kind: str
     file: str
     text: str
-    context: Context
+    context: "Context"
     memo: dict[object, Any]
-    names: tuple[Site, ...] = ()
-    others: tuple[Site, ...] = ()
-    twice: tuple[Site, ...] = ()
-    document: YamlText | None = None
-    pages: tuple[Page, ...] = ()
-    known: KnownNodes | None = None
-    shown: tuple[RvizItem, ...] = ()
+    names: "tuple[Site, ...]" = ()
+    others: "tuple[Site, ...]" = ()
+    twice: "tuple[Site, ...]" = ()
+    document: "YamlText | None" = None
+    pages: "tuple[Page, ...]" = ()
+    known: "KnownNodes | None" = None
+    shown: "tuple[RvizItem, ...]" = ()
     is_certain: bool = True
     is_whole: bool = True
     is_for_one: bool = False
@@ -95,8 +93,8 @@ class NamedFile(NamedTuple):
     robots: frozenset[str] = frozenset()
     own: frozenset[str] = frozenset()
     roots: tuple[str, ...] = ()
-    included: tuple[Site, ...] = ()
-    computed: tuple[Site, ...] = ()
+    included: "tuple[Site, ...]" = ()
+    computed: "tuple[Site, ...]" = ()
 
     @property
     def declared(self) -> Mapping[str, Collection[str]]:
@@ -107,6 +105,6 @@ class NamedFile(NamedTuple):
 class RelatedFile(NamedTuple):
     """A related file as a template for any robot, what was read, and what only its rewrite finds."""
 
-    template: FileTemplate
+    template: "FileTemplate"
     file: NamedFile
-    findings: tuple[Finding, ...] = ()
+    findings: "tuple[Finding, ...]" = ()

@@ -7,8 +7,6 @@ where the capsule is; the spheres go to the end of the link, so that the numbers
 stay.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from functools import partial
 from typing import NamedTuple

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The subject of lint rules: one document, its elements by their tags, and what is known about it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -98,7 +96,7 @@ class Subject(NamedTuple):
     settings: Settings
     memo: dict[object, Any]
     beside: Robot | None = None
-    origins: Origins | None = None
+    origins: "Origins | None" = None
     sources: Mapping[str, bytes] = {}
     arguments: str = ""
     given: tuple[str, ...] = ()

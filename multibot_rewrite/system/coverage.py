@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """How much of what is there a system holds: which every verdict reports."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 

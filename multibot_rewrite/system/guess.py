@@ -8,8 +8,6 @@ at the end of such topics (``cmd_vel/robot1``), or one that several trees of fra
 (``robot1/base_link``).
 """
 
-from __future__ import annotations
-
 import re
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Set

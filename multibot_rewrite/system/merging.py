@@ -4,8 +4,6 @@
 A snapshot from one machine may miss what the network hides from it, so a node is in the result if
 any snapshot has it."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple

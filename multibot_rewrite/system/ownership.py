@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which robot a node, topic or frame belongs to, by the plan and by how its name is written."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
 from typing import NamedTuple

@@ -2,8 +2,6 @@
 """Which nodes of a graph are asked for what of their state, what they answer, and the values of
 parameters as texts. Pure."""
 
-from __future__ import annotations
-
 import json
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -52,7 +50,7 @@ class Answer(NamedTuple):
 
 
 def with_answers(
-    system: System, answers: Iterable[Answer], asked: Iterable[Question] = ()
+    system: System, answers: Iterable[Answer], asked: "Iterable[Question]" = ()
 ) -> System:
     """Return the system with the nodes' answers; names ``asked`` nodes that did not answer."""
     said = tuple(answers)

@@ -6,8 +6,6 @@ Sources: rcl ``arguments.c`` (``_rcl_parse_remap_begin_remap_rule`` and what it 
 ``node_resolve_name.c`` for the rest.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple

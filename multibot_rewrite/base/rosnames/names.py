@@ -6,8 +6,6 @@ rcl ``validate_topic_name.c`` and ``expand_topic_name.c``; rmw ``validate_full_t
 ``validate_namespace.c``, ``validate_node_name.c`` and their headers (the limits).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from itertools import pairwise
 from typing import NamedTuple

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The links and joints of a URDF as records, for rules about the kinematic tree."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple, TypeVar
 

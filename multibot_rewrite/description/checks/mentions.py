@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Names of links, joints and lights in values that no site claims: a rewrite leaves them so."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Collection, Iterator

@@ -8,8 +8,6 @@ urdfdom and sdformat: the origin of a joint is the child's frame in the parent's
 the child's.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from math import atan2, cos, hypot, isfinite, sin, sqrt

@@ -2,8 +2,6 @@
 """Names that nothing declares, that are ambiguous, or that are declared twice; and a xacro's arguments:
 those that no file knows, those that reach one of a frame and its link."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -159,7 +157,7 @@ ARGUMENT_MISSES_REFERENCE = declare(
 
 
 def missed_by_arguments(
-    inventory: Inventory, renames: RenameMap, plain: Mapping[tuple[str, str], str], robot: str
+    inventory: Inventory, renames: "RenameMap", plain: Mapping[tuple[str, str], str], robot: str
 ) -> Iterator[Problem]:
     """Yield frames that arguments do not rename: ``plain`` maps names without the arguments (kind
     and text) to those that ``robot`` has with them."""

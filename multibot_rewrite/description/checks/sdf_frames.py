@@ -5,8 +5,6 @@ Source: sdformat.org, "Pose Frame Semantics": a pose is in the frame ``relative_
 joint is in its child, of a frame in what it is attached to, of all others in its model.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from math import radians
 from typing import NamedTuple

@@ -7,8 +7,6 @@ link without a shape. How large a Collada mesh is, as RViz and Gazebo show it.
 AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION), and ColladaLoader.cc of gz-common does not read it.
 Corners that no triangle has count too: the box may be larger than what is seen."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import reduce
 from io import BytesIO

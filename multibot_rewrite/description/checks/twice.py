@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Does a description carry a robot's name already? A rewrite for that robot would add it once more."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator
 from typing import NamedTuple

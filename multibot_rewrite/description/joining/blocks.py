@@ -12,8 +12,6 @@ and any number of joints, sensors, gpios and transmissions; urdfdom model.cpp (`
 material below ``<robot>`` that is there twice is an error; ``assignMaterial``: of a name that the
 model has, whatever is in the visual is not read)."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import NamedTuple
 

@@ -4,8 +4,6 @@
 The first part's file goes on: its declaration, name and attributes are those of the whole. A root
 link ``world`` of a later part is left out, and what is fixed to it is fixed to ``at`` itself."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from math import isfinite
 from typing import NamedTuple

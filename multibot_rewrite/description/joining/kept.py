@@ -14,8 +14,6 @@ tag on. What was left out or changed is kept where it was, before the 0 or 1 ele
 A comment holds no ``--``, and no colon before a blank: launch files pass a description as YAML.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from typing import NamedTuple

@@ -7,8 +7,6 @@ link ``world`` gives way to the link that the part is on, its ros2_control to on
 it.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from itertools import chain

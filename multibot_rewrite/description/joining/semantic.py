@@ -10,8 +10,6 @@ root link), moveit_setup_assistant compute_default_collisions.cpp (``computeConn
 without geometry between two others leave these adjacent).
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from itertools import combinations, product

@@ -6,8 +6,6 @@ As MoveIt's Setup Assistant has it: compute_default_collisions.cpp (``disableNev
 moves by itself here, so that a pair is rather called one that may touch.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from importlib import import_module

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Description bytes -> everything that runs because of it, by the names it has then."""
 
-from __future__ import annotations
-
 from collections.abc import Container, Iterable, Iterator
 from typing import NamedTuple
 

@@ -3,8 +3,6 @@
 them, and what becomes of them.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, NamedTuple
@@ -35,14 +33,14 @@ if TYPE_CHECKING:
 _PREFIXES = {uri: prefix for prefix, uri in NAMESPACES.items()}
 
 
-def tag_path(element: _Element, attribute: str) -> str:
+def tag_path(element: "_Element", attribute: str) -> str:
     """Return the path of a value: the tags from the root on, and the attribute."""
     steps = [_step(element), *(_step(above) for above in element.iterancestors())]
     path = "/".join(reversed(steps))
     return f"{path}@{short_name(attribute)}" if attribute else path
 
 
-def _step(element: _Element) -> str:
+def _step(element: "_Element") -> str:
     tag = short_name(str(element.tag), element.prefix)
     if tag == "plugin":
         return f"{tag}[{plugin_name(element)}]"
@@ -57,7 +55,7 @@ def short_name(name: str, prefix: str | None = None) -> str:
     return f"{short}:{local}" if short else name
 
 
-def plugin_name(element: _Element) -> str:
+def plugin_name(element: "_Element") -> str:
     """Return the name of a ``<plugin>``: its library without folders, or its class."""
     library = element.get("filename", "").strip().rpartition("/")[2]
     return library or element.get("name", "").strip()

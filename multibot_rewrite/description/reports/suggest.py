@@ -2,8 +2,6 @@
 """First plugin definitions for what a description loads and nothing knows: guessed, each with its
 why."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
@@ -112,7 +110,7 @@ def loaded_by(host: Host) -> Loaded | None:
     return Loaded(type_, class_, not section.select) if class_ else None
 
 
-def _section_name(type_: str, element: _Element) -> str:
+def _section_name(type_: str, element: "_Element") -> str:
     """Return the first name by which the element is looked up and that a section can have."""
     keys = tree.plugin_keys(element) if type_ == "plugin" else tree.hardware_keys(element)
     return next((key for key in keys if key != tree.ANY_WITH_ROS and _can_head(type_, key)), "")
@@ -125,7 +123,9 @@ def _can_head(type_: str, name: str) -> bool:
         return False
 
 
-def _values(element: _Element, node: tree.TreeNode | None, path: str) -> Iterator[tuple[str, str]]:
+def _values(
+    element: "_Element", node: tree.TreeNode | None, path: str
+) -> Iterator[tuple[str, str]]:
     """Yield path and value of every attribute and text below an element that no row is about."""
     known = {""} if node is not None and node.text is not None else set()
     if node is not None:
@@ -140,12 +140,12 @@ def _values(element: _Element, node: tree.TreeNode | None, path: str) -> Iterato
         yield from _values(child, _below(node, child), f"{path}/{_step(child)}".lstrip("/"))
 
 
-def _below(node: tree.TreeNode | None, child: _Element) -> tree.TreeNode | None:
+def _below(node: tree.TreeNode | None, child: "_Element") -> tree.TreeNode | None:
     below = node.children.get(str(child.tag)) if node is not None else None
     return below.select(child) if below is not None and below.select is not None else below
 
 
-def _step(element: _Element) -> str:
+def _step(element: "_Element") -> str:
     """Return a step of a path for an element; parameters are told apart by their name."""
     tag, name = short_name(str(element.tag)), element.get("name", "")
     step = f"{tag}[@name={name}]"

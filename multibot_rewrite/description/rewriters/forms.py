@@ -5,8 +5,6 @@ A form maps a value to its parts. Because a part is a position and not a new tex
 and remap rules need no writer of their own.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 

@@ -7,8 +7,6 @@ plugin, one below the name of the node or a word of a parameter moves with these
 that is absolute in the code stays.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 

@@ -6,8 +6,6 @@ cannot share it; where two models of a file use one name for two kinds, the mode
 leads to decides.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 

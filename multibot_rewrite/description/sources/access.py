@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the expansion of a xacro file may use: files below its roots, packages, ROS's variables."""
 
-from __future__ import annotations
-
 import os
 import stat
 from collections.abc import Callable, Iterator

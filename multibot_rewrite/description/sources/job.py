@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What one rewrite works on: everything it depends on but the robots, read once."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Iterable, Sequence
 from contextlib import suppress
 from functools import cache

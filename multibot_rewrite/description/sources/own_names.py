@@ -5,8 +5,6 @@ The author of a xacro may have given it a prefix or a namespace argument. Which 
 reaches is found by expanding the file once more, with a word that nobody uses for the robot's.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
@@ -102,7 +100,7 @@ def common_to(robots: Sequence[tuple[Arguments, Sequence[str]]]) -> frozenset[st
     )
 
 
-def own_names(inventory: Inventory, words: Sequence[str]) -> OwnNames:
+def own_names(inventory: "Inventory", words: Sequence[str]) -> OwnNames:
     """Return the names with a mark in them, as they are for the robot with these words.
 
     Raises UsageError for a name that has the robot's name twice in a row.
@@ -135,7 +133,7 @@ def _unmarked(text: str, words: Sequence[str]) -> str:
     return text
 
 
-def marked_texts(plain: Inventory, marked: Inventory) -> NameTexts:
+def marked_texts(plain: "Inventory", marked: "Inventory") -> NameTexts:
     """Return names as they are without the arguments -> the same with marks. Names are matched by
     their order among those of their kind: a kind with another number of names is left out."""
     found: dict[tuple[str, str], str] = {}
@@ -147,7 +145,7 @@ def marked_texts(plain: Inventory, marked: Inventory) -> NameTexts:
     return found
 
 
-def _by_kind(inventory: Inventory) -> dict[str, list[str]]:
+def _by_kind(inventory: "Inventory") -> dict[str, list[str]]:
     every = (it for names in inventory.names for it in names if it.kind not in DECLARED_KINDS)
     found = lists_by_key((it.kind, it.text) for it in every)
     # A reference that an argument misses is of another kind without its declaration.

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where a description comes from: a path, text or bytes, xacro expanded on the way."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Mapping
 from contextlib import suppress
@@ -32,7 +30,7 @@ class SourceText(NamedTuple):
     data: bytes
     file: str
     read: tuple[str, ...] = ()
-    known: KnownArguments | None = None
+    known: "KnownArguments | None" = None
 
 
 def args_for(source: Source, other: Source | None, args: Mapping[str, str]) -> Mapping[str, str]:

@@ -6,8 +6,6 @@ Sources: docs.github.com "Workflow syntax" (.github/workflows), docs.gitlab.com 
 149 (package.xml); for the packages REP 2000 and gazebosim.org/docs, "Installing Gazebo with ROS".
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable
 from typing import NamedTuple

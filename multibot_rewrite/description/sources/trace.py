@@ -7,8 +7,6 @@ up in the files as they were read here, so a number that is wrong leads nowhere 
 as written there only where the bytes read back as it.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Sequence
 from functools import cached_property
@@ -48,7 +46,7 @@ class Trace:
     ``sources`` are the files that were read, named as ``given`` is where that is possible.
     """
 
-    def __init__(self, result: Result, sources: Sources, given: str) -> None:
+    def __init__(self, result: "Result", sources: "Sources", given: str) -> None:
         self.result = result
         texts = sources.texts
         self.names = [it if it == given else alike(it, given) for it, _ in result.files]

@@ -2,8 +2,6 @@
 """Plan -> text: a template is cut once at every slot, then each robot is one ``bytes.join``; and where
 whole elements are in the bytes of a document."""
 
-from __future__ import annotations
-
 from bisect import bisect_left
 from collections.abc import Iterable
 from typing import NamedTuple

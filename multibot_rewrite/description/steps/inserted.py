@@ -12,8 +12,6 @@ marker is a comment because TinyXML-2, which urdfdom and sdformat read with, ref
 instructions inside the root element.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import NamedTuple
 

@@ -5,8 +5,6 @@ It trusts how the source was read and what the naming says. It does not trust th
 made of it.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator
 from functools import partial

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """YAML checked against a JSON Schema: plain data with its lines, or one line with the error."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 

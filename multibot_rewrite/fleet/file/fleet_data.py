@@ -2,8 +2,6 @@
 """A fleet file with those it includes, or a dict -> checked data, with the place of each value;
 paths are relative to the file's folder, and there."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The fleet file: YAML -> records, or one line that says what is wrong and where."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple, cast
 

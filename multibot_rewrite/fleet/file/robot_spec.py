@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """One robot of a fleet file: its row and what the file says for all robots -> a record."""
 
-from __future__ import annotations
-
 import math
 import os
 from collections.abc import Iterator, Mapping

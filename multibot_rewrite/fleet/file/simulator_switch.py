@@ -8,8 +8,6 @@ the hardware class of ``<ros2_control>``, and often the plugins of the simulator
 They are filled where the names that they reach become what the layout makes of them. What they make
 is the robot's already, so the rewrite leaves it."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress

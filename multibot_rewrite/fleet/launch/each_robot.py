@@ -6,8 +6,6 @@ them have stays as it is, whatever it says. A text that is the same but for the 
 f-string, if it gives the text of every robot. Any other text becomes a parameter of the function.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import count

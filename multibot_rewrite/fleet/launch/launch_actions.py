@@ -5,8 +5,6 @@ What only runs under a condition that no file answers, and nodes whose program i
 to the reader: they are named in the file.
 """
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence

@@ -2,8 +2,6 @@
 """A file that a build writes with the source line of each line, and what each step of a build yields:
 files, findings, and files to check."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Collection, Iterable, Iterator
 from functools import lru_cache

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Parameter files, MoveIt files, behavior trees and Lua files of a fleet: one for each robot."""
 
-from __future__ import annotations
-
 import json
 import os
 from collections import defaultdict

@@ -10,8 +10,6 @@ transform joins that to the world of the fleet. Source: tf_namespace_bridge
 src/tf_namespace_bridge.cpp, launch/tf_namespace_bridge.yaml, CMakeLists.txt (41881734b).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 

@@ -6,8 +6,6 @@ paths in the robot's colour, and tools for its goal and pose.
 Sources: classes and properties ``rviz.yaml``; a map is latched (nav2_map_server map_server.cpp), so is
 a description (robot_state_publisher.cpp); drivers send scans and clouds best effort (REP 2003)."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress

@@ -11,8 +11,6 @@ A block of a plugin that names it (``<wind_obj>`` of VRX, ``<performer>`` of gz-
 robot; a parameter of the plugin itself can name one robot only, and names the first.
 Sources: gz-sim examples/worlds/levels.sdf; osrf/vrx vrx_gz/src/USVWind.cc, ScoringPlugin.cc."""
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Iterator, Sequence

@@ -7,8 +7,6 @@ includes its own. rmw_zenoh ``docs/design.md`` has the keys: a topic or service 
 with ``@adv`` (zenoh-ext ``advanced_publisher.rs``); ``**`` does not match a part that begins with @.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import takewhile
 from typing import NamedTuple

@@ -2,8 +2,6 @@
 """How each robot of a fleet gets a value of its own in its description: by which argument of its xacro,
 or at which line that has no argument."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress

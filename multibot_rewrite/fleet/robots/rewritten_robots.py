@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The robots of a fleet file with their rewritten descriptions; one parse for each source."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from functools import cache
 from types import MappingProxyType

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Robots that share everything but their names: what they have in common is read and planned once."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple

@@ -2,8 +2,6 @@
 """The nodes that a robot of a fleet file runs: its node sets, as its own files have them. Some run
 once for all robots, as one map_server with one map."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple

@@ -5,8 +5,6 @@ What is allowed is what ``nodl_schema/schemas/nodl.schema.yaml`` and ``parameter
 ros-tooling/nodl (main, 915a4da) say.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from typing import NamedTuple

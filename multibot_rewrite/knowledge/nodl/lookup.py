@@ -9,8 +9,6 @@ It cannot say everything: conditions, helper nodes, which names an image_transpo
 file's own rules. These stay from the library where it knows the same endpoint.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple

@@ -4,8 +4,6 @@
 A finding is recognised by its code, its file and its message, so lines may move.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Findings that comments suppress, and comments that suppress nothing."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """``urdf-lint.toml`` or ``[tool.urdf-lint]`` -> settings; what a command adds to them."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Values of a configuration file -> settings; a wrong value is a UsageError in one line."""
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence

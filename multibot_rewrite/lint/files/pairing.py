@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which URDF an SRDF belongs to: the one it names among the linted files, else one near it."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import redirect_stderr
@@ -138,7 +136,7 @@ def described(path: str, settings: Settings) -> tuple[bytes, str]:
             return expand(path, sets[0], find, reach), name
 
 
-def reach_of(settings: Settings) -> Reach:
+def reach_of(settings: Settings) -> "Reach":
     """Return the limits for the xacro files of a lint, with the time limit of a file."""
     from multibot_rewrite.description.sources.access import Reach
 

@@ -5,8 +5,6 @@ A NoDL document has no helper nodes, conditions or several types: helpers' endpo
 two types are two entries.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from textwrap import wrap

@@ -14,8 +14,6 @@ for ``<a>``. A parameter that is not set and has no default makes no name. ``<ty
 controller.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache

@@ -9,8 +9,6 @@ controller_manager.cpp and resource_manager.cpp (a command interface is claimed 
 controller), and the hardware, which moves a joint in one mode at a time.
 """
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby

@@ -6,8 +6,6 @@ ros2_control controller_manager.cpp (a controller manager's ``NAME.type`` makes 
 controller_manager/spawner.py (``type`` of a controller's own section is set as that).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import suppress
 from functools import lru_cache

@@ -9,8 +9,6 @@ then files; ``--from`` and ``--to`` hold for all topics), parse_domain_bridge_ya
 of a file), domain_bridge.cpp (``get_node_for_domain``, ``bridge_topic``, ``add_bridges``).
 """
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence

@@ -5,8 +5,6 @@ Source: launch_ros jazzy, actions/node.py, actions/load_composable_nodes.py (hum
 is given to them under the same names).
 """
 
-from __future__ import annotations
-
 import os
 import pathlib
 import re

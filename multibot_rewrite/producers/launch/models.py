@@ -6,8 +6,6 @@ is an argument ``--params-file``, rules of ``<ros>`` are arguments, too; ``use_s
 ros_gz_sim create.cpp and gazebo_ros spawn_entity.py: a model by ``-topic``, ``-file`` or ``-string``.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import pairwise

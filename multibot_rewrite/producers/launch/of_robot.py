@@ -4,8 +4,6 @@
 A node that is launched runs: that is the surest evidence there is. What a node set has and no
 launch file starts is left out, if all of the launch files is known."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import count

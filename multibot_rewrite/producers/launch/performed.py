@@ -6,8 +6,6 @@ arguments. Nothing is started, and every value is kept: what is printed can be c
 planned.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path, PurePath
 from types import ModuleType

@@ -2,8 +2,6 @@
 """What is known of the programs that launch files start (``programs.yaml``), and which run once for all
 robots: simulators, map servers, windows, tools."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping
 from fnmatch import fnmatchcase
 from functools import cache

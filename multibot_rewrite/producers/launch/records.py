@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What launch files start, as records; how they pass from the process that reads them."""
 
-from __future__ import annotations
-
 import json
 import os
 import shlex

@@ -4,8 +4,6 @@
 Every launched node is taken as it is: nothing is known here of robots, node sets and layouts. A
 launch file that is wrong is to be seen as it is."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress

@@ -5,8 +5,6 @@ Names are those that rcl makes of the rules, transforms those that parameters na
 condition that nobody knows may be there.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import NamedTuple

@@ -8,8 +8,6 @@ options of its own; the name of a manager is relative to the spawner's namespace
 
 Source: rcl arguments.c (what is between ``--ros-args`` and ``--`` is ROS's own)."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise

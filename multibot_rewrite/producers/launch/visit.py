@@ -5,8 +5,6 @@ What only sets something up is executed, what would start something is described
 by the names of its classes, so that this works in every release. Source: launch, launch_ros jazzy.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from functools import cache

@@ -5,8 +5,6 @@ latched descriptions; the function that subscribes is passed in.
 Images are large: of a message only the frame is kept, and their topic is left at once.
 """
 
-from __future__ import annotations
-
 import math
 import time
 from collections import defaultdict

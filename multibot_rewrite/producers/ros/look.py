@@ -2,8 +2,6 @@
 """A node in the graph, what it can ask at once (the nodes with their ends), and what it receives
 meanwhile: transforms, and headers if they are asked for."""
 
-from __future__ import annotations
-
 import threading
 import time
 from collections.abc import Callable, Sequence

@@ -4,8 +4,6 @@
 Only what is sure is said without a condition. What is not known before it runs is listed in ``untold``.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import combinations
 from typing import NamedTuple

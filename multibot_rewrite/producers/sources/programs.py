@@ -3,8 +3,6 @@
 CMakeLists.txt, or as a file that is installed; and its files: what it imports or includes, as far as
 that is here."""
 
-from __future__ import annotations
-
 import ast
 import os
 import re

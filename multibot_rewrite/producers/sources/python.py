@@ -4,8 +4,6 @@
 A member of an object is written with it: ``self.topic``; what a class has itself, too.
 """
 
-from __future__ import annotations
-
 import ast
 import re
 import warnings

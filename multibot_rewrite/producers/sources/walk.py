@@ -4,8 +4,6 @@
 What is called is followed as far as its text is here. What nothing calls by name (a callback) may run.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 

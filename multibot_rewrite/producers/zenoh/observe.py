@@ -4,8 +4,6 @@
 The tokens are all there at once, so there is nothing to wait for but samples of tf.
 """
 
-from __future__ import annotations
-
 import time
 from collections import Counter, defaultdict
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping

@@ -9,8 +9,6 @@ format is one for all releases: what differs is the session id, whose bytes had 
 first, and the hash, which is ``TypeHashNotSupported`` in Humble. Neither is taken apart here.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from math import inf

@@ -6,8 +6,6 @@ A name read from a parameter is remapped like any other. So the new value must r
 robot's remap rules, to the robot's version of the name that the old value resolves to without rules.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from typing import NamedTuple

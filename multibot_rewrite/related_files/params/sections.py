@@ -5,8 +5,6 @@ As rcl_yaml_param_parser reads them: nested keys before ``ros__parameters`` are 
 ``*`` is one token of a node's full name, ``**`` any number of them.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The names in a section -> splices that rename them for a robot, and findings about them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import NamedTuple
 

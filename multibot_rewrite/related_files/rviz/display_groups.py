@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """One RViz config for all robots: shared displays once, and a group of displays for each robot."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import NamedTuple

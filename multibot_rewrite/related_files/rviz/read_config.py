@@ -2,8 +2,6 @@
 """An RViz config as records: displays, tools and panels, where each holds a name, and the value of
 that name for a robot."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from colorsys import hls_to_rgb
 from functools import lru_cache
@@ -51,7 +49,7 @@ class RvizItem(NamedTuple):
     flag: str
     known: bool
     places: tuple[Site, ...]
-    children: tuple[RvizItem, ...] = ()
+    children: "tuple[RvizItem, ...]" = ()
 
 
 class RvizConfig(NamedTuple):

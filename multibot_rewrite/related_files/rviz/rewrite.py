@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """An RViz config for one robot -> one for all robots, or one for each robot with its own tf topic."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 

@@ -5,8 +5,6 @@ sensors; and what an error may rest on: that nothing elsewhere and no other rele
 What may be right all the same is a warning, or a note.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import wraps
 from typing import NamedTuple, TypeVar

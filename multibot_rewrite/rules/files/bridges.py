@@ -4,8 +4,6 @@
 Source: gazebosim/ros_gz ros_gz_bridge/src/bridge_config.cpp (parseEntry, and its messages).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
@@ -115,7 +113,7 @@ _WORLD = "/world/"
 class GzTopics(NamedTuple):
     """The gz topics of the robot's sensors and plugins, and of its world, by name."""
 
-    topics: Mapping[str, GzTopic]
+    topics: "Mapping[str, GzTopic]"
 
 
 class GzTopic(NamedTuple):

@@ -4,8 +4,6 @@
 ``knowledge/demanded.schema`` has the demands, ``knowledge/plugin_classes.schema`` the classes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 

@@ -8,8 +8,6 @@ Source: https://github.com/PickNikRobotics/generate_parameter_library (README, "
 Source: PickNikRobotics/rsl and generate_parameter_library, parameter_validators (README, "Built-In
 Validators"); control_filters of ros2_controllers take nan as well."""
 
-from __future__ import annotations
-
 import math
 import os
 from collections.abc import Callable, Iterator, Sequence

@@ -2,8 +2,6 @@
 """What a file, and the parameter files of the same robot, set for each node and plugin, and what
 declares it: of a parameter file, and of a file of MoveIt as the parameters that it becomes."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple, cast

@@ -9,8 +9,6 @@ server.config: physics, user commands, scene broadcaster); src/systems/sensors a
 other sensors.
 """
 
-from __future__ import annotations
-
 from collections import Counter, defaultdict
 from collections.abc import Iterator
 from contextlib import suppress

@@ -7,8 +7,6 @@ which stop at what is none, vectors by a stream. What cannot be read ends the lo
 in a plugin it counts as 0 or false.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from functools import lru_cache, partial

@@ -7,8 +7,6 @@ elements have the same attributes and children, so what a schema says about a co
 computed once and then looked up.
 """
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence

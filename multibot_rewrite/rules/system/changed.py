@@ -2,8 +2,6 @@
 """A system compared with an earlier snapshot of it: what is new, gone or other in ends, transforms,
 frames of messages and parameters. Which nodes came and went is asked by the rules of a plan."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Robots with the same nodes compared with each other: parameters, types, QoS and fixed transforms."""
 
-from __future__ import annotations
-
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence, Set
 from typing import NamedTuple

@@ -3,8 +3,6 @@
 tf2 drops transforms as they come.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Set
 from math import inf, isfinite
 from typing import NamedTuple

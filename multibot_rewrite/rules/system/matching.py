@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Dangers of connections: both sides of a name are there and do not connect, by type or QoS."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from functools import lru_cache

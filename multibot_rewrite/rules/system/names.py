@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Dangers of names: a subscriber or client whose other side has nearly the same name, two servers."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence, Set
 from typing import NamedTuple

@@ -8,8 +8,6 @@ activated; a command interface has one owner) and its chaining: a controller's o
 called ``CONTROLLER/...``.
 """
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import NamedTuple

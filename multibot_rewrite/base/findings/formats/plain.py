@@ -2,8 +2,6 @@
 """The formats that are text or JSON, and what all formats need: text that no reader stumbles over,
 paths, identities that last."""
 
-from __future__ import annotations
-
 import os
 import re
 from collections import Counter

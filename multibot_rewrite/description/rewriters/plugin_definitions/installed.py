@@ -4,8 +4,6 @@
 An entry point names a package whose ``*.vocab`` files are read; its code is not imported.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import sys

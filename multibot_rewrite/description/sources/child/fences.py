@@ -6,8 +6,6 @@ Without rules nothing of what the set handles is left. Source: Linux, include/ua
 and Documentation/userspace-api/landlock.rst.
 """
 
-from __future__ import annotations
-
 import ctypes
 import os
 import resource

@@ -4,8 +4,6 @@ write open files. Where Landlock says which files may be opened, calls that open
 left, too. Sources: Linux, Documentation/userspace-api/seccomp_filter.rst,
 arch/x86/entry/syscalls/syscall_64.tbl, include/uapi/asm-generic/unistd.h."""
 
-from __future__ import annotations
-
 import ctypes
 import errno
 import os

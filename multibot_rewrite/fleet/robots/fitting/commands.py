@@ -5,8 +5,6 @@ input of a twist_mux for each sender of them, since the drive obeys one.
 The inputs are those of the user's file, where one has the node; then what a node set adds fits
 these."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 

@@ -6,8 +6,6 @@ those of the robot in the place of usual ones that it has not.
 What the user's files say stays. A node that a node set adds gets the type of commands, the frames
 and the transforms with which it works with them."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple

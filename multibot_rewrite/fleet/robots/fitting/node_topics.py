@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Topics that nodes have for certain, and parameters that their node sets set."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple

@@ -6,8 +6,6 @@ Source: launch and launch_ros jazzy, frontend/expose.py, ``parse`` of each actio
 and of descriptions/composable_node.py; share/launch/frontend/grammar.lark,
 frontend/parse_substitution.py."""
 
-from __future__ import annotations
-
 import re
 import shlex
 from collections.abc import Callable, Mapping
