@@ -4,8 +4,6 @@ one step a kind of file."""
 
 from __future__ import annotations
 
-import itertools
-import json
 import os
 from collections.abc import Iterator, Sequence
 from functools import cache

@@ -13,8 +13,6 @@ from itertools import islice
 from multibot_rewrite.base.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.model import InputError, MultibotError
-from multibot_rewrite.base.releases import release_told
-from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.base.releases import release_chosen_here
 from multibot_rewrite.cli import check, pictures, unplanned
 from multibot_rewrite.cli.fleet import orders_of, own_nodes
@@ -24,9 +22,8 @@ from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.sources.release_said import release_of_build
 from multibot_rewrite.fleet.file.simulator_switch import MOST, is_called_as_switch
-from multibot_rewrite.library.systems import launched_by
-from multibot_rewrite.library.systems import launched_by
 from multibot_rewrite.fleet.outputs.output_file import PLAN
+from multibot_rewrite.library.systems import launched_by
 from multibot_rewrite.lint.launched import named_findings
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.planning.plan import read_plan

@@ -8,7 +8,7 @@ import re
 
 from multibot_rewrite.base.editors import PLAN as PLAN_SCHEMA
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.releases import facts_of_release, release_chosen_here
+from multibot_rewrite.base.releases import facts_of_release
 from multibot_rewrite.cli import fleet
 from multibot_rewrite.cli.check_launch import plan_beside
 from multibot_rewrite.cli.output import deliver, goes_to_file, note, say
@@ -87,7 +87,9 @@ def _of_launch(options: argparse.Namespace) -> int:
     if options.output:
         check_target(options.output, [it.file for it in orders])
         check_folder(options.output)
-    made = launched_by(orders, release_told(options.distro), *fleet.own_nodes(options)).system
+    made = launched_by(
+        orders, release_chosen_here(options.distro), *fleet.own_nodes(options)
+    ).system
     seen = diagnose(made, names=plan_beside(orders))
     if not made.nodes:
         raise UsageError(f"{orders[0].file}: it starts no node, so there is no plan")

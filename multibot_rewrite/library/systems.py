@@ -14,10 +14,9 @@ from multibot_rewrite.base.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.base.file_kinds import PLAN, recognised
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.naming import Policy
-from multibot_rewrite.base.releases import release_told
+from multibot_rewrite.base.releases import release_chosen_here
 from multibot_rewrite.checks.closed_plan import closed_plan
 from multibot_rewrite.checks.judged_plan import make_fleet, plan_fleet
-from multibot_rewrite.base.releases import release_chosen_here
 from multibot_rewrite.description.sources.read import Source, read_file
 from multibot_rewrite.description.sources.release_said import release_of_launch
 from multibot_rewrite.fleet.file.fleet_file import read_fleet

@@ -9,7 +9,6 @@ messages with some of the joints (moveit2 2.12.4 current_state_monitor.cpp, ``jo
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from collections.abc import Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import SHARED_TOPICS

@@ -11,9 +11,7 @@ from multibot_rewrite.base.bounded import load_yaml, own_text
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.base.nearest import meant_name
-from multibot_rewrite.description.own_ports import said_of_numbers
 from multibot_rewrite.description.own_ports import numbers_message
-from multibot_rewrite.checks.written_files import wrong_in_file
 from multibot_rewrite.fleet.file.fleet_file import BRINGUP
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import (

@@ -4,8 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from collections.abc import Iterable, Iterator
-from typing import NamedTuple
 
 from lxml.etree import _Element
 
