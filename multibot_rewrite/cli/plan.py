@@ -8,7 +8,7 @@ import re
 
 from multibot_rewrite.base.editors import PLAN as PLAN_SCHEMA
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.releases import facts_of_release
+from multibot_rewrite.base.releases import facts_of_release, release_chosen_here
 from multibot_rewrite.cli import fleet
 from multibot_rewrite.cli.check_launch import plan_beside
 from multibot_rewrite.cli.output import deliver, goes_to_file, note, say

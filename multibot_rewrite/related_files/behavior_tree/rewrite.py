@@ -78,7 +78,7 @@ def character(document: Document, at: int) -> int:
     return at if source.isascii() else len(source[:at].decode())
 
 
-def is_model(element: _Element) -> bool:
+def is_model(element: "_Element") -> bool:
     """Return whether the element is in the tree's declarations of nodes."""
     return element.tag == _MODEL or any(it.tag == _MODEL for it in element.iterancestors())
 
@@ -116,7 +116,7 @@ def _port_kind(element: "_Element", attribute: str, trees: _Trees, above: tuple[
     return str(own.get(attribute) or port_data()["ports"].get(attribute, ""))
 
 
-def node_name(element: _Element) -> str:
+def node_name(element: "_Element") -> str:
     """Return the name of the behavior tree node that an element is."""
     return str(element.get("ID", "")) if element.tag in _FORMS else str(element.tag)
 
