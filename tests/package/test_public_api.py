@@ -49,8 +49,8 @@ def fleet(tmp_path: Path) -> LoadedFleet:
 
 @pytest.mark.parametrize("call", CALLS)
 def test_the_naming_options_are_the_same_everywhere(call: Callable[..., object]) -> None:
-    wanted = inspect.signature(make_naming).parameters
-    found = inspect.signature(call).parameters
+    wanted = inspect.signature(make_naming, eval_str=True).parameters
+    found = inspect.signature(call, eval_str=True).parameters
     assert tuple(wanted) == tuple(Policy.__annotations__)
     for name, parameter in wanted.items():
         own = found[name]
