@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from multibot_rewrite.base.grouping import lists_by_key
-from multibot_rewrite.base.nearest import extensions, other_words, typing_mistakes
+from multibot_rewrite.base.nearest import CHOICE, extensions, nearest, other_words, typing_mistakes
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 
@@ -23,7 +23,7 @@ def option_hint(wrong: str, command: str, known: Collection[str], has_fleet: boo
     """
     if meant := _meaning(wrong, command, known, has_fleet):
         return f"; {meant}"
-    near = _part(wrong, known) or _mistyped(wrong, known)
+    near = _mistyped(wrong, known)
     if near and near not in known:
         return f"; {_meaning(near, command, known, has_fleet, near)}"
     return f"; did you mean '{near}'?" if near else ""
@@ -70,17 +70,20 @@ def _part(wrong: str, known: Iterable[str]) -> str:
 
 
 def _mistyped(wrong: str, known: Collection[str]) -> str:
-    """Return the option that was probably meant: an own one but for two typing mistakes, or another
-    that begins with it or like it, but for one in three letters; or ""."""
+    """Return the option that was probably meant: an own one that is a part of the word (output-format:
+    format), or is it but for two typing mistakes, or another that begins with it or like it, but for
+    one in three letters; else an own one that is much like it, or ""."""
     word, found = wrong.lstrip("-"), []
     for option in dict.fromkeys((*known, *other_words("options"), *_commands_of())):
         name, is_own = option.lstrip("-"), option in known
         is_begun = len(word) > _BEGUN and name.startswith(word)
-        many = 1 if is_begun else typing_mistakes(word, name)
+        is_part = is_own and name in word.split("-")[1:]
+        many = 0 if is_part else 1 if is_begun else typing_mistakes(word, name)
         is_alike = name[0] == word[0] or (is_own and 2 * many < len(name))
         if option.startswith("--") and is_alike and many <= min(2, len(name) // (3 - 2 * is_own)):
             found.append((many, not is_own, option))
-    return min(found, default=(0, False, ""))[2]
+    near = nearest(word, sorted(it[2:] for it in known if it.startswith(f"--{word[0]}")), CHOICE)
+    return min(found)[2] if found else near and f"--{near}"
 
 
 def _commands_of() -> Mapping[str, Sequence[str]]:

@@ -9,6 +9,7 @@ import re
 import shlex
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from functools import cache, lru_cache
+from itertools import permutations
 from typing import Any, NamedTuple
 
 from multibot_rewrite import fleet
@@ -48,7 +49,12 @@ MOST_SHOWN = 6
 _BESIDE = (".yaml", ".yml", ".rviz", ".srdf")
 _ROBOT = re.compile(rb"<robot\b[^<>]*\sname\s*=")
 # What urdf-postfix has written is made of the robot that is meant.
-_REWRITTEN = re.compile(rb"<!-- multibot \S+ \+\d")
+_REWRITTEN = re.compile(rb"<!-- multibot (\S+) \+\d|^[^\S\n]*# multibot: ", re.MULTILINE)
+_WORDS, _PARTS = re.compile(rb"[\w/.-]+"), re.compile(rb"[\s/_]+")
+_XML = (".urdf", ".sdf")
+_LINK = re.compile(rb"<link\b[^<>]*")
+# So many files of as many words are compared.
+MOST_FILES_ALIKE = 20
 _STATIC = re.compile(rb"<static>\s*(?:true|1)\s*</static>")
 _BRIDGE = re.compile(
     rb"^[^\S\n]*(?:- *)?(?:ros_topic_name|gz_topic_name|topic_name) *:", re.MULTILINE
@@ -123,8 +129,9 @@ def search(paths: Sequence[str], launch: Sequence[LaunchOrder] = ()) -> Found:
     homes = dict.fromkeys((*folders, *map(home_of, apart)))
     below = (path for home in homes for path in _files(home, home in folders))
     every = dict.fromkeys((*below, *meant))
-    told = _sorted(every, [*map(read_named, launch)])
-    kinds = lists_by_key((kind, path) for path, kind in told)
+    told = dict(_sorted(every, [*map(read_named, launch)]))
+    written = {*_rewritten(told)} - {*named}
+    kinds = lists_by_key((kind, path) for path, kind in told.items() if path not in written)
     kinds["every"] = kinds.get("descriptions", [])
     if files:
         kinds["descriptions"] = files
@@ -237,6 +244,29 @@ def _sorted(paths: Iterable[str], named: Sequence[Reading]) -> Iterator[tuple[st
     yield from (
         (it, kind) for it, kind in kinds.items() if kind != "descriptions" or it not in parts
     )
+
+
+def _rewritten(paths: Iterable[str]) -> Iterator[str]:
+    """Yield the files that urdf-postfix has written: those with its comments, and those that are others
+    with a robot's name at their names. Such a description has it at each link; what goes with
+    descriptions is known by the name in one of them."""
+    texts = {it: data_of_file(it) for it in sorted(paths, key=lambda it: not it.endswith(_XML))}
+    marked = {it: found for it, text in texts.items() if (found := _REWRITTEN.search(text))}
+    yield from marked
+    tags = {it[1] for it in marked.values()}
+    for alike in lists_by_key((text.count(b"\n"), it) for it, text in texts.items()).values():
+        for source, path in permutations(alike[:MOST_FILES_ALIKE], 2):
+            both = (_WORDS.finditer(texts[it]) for it in (source, path))
+            words = ((one[0], other[0]) for one, other in zip(*both, strict=False))
+            old, new = next((it for it in words if it[0] != it[1]), (b"", b""))
+            affix = new.replace(old.strip(b"/"), b"", 1) if old in new else b""
+            tag = affix.strip(b"/_")
+            links = _LINK.findall(texts[path]) if tag != affix and tag[:1].isalpha() else []
+            if not (all(tag in it for it in links) if links[1:] else tag in tags):
+                continue
+            if len({_PARTS.sub(b"", texts[it].replace(tag, b"")) for it in (source, path)}) == 1:
+                tags.add(tag)
+                yield path
 
 
 @lru_cache(maxsize=512)

@@ -366,6 +366,27 @@ def test_what_is_in_a_comment_is_for_no_simulator(fleet: Any) -> None:
     assert [spawn.simulators(fleet("L2", body=it)) for it in bodies] == [["classic"], ["gz"]]
 
 
+@pytest.mark.parametrize(
+    ("hardware", "simulators"),
+    [
+        ("mock_components/GenericSystem", ["classic"]),
+        ("acme_driver/Arm", ["classic"]),
+        ("gz_ros2_control/GazeboSimSystem", ["classic", "gz"]),
+    ],
+)
+def test_hardware_of_no_simulator_is_in_that_of_the_others(
+    fleet: Any, tmp_path: Path, hardware: str, simulators: list[str]
+) -> None:
+    plugin = f"<hardware><plugin>{hardware}</plugin></hardware>"
+    body = f'<ros2_control name="c" type="system">{plugin}</ros2_control>'
+    (tmp_path / "arm.urdf").write_text(ROVER.format(body))
+    fleet("L2", body=classic(SPACE))
+    text = (tmp_path / "fleet.yaml").read_text()
+    row = "robots:\n  - {name: a, description: arm.urdf, simulator: gazebo}\n"
+    (tmp_path / "fleet.yaml").write_text(text.replace("robots:\n", row))
+    assert spawn.simulators(planned_fleet("fleet.yaml")) == simulators
+
+
 def test_no_namespace_where_nothing_needs_one(fleet: Any) -> None:
     for layout in LAYOUTS:
         made, _ = spawn.spawns(fleet(layout))

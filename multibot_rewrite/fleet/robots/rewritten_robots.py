@@ -32,6 +32,7 @@ from multibot_rewrite.description.sources.read import is_xacro
 from multibot_rewrite.description.steps.apply import Template
 from multibot_rewrite.description.steps.collect import NOTHING
 from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec, Sources
+from multibot_rewrite.fleet.file.simulator_switch import hardware_classes, may_be_simulated
 from multibot_rewrite.fleet.robots.member import Member, member, with_text
 from multibot_rewrite.fleet.robots.own_values import Written
 from multibot_rewrite.planning.transforms import links_of, tree_of
@@ -208,8 +209,8 @@ def rewrite_robots(
 def _names_simulator(it: RewrittenRobot) -> bool:
     """Return whether its description has what one simulator alone loads: plugins, hardware, SDF."""
     root = it.member.inventory.document.root
-    parts = ("gazebo//plugin", "gazebo//sensor", "ros2_control")
-    return root.tag == "sdf" or any(root.find(part) is not None for part in parts)
+    parts = any(root.find(f"gazebo//{it}") is not None for it in ("plugin", "sensor"))
+    return root.tag == "sdf" or parts or any(map(may_be_simulated, hardware_classes(root)))
 
 
 def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobot]:

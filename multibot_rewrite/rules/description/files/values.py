@@ -90,16 +90,14 @@ def unreadable_value(subject: Subject) -> Iterator[Problem]:
 @rule("MB124", "unknown-word", ERROR, formats=(URDF, SRDF, PARAMS, MOVEIT))
 def unknown_word(subject: Subject) -> Iterator[Problem]:
     """Report them; a sensor type of other releases is a warning unless this one simulates it."""
+    definitions = subject.tree.definitions
     for it in faults("word", subject):
         type_ = it.element.get("type", "") if it.element.tag == "sensor" else ""
-        definitions = subject.tree.definitions if type_ else None
-        others = definitions.releases_elsewhere("sensor", type_) if definitions else ()
-        if definitions and others:
-            message = f"sensor@type {type_!r} {not_here(definitions, others)}"
-            level = ERROR if subject.settings.simulated else WARNING
-            yield it._replace(message=message, hint=ANOTHER_RELEASE, level=level)
-        else:
-            yield it
+        others = definitions.releases_elsewhere("sensor", type_) if type_ else ()
+        message = f"sensor@type {type_!r} {not_here(definitions, others)}"
+        level = ERROR if subject.settings.simulated else WARNING
+        later = it._replace(message=message, hint=ANOTHER_RELEASE, level=level)
+        yield later if others else it
 
 
 @rule("MB125", "out-of-range", ERROR, formats=(URDF, PARAMS, MOVEIT))
