@@ -42,6 +42,7 @@ from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import NO_TREE, REFUSED, launched
 from multibot_rewrite.producers.launch.spawners import NO_MANAGER
 from multibot_rewrite.rules.check import inconclusive_where_in_doubt, judge
+from multibot_rewrite.rules.files.bridges import no_gz_topic
 from multibot_rewrite.rules.launch.judge import as_sure, judge_launch, placed
 from multibot_rewrite.rules.system.unsent import nothing_known_sends
 from multibot_rewrite.system.index import index
@@ -108,7 +109,8 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
         whole, started = start.with_bridged, made.starts.nodes
         wrong = [*not_as_planned(made.planned, whole, started, made.findings, real)]
         told = (*wrong, *made.findings, *plan.fleet.table.problems)
-        codes = {it.code for it in told if it.level == ERROR}
+        # Rows of bridges were compared with the sources: what these have is a warning.
+        codes = {it.code for it in told if it.level == ERROR or it.code == no_gz_topic.code}
         by_plan = whose_by_plan(made.planned)
         # What planned nodes give that another launch file starts.
         elsewhere = {it.child for it in made.planned.edges if not {*it.publishers} <= started}

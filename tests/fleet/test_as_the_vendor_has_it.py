@@ -317,6 +317,28 @@ def test_a_manager_that_asks_for_the_description_of_a_node_has_it(
     assert "'robot_description': text(" in started.partition("Node(")[0]
 
 
+CAMERA = """<robot name="r"><link name="base_link"><inertial><mass value="1"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <gazebo reference="base_link"><sensor name="cam" type="camera"><topic>camera/image</topic></sensor>
+  </gazebo></robot>"""
+SEEN = """        Node(package='ros_gz_sim', executable='create', arguments=['-topic', 'x']),
+        Node(package='ros_gz_bridge', executable='parameter_bridge',
+             arguments=['/camera/image_raw@sensor_msgs/msg/Image[gz.msgs.Image']),
+"""
+
+
+def test_a_row_of_his_bridge_that_reads_nothing_is_told_and_built(
+    fleet: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (fleet.parent / "robot.urdf").write_text(CAMERA)
+    head, _, _ = LAUNCH.partition("        ekf('ekf_local'),\n")
+    (fleet.parent / "up.launch.py").write_text(f"{head}{SEEN}    ])\n")
+    fleet.write_text(fleet.read_text().replace("simulator: none", "simulator: gazebo"))
+    assert main(["build", str(fleet), "-o", str(fleet.parent / "out")]) == 0
+    (told,) = (it for it in capsys.readouterr().err.splitlines() if "MB879" in it)
+    assert "warning: MB879" in told and "/camera/image_raw" in told
+
+
 def test_what_the_vendor_is_warned_of_excuses_no_error(
     fleet: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -51,6 +51,7 @@ from multibot_rewrite.producers.launch.stand_in import standing_in
 from multibot_rewrite.producers.launch.stand_in.names import names
 from multibot_rewrite.producers.launch.stand_in.packages import (
     FindPackageShare,
+    PackageNotFoundError,
     get_package_share_directory,
 )
 from multibot_rewrite.producers.launch.unknown_modules import add_unknown, imported
@@ -84,8 +85,10 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
     # A launch file may look at the command line itself.
     sys.argv = order.command_line
     missing: list[str] = []
+    PackageNotFoundError.asked.clear()
     while (graph := _tried(order, folder, missing)) is None:
         pass
+    missing += [it for it in PackageNotFoundError.asked if it not in missing]
     files = (*graph.files, *descriptions_in(reads.paths))
     # What the launch files of these start is known without them.
     off = {it.package for it in graph.off} - graph.packages
