@@ -70,7 +70,7 @@ def two_of_each(made: Outputs, robots: Sequence[RobotSpec]) -> Sample:
         if not (row and is_whole and it.namespace in plans):
             return Sample(made)
         own = _sort(it, (row, part, plans[it.namespace]), files)
-        at = next((at for at, one in enumerate(sorts) if _alike(one, own)), len(sorts))
+        at = next((at for at, one in enumerate(sorts) if _are_alike(one, own)), len(sorts))
         sorts += [own] if at == len(sorts) else []
         of_sort[at].append(it)
     left = [it for several in of_sort.values() for it in several[_OF_EACH:]]
@@ -110,7 +110,7 @@ def _sort(it: RobotSpec, parts: Iterable[str], files: Mapping[str, OutputFile]) 
                  it.pose or Pose())  # fmt: skip
 
 
-def _alike(one: _Sort, other: _Sort) -> bool:
+def _are_alike(one: _Sort, other: _Sort) -> bool:
     poses = set(zip(one.pose, other.pose, strict=True))
     if len(one.texts) != len(other.texts):
         return False

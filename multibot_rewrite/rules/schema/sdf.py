@@ -98,7 +98,7 @@ def _taken(child: _Element, row: SdfRow, home: str) -> Iterator[Problem]:
     text = child.get("value") or text_of(child)
     if not text or "$" in text:
         return
-    belongs = _belongs(row.name)
+    belongs = _parents_of(row.name)
     if home not in belongs:
         message = f"<{row.name}> in the <gazebo> of a {home} has no effect"
         hint = f"it is read in that of a {' or '.join(belongs)}: name it with reference="
@@ -109,7 +109,7 @@ def _taken(child: _Element, row: SdfRow, home: str) -> Iterator[Problem]:
         yield fault("value", child, at, message, "", level)
 
 
-def _belongs(tag: str) -> tuple[str, ...]:
+def _parents_of(tag: str) -> tuple[str, ...]:
     if tag in OF_MODELS:
         return ("model", "link", "joint")
     if tag in OF_BOTH:
@@ -196,10 +196,10 @@ def _value(
 
 def _where(element: _Element, at: str, text: str) -> str:
     """Return how a message names a value."""
-    return f"{_named(element, at)} {shortened(text)!r}"
+    return f"{_element_in_words(element, at)} {shortened(text)!r}"
 
 
-def _named(element: _Element, at: str) -> str:
+def _element_in_words(element: _Element, at: str) -> str:
     return f"{element.tag}@{at}" if at else f"<{element.tag}>"
 
 
@@ -243,7 +243,7 @@ def _unknown_word(
     if not near and version <= CLASSIC and name == "sensor/@type":
         return  # Gazebo Classic lets plugins add types of sensors
     hint = f"did you mean {near!r}?" if near else ""
-    message = f"{_named(element, at)} is {shortened(text)!r}, which SDF does not know"
+    message = f"{_element_in_words(element, at)} is {shortened(text)!r}, which SDF does not know"
     yield fault("word", element, at, message, hint)
 
 
