@@ -218,10 +218,10 @@ def _loader() -> type[yaml.SafeLoader]:
     loader: Any = type("BoundedLoader", (base,), {})
     for kind in _CONVERTED:
         construct = base.yaml_constructors[_TAG + kind]
-        loader.add_constructor(_TAG + kind, _checked(construct, kind))
+        loader.add_constructor(_TAG + kind, _with_digit_limit(construct, kind))
     for tag, read in ANGLES.items():
         construct = partial(lambda read, own, node: read(float(own.construct_scalar(node))), read)
-        loader.add_constructor(tag, _checked(construct, tag))
+        loader.add_constructor(tag, _with_digit_limit(construct, tag))
     return loader  # type: ignore[no-any-return]
 
 
@@ -242,7 +242,7 @@ def _plain_loader() -> type[yaml.SafeLoader]:
     return own  # type: ignore[no-any-return]
 
 
-def _checked(construct: Any, kind: str) -> Any:
+def _with_digit_limit(construct: Any, kind: str) -> Any:
     from yaml.constructor import ConstructorError
 
     def checked(loader: Any, node: yaml.Node) -> Any:

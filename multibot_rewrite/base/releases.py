@@ -154,7 +154,7 @@ def facts_of_release(release: str, why: str = "", ros: str = ROS_2) -> str:
 @cache  # so many facts, so few words
 def has_release(words: str, release: str) -> bool:
     """Return whether a fact with these release words holds in ``release``; always without words."""
-    return not words or any(_holds(it, release) for it in _terms(words))
+    return not words or any(_term_holds(it, release) for it in _terms(words))
 
 
 def releases_with(words: str) -> tuple[str, ...]:
@@ -169,7 +169,7 @@ def share_release(words: str, others: str) -> bool:
 
 def since_version(words: str, release: str) -> str:
     """Return the package version that brought a fact into ``release``; "" if it always had it."""
-    found = [it["version"] or "" for it in _terms(words) if _holds(it, release)]
+    found = [it["version"] or "" for it in _terms(words) if _term_holds(it, release)]
     return min(found, default="")
 
 
@@ -196,7 +196,7 @@ def _terms(words: str) -> Iterator[re.Match[str]]:
         yield found
 
 
-def _holds(term: re.Match[str], release: str) -> bool:
+def _term_holds(term: re.Match[str], release: str) -> bool:
     at, bound = RELEASES.index(release), RELEASES.index(term["release"])
     if term["until"]:
         return at <= bound

@@ -313,11 +313,11 @@ def not_as_commanded(starts: FleetStarts, text: str) -> list[str]:
             # Lines stand in the order of nodes, processes in that of the launch.
             for several in (wanted, given):
                 several.sort(key=lambda it: [*map(path_of, it.arguments)])
-            found += (f"{robot.name}: {it}" for it in _apart(wanted, given))
-    return [*found, *_apart(starts.shown, opened)]
+            found += (f"{robot.name}: {it}" for it in _start_differences(wanted, given))
+    return [*found, *_start_differences(starts.shown, opened)]
 
 
-def _apart(planned: Iterable[Start], printed: Iterable[Start]) -> Iterator[str]:
+def _start_differences(planned: Iterable[Start], printed: Iterable[Start]) -> Iterator[str]:
     wanted = [Action("Node", keywords(_as_commanded(it))) for it in planned]
     given = [Action("Node", keywords(it)) for it in printed]
     yield from (it.message for it in _differences(wanted, given))

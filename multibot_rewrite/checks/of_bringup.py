@@ -94,17 +94,17 @@ def _errors_of(robot: RewrittenRobot, fleet: Index, known: Knowledge) -> list[_E
     started = launched(graph, known)
     if any(it.code == NO_TREE for it in started.system.environment.caveats):
         text = etree.tostring(robot.member.source.root, encoding="unicode")
-        started = launched(_described(graph, text), known)
+        started = launched(_with_description(graph, text), known)
     alone = index(started.system, ALONE)
     every = (*judge_launch(started), *(as_sure(it, started, alone) for it in judge(alone)))
     found = []
     for it in (it for it in every if it.level == ERROR):
         parts = (part for own in _parts(it, started.system).values() for part in own)
-        found.append(_error(it, fleet)._replace(parts=_plain(parts, fleet)))
+        found.append(_error(it, fleet)._replace(parts=_plain_parts(parts, fleet)))
     return found
 
 
-def _described(graph: LaunchGraph, text: str) -> LaunchGraph:
+def _with_description(graph: LaunchGraph, text: str) -> LaunchGraph:
     values = {"/**": {"ros__parameters": {"robot_description": text}}}
     given = ParameterText("", yaml.safe_dump(values))
     nodes = (
@@ -124,7 +124,7 @@ def _is_in(errors: Iterable[_Error], it: Finding, seen: Index, robot: str) -> bo
         return False
     for parts in _parts(it, seen.system).values():
         whose = {seen.robot(node) for _, node in parts}
-        if robot in whose and not (whose <= {robot, ""} and _plain(parts, seen) <= known):
+        if robot in whose and not (whose <= {robot, ""} and _plain_parts(parts, seen) <= known):
             return False
     return True
 
@@ -153,7 +153,7 @@ def _error(it: Finding, fleet: Index) -> _Error:
     return _Error(it.code, {*plain})
 
 
-def _plain(parts: Iterable[_Part], fleet: Index) -> set[_Part]:
+def _plain_parts(parts: Iterable[_Part], fleet: Index) -> set[_Part]:
     return {(role, fleet.plain(node)) for role, node in parts}
 
 

@@ -128,7 +128,7 @@ def _one_device_each(plan: FleetPlan) -> Iterator[Finding]:
     by_name = {it.spec.name: it for it in robots}
     count = Counter((it.name, it.value) for its in hardware.values() for it in its)
     hints: dict[Sources, str] = {}
-    for it in _met(robots, [one for its in hardware.values() for one in its]):
+    for it in _shared(robots, [one for its in hardware.values() for one in its]):
         sources = by_name[it.robot].spec.sources
         if sources not in hints:
             # How a robot gets its own of what others have, too.
@@ -143,7 +143,7 @@ def _one_device_each(plan: FleetPlan) -> Iterator[Finding]:
     shared = frozenset(path for path, count in of_all.items() if count > 1)
     given = [one for it in robots for one in _of_nodes(it, plan.evidence_of(it), known, shared)]
     given += [one for it in robots for one in _of_words(it, plan.evidence_of(it))]
-    yield from (_of_the_fleet(it, it.hint) for it in _met(robots, given))
+    yield from (_of_the_fleet(it, it.hint) for it in _shared(robots, given))
 
 
 def _met(robots: Sequence[RewrittenRobot], addresses: Sequence[Address]) -> Iterator[Finding]:
@@ -199,13 +199,13 @@ def _too_near(plan: FleetPlan) -> Iterator[Finding]:
     robots = [it for it in plan.robots if is_simulated(it)]
     if not any(any(_place(it.spec)) for it in robots):
         if len(robots) > 1:
-            room = max(1, ceil(4 * max(map(_within, robots))))
+            room = max(1, ceil(4 * max(map(_filled_radius, robots))))
             message = f"the {len(robots)} robots are spawned at the origin, in each other"
             hint = f"write pose: {{x: {room}}} for {robots[1].spec.name}, and so on"
             yield at_robot(in_each_other, robots[1], message, hint, level=WARNING)
         return
     sources = [it.spec.sources for it in robots]
-    reach = {key: _within(it) for key, it in dict(zip(sources, robots, strict=True)).items()}
+    reach = {key: _filled_radius(it) for key, it in dict(zip(sources, robots, strict=True)).items()}
     placed = [(it, _place(it.spec), reach[key]) for key, it in zip(sources, robots, strict=True)]
     pairs = combinations(placed, 2) if len(placed) <= MOST else pairwise(placed)
     for (one, here, own), (other, there, more) in pairs:
@@ -217,7 +217,7 @@ def _too_near(plan: FleetPlan) -> Iterator[Finding]:
             yield at_robot(in_each_other, other, message, "give them pose: further apart")
 
 
-def _within(it: RewrittenRobot) -> float:
+def _filled_radius(it: RewrittenRobot) -> float:
     return filled_by(it.member.inventory.document.root)
 
 

@@ -108,7 +108,7 @@ def _sort(it: RobotSpec, parts: Iterable[str], files: Mapping[str, OutputFile]) 
                  it.pose or Pose())  # fmt: skip
 
 
-def _alike(one: _Sort, other: _Sort) -> bool:
+def _are_alike(one: _Sort, other: _Sort) -> bool:
     poses = set(zip(one.pose, other.pose, strict=True))
     if len(one.texts) != len(other.texts):
         return False

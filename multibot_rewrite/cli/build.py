@@ -83,7 +83,7 @@ def run(options: argparse.Namespace) -> int:
         there = _existing_hashes(options.output, {*known, *(it.path for it in files)})
         found = output_changes(files, known, there)
         if options.check:
-            return _stale(options, found)
+            return _report_stale(options, found)
         why = not_verified({*made.findings, *plan.fleet.table.problems})
         end = f"; not verified: {', '.join(why)}" if why else ""
         end = f"{end}{facts_of_release(plan.file.distro, plan.file.why)}"
@@ -134,7 +134,7 @@ def _existing_hashes(folder: str, paths: Iterable[str]) -> Mapping[str, str]:
     return {path: hash_of(read_file(it)) for path, it in full.items() if os.path.isfile(it)}
 
 
-def _stale(options: argparse.Namespace, found: OutputChanges) -> int:
+def _report_stale(options: argparse.Namespace, found: OutputChanges) -> int:
     lines = [
         *(f"{path}: stale" for path in found.write),
         *(f"{it}: left over" for it in found.remove),

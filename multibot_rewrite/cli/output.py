@@ -235,7 +235,7 @@ def diff(old: bytes, new: bytes, name: str, new_name: str, colour: bool = False)
     lines = diff_bytes(unified_diff, before, after, _named(name), _named(new_name))
     cut_short = b"\n\\ No newline at end of file\n"
     whole = (line if line.endswith(b"\n") else line + cut_short for line in lines)
-    return b"".join(map(_painted, whole) if colour else whole)
+    return b"".join(map(_painted_line, whole) if colour else whole)
 
 
 def _named(path: str) -> bytes:
@@ -243,7 +243,7 @@ def _named(path: str) -> bytes:
     return os.fsencode("".join(it if it >= " " else one_line(it) for it in path))
 
 
-def _painted(line: bytes) -> bytes:
+def _painted_line(line: bytes) -> bytes:
     paint = _PAINT.get(line[:1], b"")
     return paint + line[:-1] + _PLAIN + b"\n" if paint else line
 

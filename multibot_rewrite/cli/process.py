@@ -98,7 +98,7 @@ def guarded(program: str, run: Callable[[], int], own_process: bool) -> int:
     if own_process:
         # A short one: nothing it makes needs the collector of cycles.
         gc.disable()
-    code = _guarded(program, run, own_process)
+    code = _run_guarded(program, run, own_process)
     if own_process:
         leave(code)
     return code
@@ -113,7 +113,7 @@ def _not_lost(unraisable: sys.UnraisableHookArgs) -> None:
     signal.setitimer(signal.ITIMER_REAL, 0.001)
 
 
-def _guarded(program: str, run: Callable[[], int], own_process: bool) -> int:
+def _run_guarded(program: str, run: Callable[[], int], own_process: bool) -> int:
     # Closed by the caller: messages go nowhere.
     sys.stderr = sys.stderr or io.StringIO()
     try:

@@ -177,13 +177,13 @@ def _looking(each: dict[int, Diagnosis]) -> Look:
         for node in there:
             if robot := seen.whose.robot(node):
                 known.setdefault(robot, set()).add(node)
-        gone = [_gone(*it) for it in known.items() if there.isdisjoint(it[1])]
+        gone = [_missing_robot(*it) for it in known.items() if there.isdisjoint(it[1])]
         lost = map(unnamed, gone) if len(each) > 1 else gone
         return seen.graph, seen.coverage, (*seen.findings, *lost)
 
     return look
 
 
-def _gone(robot: str, nodes: Collection[str]) -> Finding:
+def _missing_robot(robot: str, nodes: Collection[str]) -> Finding:
     message = f"{robot} is gone: none of its {plural(len(nodes), 'node')} runs any more"
     return missing_robot.finding(message, "is it off, or out of the network?", robot=robot)

@@ -183,11 +183,11 @@ def without_numbers(source: bytes, file: str, robot: str, tree: Tree) -> bytes:
     before, now = (ports_of(collect(it, tree)) for it in (read_document(text, file), document))
     again = _edits(robot, ((it, new.number) for it, new in zip(before, now, strict=False)))
     if b"".join(cut(text, again)) != source:
-        raise _edited(document, robot)
+        raise _edited_by_hand(document, robot)
     return text
 
 
-def _edited(document: Document, robot: str) -> InputError:
+def _edited_by_hand(document: Document, robot: str) -> InputError:
     what = f"a number of {robot} or the comment before it was edited by hand"
     return InputError(f"{document.file}: {what}")
 
@@ -204,7 +204,7 @@ def _taken_out(document: Document, robot: str) -> Iterator[Edit]:
         mark, old = f"<!--{said}-->".encode(), said[len(head) : -len(tail)]
         slot = text_slot(source, start, text_of(element)) if element is not None else None
         if slot is None or not source.endswith(mark, 0, start):
-            raise _edited(document, robot)
+            raise _edited_by_hand(document, robot)
         end = end_of(source, start) if old == _DEFAULT else start
         yield Edit(start - len(mark), end, b"", None)
         if old != _DEFAULT:

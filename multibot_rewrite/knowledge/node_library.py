@@ -101,7 +101,7 @@ def nodes_of_set(library: NodeLibrary, name: str) -> tuple[NodeFacts, ...]:
         return (library.nodes[name],)
     if name not in library.node_sets:
         raise UsageError(unknown("node set", name, library.node_sets, library.nodes))
-    found = tuple(dict.fromkeys(_gathered(library, name, ())))
+    found = tuple(dict.fromkeys(_all_nodes(library, name, ())))
     for node in found:
         others = (it for it in found if it is not node and it.name == node.name)
         if any(share_release(node.releases, other.releases) for other in others):
@@ -119,12 +119,12 @@ def with_included(library: NodeLibrary, name: str) -> Iterator[str]:
         yield from with_included(library, other)
 
 
-def _gathered(library: NodeLibrary, name: str, above: tuple[str, ...]) -> Iterator[NodeFacts]:
+def _all_nodes(library: NodeLibrary, name: str, above: tuple[str, ...]) -> Iterator[NodeFacts]:
     if name in above:
         raise UsageError(f"node set {name!r} includes itself: {' -> '.join((*above, name))}")
     node_set = library.node_sets[name]
     for other in node_set.include:
-        yield from (_in_set(it, node_set) for it in _gathered(library, other, (*above, name)))
+        yield from (_in_set(it, node_set) for it in _all_nodes(library, other, (*above, name)))
     yield from (_in_set(it, node_set) for it in node_set.nodes)
 
 

@@ -49,17 +49,17 @@ def user_library(path: str, release: str) -> NodeLibrary:
 
 def with_file(path: str) -> NodeLibrary:
     """Return the built-in library of all releases with that of a file; raises as ``user_library``."""
-    return _extended(_text_of(path), path)
+    return _extended_library(_text_of(path), path)
 
 
 # A command asks for what the same file says many times.
 @lru_cache(maxsize=4)
 def _extended_in_release(text: str, path: str, release: str) -> NodeLibrary:
-    return in_release(_extended(text, path), release)
+    return in_release(_extended_library(text, path), release)
 
 
 @lru_cache(maxsize=4)
-def _extended(text: str, path: str) -> NodeLibrary:
+def _extended_library(text: str, path: str) -> NodeLibrary:
     return extend(every_release(), text, path)
 
 
@@ -78,10 +78,10 @@ def is_apart(node: str, release: str) -> bool:
     nodes. What is in the namespace of such a node, as the helpers of costmaps, goes with it."""
     above = node.rpartition("/")[0]
     known = apart_nodes(release)
-    return any(_ends(node, it) or _ends(above, it.rpartition("/")[0]) for it in known)
+    return any(_ends_with(node, it) or _ends_with(above, it.rpartition("/")[0]) for it in known)
 
 
-def _ends(node: str, with_: str) -> bool:
+def _ends_with(node: str, with_: str) -> bool:
     return bool(with_) and f"/{node}".endswith(f"/{with_}")
 
 

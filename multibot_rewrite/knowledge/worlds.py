@@ -18,15 +18,15 @@ _SENDS, _DRIVES = "sends", "drives"
 _ROWS = own_rows(__file__, "worlds.schema")
 
 
-def _of(kind: str) -> Iterator[tuple[str, list[str]]]:
+def _rows_of(kind: str) -> Iterator[tuple[str, list[str]]]:
     yield from ((library, words.split()) for library, what, words in _ROWS if what == kind)
 
 
-_SENT = {name: dict(it.split("=") for it in words) for name, words in _of(_SENDS)}
+_SENT = {name: dict(it.split("=") for it in words) for name, words in _rows_of(_SENDS)}
 SENT_BY_ANY: Mapping[str, str] = _SENT.pop("*")
 SENT_BY: Mapping[str, Mapping[str, str]] = _SENT
 # Parameters that hold joints which a plugin commands, by its library.
-DRIVES: Mapping[str, tuple[str, ...]] = {name: tuple(words) for name, words in _of(_DRIVES)}
+DRIVES: Mapping[str, tuple[str, ...]] = {name: tuple(words) for name, words in _rows_of(_DRIVES)}
 # The library and the class, by the type of a sensor.
 SYSTEMS: Mapping[str, tuple[str, str]] = {
     type_: (library, class_)

@@ -75,13 +75,13 @@ def _carry(context: Context) -> None:
     def registered(event_handler: Any, *more: Any, **options: Any) -> None:
         group = here(context)
         if any(group) and not _is_of_timers(event_handler):
-            event_handler.handle = _handled(event_handler.handle, group)
+            event_handler.handle = _handler_in(event_handler.handle, group)
         register(event_handler, *more, **options)
 
     context.register_event_handler = registered
 
 
-def _handled(handle: Callable[..., Any], group: Here) -> Callable[..., Any]:
+def _handler_in(handle: Callable[..., Any], group: Here) -> Callable[..., Any]:
     def handled(event: Any, context: Context) -> Any:
         # launch drops the locals when it has visited what this returns.
         entered(context, group)

@@ -67,7 +67,7 @@ def generate_launch_description() -> Any:
         for name, default, about in ARGUMENTS
     ]
     fleet, robots = _configuration("fleet"), _configuration("robots")
-    each = each_robot(fleet, lambda it: [opaque(function=partial(_started, it)), place()], robots)
+    each = each_robot(fleet, lambda it: [opaque(function=partial(_starts, it)), place()], robots)
     made = [opaque(function=_shared), each, opaque(function=_rviz)]
     return of_launch().LaunchDescription([*declared, *made])
 
@@ -80,7 +80,7 @@ def _is_on(context: Context, argument: str) -> bool:
     return str(context.launch_configurations.get(argument, "")).strip().lower() in ("true", "1")
 
 
-def _started(robot: LoadedRobot, context: Context) -> list[Action]:
+def _starts(robot: LoadedRobot, context: Context) -> list[Action]:
     names = robot.table
     # Other nodes that its files have sections for may run, too: the node sets say which do.
     known = nodes_of_nav2(it for it in robot.node_set if it in names.nodes)

@@ -77,7 +77,7 @@ def rewrite_file(
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     given = (urdf, xacro_args, definitions, file, trust, release_here(distro))
-    return next(_rewritten(source, (robot,), naming, *given))
+    return next(_rewritten_files(source, (robot,), naming, *given))
 
 
 @checked
@@ -104,7 +104,7 @@ def rewrite_files(
     result."""
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     given = (urdf, xacro_args, definitions, file, trust, release_here(distro))
-    return _rewritten(source, tuple(robots), naming, *given)
+    return _rewritten_files(source, tuple(robots), naming, *given)
 
 
 def names_in_file(data: bytes, file: str, urdf: bytes) -> NamedFile:
@@ -114,7 +114,7 @@ def names_in_file(data: bytes, file: str, urdf: bytes) -> NamedFile:
     return read_named(kind_alone(data, file), data, file, _context(job, naming, release))
 
 
-def _rewritten(
+def _rewritten_files(
     source: Source,
     robots: Sequence[str],
     naming: Naming,

@@ -42,7 +42,7 @@ class _TooLongError(BaseException):
 
 def lint_file(path: str, settings: Settings) -> list[Finding]:
     """Return all findings of a file, in order; a file that cannot be read is a finding."""
-    return _linted(path, partial(read_file, path), settings)
+    return _lint_source(path, partial(read_file, path), settings)
 
 
 def lint_data(
@@ -50,10 +50,10 @@ def lint_data(
 ) -> list[Finding]:
     """Return the findings of a text; ``path`` is its name, and xacro resolves includes from there.
     A description is checked by the ``wanted`` rules."""
-    return _linted(path, lambda: data, settings, wanted)
+    return _lint_source(path, lambda: data, settings, wanted)
 
 
-def _linted(
+def _lint_source(
     path: str, read: Callable[[], bytes], settings: Settings, wanted: Callable[[Rule], bool] = bool
 ) -> list[Finding]:
     found: list[Finding] = []

@@ -65,7 +65,7 @@ def of_other_robots(robots: Sequence[Looked], found: Found, release: str) -> lis
 
 
 def _owners(file: str, robots: Sequence[Looked], known: KnownNodes) -> list[Looked]:
-    near = {it: _near(os.path.dirname(it.path), file) for it in robots}
+    near = {it: _shared_depth(os.path.dirname(it.path), file) for it in robots}
     nearest = [it for it in robots if near[it] == max(near.values())]
     likely = [it for it in nearest if _is_called_like(file, it)] or nearest
     if not likely[1:] or not file.endswith((".yaml", ".yml")):
@@ -105,7 +105,7 @@ def _related_files(found: Found) -> Iterator[str]:
         yield from getattr(found, kind)
 
 
-def _near(folder: str, file: str) -> int:
+def _shared_depth(folder: str, file: str) -> int:
     return len(os.path.commonpath((os.path.abspath(folder), os.path.abspath(file))))
 
 
@@ -115,15 +115,15 @@ def _nearer_to_others(robot: str, found: Found) -> Iterator[tuple[str, str]]:
     others = {os.path.dirname(it): it for it in reversed(found.every)}
     own, base = os.path.dirname(robot), home_of(robot)
     for file in _related_files(found):
-        if _near(base, file) == len(os.path.abspath(base)):
-            at = max(others, key=lambda it: _near(it, file), default=own)
-            if _near(at, file) > _near(own, file):
+        if _shared_depth(base, file) == len(os.path.abspath(base)):
+            at = max(others, key=lambda it: _shared_depth(it, file), default=own)
+            if _shared_depth(at, file) > _shared_depth(own, file):
                 yield file, f"it is next to {os.path.basename(others[at])}"
 
 
 def _naming_others(robot: Looked, found: Found, files: Iterable[str]) -> Iterator[tuple[str, str]]:
     """Yield files that are not nearer to the robot and name parts of another description."""
-    own = frozenset(_expanded(robot)) | _names_in(robot.path)
+    own = frozenset(_expanded_names(robot)) | _names_in(robot.path)
     names = {it: _names_in(it) for it in found.every[:MOST] if it != robot.path}
     others = {path: its for path, its in names.items() if not its <= own}
     for file in files if others else ():
@@ -132,8 +132,8 @@ def _naming_others(robot: Looked, found: Found, files: Iterable[str]) -> Iterato
         rivals = {path: _known(words, its) for path, its in others.items()}
         best = max(rivals, key=lambda it: (len(rivals[it]), it))
         theirs = rivals[best]
-        at = _near(os.path.dirname(best), file)
-        if at >= _near(os.path.dirname(robot.path), file) and (
+        at = _shared_depth(os.path.dirname(best), file)
+        if at >= _shared_depth(os.path.dirname(robot.path), file) and (
             len(theirs) > max(1, _MORE * len(mine))
         ):
             named = ", ".join(sorted(theirs - mine)[:3])
@@ -169,7 +169,7 @@ def hundredths_known(robot: Looked, path: str) -> int:
 
 def own_names(robot: Looked) -> frozenset[str]:
     """Return its links and joints: as they are, without what its arguments put in front, as written."""
-    made = frozenset(_expanded(robot))
+    made = frozenset(_expanded_names(robot))
     return made | _plain(robot, made) | _names_in(robot.path)
 
 
@@ -219,7 +219,7 @@ def names_shown(path: str) -> frozenset[str]:
     return frozenset(found) - {*SENT_FRAMES}
 
 
-def _expanded(robot: Looked) -> Iterator[str]:
+def _expanded_names(robot: Looked) -> Iterator[str]:
     for it in robot.root.iter("link", "joint") if robot.root is not None else ():
         yield it.get("name", "")
 
@@ -254,8 +254,8 @@ def moveit_of_others(robot: Looked, srdf: str, found: Found) -> Mapping[str, str
         is_kinematics = os.path.splitext(os.path.basename(file))[0] == "kinematics"
         if is_kinematics and groups and not _words(file).all & groups:
             left[file] = f"it names no group of {os.path.basename(srdf)}"
-        best = max(found.srdf, key=lambda it: _near(os.path.dirname(it), file))
-        if _near(os.path.dirname(best), file) > _near(os.path.dirname(srdf), file):
+        best = max(found.srdf, key=lambda it: _shared_depth(os.path.dirname(it), file))
+        if _shared_depth(os.path.dirname(best), file) > _shared_depth(os.path.dirname(srdf), file):
             left[file] = f"it is next to {os.path.basename(best)}"
     return left
 
@@ -322,7 +322,7 @@ def check_winner(its: Sequence[Fitting], robot: Looked, found: Found) -> None:
             continue
         rivals = [it for it in its[at + 1 :] if it.nodes & best.nodes and _is_rival(it, best)]
         if best.strange and rivals:
-            both = {it.path: _shown(it.strange) for it in (best, *rivals)}
+            both = {it.path: _first_names(it.strange) for it in (best, *rivals)}
             node = sorted(best.nodes & rivals[0].nodes)[0]
             what = f"{len(both)} files have parameters of {node}, and names that the robot has not"
             raise Undecided(what, both, found, robot.path)
@@ -332,6 +332,6 @@ def _is_rival(it: Fitting, best: Fitting) -> bool:
     return len(it.strange) <= _MORE * len(best.strange)
 
 
-def _shown(names: Iterable[str]) -> str:
+def _first_names(names: Iterable[str]) -> str:
     every = sorted(names)
     return f"{', '.join(every[:2])} ..." if every[2:] else ", ".join(every)

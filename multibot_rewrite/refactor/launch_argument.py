@@ -196,12 +196,12 @@ def _parameter_items(tree: ast.Module, file: str) -> Iterator[ast.expr]:
         it.targets[0].id: it.value
         for it in values
         if isinstance(it.targets[0], ast.Name)
-        and _says(it.value, file)
+        and _names_the_file(it.value, file)
         and inside.isdisjoint(ast.walk(it.value))
     }
-    found = [it for it in items if _says(it, file)]
+    found = [it for it in items if _names_the_file(it, file)]
     found += [it for it in items if isinstance(it, ast.Name) and it.id in named]
-    direct = sum(_says(it, file) for it in (*items, *named.values()))
+    direct = sum(_names_the_file(it, file) for it in (*items, *named.values()))
     uses = [it for it in ast.walk(tree) if isinstance(it, ast.Name) and it.id in named]
     loads = sum(isinstance(it.ctx, ast.Load) for it in uses)
     by_name = sum(isinstance(it, ast.Name) for it in found)
@@ -210,7 +210,7 @@ def _parameter_items(tree: ast.Module, file: str) -> Iterator[ast.expr]:
         yield from found
 
 
-def _says(expression: ast.expr, file: str) -> bool:
+def _names_the_file(expression: ast.expr, file: str) -> bool:
     return any(_names_file(it, file) for it in ast.walk(expression))
 
 

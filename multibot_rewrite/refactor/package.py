@@ -106,10 +106,10 @@ def inventory_of(data: bytes, path: str, tree: Tree, urdfs: Iterable[Inventory] 
     if alone.format != SRDF_SECTION:
         return alone
     pairs = [collect(document, tree, it.declared) for it in urdfs if it.format != SRDF_SECTION]
-    return min(pairs, key=_lacks, default=collect(document, tree, NO_URDF))
+    return min(pairs, key=_count_undeclared, default=collect(document, tree, NO_URDF))
 
 
-def _lacks(pair: Inventory) -> int:
+def _count_undeclared(pair: Inventory) -> int:
     return sum(not name.kind for names in pair.names for name in names)
 
 

@@ -350,17 +350,17 @@ def test_what_a_rename_changes_and_leaves(capsys: pytest.CaptureFixture[str]) ->
         "unread": {},
         "mentions": (),
     }
-    rename._tell(given, options(**usual))  # type: ignore[arg-type]
+    rename._print_result(given, options(**usual))  # type: ignore[arg-type]
     assert capsys.readouterr().err == "multibot: link a -> b: 3 places in 2 files; verified\n"
     left = [f"f:{at}" for at in range(rename.MOST_MENTIONS + 1)]
     more = {**usual, "unread": {"p": "p: odd", "q": ""}, "mentions": left}
-    rename._tell(given, options(**more))  # type: ignore[arg-type]
+    rename._print_result(given, options(**more))  # type: ignore[arg-type]
     assert capsys.readouterr().err.splitlines() == [
         "multibot: link a -> b: 3 places in 2 files; verified, 2 descriptions not read",
         "multibot: not checked: p: odd", "multibot: not checked: q",
         f"multibot: left as they are: {len(left)} lines with 'a': {', '.join(left[:-1])} and 1 more",
     ]  # fmt: skip
-    rename._tell(options(**{**vars(given), "verbose": False}), options(**more))  # type: ignore[arg-type]
+    rename._print_result(options(**{**vars(given), "verbose": False}), options(**more))  # type: ignore[arg-type]
     assert capsys.readouterr().err.endswith(f": {', '.join(left[:5])} and {len(left) - 5} more\n")
 
 
@@ -372,7 +372,7 @@ def test_what_a_package_takes_from_now_on(capsys: pytest.CaptureFixture[str]) ->
     }  # fmt: skip
 
     def told(**more: Any) -> list[str]:
-        adopt._tell(given, options(**{**usual, **more}))  # type: ignore[arg-type]
+        adopt._print_result(given, options(**{**usual, **more}))  # type: ignore[arg-type]
         return [it.removeprefix("multibot: ") for it in capsys.readouterr().err.splitlines()]
 
     assert told() == ["argument prefix: 1 description in 1 file; verified"]

@@ -49,7 +49,7 @@ def shared_by_all(
     the robot's is the same for all. Raises ProofError for a text that is no XML, and for a frame that
     was left below the name of the model.
     """
-    robot = _unused(document)
+    robot = _unused_robot_name(document)
     return shared_with(document, fill(pieces, robot), robot, naming, definitions)
 
 
@@ -63,7 +63,7 @@ def said_of(robot: str, found: Iterable[Said]) -> Iterator[Said]:
         yield it._replace(message=message, hint=hint)
 
 
-def _unused(document: Document) -> str:
+def _unused_robot_name(document: Document) -> str:
     robot = TWIN
     while robot.encode() in document.source:
         robot += "x"
@@ -79,7 +79,7 @@ def shared_by_both(
 ) -> Iterator[Problem]:
     """Yield the names that these two robots would share, but not every robot, as ``arm_left`` of ``b``
     and ``arm`` of ``left_b``."""
-    twin = _unused(document)
+    twin = _unused_robot_name(document)
     named = {it: read(fill(pieces, it), document.file, definitions).names for it in (*robots, twin)}
     every = {(it.kind, it.name) for it in meeting.same_for_all(named.pop(twin), twin, naming)}
     for met in meeting.meetings(named, naming):

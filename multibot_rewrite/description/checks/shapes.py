@@ -60,7 +60,7 @@ def placed_box(box: Extent, pose: Pose) -> Extent:
     """Return the box around a box at a pose."""
     centre = point_in(pose, box.middle)
     x, y, z = minus(box.high, box.middle)
-    reach = _three(abs(a) * x + abs(b) * y + abs(c) * z for a, b, c in pose.matrix)
+    reach = _vector_of(abs(a) * x + abs(b) * y + abs(c) * z for a, b, c in pose.matrix)
     return Extent(minus(centre, reach), plus(centre, reach))
 
 
@@ -100,10 +100,10 @@ def around(extents: Iterable[Extent]) -> Extent | None:
     if not every:
         return None
     low, high = (list(zip(*its, strict=True)) for its in zip(*every, strict=True))
-    return Extent(_three(map(min, low)), _three(map(max, high)))
+    return Extent(_vector_of(map(min, low)), _vector_of(map(max, high)))
 
 
-def _three(values: Iterable[float]) -> Vector:
+def _vector_of(values: Iterable[float]) -> Vector:
     x, y, z = values
     return x, y, z
 

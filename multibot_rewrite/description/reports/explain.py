@@ -35,7 +35,7 @@ _PREFIXES = {uri: prefix for prefix, uri in NAMESPACES.items()}
 
 def tag_path(element: "_Element", attribute: str) -> str:
     """Return the path of a value: the tags from the root on, and the attribute."""
-    steps = [_step(element), *(_step(above) for above in element.iterancestors())]
+    steps = [_path_step(element), *(_path_step(above) for above in element.iterancestors())]
     path = "/".join(reversed(steps))
     return f"{path}@{short_name(attribute)}" if attribute else path
 
@@ -87,7 +87,10 @@ def explain_line(
 ) -> list[Explanation]:
     """Return everything that starts on ``line``, in source order; empty where nothing does."""
     plan = make_plan(inventory, naming)
-    found = [*_claimed(inventory, plan, naming, robot, line), *_others(inventory, tree, line)]
+    found = [
+        *_claims(inventory, plan, naming, robot, line),
+        *_others(inventory, tree, line),
+    ]
     found += _inserted(inventory, plan, robot, line)
     found = [it._replace(source=_source(tree, it.site)) if it.site else it for it in found]
     return sorted(found, key=lambda item: (item.column, item.path))
@@ -100,7 +103,7 @@ def _source(tree: Tree, site: SiteRow) -> str:
     return next((it.source for it in sections if it.source and site in it.sites), "")
 
 
-def _claimed(
+def _claims(
     inventory: Inventory, plan: Plan, naming: Naming, robot: str, line: int
 ) -> Iterator[Explanation]:
     recomputed = {claim.start: new.replace(ROBOT_SLOT, robot) for claim, new in plan.collisions}

@@ -203,10 +203,10 @@ def _characters(piece: str) -> frozenset[str]:
     if piece[0] == "[":
         inner = piece[1:-1]
         return _ALL - _class(inner[1:]) if inner[:1] == "^" else _class(inner)
-    return _escaped(piece[1:]) if piece[0] == "\\" else frozenset(piece)
+    return _escaped_letters(piece[1:]) if piece[0] == "\\" else frozenset(piece)
 
 
-def _escaped(letter: str) -> frozenset[str]:
+def _escaped_letters(letter: str) -> frozenset[str]:
     if letter.lower() in _ESCAPED:
         known = _ESCAPED[letter.lower()]
         return known if letter.islower() else _ALL - known
@@ -237,7 +237,7 @@ def _class(inner: str) -> frozenset[str]:
 
 def _member(piece: str) -> frozenset[str]:
     if not piece.startswith("[:"):
-        return _escaped(piece[1:]) if piece[0] == "\\" else frozenset(piece)
+        return _escaped_letters(piece[1:]) if piece[0] == "\\" else frozenset(piece)
     if piece[2:-2] not in _POSIX:
         raise PatternError(f"{piece} is no class of characters")
     return _POSIX[piece[2:-2]]

@@ -124,7 +124,7 @@ def _folders(roots: tuple[str, ...]) -> Iterator[tuple[str, bool]]:
         if not waiting:
             return
         folder, depth = waiting.popleft()
-        inside = _inside(folder)
+        inside = _folder_entries(folder)
         is_package = any(it.name == MANIFEST for it in inside)
         yield folder, is_package
         if depth < DEEPEST and not is_package:
@@ -133,7 +133,7 @@ def _folders(roots: tuple[str, ...]) -> Iterator[tuple[str, bool]]:
             waiting += ((it, depth + 1) for it in below)
 
 
-def _inside(folder: str) -> list[os.DirEntry[str]]:
+def _folder_entries(folder: str) -> list[os.DirEntry[str]]:
     try:
         with os.scandir(folder) as found:
             return list(found)

@@ -42,7 +42,7 @@ def launched_robot(
     InputError for a launch file that cannot be read, and UsageError for an unknown placeholder."""
     if not orders:
         return None
-    mine = _own(orders, words[0])
+    mine = _own_orders(orders, words[0])
     graph = launch_of(orders, words[0])
     # What stands for the robot besides its own words: its namespace in a launch.
     values = (value.strip("/") for it in mine for _, value in it.arguments)
@@ -60,7 +60,7 @@ def known_here(
 def launch_of(orders: Sequence[LaunchOrder], robot: str) -> LaunchGraph:
     """Return all that these launch files start, with the robot in the place of ``{robot}``; of
     several robots the first one. Raises as ``launched_robot``."""
-    graph = with_extras(of_first_robot(joined([*map(_read, _own(orders, robot))])))
+    graph = with_extras(of_first_robot(joined([*map(_read, _own_orders(orders, robot))])))
     return _with_off(graph, {name for it in orders for name, _ in it.arguments})
 
 
@@ -127,7 +127,7 @@ def times_of(file: str) -> tuple[int, ...]:
     return found.st_mtime_ns, found.st_size, found.st_ino
 
 
-def _own(orders: Sequence[LaunchOrder], robot: str) -> list[LaunchOrder]:
+def _own_orders(orders: Sequence[LaunchOrder], robot: str) -> list[LaunchOrder]:
     pairs = ((it, filled(dict(it.arguments), robot)) for it in orders)
     return [it._replace(arguments=tuple(given.items())) for it, given in pairs]
 

@@ -175,8 +175,8 @@ def merge_bridges(
         if not isinstance(root, yaml.SequenceNode) or not root.value:
             continue
         for node, (start, end, column) in zip(root.value, blocks(document, root), strict=True):
-            gz = _full(text_of(node, BOTH) or text_of(node, GZ) or text_of(node, ROS))
-            ros = _full(text_of(node, BOTH) or text_of(node, ROS) or text_of(node, GZ))
+            gz = _absolute_name(text_of(node, BOTH) or text_of(node, GZ) or text_of(node, ROS))
+            ros = _absolute_name(text_of(node, BOTH) or text_of(node, ROS) or text_of(node, GZ))
             # Topics for all robots, such as the clock, are bridged once, by the first file.
             if bridged.setdefault(gz, at) == at:
                 first = onto.setdefault(ros, gz)
@@ -186,11 +186,11 @@ def merge_bridges(
                     hint = "give each its own ros_topic_name"
                     findings.append(found_at(document, node, ONE_ROS_TOPIC, message, hint))
                 parts.append(moved(cut_out(document, start, end), -column))
-    more = [it for it in generated if _full(it.gz) not in bridged]
+    more = [it for it in generated if _absolute_name(it.gz) not in bridged]
     return "".join(parts) + as_yaml(more), tuple(findings)
 
 
-def _full(name: str) -> str:
+def _absolute_name(name: str) -> str:
     return f"/{name.lstrip('/')}"
 
 

@@ -134,7 +134,7 @@ def _text(displays: Sequence[dict[str, Any]], robots: Sequence[Shown], frame: st
         if (topic := it.clicked(word))
     ]
     usual = [{"Class": f"rviz_default_plugins/{it}"} for it in ("MoveCamera", "Select")]
-    first = [_plain("Grid"), _plain("TF")]
+    first = [_plain_display("Grid"), _plain_display("TF")]
     config = {
         "Panels": [{"Class": "rviz_common/Displays", "Name": "Displays"}],
         "Visualization Manager": {
@@ -148,7 +148,7 @@ def _text(displays: Sequence[dict[str, Any]], robots: Sequence[Shown], frame: st
     return "".join(f"{line}\n" for line in _lines(config))
 
 
-def _plain(kind: str) -> dict[str, Any]:
+def _plain_display(kind: str) -> dict[str, Any]:
     return {"Class": f"rviz_default_plugins/{kind}", "Name": kind, "Enabled": True}
 
 

@@ -47,7 +47,7 @@ def teleops(plan: FleetPlan) -> tuple[Teleop, ...]:
     for robot in plan.robots:
         # Something reads velocity commands, or sends them to a base that is not in the plan.
         own = _ends(plan, robot)
-        sends = any(end.role == PUBLISHES and name == _usual(robot) for _, end, name in own)
+        sends = any(end.role == PUBLISHES and name == _cmd_vel(robot) for _, end, name in own)
         if sends or _obeyed([*_commands(plan, robot)]):
             found.append(teleop(plan, robot))
     return tuple(found)
@@ -58,7 +58,7 @@ def _ends(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, Endpoin
     yield from ((run.full_name, end, name) for run in runs for end, name in run.names)
 
 
-def _usual(robot: RewrittenRobot) -> str:
+def _cmd_vel(robot: RewrittenRobot) -> str:
     return robot_topic(robot.topics, f"/{COMMAND}")
 
 
@@ -66,7 +66,7 @@ def teleop(plan: FleetPlan, robot: RewrittenRobot) -> Teleop:
     """Return how to drive a robot: by its ``cmd_vel`` if a node obeys it, else the first topic that
     one obeys; if a mux, a smoother or a monitor sends there, by an input of that."""
     ends = [*_commands(plan, robot)]
-    usual, obeyed = _usual(robot), _obeyed(ends)
+    usual, obeyed = _cmd_vel(robot), _obeyed(ends)
     topic = entry_of(usual if usual in obeyed or not obeyed else obeyed[0], ends)
     types = {it.type for it in ends if it.role == SUBSCRIBES and it.topic == topic}
     if STAMPED not in types or PLAIN in types:

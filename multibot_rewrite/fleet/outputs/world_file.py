@@ -102,16 +102,16 @@ def world_topics(path: str) -> dict[str, str]:
     root = read_document(read_file(path), path).root if path else None
     world = root.find("world") if root is not None else None
     if root is None or world is None:
-        return _sent("empty", DEFAULTS)
+        return _world_topics("empty", DEFAULTS)
     plugins = [library_key(it.get("filename") or "") for it in world.iterchildren("plugin")]
     systems = [it.removeprefix("gz-sim-").removesuffix("-system") for it in plugins]
     texts = (text_of(it) for it in world.iter("*") if str(it.tag).endswith("topic"))
     named = {*texts, *(it.get("topic", "") for it in world.iter("*"))} - {""}
     told = {f"/{it.lstrip('/')}": "" for it in named}
-    return told | _sent(world.get("name", ""), systems or DEFAULTS)
+    return told | _world_topics(world.get("name", ""), systems or DEFAULTS)
 
 
-def _sent(world: str, systems: Sequence[str]) -> dict[str, str]:
+def _world_topics(world: str, systems: Sequence[str]) -> dict[str, str]:
     own = (SENT_BY_ANY, *(SENT_BY.get(it, {}) for it in systems))
     return {
         f"/world/{world}/{name}": f"gz.msgs.{type_}" for it in own for name, type_ in it.items()

@@ -300,8 +300,8 @@ def _final(text: Rewrite, robot: RobotSpec, naming: Naming) -> bytes:
         return text.data
     template = text.template
     source, file = template.inventory.document.source, template.inventory.document.file
-    data = _half(source, file, robot.namespace, _kinds(naming, graph=True), template)
-    return _half(data, file, robot.tag, _kinds(naming, graph=False), template)
+    data = _halved(source, file, robot.namespace, _kinds(naming, graph=True), template)
+    return _halved(data, file, robot.tag, _kinds(naming, graph=False), template)
 
 
 def _kinds(naming: Naming, graph: bool) -> Naming:
@@ -309,7 +309,7 @@ def _kinds(naming: Naming, graph: bool) -> Naming:
     return naming._replace(separators=kept)
 
 
-def _half(source: bytes, file: str, robot: str, naming: Naming, template: Template) -> bytes:
+def _halved(source: bytes, file: str, robot: str, naming: Naming, template: Template) -> bytes:
     # The second rewrite finds names that the first one has rewritten for the other word.
     prepared = pipeline.prepare(source, file, naming, template.tree, template.urdf_declarations)
     return next(pipeline.render(prepared, [robot], again=True))

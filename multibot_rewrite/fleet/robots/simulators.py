@@ -55,7 +55,7 @@ def other_hardware(robots: Sequence[RewrittenRobot], file: FleetFile) -> Iterato
         wrong = _of_other_world(it, nodes_of_sets(it.spec, file))
         if wrong and it.spec.sources not in told:
             told.add(it.spec.sources)
-            yield _other(it, wrong)
+            yield _other_hardware(it, wrong)
 
 
 def _of_other_world(robot: RewrittenRobot, node_set: Iterable[NodeFacts]) -> str:
@@ -75,7 +75,7 @@ def _of_other_world(robot: RewrittenRobot, node_set: Iterable[NodeFacts]) -> str
     return next(filter(of_simulator, classes), "") if waiting else ""
 
 
-def _other(robot: RewrittenRobot, wrong: str) -> Finding:
+def _other_hardware(robot: RewrittenRobot, wrong: str) -> Finding:
     real = robot.spec.simulator == REAL
     suits = suits_real if real else suits_simulator
     spec = robot.spec
@@ -191,7 +191,7 @@ MOVED = declare(LEFT, "system-of-the-world", NOTE, formats=("fleet",))
 
 def without_world_systems(robots: Sequence[RewrittenRobot]) -> list[RewrittenRobot]:
     """Return the robots without world systems, each with those that it had; the first has the note."""
-    made = [_without(it) for it in robots]
+    made = [_without_world_systems(it) for it in robots]
     first = next((it for it in made if it.world_systems), None)
     if first is None:
         return made
@@ -217,7 +217,7 @@ def systems_of(robots: Sequence[RewrittenRobot]) -> dict[str, str]:
     return found
 
 
-def _without(robot: RewrittenRobot) -> RewrittenRobot:
+def _without_world_systems(robot: RewrittenRobot) -> RewrittenRobot:
     said = tuple(it for it in robot.findings if it.code != _IN_ROBOT)
     if robot.spec.simulator == REAL:  # no simulator loads it
         return robot._replace(findings=said)

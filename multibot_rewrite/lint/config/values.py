@@ -125,7 +125,7 @@ def _per_file(given: KeyValue) -> tuple[tuple[str, tuple[str, ...]], ...]:
     )
 
 
-def _excluded(given: KeyValue) -> tuple[str, ...]:
+def _excluded_patterns(given: KeyValue) -> tuple[str, ...]:
     return tuple(it for key in _texts(given) for it in _patterns(key, given))
 
 
@@ -177,7 +177,7 @@ READERS: Mapping[str, Callable[[KeyValue], object]] = {
     "urdf": _file,
     "definitions": lambda it: listed_files(*it),
     "xacro": _argument_sets,
-    "exclude": _excluded,
+    "exclude": _excluded_patterns,
     "baseline": _path,
     "fail-on": partial(_one_of, allowed=LEVELS),
     "seconds": _seconds,

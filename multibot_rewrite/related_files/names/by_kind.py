@@ -178,7 +178,7 @@ def output(_: Context, value: str) -> str:
     return f"{head}{slash}{named}"
 
 
-def _declared(word: str) -> Speller:
+def _speller(word: str) -> Speller:
     return lambda context, value: spell(context.names, word, value)
 
 
@@ -198,7 +198,7 @@ SPELLERS: Mapping[str, Speller] = {
     "words": words,
     "port": port,
     "output": output,
-    **{word: _declared(word) for word in ("frame", "link", "sensor", "gpio", "hardware", "group")},
+    **{word: _speller(word) for word in ("frame", "link", "sensor", "gpio", "hardware", "group")},
 }
 
 

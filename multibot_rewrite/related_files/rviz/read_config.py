@@ -86,9 +86,9 @@ def read_config(document: YamlText) -> RvizConfig:
     return RvizConfig(
         document,
         manager,
-        tuple(_shown(document, displays, "displays")),
-        tuple(_shown(document, value(manager, "Tools"), "tools")),
-        tuple(_shown(document, value(document.root, "Panels"), "panels")),
+        tuple(_items_of_list(document, displays, "displays")),
+        tuple(_items_of_list(document, value(manager, "Tools"), "tools")),
+        tuple(_items_of_list(document, value(document.root, "Panels"), "panels")),
     )
 
 
@@ -99,7 +99,7 @@ def _maps(node: yaml.Node | None) -> Iterator[yaml.Node]:
         yield from _maps(item[1] if isinstance(item, tuple) else item)
 
 
-def _shown(document: YamlText, node: yaml.Node | None, what: str) -> Iterator[RvizItem]:
+def _items_of_list(document: YamlText, node: yaml.Node | None, what: str) -> Iterator[RvizItem]:
     if not isinstance(node, yaml.SequenceNode) or not node.value:
         return
     if not is_block(node):
@@ -108,7 +108,7 @@ def _shown(document: YamlText, node: yaml.Node | None, what: str) -> Iterator[Rv
     data = rviz_data()
     for block, item in zip(blocks(document, node), node.value, strict=True):
         cls = text_of(item, "Class")
-        below = _shown(document, value(item, "Displays"), what) if cls == GROUP else ()
+        below = _items_of_list(document, value(item, "Displays"), what) if cls == GROUP else ()
         names = data["displays"].get(cls, data["any"])
         places = []
         # RViz keeps links and frames that it has seen once: those are keys.

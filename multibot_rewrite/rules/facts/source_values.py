@@ -49,7 +49,7 @@ def is_fixed(subject: Subject, start: int, attribute: str, *, constants: bool = 
     origin = subject.origins.of(bisect_left(subject.document.starts, start))
     if origin is None:
         return False
-    raw = _raw(subject.sources[origin.file], origin.start, attribute)
+    raw = _raw_value(subject.sources[origin.file], origin.start, attribute)
     if raw is not None and constants:
         raw = _CONSTANT.sub(b"", raw)
     for call in origin.calls:
@@ -61,7 +61,7 @@ def is_fixed(subject: Subject, start: int, attribute: str, *, constants: bool = 
 
 def is_argument(sources: Mapping[str, bytes], origin: WrittenAt, attribute: str) -> bool:
     """Return whether a value comes in part from a caller of xacro, as $(arg ...)."""
-    raw = _raw(sources[origin.file], origin.start, attribute) or b""
+    raw = _raw_value(sources[origin.file], origin.start, attribute) or b""
     for call in origin.calls:
         if b"$(arg" in raw:
             return True
@@ -76,7 +76,7 @@ def _names_in(raw: bytes) -> list[bytes]:
     return [name for word in words for name in _NAME.findall(word)]
 
 
-def _raw(source: bytes, start: int, attribute: str) -> bytes | None:
+def _raw_value(source: bytes, start: int, attribute: str) -> bytes | None:
     if attribute:
         return _attributes(source, start).get(attribute.encode())
     end = tag_end(source, start)

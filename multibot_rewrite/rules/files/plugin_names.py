@@ -125,7 +125,7 @@ def _class_fault(name: str, base: str, known: Base, release: str) -> tuple[str, 
     same = next((it for it in known.classes if canonical(it) == canonical(name)), "")
     if same:
         others = ", ".join(releases_with(known.classes[same]))
-        return f"which is not in {release}, only in {others}", _near(name, there), WARNING
+        return f"which is not in {release}, only in {others}", _near_hint(name, there), WARNING
     other = next((it for it, of in plugin_bases().items() if name in of.classes), "")
     if other:
         return f"which is a {other}, not a {base}", "name a class of that kind", ERROR
@@ -144,7 +144,7 @@ def _class_fault(name: str, base: str, known: Base, release: str) -> tuple[str, 
     return (unknown, f"did you mean {alike}?", NOTE) if alike else ("", "", "")
 
 
-def _near(name: str, there: Sequence[str]) -> str:
+def _near_hint(name: str, there: Sequence[str]) -> str:
     by_name = {canonical(it): it for it in there}
     near = by_name.get(nearest(canonical(name), by_name))
     return f"did you mean {near}?" if near else "see the plugins of its package"
@@ -244,7 +244,7 @@ def missing_parameters(file: NamedFile) -> Iterator[Finding]:
     for section in sections(file):
         facts = of_release(section.facts, file.context.distro)
         needed = [(it, words) for it in facts for check, words in it.checks if check == "required"]
-        found = [it for fact, words in needed for it in _required(file, section, fact, words)]
+        found = [it for fact, words in needed for it in _missing(file, section, fact, words)]
         # What a controller has under another name is misspelt, or it is of another class that is called
         # the same; a section with nothing of it adds to one of another file.
         unknown = [it for it, known in section.known if not known and it.name != TYPE]
@@ -269,7 +269,7 @@ def missing_parameters(file: NamedFile) -> Iterator[Finding]:
             yield remark_at(it.given.key, message, f"add it, or set this to false; see {it.source}")
 
 
-def _required(file: NamedFile, section: Section, fact: Declared, words: str) -> Iterator[Finding]:
+def _missing(file: NamedFile, section: Section, fact: Declared, words: str) -> Iterator[Finding]:
     listed = value_of(section, words) if words else None
     for block, first in _blocks(section, fact.path):
         _, _, word = block.rpartition(".")

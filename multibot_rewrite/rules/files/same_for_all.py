@@ -44,7 +44,7 @@ def _exclusive(file: NamedFile) -> Iterator[Finding]:
     kinds = ("exclusive",) if file.is_certain else ("exclusive", PORT)
     for site in file.names:
         if site.kind in kinds and site.text and site.text.lower() not in ("false", "no", "off"):
-            yield remark(site, _same(site.key, site.text), _OWN_VALUE)
+            yield remark(site, _same_message(site.key, site.text), _OWN_VALUE)
     known = {site.slot.start for site in file.names if site.kind in OWN_KINDS}
     for section, _ in file.pages:
         for key, value in () if section.shared else scalars(section.body):
@@ -52,13 +52,13 @@ def _exclusive(file: NamedFile) -> Iterator[Finding]:
             kind = "" if value.start_mark.index in known else held_by(key.value, text)
             if kind == COMPUTER:
                 hint = f"fine if each robot has a computer of its own; else {_OWN_VALUE}"
-                yield remark_at(value, _same(key.value, text), hint, NOTE)
+                yield remark_at(value, _same_message(key.value, text), hint, NOTE)
             elif kind:
                 hint = f"one device has one driver: {_OWN_VALUE}"
-                yield remark_at(value, _same(key.value, text), hint)
+                yield remark_at(value, _same_message(key.value, text), hint)
 
 
-def _same(key: str, text: str) -> str:
+def _same_message(key: str, text: str) -> str:
     return f"{key} {text} is the same for all robots"
 
 

@@ -99,7 +99,7 @@ def _taken(child: _Element, row: SdfRow, home: str) -> Iterator[Problem]:
     text = child.get("value") or text_of(child)
     if not text or "$" in text:
         return
-    belongs = _belongs(row.name)
+    belongs = _parents_of(row.name)
     if home not in belongs:
         message = f"<{row.name}> in the <gazebo> of a {home} has no effect"
         hint = f"it is read in that of a {' or '.join(belongs)}: name it with reference="
@@ -110,7 +110,7 @@ def _taken(child: _Element, row: SdfRow, home: str) -> Iterator[Problem]:
         yield fault("value", child, at, message, "", level)
 
 
-def _belongs(tag: str) -> tuple[str, ...]:
+def _parents_of(tag: str) -> tuple[str, ...]:
     if tag in OF_MODELS:
         return ("model", "link", "joint")
     if tag in OF_BOTH:
@@ -197,10 +197,10 @@ def _value(
 
 def _where(element: _Element, at: str, text: str) -> str:
     """Return how a message names a value."""
-    return f"{_named(element, at)} {shortened(text)!r}"
+    return f"{_element_in_words(element, at)} {shortened(text)!r}"
 
 
-def _named(element: _Element, at: str) -> str:
+def _element_in_words(element: _Element, at: str) -> str:
     return f"{element.tag}@{at}" if at else f"<{element.tag}>"
 
 

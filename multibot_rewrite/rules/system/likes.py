@@ -89,7 +89,7 @@ def _lost_descriptions(seen: Index) -> Iterator[Finding]:
 @once
 def made_of(seen: Index) -> Mapping[str, MadeOf]:
     """Return the nodes and their endpoints of each robot."""
-    return {robot: MadeOf(own, _ends(seen, own)) for robot, own in nodes_of_each(seen).items()}
+    return {robot: MadeOf(own, _uses(seen, own)) for robot, own in nodes_of_each(seen).items()}
 
 
 @once
@@ -104,7 +104,7 @@ def nodes_of_each(seen: Index) -> Mapping[str, Mapping[str, str]]:
     return own
 
 
-def _ends(seen: Index, nodes: Mapping[str, str]) -> Mapping[_Key, End]:
+def _uses(seen: Index, nodes: Mapping[str, str]) -> Mapping[_Key, End]:
     ends = {}
     by_node, plain_of = seen.by_node, seen.plain
     for plain, name in nodes.items():

@@ -52,7 +52,7 @@ def types_differ(seen: Index) -> Iterator[Finding]:
         if takers and not apart:
             # Every reader hears somebody; a sender may be heard by nobody.
             others, apart = takers, _apart(givers, _all_types(takers))
-        yield from (_differs(seen, ends, own, others) for own in apart.values())
+        yield from (_types_differ(seen, ends, own, others) for own in apart.values())
 
 
 @once
@@ -68,7 +68,7 @@ def planned_types(seen: Index) -> Mapping[tuple[str, str], Set[str]]:
     return found
 
 
-def _differs(seen: Index, ends: Ends, own: Sequence[End], others: Sequence[End]) -> Finding:
+def _types_differ(seen: Index, ends: Ends, own: Sequence[End], others: Sequence[End]) -> Finding:
     asked, given = dict(_all_types(own)), dict(_all_types(others))
     message, cause = _difference(ends.name, others[0].node, asked, given)
     stamped = _by_a_switch(asked.keys(), given.keys())

@@ -275,7 +275,9 @@ def server_names_miss(seen: Index) -> Iterator[Finding]:
     for ends in seen.by_name.values():
         if ends.kind != TOPIC and not ends.servers:
             for end in filter(_runs, _each_node(ends.clients)):
-                yield from _unserved(seen, end, _served(seen).get((end.kind, end.type), _NOBODY))
+                yield from _unserved(
+                    seen, end, _served_names(seen).get((end.kind, end.type), _NOBODY)
+                )
 
 
 def not_managed(seen: Index, manager: str, nodes: Sequence[str], else_: str = "") -> Cause:
@@ -300,7 +302,7 @@ _NOBODY = _Served({}, {}, NONE)
 
 
 @once
-def _served(seen: Index) -> Mapping[tuple[str, str], _Served]:
+def _served_names(seen: Index) -> Mapping[tuple[str, str], _Served]:
     found: dict[tuple[str, str], dict[str, Ends]] = defaultdict(dict)
     for (kind, name), ends in seen.by_name.items():
         if ends.servers:
@@ -388,8 +390,8 @@ def _missed_server(seen: Index, end: End, lost: str, other: str, level: str) -> 
     parts = f"{ACTION_PARTS}," if end.kind == ACTION else ""
     cause = f"pass the rule {end.name}:={other},{parts} or start it in the namespace of the robot"
     remaps: tuple[Remap, ...] = (Remap(end.node, end.name, other),)
-    managed = [it.node for it in seen.by_name[end.kind, other].clients if _manages(it.node)]
-    if _manages(end.node) and managed:
+    managed = [it.node for it in seen.by_name[end.kind, other].clients if _is_manager(it.node)]
+    if _is_manager(end.node) and managed:
         cause, remaps = f"{managed[0]} manages that node already: do not start {end.node}", ()
     clicked = is_viewer(end.node) and not is_spawner(end.node)
     return server_names_miss.finding(
@@ -399,7 +401,7 @@ def _missed_server(seen: Index, end: End, lost: str, other: str, level: str) -> 
     )  # fmt: skip
 
 
-def _manages(node: str) -> bool:
+def _is_manager(node: str) -> bool:
     return last_word(node).startswith(MANAGER)
 
 

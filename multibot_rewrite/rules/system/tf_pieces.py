@@ -112,12 +112,12 @@ def _misspelled(seen: Index) -> Iterator[Finding]:
             near = near_sent(it.parent, it.child) if bare else ""
             if near:
                 why = f"{it.child} is sent below {it.parent}, and nothing sends {it.parent}"
-                yield _slipped(seen, tree, it, near, (it.parent, root_of(near, above)), why)
+                yield _misspelt_frame(seen, tree, it, near, (it.parent, root_of(near, above)), why)
             leaf = it.child not in parents and not is_of_description(seen, it)
             near = near_root(it.child, it.parent) if leaf else ""
             if near:
                 why = f"{it.child} is sent below {it.parent}, and has nothing below it"
-                yield _slipped(seen, tree, it, near, (root_of(it.child, above), near), why)
+                yield _misspelt_frame(seen, tree, it, near, (root_of(it.child, above), near), why)
 
 
 def _near(seen: Index, frames: Collection[str]) -> Callable[[str, str], str]:
@@ -157,7 +157,7 @@ def _unlike(name: str, other: str) -> tuple[str, list[str]]:
     return "_".join(one), ["_".join(two)]
 
 
-def _slipped(
+def _misspelt_frame(
     seen: Index, tree: Tree, it: Edge, near: str, roots: Sequence[str], why: str
 ) -> Finding:
     robot = seen.frame_robot(it.child) or only(robots_of(seen, tree.senders))

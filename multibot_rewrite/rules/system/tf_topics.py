@@ -47,13 +47,13 @@ def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
         home = _home(seen, robot, topics)
         others = (it for it in topics if it != home and it not in mixed)
         odd = [it for it in others if not _is_own_topic(seen, robot, topics, it)]
-        yield from (_elsewhere(seen, robot, home, it, topics[it], "send") for it in odd)
+        yield from (_tf_on_other_topic(seen, robot, home, it, topics[it], "send") for it in odd)
         heard = listeners.get(robot, {})
         lost = [it for it in heard if it not in topics and it != home]
         for topic in lost:
             deaf = [it for it in heard[topic] if it not in heard.get(home, ())]
             if deaf:
-                yield _elsewhere(seen, robot, home, topic, deaf, "hear")
+                yield _tf_on_other_topic(seen, robot, home, topic, deaf, "hear")
     yield from _frames_of_another(seen, senders)
     yield from _frames_on_foreign_topic(seen, senders)
     yield from _rviz_hears_nothing(seen)
@@ -242,7 +242,7 @@ def _named_on_shared(seen: Index) -> Mapping[str, Set[str]]:
     return {it.topic: {seen.frame_robot(edge.child) for edge in it.edges} for it in shared}
 
 
-def _elsewhere(
+def _tf_on_other_topic(
     seen: Index, robot: str, home: str, topic: str, nodes: Sequence[str], verb: str
 ) -> Finding:
     does = f"{verb}s" if len(nodes) == 1 else verb

@@ -409,4 +409,4 @@ def test_a_file_with_clearly_more_strange_names_is_no_rival() -> None:
 
 @pytest.mark.parametrize(("names", "shown"), [("ba", "a, b"), ("cab", "a, b ..."), ("a", "a")])
 def test_of_many_strange_names_two_are_shown(names: str, shown: str) -> None:
-    assert owners._shown(names) == shown
+    assert owners._first_names(names) == shown

@@ -75,7 +75,7 @@ class Machine(NamedTuple):
     asks: tuple[int, ...]
 
 
-def _listed(numbers: str) -> tuple[int, ...]:
+def _numbers(numbers: str) -> tuple[int, ...]:
     return tuple(map(int, numbers.split()))
 
 
@@ -109,7 +109,12 @@ _KINDS: Mapping[str, tuple[int, tuple[int, int], int, tuple[int, ...]]] = {
 }
 MACHINES: Mapping[str, Machine] = {
     name: Machine(
-        audit, _listed(_NUMBERS[name]), memory, _listed(" ".join(_FILES[name])), opens, asks
+        audit,
+        _numbers(_NUMBERS[name]),
+        memory,
+        _numbers(" ".join(_FILES[name])),
+        opens,
+        asks,
     )
     for name, (audit, memory, opens, asks) in _KINDS.items()
 }

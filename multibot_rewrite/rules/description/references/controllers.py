@@ -43,7 +43,7 @@ def _not_exported(subject: Subject) -> Iterator[Problem]:
         for it in missing_in(subject, known):
             # Lines of an expanded xacro are in no file.
             message, hint = missing_message(it, None if subject.origins else "line {0.line}".format)
-            yield Problem(element, f"{_at(it.claims[0])}: {message}", _place(element), hint)
+            yield Problem(element, f"{_line(it.claims[0])}: {message}", _place(element), hint)
 
 
 def missing_in(subject: Subject, known: tuple[Interface, ...]) -> Iterator[Missing]:
@@ -63,8 +63,8 @@ def _claimed_twice(subject: Subject) -> Iterator[Problem]:
         from multibot_rewrite.rules.system.states import claimed_twice
 
         for other, twice in claimed_twice(known):
-            message = f"{_at(twice)}: {twice.node} claims {twice.name} by two parameters"
-            hint = f"name another joint there, or in {_at(other)}"
+            message = f"{_line(twice)}: {twice.node} claims {twice.name} by two parameters"
+            hint = f"name another joint there, or in {_line(other)}"
             yield Problem(element, message, _place(element), hint)
 
 
@@ -168,7 +168,7 @@ def _chosen(subject: Subject) -> tuple[str, ...]:
     )
 
 
-def _at(it: Interface) -> str:
+def _line(it: Interface) -> str:
     return f"{os.path.basename(it.place.file)}:{it.place.line}"
 
 
