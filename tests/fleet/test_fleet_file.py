@@ -455,6 +455,22 @@ def test_an_old_jsonschema_is_one_line(
     assert not (tmp_path / "out").exists()
 
 
+def test_what_is_valid_is_quickly_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Importing jsonschema takes longer than planning a fleet."""
+    pytest.importorskip("jsonschema_rs")
+    monkeypatch.setitem(sys.modules, "jsonschema", None)
+    fleets = [*(ROOT / "examples").rglob("fleet*.yaml")]
+    assert len(fleets) >= 8
+    for fleet in fleets:
+        assert read_fleet(str(fleet), "", {}).robots
+
+
+def test_what_another_validator_cannot_read_is_one_line(tmp_path: Path) -> None:
+    """A date is no value of JSON."""
+    with pytest.raises(InputError, match="layout: "):
+        read(tmp_path, f"{ONE}layout: 2026-01-01\n")
+
+
 @pytest.mark.parametrize("part", [(), ("$defs", "robot"), ("$defs", "related_files")])
 def test_every_key_of_the_schema_is_explained(part: tuple[str, ...]) -> None:
     found = schema()
