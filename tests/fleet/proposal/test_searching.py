@@ -10,8 +10,6 @@ import pytest
 from paths import CORPUS, FIXTURES
 
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.proposal import searching
-from multibot_rewrite.proposal.searching import Found, search
 from multibot_rewrite.cli import urdf_postfix
 from multibot_rewrite.proposal import searching
 from multibot_rewrite.proposal.searching import Found, search
