@@ -146,7 +146,7 @@ def _one_device_each(plan: FleetPlan) -> Iterator[Finding]:
     yield from (_of_the_fleet(it, it.hint) for it in _shared(robots, given))
 
 
-def _met(robots: Sequence[RewrittenRobot], addresses: Sequence[Address]) -> Iterator[Finding]:
+def _shared(robots: Sequence[RewrittenRobot], addresses: Sequence[Address]) -> Iterator[Finding]:
     named = tuple(Robot(it.spec.name, namespace=it.spec.namespace) for it in robots)
     fleet = System(robots=named, addresses=tuple(addresses))
     found = judge(index(fleet, whose_by_plan(fleet))) if addresses else ()

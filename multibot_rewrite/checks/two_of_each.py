@@ -68,7 +68,7 @@ def two_of_each(made: Outputs, robots: Sequence[RobotSpec]) -> Sample:
         if not (row and is_whole and it.name in plans):
             return Sample(made)
         own = _sort(it, (row, part, plans[it.name]), files)
-        at = next((at for at, one in enumerate(sorts) if _alike(one, own)), len(sorts))
+        at = next((at for at, one in enumerate(sorts) if _are_alike(one, own)), len(sorts))
         sorts += [own] if at == len(sorts) else []
         of_sort[at].append(it)
     left = [it for several in of_sort.values() for it in several[_OF_EACH:]]

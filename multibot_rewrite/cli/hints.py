@@ -63,12 +63,6 @@ def _fleet_keys(wrong: str) -> list[str]:
     return [key] if key in top else extensions(key, top)
 
 
-def _part(wrong: str, known: Iterable[str]) -> str:
-    """Return the option, known or of old, that is a part of the word (output-format: format); or ""."""
-    parts = (f"--{it}" for it in reversed(wrong.lstrip("-").split("-")[1:]))
-    return next((it for it in parts if it in known or it in other_words("options")), "")
-
-
 def _mistyped(wrong: str, known: Collection[str]) -> str:
     """Return the option that was probably meant: an own one that is a part of the word (output-format:
     format), or is it but for two typing mistakes, or another that begins with it or like it, but for

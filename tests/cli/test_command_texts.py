@@ -448,7 +448,7 @@ def test_headings_and_names_are_painted() -> None:
         # A part of it says what it is, another first letter of a short one does not.
         (["--form", "b"], "unknown option --form; use --output-kind KIND"),
         (["--stack", "b"], "unknown option --stack; use --node-set NAME"),
-        (["--output-form", "b"], "unknown option --output-form; use --output-kind KIND"),
+        (["--output-form", "b"], "unknown option --output-form; did you mean '--output-kind'?"),
         (["--norm"], "unknown option --norm"),
         # A short option, alone or with its value; what is no option is a value.
         (["-n", "3"],

@@ -40,7 +40,7 @@ def tag_path(element: "_Element", attribute: str) -> str:
     return f"{path}@{short_name(attribute)}" if attribute else path
 
 
-def _step(element: "_Element") -> str:
+def _path_step(element: "_Element") -> str:
     tag = short_name(str(element.tag), element.prefix)
     if tag == "plugin":
         return f"{tag}[{plugin_name(element)}]"

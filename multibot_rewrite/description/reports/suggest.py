@@ -140,7 +140,7 @@ def _values(
         yield from _values(child, _child_node(node, child), f"{path}/{_step(child)}".lstrip("/"))
 
 
-def _below(node: tree.TreeNode | None, child: "_Element") -> tree.TreeNode | None:
+def _child_node(node: tree.TreeNode | None, child: "_Element") -> tree.TreeNode | None:
     below = node.children.get(str(child.tag)) if node is not None else None
     return below.select(child) if below is not None and below.select is not None else below
 

@@ -244,7 +244,7 @@ def _unknown_word(
     if not near and version <= CLASSIC and name == "sensor/@type":
         return  # Gazebo Classic lets plugins add types of sensors
     hint = f"did you mean {near!r}?" if near else f"SDF knows {shorten(known)}"
-    message = f"{_named(element, at)} is {shortened(text)!r}, which SDF does not know"
+    message = f"{_element_in_words(element, at)} is {shortened(text)!r}, which SDF does not know"
     yield fault("word", element, at, message, hint)
 
 
