@@ -88,7 +88,7 @@ def _errors(data: Any, schema: Mapping[str, Any]) -> list[Any]:
     with suppress(ImportError, ValueError):
         from jsonschema_rs import is_valid
 
-        if is_valid(schema, data):
+        if is_valid(dict(schema), data):
             return []
     try:
         import jsonschema
