@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``multibot check-launch``: what would be wrong with the robots that a launch file starts?"""
+"""``multibot check-launch``: report what is wrong with the robots that a launch file starts."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from itertools import islice
 from multibot_rewrite.base.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.model import InputError, MultibotError
-from multibot_rewrite.base.releases import release_told
+from multibot_rewrite.base.releases import release_chosen_here
 from multibot_rewrite.cli import check, pictures, unplanned
 from multibot_rewrite.cli.fleet import orders_of, own_nodes
 from multibot_rewrite.cli.output import note
@@ -22,8 +22,8 @@ from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.sources.release_said import release_of_build
 from multibot_rewrite.fleet.file.simulator_switch import MOST, is_called_as_switch
-from multibot_rewrite.fleet.file.system_sources import launched_by
 from multibot_rewrite.fleet.outputs.output_file import PLAN
+from multibot_rewrite.library.systems import launched_by
 from multibot_rewrite.lint.launched import named_findings
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.planning.plan import read_plan
@@ -48,7 +48,7 @@ def run(options: argparse.Namespace) -> int:
     if options.output:
         check_target(options.output, [*filter(None, [options.plan]), *(it.file for it in orders)])
     plan, own = check.plan_of(options) if options.plan else None, own_nodes(options)
-    told = release_told(options.distro) or (plan.release if plan else "")
+    told = release_chosen_here(options.distro) or (plan.release if plan else "")
     read = partial(launched_by, told=told, nodes=own[0], nodl=own[1])
     made = read(orders)
     for it in made.system.environment.caveats:

@@ -8,7 +8,7 @@ import re
 
 from multibot_rewrite.base.editors import PLAN as PLAN_SCHEMA
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.releases import facts_of_release, release_told
+from multibot_rewrite.base.releases import facts_of_release, release_chosen_here
 from multibot_rewrite.cli import fleet
 from multibot_rewrite.cli.check_launch import plan_beside
 from multibot_rewrite.cli.output import deliver, goes_to_file, note, say
@@ -16,8 +16,8 @@ from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.tables import Grid, deliver_report
 from multibot_rewrite.cli.usage import given_options, robots
 from multibot_rewrite.cli.walk import check_folder, check_target
-from multibot_rewrite.fleet.file.system_sources import launched_by
 from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER, Fleet, expected, possible
+from multibot_rewrite.library.systems import launched_by
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.live.seen_plan import NAMELESS, seen_plan
 from multibot_rewrite.planning.bridged_topics import as_yaml, bridged_topics
@@ -33,8 +33,8 @@ PLAN, POLICY = "plan", "sros2"
 # How a plan calls a robot without a name; its frames are those of its description.
 ALONE, LAYOUT_ALONE = NAMELESS.name, "tf-per-robot"
 # What a plan of a description has, and that of a launch file has not.
-_OF_ROBOTS = ("robots", "count", "stack", "launch", "layout", "affix", "topics", "separator")
-NOT_OF_LAUNCH = {it: f"--{it}" for it in (*_OF_ROBOTS, "shared")}
+_OF_ROBOTS = ("robots", "count", "node_set", "launch", "layout", "affix", "topics", "separator")
+NOT_OF_LAUNCH = {it: f"--{it.replace('_', '-')}" for it in (*_OF_ROBOTS, "shared")}
 # A launch file is told by its name: no description or fleet file is called so.
 _LAUNCH = re.compile(r".*(\.py|[._]launch(\.\w+)?|system_model\.yaml)")
 TABLE, BRIDGE = "table", "bridge"
@@ -87,7 +87,9 @@ def _of_launch(options: argparse.Namespace) -> int:
     if options.output:
         check_target(options.output, [it.file for it in orders])
         check_folder(options.output)
-    made = launched_by(orders, release_told(options.distro), *fleet.own_nodes(options)).system
+    made = launched_by(
+        orders, release_chosen_here(options.distro), *fleet.own_nodes(options)
+    ).system
     seen = diagnose(made, names=plan_beside(orders))
     if not made.nodes:
         raise UsageError(f"{orders[0].file}: it starts no node, so there is no plan")

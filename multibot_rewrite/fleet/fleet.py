@@ -1,43 +1,28 @@
 # SPDX-License-Identifier: Apache-2.0
 """A description, its robots and their node sets -> the remap table and the expected graph."""
 
-from __future__ import annotations
-
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.naming import Naming, Policy, make_naming
-from multibot_rewrite.description.library import rewrite_all
-from multibot_rewrite.description.sources.read import Source
+from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.description.steps.collect import Inventory
-from multibot_rewrite.fleet.checks.described import wrong_in_descriptions
-from multibot_rewrite.fleet.checks.meeting import robots_meet, shared_by_nothing
 from multibot_rewrite.fleet.file.domains import TOGETHER, Apart
-from multibot_rewrite.fleet.launch.launched_robot import (
-    given_with,
-    known_here,
-    launched_robot,
-    nodes_with,
-    under_plugins,
-)
-from multibot_rewrite.fleet.robots.member import Member, is_for_simulator, line_of, member
+from multibot_rewrite.fleet.robots.member import Member, line_of
 from multibot_rewrite.knowledge.node_library import with_included
+from multibot_rewrite.knowledge.node_sets import built_in, user_library
 from multibot_rewrite.knowledge.nodl.lookup import NodeKnowledge, find_interfaces, nodes_of
-from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.knowledge.stacks import built_in, user_stack
-from multibot_rewrite.planning.bridged_topics import AS_ROBOTS, Models, bridged_as, bridged_topics
+from multibot_rewrite.planning.bridged_topics import AS_ROBOTS, Models
 from multibot_rewrite.planning.domain_bridge import with_bridges
 from multibot_rewrite.planning.plan import expect, named_frames, vacuous, words_of
 from multibot_rewrite.planning.records import Run, Table
 from multibot_rewrite.planning.table import build_table, joined, plugin_nodes
 from multibot_rewrite.planning.transforms import STATE_PUBLISHER, Edges, edges_of, frames_of
 from multibot_rewrite.planning.ways import merged
-from multibot_rewrite.producers.evidence.hardware import components, with_hardware
-from multibot_rewrite.producers.launch.records import LaunchOrder
+from multibot_rewrite.producers.evidence.hardware import components
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import (
     NOT_KNOWN_PROCESS,
@@ -54,7 +39,7 @@ from multibot_rewrite.system.records import (
 
 NOTHING: Mapping[str, str] = {}
 ALIKE: Mapping[str, Inventory] = {}
-# The stack of a robot whose description is published by something else.
+# The node set of a robot whose description is published by something else.
 NO_STATE_PUBLISHER = f"no_{STATE_PUBLISHER}"
 FRAME_PREFIX = "frame_prefix"
 
@@ -105,70 +90,8 @@ class Fleet(NamedTuple):
         return self.table._replace(runs=tuple(runs)) if self.names else self.table
 
 
-def make_fleet(
-    source: Source,
-    robots: Sequence[str],
-    stacks: Sequence[str],
-    policy: Policy,
-    *,
-    nodes: str | None = None,
-    nodl: Sequence[str] = (),
-    definitions: Sequence[str] = (),
-    xacro_args: Mapping[str, str] = NOTHING,
-    trust: bool = False,
-    launch: Sequence[LaunchOrder] = (),
-    release: str,
-) -> Fleet:
-    """Rewrite a description for every robot and return the fleet with its table, by the facts of the
-    release that the rewrite is for: ``release``, or where it is empty what ``rewrite_all`` takes.
-
-    ``nodes`` is a file with more nodes and node sets, ``nodl`` are NoDL files, see
-    ``find_interfaces``; ``trust`` lets a xacro file do anything; ``launch`` are the launch files
-    that start each robot's nodes. Raises as ``rewrite_all``, and UsageError for an unknown node
-    set."""
-    how: dict[str, Any] = {
-        "definitions": definitions,
-        "xacro_args": xacro_args,
-        "trust": trust,
-        "distro": release,
-    }
-    found = list(rewrite_all(source, robots, **how, **policy))
-    release = found[0].prepared.job.release
-    library = known_nodes(nodes, release, nodl).library
-    known = known_here(library.nodes, launch, robots[0], release)
-    facts = facts_of(stacks, nodes, release, nodl)
-    usual = load_known_nodes(nodes or "", release)
-    launched = launched_robot(facts, launch, known, robots[:1], usual, release)
-    runs = nodes_with(launched, facts, given_with(launched, ()), known)
-    members = [member(it, it.data, it.robot) for it in found]
-    wired = under_plugins(runs.nodes, launched, members[0].handed_on, release)
-    every = with_hardware(wired, members[0].source.root, members[0].source.file, known)
-    fleet = assemble(members, every, make_naming(**policy), release)
-    return _with_bridge_and_findings(fleet, members, tuple(definitions), runs.findings)
-
-
-def _with_bridge_and_findings(
-    fleet: Fleet,
-    members: Sequence[Member],
-    definitions: tuple[str, ...],
-    findings: Iterable[Finding],
-) -> Fleet:
-    """Return the fleet with its robots' collisions, findings about their nodes, and bridged topics."""
-    table = fleet.table
-    met = dict.fromkeys(robots_meet(table, members, fleet.naming))
-    simulated = filter(is_for_simulator, members)
-    found = wrong_in_descriptions(members, definitions, simulated, members)
-    # Nothing is started, and nothing says that they are simulated.
-    wrong = (it._replace(level=WARNING) for it in found)
-    table = table._replace(problems=(*table.problems, *met, *wrong, *findings))
-    topics, _ = bridged_topics(fleet.inventories, fleet.naming, fleet.models, table.runs)
-    own = topics if any(it.robot for it in topics) else ()
-    gaps = tuple(shared_by_nothing(fleet))
-    return fleet._replace(table=table, bridged=bridged_as(own), gaps=gaps)
-
-
 def facts_of(
-    stacks: Sequence[str], nodes: str | None, release: str, nodl: Sequence[str] = ()
+    node_sets: Sequence[str], nodes: str | None, release: str, nodl: Sequence[str] = ()
 ) -> tuple[NodeFacts, ...]:
     """Return the nodes that a robot with these node sets runs in a release, each once. Raises
     UsageError for an unknown node set, and for one that the release lacks. Every robot runs
@@ -176,15 +99,15 @@ def facts_of(
     set ``no_robot_state_publisher``."""
     known = known_nodes(nodes, release, nodl)
     library = known.library
-    runs = {name: list(nodes_of(known, name)) for name in stacks}
-    named = {node: name for name in reversed(stacks) for node in runs[name]}
-    order = dict.fromkeys(node for name in stacks for node in runs[name])
+    runs = {name: list(nodes_of(known, name)) for name in node_sets}
+    named = {node: name for name in reversed(node_sets) for node in runs[name]}
+    order = dict.fromkeys(node for name in node_sets for node in runs[name])
     # Without its folder: a plan is the same from every working directory.
     files = ((node, os.path.basename(node.interface)) for node in order)
     said = ((node, f", described in {file}" if file else "") for node, file in files)
     found = [node._replace(origin=Origin(f"{named[node]}{where}")) for node, where in said]
     has_publisher = any(node.package == STATE_PUBLISHER for node in found)
-    if not any(NO_STATE_PUBLISHER in with_included(library, name) for name in stacks):
+    if not any(NO_STATE_PUBLISHER in with_included(library, name) for name in node_sets):
         added = () if has_publisher else nodes_of(known, STATE_PUBLISHER)
         return (*found, *added)
     if has_publisher:
@@ -196,7 +119,7 @@ def facts_of(
 def known_nodes(nodes: str | None, release: str, nodl: Sequence[str]) -> NodeKnowledge:
     """Return what is known of nodes in a release: built in, by NoDL, in the user's file ``nodes``."""
     built = built_in(release)
-    library = user_stack(nodes, release) if nodes else built
+    library = user_library(nodes, release) if nodes else built
     own = (name for name, node in library.nodes.items() if node != built.nodes.get(name))
     return NodeKnowledge(library, find_interfaces(nodl), frozenset(own))
 

@@ -10,9 +10,6 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import gc_paused
 from multibot_rewrite.base.naming import Naming, make_naming
-from multibot_rewrite.fleet.checks.described import wrong_in_descriptions
-from multibot_rewrite.fleet.checks.meeting import robots_meet
-from multibot_rewrite.fleet.checks.named_twice import declared_twice, other_manager
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import Sources
 from multibot_rewrite.fleet.file.shape import placed, with_shape
@@ -42,14 +39,11 @@ from multibot_rewrite.fleet.robots.robot_nodes import (
     robot_nodes,
 )
 from multibot_rewrite.fleet.robots.simulators import (
-    is_said,
-    is_simulated,
     may_be_real,
     note,
     without_world_systems,
 )
 from multibot_rewrite.planning.plan import words_of
-from multibot_rewrite.planning.way_checks import UNREACHABLE_NAME
 
 
 class FleetPlan(NamedTuple):
@@ -85,7 +79,7 @@ class FleetPlan(NamedTuple):
         return words_of({it.name: (it.namespace, it.tag, it.model) for it in specs})
 
 
-def plan_fleet(
+def make_plan(
     file: FleetFile, jobs: Mapping[Sources, Jobs] | None = None, trust: bool = False
 ) -> FleetPlan:
     """Rewrite every robot's description and make the table of the whole fleet.
@@ -165,19 +159,5 @@ def _fleet(
         fleets.append(assemble(group, found.nodes, naming, file.distro, found.given))
         notes += found.findings
     fleet = merge(fleets)
-    members = [it.member for it in robots]
-    written = {it.spec.namespace: it.written for it in robots}
-    domains = file.apart.numbers
-    own_domains = [number for robot, number in domains.items() if robot]
-    never_meet = bool(own_domains) and len({*own_domains}) == len(own_domains)
-    table = fleet.table
-    said = (it._replace(robot=fleet.name(it.robot)) for it in table.problems)
-    met = (*said, *robots_meet(table, members, naming, written, domains))
-    every = (it for it in met if it.code != UNREACHABLE_NAME.code or not never_meet)
-    simulated = [it.member for it in robots if is_simulated(it)]
-    by_file = [it.member for it in robots if is_said(it)]
-    own = [it.member for it in robots if it.spec.launch]
-    wrong = wrong_in_descriptions(members, file.definitions, simulated, by_file, own)
-    told = (*declared_twice(robots, naming, met), *other_manager(robots, table), *wrong)
-    problems = tuple(dict.fromkeys((*every, *told, *notes)))
-    return fleet._replace(table=table._replace(problems=problems))
+    problems = tuple(dict.fromkeys((*fleet.table.problems, *notes)))
+    return fleet._replace(table=fleet.table._replace(problems=problems))

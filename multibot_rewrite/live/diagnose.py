@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A graph -> its robots, the layout that it looks like, and what is wrong with it. Pure."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
@@ -140,8 +138,7 @@ def _carried_across(each: Mapping[int, Diagnosis]) -> Iterator[Finding]:
 def _sent_elsewhere(
     it: Finding, together: Diagnosis, each: Mapping[int, Diagnosis], at: int | None = None
 ) -> Finding:
-    """Return the finding; if what is missing is a robot's by its name and another domain has it,
-    with that as the cause."""
+    """Return the finding, with the cause if another domain has what the robot lacks."""
     missed = [name for name in it.names if it.code in ABSENCE and together.whose.robot(name)]
     for other, seen in each.items():
         ends = (end for name in missed if other != at for end in ends_of(seen.whose, name))

@@ -6,8 +6,6 @@ enclave may do what any of its profiles allows, a name may be a pattern of ``fnm
 its hidden topics and services) and ``test/policies/common/node.xml`` (what every node needs).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 

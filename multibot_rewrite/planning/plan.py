@@ -133,8 +133,7 @@ def named_frames(inventory: Inventory) -> tuple[str, ...]:
 
 
 def _placed(nodes: Iterable[Node], table: Table) -> Iterator[Node]:
-    """Yield each node with its plugin and further names, and its way and taker, if it has no
-    --ros-args of its own."""
+    """Yield each node with its plugin, further names, way and taker (without own --ros-args)."""
     known: dict[str, NodeFacts] = {}
     for run in (it for it in table.runs if it.fact.is_known):
         # Also those that it makes for itself.
@@ -152,13 +151,13 @@ def _placed(nodes: Iterable[Node], table: Table) -> Iterator[Node]:
     origins = {it.full_name: it.fact.origin for it in table.runs if it.fact.origin != NO_ORIGIN}
     for it in nodes:
         way_of_node, taker = taken.get(it.name, ("", ""))
-        stack, place = origins.get(it.name, NO_ORIGIN)
+        node_set, place = origins.get(it.name, NO_ORIGIN)
         fact = known.get(it.name, UNKNOWN)
         yield it._replace(
             way=way_of_node,
             taker=taker,
             plugin=plugins.get(it.name, NOWHERE),
-            stack=stack,
+            node_set=node_set,
             place=place,
             known=fact.kind,
             untold=tuple(one.text for one in fact.untold),

@@ -2,8 +2,6 @@
 """What a viewer can show of each robot of a plan: topics, description, the frame it is in; a
 layout of Foxglove that shows it."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which robot a node, topic or frame belongs to, by the plan and by how its name is written."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
 from typing import NamedTuple
@@ -235,7 +233,7 @@ def name_ownership(plan: System) -> NameOwnership:
 def _plain_words(plan: System, draft: NameOwnership, topics: Mapping[str, str]) -> set[str]:
     """Return the words of nodes and names without the robot's name that may be a robot's."""
     nodes = draft.nodes
-    likely = draft.robots.keys() & _words({w.code_name for w in plan.ends})
+    likely = draft.robots.keys() & _segments_and_ends({w.code_name for w in plan.ends})
     # A node of all robots may name a robot's topic in its code, as a domain_bridge does.
     in_code = {
         (w.code_name, nodes.get(w.node) or draft.exact.get(w.code_name, ""))
@@ -248,7 +246,7 @@ def _plain_words(plan: System, draft: NameOwnership, topics: Mapping[str, str]) 
     # Of what is below a link of its robot, the link has the robot's name, too.
     every = (*topics.items(), *parts)
     twice = {draft.without_robot(draft.without_robot(*it), it[1]) for it in every}
-    return _words(once | twice)
+    return _segments_and_ends(once | twice)
 
 
 def frame_ownership(plan: System) -> NameOwnership:
@@ -269,7 +267,7 @@ def frame_ownership(plan: System) -> NameOwnership:
     plain = frozenset((*(draft.without_robot(*pair) for pair in declared), *common))
     any_rest = is_glued or not plain
     return draft._replace(
-        ambiguous_words=frozenset(robots.keys() & _words(plain)),
+        ambiguous_words=frozenset(robots.keys() & _segments_and_ends(plain)),
         plain_names=NO_WORDS if any_rest else plain.union(USUAL_FRAMES, SENT_FRAMES),
     )
 
@@ -301,6 +299,6 @@ def _is_last(names: Iterable[tuple[str, str]]) -> bool:
     return more > 0
 
 
-def _words(names: Iterable[str]) -> set[str]:
+def _segments_and_ends(names: Iterable[str]) -> set[str]:
     segments = {segment for name in names for segment in name.strip("/").split("/")}
     return segments.union(end for segment in segments for end in _ends(segment))

@@ -22,7 +22,7 @@ from multibot_rewrite.system.records import Node, Robot, System
 FLEET = """\
 layout: {layout}
 description: {rover}
-stack: nav2
+node_sets: nav2
 distro: jazzy
 robots:
 - {{name: a1, namespace: /fleet_a/robot1}}
@@ -32,7 +32,7 @@ robots:
 
 
 def planned(folder: Path, layout: str) -> System:
-    """The plan of the fleet, through its file."""
+    """Return the plan of the fleet, through its file."""
     file = folder / "fleet.yaml"
     file.write_text(FLEET.format(layout=layout, rover=ROVER))
     plan = expected(planned_fleet(file).fleet)

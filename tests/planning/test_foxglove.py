@@ -29,7 +29,7 @@ from multibot_rewrite.system.records import (
 ROVERS = """\
 layout: {layout}
 affix: prefix
-stack: nav2
+node_sets: nav2
 description: {description}
 robots: [{{name: robot1}}, {{name: robot2, pose: {{y: 2.0}}}}]
 """
@@ -45,7 +45,7 @@ def built(folder: Path, layout: str) -> dict[str, Any]:
 
 
 def leaves(layout: Any) -> list[str]:
-    """The panels of a mosaic, as react-mosaic has it: a name, or two parts."""
+    """Return the panels of a mosaic, as react-mosaic has it: a name, or two parts."""
     if isinstance(layout, str):
         return [layout]
     assert layout["direction"] in ("row", "column")

@@ -97,8 +97,7 @@ class Cell(NamedTuple):
 
 
 def with_cell(read: FleetData) -> FleetData:
-    """Return the data with what a cell means for its keys: groups for each arm, one move_group, one
-    topic of joint states."""
+    """Return the data with what a cell means: groups per arm, one move_group, one topic of states."""
     if CELL not in read.data:
         return read
     data = dict(read.data)

@@ -45,7 +45,7 @@ def commands_file(
         clocks.add(clock)
         rows += _lines((it.start for it in poses.transforms), clock)
         if is_simulated(robot) and not spawn.is_of_vendor(one.evidence_of(robot).placing):
-            rows += [spawn.either(it, robot) for it in spawn.in_folder(one)]
+            rows += [spawn.command_of(it, robot) for it in spawn.in_folder(one)]
         rows += _controllers(one)
         relayed = (it.start for it in relays(robot.spec.namespace, one.fleet.naming, one.file))
         driven = (it.start for it in teleop.teleops(one))

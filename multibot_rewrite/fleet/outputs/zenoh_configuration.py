@@ -16,8 +16,6 @@ tf topic alone, and wants ``navigation_stack`` and ``initial_map`` of each robot
 bridges are of zenoh-bridge-ros2dds, where a name is a regular expression of the whole name
 (DEFAULT_CONFIG.json5 at 0b277b7)."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator
 from typing import Any, NamedTuple

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A robot of a fleet, with all that its rewritten description says."""
 
-from __future__ import annotations
-
 from itertools import islice
 from typing import NamedTuple
 

@@ -68,7 +68,7 @@ def _moves(model: Model, launched: Launched, seen: Index) -> bool:
 def as_one_of_several(found: Iterable[Finding], plan: System, seen: System) -> Iterator[Finding]:
     """Yield the findings; a missing node is inconclusive if the launch file starts no node of its
     node set or parameter file, which another launch file may do."""
-    sources = {it.name: it.stack or it.place.file for it in plan.nodes}
+    sources = {it.name: it.node_set or it.place.file for it in plan.nodes}
     begun = {"", *(sources.get(it.name, "") for it in seen.nodes)}
     for it in found:
         is_left = it.code == missing_node.code and _source(it.node, sources) not in begun

@@ -3,8 +3,6 @@
 and what to do about it.
 """
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import lru_cache
@@ -204,7 +202,7 @@ class Spelled:
             self.by_letters[letters(name)].append(name)
             parts = name.split("/")
             for at in {1, len(parts) - 1}:
-                words = self.beside.setdefault(_rest(parts, at), defaultdict(list))
+                words = self.beside.setdefault(_other_parts(parts, at), defaultdict(list))
                 words[_DIGITS.sub("", parts[at])].append((parts[at], name))
 
 
@@ -235,12 +233,12 @@ def alike(
 
 def _with_other_word(parts: list[str], at: int, known: Spelled) -> Iterator[tuple[str, str]]:
     """Yield known names that differ in the word at one place alone, with it; not in its number."""
-    own, words = _DIGITS.sub("", parts[at]), known.beside.get(_rest(parts, at), {})
+    own, words = _DIGITS.sub("", parts[at]), known.beside.get(_other_parts(parts, at), {})
     found = (it for bare, others in words.items() if bare != own for it in others)
     return islice(found, COMPARED)
 
 
-def _rest(parts: list[str], at: int) -> _Rest:
+def _other_parts(parts: list[str], at: int) -> _Rest:
     return at, *parts[:at], *parts[at + 1 :]
 
 

@@ -220,7 +220,7 @@ def _why_besides(plan: Index, end: End, other: str) -> Cause:
 
 
 def _why_missing(plan: Index, seen: Index, planned: End, used: str) -> Cause:
-    """Return the answer to the most common question: why does /robot1/cmd_vel never appear?"""
+    """Return the likely cause why a planned name, such as /robot1/cmd_vel, never appears."""
     if not used:
         managed = (planned.node, SERVICE, SERVES, f"{planned.node}/get_state") in plan.by_key
         state = f"; is it configured? ros2 lifecycle get {planned.node}" if managed else ""
