@@ -177,9 +177,11 @@ def test_a_built_folder_says_whose_each_name_is(
 
 
 BASE = """<link name="base_link">
-<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>"""
+<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+</link>"""
 WHEEL = """<link name="{0}_link">
-<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link><joint name="{0}" type="continuous">
+<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+<joint name="{0}" type="continuous">
 <parent link="base_link"/><child link="{0}_link"/><axis xyz="0 1 0"/></joint>"""
 LOST_ODOMETRY = f"""<robot name="rover">
 {BASE}
