@@ -116,16 +116,16 @@ def _hint(near: str) -> str:
 
 def meant_name(name: str, known: Iterable[str]) -> str:
     """Return the known name that differs from ``name`` by one typing mistake in one word, or ""."""
-    words = _words(name)
+    words = _name_parts(name)
     for it, _ in zip(known, range(COMPARED), strict=False):
-        others = _words(it)
+        others = _name_parts(it)
         if len(words) == len(others) and (words == others or _one_typo(words, others)):
             return it
     return ""
 
 
 @lru_cache(maxsize=4096)  # each unknown name is compared with the same known ones
-def _words(name: str) -> tuple[str, ...]:
+def _name_parts(name: str) -> tuple[str, ...]:
     return tuple(fold(name).split("_"))
 
 

@@ -37,9 +37,11 @@ class Parser(argparse.ArgumentParser):
     short = ""
 
     def error(self, message: str) -> NoReturn:
+        """Exit with a usage error in one line."""
         self.exit(UNUSABLE, f"{self.prog}: {one_line(message)}; see {self.prog} --help\n")
 
     def format_help(self) -> str:
+        """Return the help text, as wide as the terminal."""
         import shutil  # only a help text needs the terminal's width
 
         width = min(shutil.get_terminal_size().columns, WIDEST)

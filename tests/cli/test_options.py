@@ -75,11 +75,11 @@ def test_an_option_has_one_help_wherever_it_is() -> None:
         for action in make_parser(command)._actions:
             for option in action.option_strings:
                 texts[option].add(str(action.help))
-    # What is written or suggested differs with the command; --stack learns or uses one; init has
+    # What is written or suggested differs with the command; --node-set learns or uses one; init has
     # a layout of its own; check takes several domains.
     own = OUTPUT | {
-        "--domain", "--output-kind", "--stack", "--diff", "--suggest", "--layout", "--force", "--undo",
-        "-n", "--count",
+        "--domain", "--output-kind", "--node-set", "--diff", "--suggest", "--layout", "--force",
+        "--undo", "-n", "--count",
     }  # fmt: skip
     assert [it for it, told in texts.items() if len(told) > 1 and it not in own] == []
     assert all(text.endswith("missing folders are made") for text in texts["--output"])
@@ -200,7 +200,7 @@ def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str
             "multibot build --keep /scan",
             "write the key shared_frames: or shared_topics: or shared_nodes: into the fleet file",
         ),
-        (f"multibot init {ROVER} -o new.yaml --stack nav", "did you mean 'nav2'?"),
+        (f"multibot init {ROVER} -o new.yaml --node-set nav", "did you mean 'nav2'?"),
         ("multibot init a.urdf --prefix r_", "write the key affix: into the fleet file"),
         ("multibot init a.urdf --namespace r", "write the key topics: into the fleet file"),
         ("multibot init --urdf a.urdf", "use the file as a word: multibot init FILE"),
@@ -367,7 +367,7 @@ def test_the_plan_knows_the_names_that_a_rewrite_with_the_same_options_makes(
     options = ["--affix", "prefix", "--separator", "_", "--shared", "base_footprint"]
     assert said(capsys, "urdf-postfix", ROVER, "left", *options, "-o", str(tmp_path / "a"))[0] == 0
     assert 'name="left_base_link"' in (tmp_path / "a").read_text()
-    code, out, _ = said(capsys, "multibot", "plan", ROVER, "left", *options, "--stack", "nav2")
+    code, out, _ = said(capsys, "multibot", "plan", ROVER, "left", *options, "--node-set", "nav2")
     assert code == 0
     assert "left_base_link" in out
     assert "left_base_footprint" not in out

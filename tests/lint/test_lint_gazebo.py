@@ -27,14 +27,14 @@ LINK = (
 
 
 def codes(inside: str, distro: str = "jazzy") -> list[str]:
-    """The codes of what is found in a robot of two links and a joint."""
+    """Return the codes of what is found in a robot of two links and a joint."""
     text = f'<robot name="r">{LINK}{inside}</robot>'
     found = lint_data("r.urdf", text.encode(), NEW._replace(distro=distro))
     return [it.code for it in found]
 
 
 def linted(inside: str, _folder: Path) -> set[str]:
-    """What all rules find in it."""
+    """Return what all rules find in it."""
     text = f'<robot name="r">{LINK}{inside}</robot>'
     return {it.code for it in lint_data("r.urdf", text.encode(), Settings(distro="jazzy"))}
 

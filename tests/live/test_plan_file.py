@@ -129,8 +129,8 @@ def test_who_may_send() -> None:
     ],
 )
 def test_one_of_several_nodes(running: tuple[str, ...], code: str) -> None:
-    found = codes(graph(*RUNNING, more=("/rviz2", *running)))
-    assert [it for it, _ in found] == ([code] if code else [])
+    found = check(read_plan(plan(), "p"), graph(*RUNNING, more=("/rviz2", *running)))
+    assert [(it.code, it.robot) for it in found] == ([(code, "robot1")] if code else [])
 
 
 @pytest.mark.parametrize(("node", "is_missed"), [("rviz2", False), ("camera", True)])

@@ -69,7 +69,7 @@ def generate_launch_description():
 
 @pytest.fixture
 def kept(tmp_path: Path) -> Path:
-    """A folder with a package, in which a launch file will be, and one that is none of its."""
+    """Return a folder with a package, in which a launch file will be, and one that is none of its."""
     (tmp_path / "own").mkdir()
     (tmp_path / "own/package.xml").write_text("<package><name>own</name></package>")
     (tmp_path / "other").mkdir(mode=0o755)

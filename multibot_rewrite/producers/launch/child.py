@@ -120,8 +120,7 @@ _INSIDE = "MULTIBOT_READS_LAUNCH"
 
 
 def launch_graph(order: LaunchOrder) -> LaunchGraph:
-    """Return what a launch file or system_model.yaml starts. Raises InputError for a file that
-    cannot be read."""
+    """Return what a launch file or system_model.yaml starts. Raises InputError if it is unreadable."""
     refuse_others(read_file(order.file), order.file, LAUNCH)
     # A launch file in YAML has ``launch:`` in place of what a system model begins with.
     if order.file.endswith((".yaml", ".yml")) and _HEAD.search(read_file(order.file)) is not None:

@@ -116,7 +116,7 @@ def unplanned_node(plan: Index, seen: Index) -> Iterator[Finding]:
             foreign = [it for it in names if it not in shared and plan.robot(it) != robot]
             uses = f"; it uses {shorten(foreign)}, without the name of {robot}" if foreign else ""
             message = f"is a node of {robot}, but not in the plan{uses}"
-            cause = "add it to the plan: with --stack or --nodes, or by hand"
+            cause = "add it to the plan: with --node-set or --nodes, or by hand"
         else:
             message = "is of no robot, and not in shared_nodes of the plan"
             cause = "add it there if it serves all robots; otherwise give it its robot's namespace"
@@ -209,8 +209,7 @@ _BRIDGES = ("bridge", "parameter_bridge")
 
 @planned_rule("MG121", "sender-not-planned", ERROR, drawn="cross-talk", nodes=False)
 def sender_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Report each node that may not send; of too many senders one a topic, at one that is not
-    planned if there is one."""
+    """Report each node that may not send; of too many senders of a topic one, an unplanned one."""
     if not seen.nodes:
         yield from _too_many_recorded(plan, seen)
         return

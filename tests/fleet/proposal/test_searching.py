@@ -11,8 +11,8 @@ from paths import CORPUS, FIXTURES
 
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.cli import urdf_postfix
-from multibot_rewrite.fleet.proposal import searching
-from multibot_rewrite.fleet.proposal.searching import Found, search
+from multibot_rewrite.proposal import searching
+from multibot_rewrite.proposal.searching import Found, search
 
 ROBOT = '<robot name="r"/>'
 PARAMS = "a:\n  ros__parameters: {b: 1}\n"
@@ -142,7 +142,7 @@ def test_a_folder_with_too_many_files_is_refused(
 
 
 def _refusal(path: str) -> str:
-    """What a file is refused with that is named alone; empty for one that is taken."""
+    """Return what a file is refused with that is named alone; empty for one that is taken."""
     try:
         taken = search([path]).descriptions
     except InputError as error:
