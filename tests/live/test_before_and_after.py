@@ -78,7 +78,7 @@ def test_what_a_tool_sends_to_a_robot_is_new() -> None:
     for reader, found in (
         ("/robot1/driver", [("MG130", WARNING, "/rosbridge_websocket")]),
         ("/robot1/twist_mux", []),
-        ("/rqt_gui_py_node_12", []),
+        ("/domain_bridge", []),
     ):
         assert codes(held(sent, f"as before: {reader} subscribes /robot1/e_stop {STOP}")) == found
 

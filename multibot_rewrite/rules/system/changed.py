@@ -95,7 +95,7 @@ def _changes(before: System, seen: Index) -> Iterator[_Change]:
                 yield _Change(end.node, what, (end.name,))
         elif heeded := _heeded(seen, end):
             yield _Change(end.node, f"{did_not}; {heeded}", (end.name,), ERROR)
-        elif tool and end.role == PUBLISHES and (user := _user(seen, end)):
+        elif end.role == PUBLISHES and (user := _user(seen, end)):
             yield _Change(end.node, f"{did_not}; {user} reads it", (end.name,))
         elif end.node in nodes and not tool:
             yield _Change(end.node, did_not, (end.name,))
