@@ -45,7 +45,7 @@ ROBOTS = [
 
 
 def held(*lines: str, change: Callable[[System], System] = lambda it: it) -> list[Finding]:
-    """What is found of these lines besides the robots, held against them."""
+    """Return what is found of these lines besides the robots, held against them."""
     text = "\n".join((*(f"as before: {it}" for it in ROBOTS), *lines))
     before, after = read_looks(text)
     return check(seen_plan(diagnose(before)), change(after), before=before)

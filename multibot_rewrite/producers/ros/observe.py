@@ -246,8 +246,7 @@ def _enough(session: GraphSession) -> float:
 
 
 class _ChangeTimes:
-    """When the graph last changed, all of it and what is expected of it; ``last`` are the names that
-    came or went then."""
+    """When the graph, and what is expected of it, last changed; ``last``: names that came or went."""
 
     def __init__(self) -> None:
         self._before: tuple[object, object] = (None, None)

@@ -5,8 +5,6 @@ Source: DDSI-RTPS 9.6.2.3, which Fast DDS and Cyclone DDS keep to: the port at w
 found is 7400 + 250 * domain + 10 + 2 * number.
 """
 
-from __future__ import annotations
-
 import os
 import socket
 import sys

@@ -2,8 +2,6 @@
 """A system compared with an earlier snapshot of it: what is new, gone or other in ends, transforms,
 frames of messages and parameters. Which nodes came and went is asked by the rules of a plan."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
@@ -90,7 +88,9 @@ def _changes(before: System, seen: Index) -> Iterator[_Change]:
     for key, end in new.items():
         tool, did_not = seen.is_tool(end.node), f"{DOES[end.role]} {end.name}, and did not"
         if key in old:
-            if (was := _said(old[key])) != (now := _said(end)) and not tool:
+            if (was := _type_and_qos(old[key])) != (now := _type_and_qos(end)) and not seen.is_tool(
+                end.node
+            ):
                 what = f"{DOES[end.role]} {end.name} as {now}, and did as {was}"
                 yield _Change(end.node, what, (end.name,))
         elif heeded := _heeded(seen, end):
@@ -123,13 +123,12 @@ def _by_key(ends: Iterable[End]) -> Mapping[tuple[str, str, str, str], End]:
     }
 
 
-def _said(end: End) -> str:
+def _type_and_qos(end: End) -> str:
     return " ".join((end.type, *qos_words(end)))
 
 
 def _heeded(seen: Index, end: End) -> str:
-    """Return who does what a new sender orders, or takes its data for those of another one, tools as
-    well; empty for nobody."""
+    """Return who obeys a new sender, or takes its data for those of another; empty for nobody."""
     ends = seen.ends_at(end.kind, end.name)
     readers, others = (
         [it.node for it in at_work(own) if it.node != end.node]
@@ -160,8 +159,7 @@ def _user(seen: Index, end: End) -> str:
 
 
 def _sender(seen: Index, edge: Edge) -> str:
-    """Return the node of the robot of a transform among those that send on its topic, or the only one;
-    else an empty string."""
+    """Return the transform's sender: the robot's node on its topic, or the only one; else ""."""
     robot = seen.frame_robot(edge.child) or seen.robot(edge.topic)
     own = [it for it in edge.publishers if seen.robot(it) == robot]
     return only(own) or only(edge.publishers)
