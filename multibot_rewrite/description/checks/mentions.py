@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Names of links, joints and lights in values that no site claims: a rewrite leaves them so."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Collection, Iterator
@@ -163,7 +161,7 @@ def _telling(values: list[str], names: frozenset[str]) -> dict[str, str]:
     telling = {value: value for value in names & different}
     others = [value for value in different - names if value.strip(_NUMERIC)]
     # One look at all of them, then one without files: mostly none holds a name.
-    if _held(" ".join(others), names) and _held(" ".join(map(_without_files, others)), names):
+    if _name_in(" ".join(others), names) and _name_in(" ".join(map(_without_files, others)), names):
         telling |= {value: name for value in others if (name := mentioned(value, names))}
     return telling
 
@@ -172,10 +170,10 @@ def mentioned(value: str, names: frozenset[str]) -> str:
     """Return the name that a value is or holds; empty if it has none."""
     if value in names:
         return value
-    return _held(_without_files(value), names) if value.strip(_NUMERIC) else ""
+    return _name_in(_without_files(value), names) if value.strip(_NUMERIC) else ""
 
 
-def _held(text: str, names: frozenset[str]) -> str:
+def _name_in(text: str, names: frozenset[str]) -> str:
     """Return a name that a text holds; empty if it has none."""
     for it in _looks(names):
         words = it.split(text)

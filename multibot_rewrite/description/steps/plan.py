@@ -4,8 +4,6 @@
 A plan is for any robot: its edits have a slot for the robot's name.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import ERROR, Finding, declare

@@ -2,8 +2,6 @@
 """Dangers of ``header.frame_id``: messages in a frame of another robot, or in one that is in no tf; and
 of latched descriptions: empty, of another robot, of other frames or joints."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from functools import cache, partial

@@ -8,8 +8,6 @@ activated; a command interface has one owner) and its chaining: a controller's o
 called ``CONTROLLER/...``.
 """
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import NamedTuple
@@ -267,7 +265,7 @@ def missing(known: Sequence[Interface]) -> Iterator[Missing]:
         yield Missing((first, *more), meant or next(beside, None), near)
 
 
-def said_of_missing(it: Missing, shown: Callable[..., str] | None) -> tuple[str, str]:
+def missing_message(it: Missing, shown: Callable[..., str] | None) -> tuple[str, str]:
     """Return message and hint about a claim of one robot. Known places are ``shown`` so."""
     first, *more = it.claims
     also = f" and {len(more)} more" if more else ""

@@ -3,8 +3,6 @@
 backslashes, formats that not every program reads.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import NamedTuple
 

@@ -3,8 +3,6 @@
 what gravity does: torques beyond a motor's effort, wheels that do not carry the robot.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from math import dist, pi
 from typing import NamedTuple
