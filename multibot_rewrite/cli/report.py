@@ -90,7 +90,9 @@ def report_first(
     return fails(findings, options.fail_on)
 
 
-def report_beside(options: argparse.Namespace, findings: Sequence[Finding], about: About) -> bool:
+def report_findings_too(
+    options: argparse.Namespace, findings: Sequence[Finding], about: About
+) -> bool:
     """Write the findings in addition to the result: as text to standard error or standard output."""
     if options.format == TEXT and not findings:
         return False
@@ -104,8 +106,7 @@ def report_beside(options: argparse.Namespace, findings: Sequence[Finding], abou
 
 
 def _few_of_a_kind(findings: Sequence[Finding]) -> Iterator[Finding]:
-    """Yield the findings; of many of one kind in one file the first warning or the first notes, with
-    the lines of the rest."""
+    """Yield the findings; of many of one kind in a file one, with the lines of the others."""
     lines = lists_by_key((_kind_of(it), it.line) for it in findings)
     met: Counter[tuple[str, ...]] = Counter()
     for it in findings:

@@ -185,8 +185,7 @@ def read_node(
 
 
 def _frames(keys: Mapping[str, YamlItem], params: Iterable[Param]) -> Iterator[FrameParameter]:
-    """Yield the parameters that hold frames, with their defaults: those under ``params``, unless
-    ``frames`` has others."""
+    """Yield the parameters that hold frames, with defaults: ``frames``, then those of ``params``."""
     said = table_of(keys, "frames")
     own = (it for it in params if it.kind == "frame" and it.path not in said and has_default(it))
     yield from (FrameParameter(it.path, it.default, it.releases, it.source) for it in own)

@@ -106,8 +106,7 @@ def without_doubles(stubs: Iterable[Stub], plan: System) -> Iterator[Stub]:
 
 
 def bridge_stub(topics: Iterable[Topic]) -> Iterator[Stub]:
-    """Yield the bridge to a simulator that a plan needs, if it needs one, with what the simulator's
-    world serves."""
+    """Yield the stand-in of a bridge to a simulator, if the plan needs it, with the world's topics."""
     rows = [
         Endpoint(SERVICE if role == SERVES else TOPIC, role, topic.name, topic.type)
         for topic in topics
@@ -121,7 +120,7 @@ def domain_bridge_stubs(plan: System) -> Iterator[Stub]:
     """Yield the nodes of domain_bridge in a plan of one domain."""
     ends = lists_by_key((it.node, Endpoint(it.kind, it.role, it.name, it.type)) for it in plan.ends)
     for node in plan.nodes:
-        if node.stack == DOMAIN_BRIDGE:
+        if node.node_set == DOMAIN_BRIDGE:
             yield played(node.name[1:], ends.get(node.name, ()), node.robot), ()
 
 

@@ -232,8 +232,7 @@ def shell_line(it: Start) -> str:
 
 
 def keywords(it: Start) -> dict[str, Any]:
-    """Return the keywords of launch_ros's Node, of ComposableNode for a component, of ExecuteProcess
-    for a command."""
+    """Return launch_ros's keywords of a Node, a ComposableNode, or (commands) an ExecuteProcess."""
     how = {name: getattr(it.process, name) for name in HOW}
     inner = [keywords(one) for one in it.components]
     if inner and not it.package:

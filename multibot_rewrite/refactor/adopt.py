@@ -115,7 +115,7 @@ def adopt(
         return Adopted("", {}, {}, (), (), job.unread, already)
     own = {path: _space_of(its) for path, its in arguments.items()}
     found = list(_configured(found, job))
-    made = _with_files_beside(_with_namespace(found, own, job), found, job)
+    made = _with_related_files(_with_namespace(found, own, job), found, job)
     return made._replace(unread=job.unread, already=already)
 
 
@@ -129,7 +129,7 @@ class _Job(NamedTuple):
     unread: dict[str, str]
 
 
-def _with_files_beside(made: Adopted, found: Sequence[Description], job: _Job) -> Adopted:
+def _with_related_files(made: Adopted, found: Sequence[Description], job: _Job) -> Adopted:
     """Return the result with launch files, the parameters that they fill in, and other files."""
     there, shared = job.package.found, prefixing().shared_frames
     # What gets the prefix.
@@ -162,7 +162,7 @@ def _configured(found: Sequence[Description], job: _Job) -> Iterator[Description
         yield from own
 
 
-def _made(
+def _with_argument(
     found: Sequence[Description],
     texts: Mapping[str, bytes],
     argument: str,
@@ -211,7 +211,7 @@ def _with_namespace(found: Sequence[Description], own: Mapping[str, str], job: _
     )
     if space.argument:
         try:
-            made, after = _made(found, texts, prefix, job.how, space.edits)
+            made, after = _with_argument(found, texts, prefix, job.how, space.edits)
             verified, wrong = space_verified(space, prefix, TRIED, after, job.how, job.tree)
         except InputError as error:
             verified, wrong = (), (Left(found[0].path, f"it gets no namespace: {error}"),)
@@ -220,7 +220,7 @@ def _with_namespace(found: Sequence[Description], own: Mapping[str, str], job: _
             return made._replace(
                 left=(*made.left, *left), namespace=space.argument, spaced=verified
             )
-    made, _ = _made(found, texts, prefix, job.how)
+    made, _ = _with_argument(found, texts, prefix, job.how)
     return made._replace(left=(*made.left, *left))
 
 

@@ -24,7 +24,7 @@ from multibot_rewrite.description.joining.part import PREFIXED
 from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.fleet.one_file import names_in_file
+from multibot_rewrite.library.one_file import names_in_file
 from multibot_rewrite.producers.launch.child import launch_graph
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder
 from multibot_rewrite.refactor.launch_argument import OF_ROBOT, LaunchEdit, Space, with_argument

@@ -95,13 +95,13 @@ def _every(found: Iterable[Description], tree: Tree) -> tuple[list[Spaced], list
         if it.inventory.format != "robot":
             continue
         try:
-            every.append(_spaced(it, it.inventory.document.source, tree))
+            every.append(_with_namespace(it, it.inventory.document.source, tree))
         except InputError as error:
             left.append(Left(it.words, f"it gets no namespace: {error}"))
     return every, left
 
 
-def _spaced(it: Description, data: bytes, tree: Tree) -> Spaced:
+def _with_namespace(it: Description, data: bytes, tree: Tree) -> Spaced:
     with in_one_line():
         return Spaced(it, pipeline.prepare(data, it.path, spacing(), tree))
 
@@ -124,7 +124,7 @@ def space_verified(
             given = {prefix: tried}
             beside = Expanding(how.reach, {**how.arguments, **given})
             data, _ = read_text(it.found.path, beside, after)
-            why = _fault(_spaced(it.found, data, tree), after, given, space.argument, how)
+            why = _fault(_with_namespace(it.found, data, tree), after, given, space.argument, how)
         if why:
             wrong[it.found.path] = Left(it.found.words, f"its ROS names are not verified: {why}")
     paths = dict.fromkeys(it.found.path for it in space.every)
@@ -142,7 +142,9 @@ def _fault(
             wanted = next(pipeline.render(it.template, [TRIED_SPACE], again=True))
     except InputError as error:
         return str(error)
-    both = zip_longest(_said(made), _said(wanted), fillvalue=(0, "/robot", (), ""))
+    both = zip_longest(
+        _readable_elements(made), _readable_elements(wanted), fillvalue=(0, "/robot", (), "")
+    )
     other = next((one for one, two in both if one != two), None)
     if other is None:
         return ""
@@ -151,7 +153,7 @@ def _fault(
     return f"with {argument}:={TRIED_SPACE} it has <{words}>{text}"
 
 
-def _said(data: bytes) -> list[tuple[int, str, tuple[tuple[str, str], ...], str]]:
+def _readable_elements(data: bytes) -> list[tuple[int, str, tuple[tuple[str, str], ...], str]]:
     """Return depth, tag, attributes and text of each element: all that its readers see."""
     return [
         (

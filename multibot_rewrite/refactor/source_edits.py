@@ -68,7 +68,7 @@ def source_edit(read: Expansion, document: Document, change: ValueEdit) -> Sourc
         if at < end and start < last:
             touched.append(piece)
         at = last
-    return Composed(change.value, _place(read, document, change, touched), _why(touched))
+    return Composed(change.value, _place(read, document, change, touched), _why_not_edited(touched))
 
 
 def _trimmed(change: ValueEdit) -> tuple[int, int, str]:
@@ -98,7 +98,7 @@ def place(file: str, source: bytes, offset: int) -> str:
     return ":".join(map(str, (file, *locate(source, offset))))
 
 
-def _why(touched: list[Piece]) -> str:
+def _why_not_edited(touched: list[Piece]) -> str:
     if len(touched) > 1:
         return "it is put together from " + " and ".join(repr(it.text) for it in touched)
     made = touched[0].kind if touched else EXPRESSION

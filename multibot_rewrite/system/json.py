@@ -92,8 +92,7 @@ def is_json(data: bytes) -> bool:
 
 
 def read_system(data: bytes, file: str) -> System:
-    """Read what ``to_yaml`` or ``to_json`` wrote; raises InputError with file, key, what is wrong, what
-    to do."""
+    """Read a system from YAML or JSON; raises InputError with file, key, fault and remedy."""
     return from_json(data, file) if is_json(data) else from_yaml(data, file)
 
 

@@ -141,10 +141,10 @@ def _environment(
     asked = around[0]
     peers = dict.fromkeys(peer for one in around for peer in one.static_peers)
     return asked._replace(
-        range=_words(one.range for one in around),
+        range=_joined_once(one.range for one in around),
         static_peers=tuple(peers),
-        rmw=_words(one.rmw for one in around),
-        discovery_server=_words(one.discovery_server for one in around),
+        rmw=_joined_once(one.rmw for one in around),
+        discovery_server=_joined_once(one.discovery_server for one in around),
         super_client=all(one.super_client for one in around),
         participants=participants(endpoints),
         settled=max((one.settled for one in around), key=WORST_LAST.index),
@@ -153,7 +153,7 @@ def _environment(
     )
 
 
-def _words(words: Iterable[str]) -> str:
+def _joined_once(words: Iterable[str]) -> str:
     return ", ".join(dict.fromkeys(filter(None, words)))
 
 

@@ -52,8 +52,7 @@ class Answer(NamedTuple):
 def with_answers(
     system: System, answers: Iterable[Answer], asked: "Iterable[Question]" = ()
 ) -> System:
-    """Return the system with the answers of nodes; nodes ``asked`` for parameters that did not
-    answer are named."""
+    """Return the system with the nodes' answers; names ``asked`` nodes that did not answer."""
     said = tuple(answers)
     silent = {it.node for it in asked if it.type == GET_PARAMETERS} - {it.node for it in said}
     states = {it.node: it.lifecycle for it in said if it.lifecycle}

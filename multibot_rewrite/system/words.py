@@ -91,8 +91,7 @@ def is_of_one_sensor(type_: str) -> bool:
 
 
 def is_of_one_robot(plain: str, type_: str) -> bool:
-    """Return whether data of two robots would be mixed on the topic: sensors, odometry, maps,
-    commands, a description."""
+    """Return whether a topic is one robot's: sensors, odometry, maps, commands, a description."""
     sensors = type_.startswith(_OF_ONE_ROBOT)
     return sensors or moves(plain, type_) or plain.endswith(DESCRIPTION)
 

@@ -92,6 +92,11 @@ def test_a_rewrite_says_which_release_it_is_for_and_why(
     (folder / "c.urdf").write_text(CLASSIC)
     urdf_postfix.main(["c.urdf", "robot1", "-o", "o.urdf"])
     assert "(ROS 2 humble: it loads libgazebo_ros_p3d.so)" in capsys.readouterr().err
+    # ROS 1 alone has gazebo_ros_control (gazebo_ros_pkgs, branches noetic-devel and ros2).
+    control = '<plugin name="q" filename="libgazebo_ros_control.so"/></gazebo>'
+    (folder / "one.urdf").write_text(CLASSIC.replace("</gazebo>", control))
+    urdf_postfix.main(["one.urdf", "robot1", "-o", "o.urdf"])
+    assert "erified (ROS 1: " in capsys.readouterr().err
     monkeypatch.setenv("ROS_DISTRO", "noetic")
     assert urdf_postfix.main(["c.urdf", "robot1", "-o", "o.urdf"]) == 0
     said = capsys.readouterr().err

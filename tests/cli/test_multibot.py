@@ -35,7 +35,7 @@ class Result(NamedTuple):
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """An empty working directory; files of one name differ from test to test."""
+    """Return an empty working directory; files of one name differ from test to test."""
     monkeypatch.chdir(tmp_path)
     builtin_tree.cache_clear()
     load_definitions.cache_clear()

@@ -124,7 +124,7 @@ FLEET = """\
 description: rover.urdf
 distro: humble
 simulator: gazebo
-stack: [robot_state, robot_localization]
+node_sets: [robot_state, robot_localization]
 related_files: {params: ekf.yaml}
 robots: [{name: robot1}, {name: robot2}]
 """

@@ -113,7 +113,7 @@ LINES = (
         ["inspect", f"MB,{EVIL}"],
         ["help", EVIL],
         [EVIL],
-        ["plan", "--output-kind=table", FILE, "robot1", "--stack", EVIL],
+        ["plan", "--output-kind=table", FILE, "robot1", "--node-set", EVIL],
     ),
     *(
         [
@@ -122,7 +122,7 @@ LINES = (
             FILE,
             "robot1",
             "robot2",
-            "--stack",
+            "--node-set",
             "nav2",
             "--output-kind",
             it,
@@ -137,11 +137,11 @@ LINES = (
             "robot1",
             "--nodes",
             f"{EVIL}.yaml",
-            "--stack",
+            "--node-set",
             "nav2",
         ],
     ),
-    *(["plan", FILE, "robot1", "robot2", "--stack", "nav2", "-o", EVIL],),
+    *(["plan", FILE, "robot1", "robot2", "--node-set", "nav2", "-o", EVIL],),
     *(["check", "plan.yaml", "--from", "graph.json"],),
     *(["check", "plan.yaml", "--from", "graph.json", "--format", it] for it in ("text",)),
     *(["check", f"{EVIL}.plan", "--from", "graph.json", "--verbose"],),
@@ -166,7 +166,7 @@ LINES = (
     ),
     *(["join", FILE, EVIL, "--at", EVIL], ["join", FILE, FILE, "--at", EVIL, "--prefix", "a_"]),
     *(["rename", "a", EVIL, "."], ["rename", "a", "b", EVIL]),
-    *(["rehearse", FILE, "robot1", "--stack", EVIL], ["snapshot", "--domain", EVIL]),
+    *(["rehearse", FILE, "robot1", "--node-set", EVIL], ["snapshot", "--domain", EVIL]),
 )
 
 

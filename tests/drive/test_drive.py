@@ -41,7 +41,7 @@ EXAMPLES = {
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
-    """The folder that ``multibot build`` writes for an example."""
+    """Return the folder that ``multibot build`` writes for an example."""
     folder = tmp_path_factory.mktemp("drive")
 
     @cache

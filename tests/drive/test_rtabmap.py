@@ -13,7 +13,7 @@ import programs
 import pytest
 import rcl_names
 import verdict
-from stack_cells import Cell
+from node_set_cells import Cell
 
 from multibot_rewrite.cli import multibot
 

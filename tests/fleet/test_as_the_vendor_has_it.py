@@ -16,11 +16,11 @@ from fleet_folder import planned_fleet
 from rule_examples import DESCRIPTION
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
+from multibot_rewrite.checks import of_bringup
+from multibot_rewrite.checks.build import make_outputs
+from multibot_rewrite.checks.of_bringup import as_the_vendor_has_it
+from multibot_rewrite.checks.read_back import read_back
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.checks import of_bringup
-from multibot_rewrite.fleet.checks.of_bringup import as_the_vendor_has_it
-from multibot_rewrite.fleet.checks.read_back import read_back
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.rules.system.sharing import sensor_twice
@@ -186,7 +186,7 @@ def test_a_fault_of_a_file_of_the_vendor_is_told_and_built(
     (fleet.parent / "up.launch.py").write_text(LAUNCH.replace("ekf('ekf_map'", READER))
     if not by_launch:
         text = FLEET.format("both", LAYOUTS["both"]).replace("launch: up.launch.py\n", "")
-        fleet.write_text(f"{text}stack: [nav2]\nrelated_files: {{params: [nav2.yaml]}}\n")
+        fleet.write_text(f"{text}node_sets: [nav2]\nrelated_files: {{params: [nav2.yaml]}}\n")
     code = main(["build", str(fleet), "-o", str(fleet.parent / "out")])
     (told,) = (it for it in capsys.readouterr().err.splitlines() if "MB120" in it)
     assert "nav2.yaml:4:" in told and ("for one robot, too" in told) is by_launch
@@ -293,6 +293,50 @@ def test_a_publisher_of_what_cannot_be_read_has_the_description_of_the_fleet(
     assert main(["build", str(fleet), "-o", str(fleet.parent / "out")]) == 0
     (told,) = (it for it in capsys.readouterr().err.splitlines() if "MG401" in it)
     assert "warning: MG401" in told and "for one robot, too" in told
+
+
+ASKED = "Command(['ros2 param get --hide-type /robot_state_publisher robot_description'])"
+MANAGER = """        Node(package='controller_manager', executable='ros2_control_node',
+             parameters=[{'robot_description': GIVEN}]),
+"""
+
+
+@pytest.mark.parametrize("given", [ASKED, "ROBOT.read_text()"])
+def test_a_manager_that_asks_for_the_description_of_a_node_has_it(
+    given: str, fleet: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A manager of Humble subscribes to none then (controller_manager.cpp, init_resource_manager)."""
+    imports = "from launch.substitutions import Command\n"
+    text = LAUNCH.replace("        ekf('ekf_global'),\n", MANAGER.replace("GIVEN", given))
+    (fleet.parent / "robot.urdf").write_text(TWO_LINKS)
+    (fleet.parent / "up.launch.py").write_text(imports + text)
+    fleet.write_text(fleet.read_text().replace("jazzy", "humble"))
+    assert main(["build", str(fleet), "-o", str(fleet.parent / "out")]) == 0
+    assert not any("controller_manager" in it for it in capsys.readouterr().err.splitlines())
+    started = (fleet.parent / "out/fleet.launch.py").read_text().partition("ros2_control_node")[2]
+    assert "'robot_description': text(" in started.partition("Node(")[0]
+
+
+CAMERA = """<robot name="r"><link name="base_link"><inertial><mass value="1"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+  <gazebo reference="base_link"><sensor name="cam" type="camera"><topic>camera/image</topic></sensor>
+  </gazebo></robot>"""
+SEEN = """        Node(package='ros_gz_sim', executable='create', arguments=['-topic', 'x']),
+        Node(package='ros_gz_bridge', executable='parameter_bridge',
+             arguments=['/camera/image_raw@sensor_msgs/msg/Image[gz.msgs.Image']),
+"""
+
+
+def test_a_row_of_his_bridge_that_reads_nothing_is_told_and_built(
+    fleet: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (fleet.parent / "robot.urdf").write_text(CAMERA)
+    head, _, _ = LAUNCH.partition("        ekf('ekf_local'),\n")
+    (fleet.parent / "up.launch.py").write_text(f"{head}{SEEN}    ])\n")
+    fleet.write_text(fleet.read_text().replace("simulator: none", "simulator: gazebo"))
+    assert main(["build", str(fleet), "-o", str(fleet.parent / "out")]) == 0
+    (told,) = (it for it in capsys.readouterr().err.splitlines() if "MB879" in it)
+    assert "warning: MB879" in told and "/camera/image_raw" in told
 
 
 def test_what_the_vendor_is_warned_of_excuses_no_error(

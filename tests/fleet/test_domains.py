@@ -16,9 +16,9 @@ from nav2_graphs import ROVER
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError, UsageError
+from multibot_rewrite.checks.build import Outputs
+from multibot_rewrite.checks.closed_plan import closed_plan
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.build import Outputs
-from multibot_rewrite.fleet.checks.closed_plan import closed_plan
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.planning.plan import read_plan, to_yaml
@@ -30,7 +30,7 @@ FLEET = f"""\
 layout: {{layout}}
 affix: prefix
 description: {ROVER}
-stack: nav2
+node_sets: nav2
 distro: jazzy
 simulator: none
 shared_topics: [/map, /clock, /rosout, /parameter_events, /diagnostics]
@@ -75,7 +75,7 @@ class Bridged(NamedTuple):
 
 
 def as_domain_bridge_reads(text: str) -> tuple[str, list[Bridged]]:
-    """The name and the topics, by parse_domain_bridge_yaml_config.cpp and bridge_topic of
+    """Return the name and the topics, by parse_domain_bridge_yaml_config.cpp and bridge_topic of
     domain_bridge.cpp (c2523e1); what these throw at, or leave out, fails here."""
     root = yaml.compose(text)
     (topics,) = [value for key, value in root.value if key.value == "topics"]
@@ -169,7 +169,7 @@ def test_free_fleet_gets_a_bridge_and_the_robots_of_its_adapter(made: Outputs) -
         "# The robots of the fleet adapter: put them below rmf_fleet of its configuration.\n"
         "rmf_fleet:\n  robots:\n"
     ) + "".join(
-        f'    {it}:\n      charger: "{it}_charger"\n      navigation_stack: 2\n'
+        f'    {it}:\n      charger: "{it}_charger"\n      navigation_node_set: 2\n'
         f'      initial_map: "L1"\n      map_frame: "map"\n'
         f'      robot_frame: "{it}/base_footprint"\n'
         for it in ("robot1", "robot2")
@@ -186,7 +186,7 @@ def test_the_adapter_of_free_fleet_finds_each_robot(layout: str, tmp_path: Path)
     robots = yaml.safe_load(text(made, "free_fleet/robots.yaml"))["rmf_fleet"]["robots"]
     edges = [it for it in made.planned.edges if not it.static]
     for robot, told in robots.items():
-        assert told["navigation_stack"] == 2 and told["initial_map"]
+        assert told["navigation_node_set"] == 2 and told["initial_map"]
         file = zenoh.Config.from_json5(text(made, f"free_fleet/{robot}.json5"))
         allow = json.loads(file.get_json("plugins/ros2dds/allow"))
         assert not any(own for what, own in allow.items() if what not in ALLOWED)
@@ -266,13 +266,13 @@ def test_what_a_fleet_file_may_not_say(more: str, said: str, tmp_path: Path) -> 
     [
         ("both", "tf_static,", "odometry,", "no robot has a topic 'odometry'"),
         ("frames-per-robot", "", "", "take layout tf-per-robot or both"),
-        ("both", "stack: nav2", "stack: robot_state", "no node of robot1 serves"),
+        ("both", "node_sets: nav2", "node_sets: robot_state", "no node of robot1 serves"),
     ],
 )
 def test_what_no_plan_fulfils(layout: str, old: str, new: str, said: str, tmp_path: Path) -> None:
     file = tmp_path / "fleet.yaml"
     given = FLEET.format(layout=layout).replace(old, new)
-    if new == "stack: robot_state":
+    if new == "node_sets: robot_state":
         given = given.replace("shared_nodes: map_server\n", "").replace(", /robot1/scan", "")
     file.write_text(given)
     with pytest.raises(UsageError, match=said):
@@ -312,22 +312,48 @@ def test_a_manager_of_a_plugin_is_there_beside_another_description(tmp_path: Pat
         assert (found.level, found.robots) == ("error", ("r1",)), others
 
 
+LOADS = """
+from launch import LaunchDescription
+from launch_ros.actions import ComposableNodeContainer, LoadComposableNodes, Node
+from launch_ros.descriptions import ComposableNode
+def generate_launch_description():
+    box = dict(package='rclcpp_components', executable='component_container', name='box')
+    part = ComposableNode(package='image_proc', plugin='image_proc::RectifyNode', name='rectify')
+    return LaunchDescription([{}])
+"""
+
+
 @pytest.mark.more
 def test_what_a_launch_file_loads_or_brings_up_is_reached_from_one_domain(tmp_path: Path) -> None:
     """Components are loaded by a service, slam_toolbox is activated by one; processes need none."""
     (tmp_path / "robot.urdf").write_text('<robot name="r"><link name="base_link"/></robot>')
+    box = "ComposableNodeContainer(**box, namespace='', composable_node_descriptions=[{}])"
+    later = "LoadComposableNodes(target_container='box', composable_node_descriptions=[part])"
+    for name, actions in (
+        ("part", box.format("part")),
+        ("part_later", f"{box.format('')}, {later}"),
+    ):
+        (tmp_path / f"{name}.launch.py").write_text(LOADS.format(actions))
+    (tmp_path / "box.launch.py").write_text(LOADS.format("Node(**box)"))
     head = "description: robot.urdf\ndistro: jazzy\nsimulator: none\n"
-    for stack, numbers, told in (
-        ("nav2_composed", (11, 12), True),
-        ("slam_toolbox", (11, 12), True),
-        ("slam_toolbox", (11, 11), False),
-        ("nav2", (11, 12), False),
+    for source, numbers, told in (
+        ("node_sets: nav2_composed", (11, 12), True),
+        ("node_sets: slam_toolbox", (11, 12), True),
+        ("node_sets: slam_toolbox", (11, 11), False),
+        ("node_sets: nav2", (11, 12), False),
+        ("launch: part.launch.py", (11, 12), True),
+        ("launch: part_later.launch.py", (11, 12), True),
+        ("launch: part_later.launch.py", (11, 11), False),
+        ("launch: box.launch.py", (11, 12), False),
     ):
         domains = "domains: {{robot1: {}, robot2: {}}}\n".format(*numbers)
-        (tmp_path / "fleet.yaml").write_text(f"{head}stack: {stack}\n{domains}{SMALL}")
+        (tmp_path / "fleet.yaml").write_text(f"{head}{source}\n{domains}{SMALL}")
         made = built_fleet(tmp_path / "fleet.yaml")
         found = [it for it in made.findings if it.code == "MF849"]
-        assert [it.line for it in found] == [5] * told, stack
+        assert [it.line for it in found] == [5] * told, source
+        # The class of this one is known from the launch file alone.
+        loaded = {it.plugin for it in made.starts.every}
+        assert ("image_proc::RectifyNode" in loaded) == ("part" in source), source
 
 
 NODES = """\
@@ -339,11 +365,11 @@ nodes:
   front:
     package: acme
     calls: {/get_plan: nav_msgs/srv/GetPlan}
-stacks: {own: {about: ours, nodes: [planner, front]}}
+node_sets: {own: {about: ours, nodes: [planner, front]}}
 """
 OWN = """\
 nodes: nodes.yaml
-stack: own
+node_sets: own
 simulator: none
 shared_topics: [/get_plan]
 shared_nodes: front

@@ -160,7 +160,7 @@ def main():
 
 
 def gaps(folder: Path, node: str) -> dict[str, str]:
-    """The level and words of each code that the plan of a built fleet has as a gap."""
+    """Return the level and words of each code that the plan of a built fleet has as a gap."""
     (folder / "acme/acme/driver.py").write_text(node)
     assert main(["build", str(folder / "fleet.yaml"), "-o", str(folder / "built")]) == 0
     plan = from_yaml((folder / "built/plan.yaml").read_bytes(), "plan.yaml")

@@ -18,7 +18,7 @@ from plans import robot_named
 
 from multibot_rewrite import load_fleet
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.fleet.build import Outputs
+from multibot_rewrite.checks.build import Outputs
 from multibot_rewrite.planning.plan import read_plan
 from multibot_rewrite.system.records import Parameter
 
@@ -45,7 +45,7 @@ ekf_filter_node:
 """
 FLEET = """\
 layout: frame-prefix
-stack: [localization, robot_localization]
+node_sets: [localization, robot_localization]
 description: rover.urdf
 robots: [{name: robot1}, {name: robot2, namespace: graph2, prefix: frames2}]
 related_files: {params: params.yaml, rviz: one.rviz}

@@ -70,7 +70,7 @@ distro: jazzy
 layout: both
 affix: prefix
 separators: {link: _}
-stack: ros2_control
+node_sets: ros2_control
 simulator: none
 """
 FLEET = f"{KEYS}{PARTS}robots: [{{name: cell1, arguments: {{robot_ip: 10.0.0.2}}}}]\n"
@@ -78,7 +78,7 @@ FLEET = f"{KEYS}{PARTS}robots: [{{name: cell1, arguments: {{robot_ip: 10.0.0.2}}
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A working directory with the parts and their fleet file."""
+    """Return a working directory with the parts and their fleet file."""
     (tmp_path / "parts").mkdir()
     (tmp_path / "parts/table.urdf").write_text('<robot name="cell"><link name="table"/></robot>\n')
     (tmp_path / "parts/arm.urdf.xacro").write_text(ARM)

@@ -62,7 +62,7 @@ def actions(
     layout: str = "both",
     given: dict[str, str] | None = None,
 ) -> list[Action]:
-    """What the launch file of a build does, but for its own arguments."""
+    """Return what the launch file of a build does, but for its own arguments."""
     text = LAUNCH.replace("SETUP", setup).replace("BODY", body)
     description = DESCRIPTION
     for link in ("base_link", "lidar_link", "wheel") if "gazebo" in more else ():
@@ -87,7 +87,7 @@ def lasts(folder: Path) -> None:
 
 
 def told(found: Sequence[Action]) -> list[str]:
-    """The actions in their order, by what they start; without the robot_state_publisher."""
+    """Return the actions in their order, by what they start; without the robot_state_publisher."""
     words = [_word(it) for it in found]
     return [it for it in words if it != "robot_state_publisher"]
 
@@ -99,7 +99,7 @@ def _word(it: Action) -> str:
 
 
 def of(found: Sequence[Action], word: str) -> dict[str, Any]:
-    """The values of the one action that starts something."""
+    """Return the values of the one action that starts something."""
     (values,) = (it.values for it in found if _word(it) == word)
     return dict(values)
 
@@ -478,10 +478,10 @@ def test_files_of_what_is_not_here_are_the_robots(tmp_path: Path) -> None:
     assert words[-2:] == ["--param-file", str(tmp_path / "out/robot2/c.yaml")]
 
 
-def test_a_stack_stands_for_a_launch_file_that_is_not_here(tmp_path: Path) -> None:
+def test_a_node_set_stands_for_a_launch_file_that_is_not_here(tmp_path: Path) -> None:
     """Its nodes are known; started both ways each robot would have them twice."""
     body = INCLUDE.replace("'id': WHO", "'id': '7'").replace("lidar_x", "slam_toolbox")
-    found = told(actions(tmp_path, body, more="stack: slam_toolbox"))
+    found = told(actions(tmp_path, body, more="node_sets: slam_toolbox"))
     assert "IncludeLaunchDescription" not in found
     assert any("slam_toolbox_node" in it for it in found)
 

@@ -47,12 +47,12 @@ simulator: none
 description: rover.urdf
 related_files: {params: params.yaml}
 nodes: nodes.yaml
-stack: nav2_here
+node_sets: nav2_here
 robots: [{name: robot1}, {name: robot2}]
 """
 ODOMETRY = "controller_server: {odom: base_controller/odom}"
 DRIVEN = "base_controller/cmd_vel_unstamped"
-OWN = "stacks:\n  nav2_here:\n    include: [nav2]\n    remaps: {{{}}}\n"
+OWN = "node_sets:\n  nav2_here:\n    include: [nav2]\n    remaps: {{{}}}\n"
 MODEL = """\
 structure:
   nodes:

@@ -131,7 +131,7 @@ def test_a_manager_that_an_argument_would_load_is_told_with_it(
         MANAGED.format(name=name, default=default, condition=condition)
     )
     (tmp_path / "c.yaml").write_text(CONTROLLERS)
-    fleet = "distro: jazzy\nlayout: both\nsimulator: gazebo\nstack: controllers\n"
+    fleet = "distro: jazzy\nlayout: both\nsimulator: gazebo\nnode_sets: controllers\n"
     fleet += "description: r.urdf.xacro\nrobots: [{name: r1}, {name: r2, pose: {x: 1}}]\n"
     file = tmp_path / "fleet.yaml"
     file.write_text(fleet)

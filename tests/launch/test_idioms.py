@@ -21,7 +21,7 @@ pytestmark = pytest.mark.skipif(
 FLEET = """\
 distro: lyrical
 layout: tf-per-robot
-stack: [ros2_control, robot_state]
+node_sets: [ros2_control, robot_state]
 use_sim_time: true
 robots:
   - {name: robot1, description: rover.urdf, pose: {x: 1.0}}
@@ -102,7 +102,7 @@ def programs(told: list[dict[str, Any]], name: str) -> list[dict[str, Any]]:
 
 
 def parameters(it: dict[str, Any], node: str) -> dict[str, Any]:
-    """What rcl would make of the parameter files and words of a program; the last one wins."""
+    """Return what rcl would make of the parameter files and words of a program; the last one wins."""
     found: dict[str, Any] = {}
     for flag, word in zip(it["words"], it["words"][1:], strict=False):
         if flag == "--params-file":
@@ -204,7 +204,7 @@ def test_xml_and_yaml_need_no_type(name: str, text: str, fleet: Path) -> None:
 NAV2 = """\
 distro: jazzy
 layout: postfix
-stack: nav2_composed
+node_sets: nav2_composed
 robots:
   - {name: robot1, description: rover.urdf}
   - {name: robot2, description: rover.urdf}

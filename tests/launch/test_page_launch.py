@@ -20,7 +20,7 @@ BY_HAND, OURS = re.findall(r"```python\n(def bt_navigator.*?)```", PAGE, re.DOTA
 FLEET = """\
 distro: jazzy
 layout: LAYOUT
-stack: nav2
+node_sets: nav2
 robots:
   - {name: robot1, description: rover.urdf}
   - {name: robot2, description: rover.urdf}
@@ -48,7 +48,7 @@ def test_ours_is_shorter_than_by_hand() -> None:
 
 
 def started(folder: Path, head: str, code: str, made: str) -> dict[str, Any]:
-    """The odometry topic and the base frame by namespace, of what really starts."""
+    """Return the odometry topic and the base frame by namespace, of what really starts."""
     text = HEAD.replace("MORE", head) + code + TAIL.replace("MADE", made)
     (folder / "readme.launch.py").write_text(text)
     told, said = launched(

@@ -37,7 +37,7 @@ LINE = re.compile(
 
 @pytest.fixture
 def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder with a file of each kind, which is the working directory."""
+    """Return a folder with a file of each kind, which is the working directory."""
     files = {
         "good.urdf": HARMLESS,
         "two_roots.urdf": TWO_ROOTS,
@@ -306,7 +306,7 @@ def test_a_reader_that_goes_away() -> None:
 
 
 def on_a_terminal(words: Sequence[str], **environment: str) -> str:
-    """What the command prints on a terminal."""
+    """Return what the command prints on a terminal."""
     parent, child = pty.openpty()
     known = {**os.environ, "TERM": "xterm", **environment}
     lint = subprocess.Popen([*COMMAND, *words], stdout=child, stderr=child, env=known)

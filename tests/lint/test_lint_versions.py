@@ -180,7 +180,7 @@ def rotation(at: random.Random) -> str:
 
 
 def random_robot(seed: int, version: str) -> str:
-    """A chain of links with turned joints, inertials and capsules."""
+    """Return a chain of links with turned joints, inertials and capsules."""
     at = random.Random(seed)
     parts = []
     for number in range(6):
@@ -218,7 +218,7 @@ def placements(text: str) -> tuple[dict[str, np.ndarray], list[np.ndarray]]:
 
 
 def points(text: str) -> dict[tuple[str, str], list[tuple[Any, ...]]]:
-    """The shapes of every link as pinocchio has them, a capsule as its three parts."""
+    """Return the shapes of every link as pinocchio has them, a capsule as its three parts."""
     import pinocchio as pin
 
     model = pin.buildModelFromXML(text)

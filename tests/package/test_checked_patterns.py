@@ -19,7 +19,7 @@ UNREAD = "from_ATOMIC_GROUP"
 
 
 def attacks(pattern: str | bytes, flags: int) -> list[str]:
-    """The texts on which the checker says that a pattern takes long."""
+    """Return the texts on which the checker says that a pattern takes long."""
     text = pattern if isinstance(pattern, str) else pattern.decode("latin-1")
     return [it.example() for it in find(SreOpParser().parse_sre(text, flags))]
 

@@ -36,7 +36,7 @@ LINEAR = 1.4
 
 @lru_cache(maxsize=1)
 def found() -> tuple[list[Regex], set[str]]:
-    """The patterns of the package, and the modules with one that is known at run time alone."""
+    """Return the patterns of the package, and the modules with one that is known at run time alone."""
     patterns: list[Regex] = []
     open_: set[str] = set()
     for module, call, inside in calls():
@@ -48,7 +48,7 @@ def found() -> tuple[list[Regex], set[str]]:
 
 
 def declared() -> Iterator[Regex]:
-    """What stands for the patterns that are made at run time."""
+    """Yield what stands for the patterns that are made at run time."""
     uses = frozenset(("search", "fullmatch"))
     for path in PACKAGE.rglob("*.json"):
         for text in set(_patterns_in(json.loads(path.read_text()))):
@@ -76,7 +76,7 @@ def every() -> dict[tuple[str | bytes, int], frozenset[str]]:
 
 
 def modes(uses: frozenset[str]) -> list[str]:
-    """The ways of the matcher that stand for methods: a search tries all places."""
+    """Return the ways of the matcher that stand for methods: a search tries all places."""
     asked = {it if it in MATCH_ALONE else "search" for it in uses}
     return sorted(asked - {"match"} if "search" in asked else asked)
 

@@ -22,7 +22,7 @@ Column = list[tuple[str, float]]
 
 
 def placed(*ends: str, nodes: str = "", **states: str) -> tuple[Column, Column, Column, float]:
-    """The columns and the height for ``node>name`` and ``name>node``; names are of two letters."""
+    """Return columns and height for ``node>name`` and ``name>node``; names have two letters."""
     edges, known = [], dict.fromkeys(nodes)
     for first, second in (it.split(">") for it in ends):
         node, name, role = (

@@ -10,13 +10,13 @@ from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document
+from multibot_rewrite.knowledge.node_sets import built_in
 from multibot_rewrite.knowledge.records import (
     Endpoint,
     FrameParameter,
     NodeFacts,
     SentTransform,
 )
-from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.planning.of_runs import target_of
 from multibot_rewrite.planning.plan import expect
 from multibot_rewrite.planning.table import build_table
@@ -63,9 +63,9 @@ def test_an_end_that_surely_is_there_stands_for_those_that_may_be() -> None:
 @pytest.mark.parametrize(
     ("text", "origin"),
     [
-        ("stack nav2", Origin("nav2")),
+        ("node set nav2", Origin("nav2")),
         ("a.yaml:3", Origin(place=Place("a.yaml", 3))),
-        ("./stack of mine.yaml:3", Origin(place=Place("./stack of mine.yaml", 3))),
+        ("./node set of mine.yaml:3", Origin(place=Place("./node set of mine.yaml", 3))),
         ("", Origin()),
     ],
 )

@@ -62,7 +62,7 @@ WITH_RATE = MAY._replace(why="rate set")
 PLAN = System(
     nodes=(
         DRIVE,
-        Node("/r1/arm", robot="r1", sure=MAY, stack="nav2", way="spawner"),
+        Node("/r1/arm", robot="r1", sure=MAY, node_set="nav2", way="spawner"),
         Node("/r1/spare", robot="r1", sure=MAY._replace(instead=EITHER)),
         Node("/map_server"),
     ),
@@ -123,7 +123,7 @@ robots:
     - [publishes, topic, /r1/x, std_msgs/msg/String | a/msg/B, x]
     - {kind: topic, role: subscribes, name: /r1/y, type: std_msgs/msg/String, sure: may}
     - [calls, service, /r1/go, a/srv/Go, go, "rate set"]
-  - {name: /r1/arm, way: spawner, stack: nav2, sure: may}
+  - {name: /r1/arm, way: spawner, node_set: nav2, sure: may}
   - {name: /r1/spare, sure: {word: may, instead: [/r1/drive, /r1/spare]}}
 nodes:
 - name: /map_server
@@ -151,7 +151,7 @@ SCHEMA = json.loads((files("multibot_rewrite") / editors.PLAN).read_text())
 
 
 def marked(text: str) -> list[Any]:
-    """What an editor marks in a plan."""
+    """Return what an editor marks in a plan."""
     value = json.loads(text) if text.startswith("{") else yaml.safe_load(text)
     return [*Draft202012Validator(SCHEMA).iter_errors(value)]
 
@@ -174,7 +174,9 @@ ODD = st.text(st.characters(codec="utf-8"), max_size=6) | st.sampled_from(
 @given(ODD, ODD, ODD, st.booleans() | st.integers() | st.floats(allow_nan=False) | ODD)
 def test_any_text_comes_back(name: str, word: str, type_: str, value: object) -> None:
     assume(" | " not in f"{type_}{name}")
-    node = Node(f"/{name}", robot=f"{word}1", host=word, stack=name, place=Place(word, 2), sure=MAY)
+    node = Node(
+        f"/{name}", robot=f"{word}1", host=word, node_set=name, place=Place(word, 2), sure=MAY
+    )
     end = End(TOPIC, PUBLISHES, f"/{word}", type_, node=node.name, code_name=name, also=(name,))
     plan = System(
         (node, Node("/runs", robot=f"{word}1")),

@@ -9,7 +9,7 @@ import pytest
 from paths import ROBOTS
 
 from multibot_rewrite.base.naming import Policy
-from multibot_rewrite.fleet.fleet import make_fleet
+from multibot_rewrite.checks.judged_plan import make_fleet
 from multibot_rewrite.planning.records import Table
 from multibot_rewrite.planning.table_formats import FORMS
 from multibot_rewrite.planning.ways import arguments, started
@@ -17,9 +17,9 @@ from multibot_rewrite.planning.ways import arguments, started
 GZ = str(ROBOTS / "rover_gz.urdf")
 
 
-def table(release: str, *stacks: str, layout: str = "tf-per-robot") -> Table:
+def table(release: str, *node_sets: str, layout: str = "tf-per-robot") -> Table:
     policy: Policy = {"layout": layout}
-    return make_fleet(GZ, ["robot1", "robot2"], stacks, policy, release=release).table
+    return make_fleet(GZ, ["robot1", "robot2"], node_sets, policy, release=release).table
 
 
 @pytest.mark.more

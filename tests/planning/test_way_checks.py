@@ -6,7 +6,7 @@ from __future__ import annotations
 import pytest
 
 from multibot_rewrite.base.naming import Policy
-from multibot_rewrite.fleet.fleet import make_fleet
+from multibot_rewrite.checks.judged_plan import make_fleet
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.planning.records import Run, Table
 from multibot_rewrite.planning.way_checks import not_taken
@@ -26,16 +26,16 @@ def description(*rules: str) -> bytes:
 
 
 def codes(
-    release: str, *rules: str, stack: str = "", policy: Policy = LAYOUT
+    release: str, *rules: str, node_set: str = "", policy: Policy = LAYOUT
 ) -> list[tuple[str, str]]:
-    stacks = [stack] if stack else []
-    made = make_fleet(description(*rules), ["robot1", "robot2"], stacks, policy, release=release)
+    node_sets = [node_set] if node_set else []
+    made = make_fleet(description(*rules), ["robot1", "robot2"], node_sets, policy, release=release)
     return [(it.code, it.robot) for it in made.table.problems if it.code.startswith("MR1")]
 
 
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
-    ("release", "rule", "stack", "found"),
+    ("release", "rule", "node_set", "found"),
     [
         # Forwarded to the controllers, one of which has the name.
         ("jazzy", "~/odom:=odom", "gz_ros2_control", []),
@@ -56,14 +56,14 @@ def codes(
         ("lyrical", "~/odom:=odom", "", ["MR103", "MR105"]),
     ],
 )
-def test_a_rule_for_a_controller(release: str, rule: str, stack: str, found: list[str]) -> None:
-    assert sorted({code for code, _ in codes(release, rule, stack=stack)}) == found
+def test_a_rule_for_a_controller(release: str, rule: str, node_set: str, found: list[str]) -> None:
+    assert sorted({code for code, _ in codes(release, rule, node_set=node_set)}) == found
 
 
 def test_each_robot_of_a_description_is_looked_at() -> None:
     robots = [f"robot{at}" for at in range(1, 6)]
-    stacks = ["gz_ros2_control"]
-    made = make_fleet(description(), robots, stacks, NEITHER, release="humble")
+    node_sets = ["gz_ros2_control"]
+    made = make_fleet(description(), robots, node_sets, NEITHER, release="humble")
     found = {it.robot for it in made.table.problems if it.code == "MR105"}
     assert found - {"robot1"} == {*robots[1:]}
 
@@ -72,7 +72,7 @@ Name = tuple[Endpoint, str]
 
 
 def hosted(robot: str, *names: Name, **home: str) -> Table:
-    """A node in another one's process, with a rule for ``/y`` alone."""
+    """Return a node in another one's process, with a rule for ``/y`` alone."""
     fact = NodeFacts("map", "acme", (), **{"host": "server", **home})  # type: ignore[arg-type]
     return Table(
         "tf-per-robot",

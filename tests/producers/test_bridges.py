@@ -13,7 +13,7 @@ from multibot_rewrite.producers.launch.bridges import (
     bridge_rows,
     bridged_by,
     refused_rows,
-    told_rows,
+    rows_in_arguments,
 )
 
 BRIDGE = ("ros_gz_bridge", "parameter_bridge", "bridge")
@@ -30,7 +30,7 @@ def test_rows_of_arguments_as_a_file_has_them_and_those_that_end_the_bridge() ->
     topics = ("/a@x/msg/B[gz.C", "/b@x/msg/B]gz.C", "c@x/B@gz.C")
     wrong = ("/d@x/msg/B", "/e@", "@x/msg/B[gz.C", "/f@x-y@z")
     it = running(arguments=(*topics, "/g@x/srv/S@gz.C", *wrong, "/g@x/srv/S", "--ros-args", "-v"))
-    assert yaml.safe_load(told_rows(it)) == [
+    assert yaml.safe_load(rows_in_arguments(it)) == [
         {"topic_name": name, "ros_type_name": type_, "gz_type_name": "gz.C", "direction": way}
         for name, type_, way in (
             *(("/a", "x/msg/B", "GZ_TO_ROS"), ("/b", "x/msg/B", "ROS_TO_GZ")),
@@ -39,7 +39,7 @@ def test_rows_of_arguments_as_a_file_has_them_and_those_that_end_the_bridge() ->
     ]
     assert [*refused_rows(it)] == [*wrong]
     other = it._replace(program="ros_gz_image/image_bridge")
-    assert told_rows(other) == told_rows(running(arguments=wrong)) == ""
+    assert rows_in_arguments(other) == rows_in_arguments(running(arguments=wrong)) == ""
     assert [*refused_rows(other)] == []
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from paths import FIXTURES, ROOT
 
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.description.sources.child import fences
 from multibot_rewrite.producers.launch.child import read_launch_files
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder
@@ -68,7 +69,7 @@ def generate_launch_description():
 
 @pytest.fixture
 def kept(tmp_path: Path) -> Path:
-    """A folder with a package, in which a launch file will be, and one that is none of its."""
+    """Return a folder with a package, in which a launch file will be, and one that is none of its."""
     (tmp_path / "own").mkdir()
     (tmp_path / "own/package.xml").write_text("<package><name>own</name></package>")
     (tmp_path / "other").mkdir(mode=0o755)
@@ -145,6 +146,17 @@ def test_a_launch_file_waits_for_nothing(kept: Path) -> None:
     assert [it.executable for it in read(file).nodes] == ["None"]
     (found,) = read_launch_files([LaunchOrder(str(file), (), (), True)], 2.0)
     assert "took more than 2 s" in str(found)
+
+
+def test_a_launch_file_that_is_a_link_to_nothing_stops_no_other(kept: Path) -> None:
+    """An installed package whose sources have gone has such links."""
+    other, gone = kept / "own/a.launch.py", kept / "own/gone.launch.py"
+    other.write_text(ASKS.replace("LINE", "1"))
+    gone.symlink_to("nosuch.py")
+    orders = [LaunchOrder(str(it), every=True) for it in (gone, other)]
+    error, graph = read_launch_files(orders, 60.0)
+    assert str(error).endswith("the launch file cannot be read: No such file or directory")
+    assert not isinstance(graph, InputError) and [it.executable for it in graph.nodes] == ["1"]
 
 
 def test_a_launch_file_reads_what_python_has_compiled(

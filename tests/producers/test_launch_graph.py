@@ -71,7 +71,7 @@ IN_THE_CHILD = (
 def quick(
     request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch, tmp_path_factory: Any
 ) -> None:
-    """What the stand-in reads is read in this process: a test is done in a hundredth of the time."""
+    """Read in this process what the stand-in reads: a test is done in a hundredth of the time."""
     if without() and request.node.originalname not in IN_THE_CHILD:
         read_here(monkeypatch, tmp_path_factory.mktemp("launch"))
 
@@ -468,6 +468,46 @@ def test_a_package_that_a_function_misses_costs_its_part(tmp_path: Path) -> None
     graph = launch_graph(LaunchOrder(str(tmp_path / "bringup.launch.py"), trusted=True))
     assert [it.executable for it in graph.nodes] == ["d"]
     assert ["acme_files" in it.message for it in graph.notes] == [True] and not graph.whole
+
+
+@pytest.mark.parametrize("place", ['FindPackageShare("acme_gazebo")', "HERE"])
+def test_a_launch_file_that_is_called_as_one_of_a_simulator_is_read(
+    place: str, tmp_path: Path
+) -> None:
+    """It asks for the simulator's package, which is not here, as soon as it is read."""
+    launch = tmp_path / "src/acme/launch"
+    launch.mkdir(parents=True)
+    (tmp_path / "src/acme/package.xml").write_text("<package><name>acme_gazebo</name></package>")
+    ask = '    share = get_package_share_directory("gazebo_ros")\n    return'
+    text = HEAD.replace("    return", ask).replace(
+        "def gen", "from ament_index_python import get_package_share_directory\n\n\ndef gen"
+    )
+    own = '        IncludeLaunchDescription(share + "/launch/gazebo.launch.py"),\n'
+    more = '        Node(package="acme", executable="d"),\n    ])\n'
+    (launch / "gazebo.launch.py").write_text(f"{text}{own}{more}")
+    where = place.replace("HERE", repr(str(tmp_path / "src/acme")))
+    include = f'        IncludeLaunchDescription([{where}, "/launch/gazebo.launch.py"]),'
+    graph = read(tmp_path, include, roots=str(tmp_path / "src"))
+    assert [it.executable for it in graph.nodes] == ["gzserver", "d"]
+
+
+def test_a_package_that_a_file_goes_on_without_is_named(tmp_path: Path) -> None:
+    """What it starts with that package alone is in no graph."""
+    tried = """from ament_index_python.packages import get_package_share_directory as share
+try:
+    share("acme_files")
+    MORE = [Node(package="acme_files", executable="e")]
+except LookupError:
+    MORE = []
+"""
+    path = tmp_path / "bringup.launch.py"
+    path.write_text(
+        HEAD.replace("def generate_launch_description", f"{tried}\ndef generate_launch_description")
+        + '        *MORE, Node(package="acme", executable="d"),\n    ])\n'
+    )
+    graph = launch_graph(LaunchOrder(str(path)))
+    assert [it.executable for it in graph.nodes] == ["d"] and not graph.whole
+    assert ["package 'acme_files' is not installed" in it.message for it in graph.notes] == [True]
 
 
 def test_what_is_missing_costs_its_part(tmp_path: Path) -> None:

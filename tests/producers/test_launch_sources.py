@@ -182,6 +182,10 @@ def test_the_output_of_a_program_that_reads_is_known_without_it(tmp_path: Path) 
     second.write_text("b")
     assert commands.output_of(f"/bin/cat {first} {second}").text == "a\ufffdb"
     assert commands.output_of(f"other {first}") == commands.Output("")
+    asked = (
+        commands.output_of(f"ros2 param get /x {it}").text for it in ("y", "robot_description")
+    )
+    assert [bool(it) for it in asked] == [False, True]
     robot = tmp_path / "r.xacro"
     robot.write_text(
         '<robot name="$(arg n)" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arg name="n"'

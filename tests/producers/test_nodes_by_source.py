@@ -59,7 +59,7 @@ def run_of(facts: NodeFacts, name: str, space: str, values: Mapping[str, object]
 
 
 def started(program: str, space: str, values: Mapping[str, object]) -> Opened:
-    """What rclpy says that the program has opened, but for what every node has."""
+    """Return what rclpy says that the program has opened, but for what every node has."""
     file, function, _ = PROGRAMS[program]
     words = [
         f"__ns:={space}",

@@ -79,7 +79,6 @@ def test_when_the_graph_is_settled_the_names_that_came_last_are_known(
         observe, "overview", lambda _: (["/lidar"], [SCAN]) if clock.now > 1 else ([], [])
     )
     monkeypatch.setattr(observe, "view", lambda *_: (["/lidar"], [SCAN]))
-    monkeypatch.setattr(observe, "lost_here", lambda _: 0)
     monkeypatch.setattr(observe, "_enough", lambda *_: observe.assemble.QUIET_SECONDS)
     updates: list[Any] = []
     heard: Any = SimpleNamespace(update=updates.append)
@@ -119,7 +118,6 @@ def test_two_participants_see_whether_the_network_loses_packets(
     monkeypatch.setattr(look, "overview", overview)
     monkeypatch.setattr(observe, "overview", overview)
     monkeypatch.setattr(observe, "view", lambda *_: (["/lidar"], [SCAN]))
-    monkeypatch.setattr(observe, "lost_here", lambda _: 0)
     monkeypatch.setattr(observe, "_enough", lambda *_: observe.assemble.QUIET_SECONDS)
     second = look.SecondParticipant(made, None)  # type: ignore[arg-type]
     second._second = other
@@ -225,17 +223,6 @@ def test_a_shorter_look_is_enough_where_all_of_this_machine_are_known(
         "short": observe.assemble.ALL_KNOWN_SECONDS, "long": observe.assemble.QUIET_SECONDS,
     }  # fmt: skip
     assert observe._enough(session(clock), 1.0, lost) == wanted[enough]
-
-
-def test_a_lost_datagram_is_of_the_moment_when_it_was_counted(
-    clock: Clock, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    counts = iter([0, 0, 2, 2, 1])
-    monkeypatch.setattr(observe, "lost_here", lambda domain: {7: next(counts)}[domain])
-    losses = observe._Losses(session(clock))
-    assert [losses.last(it) for it in (1.0, 2.0, 3.0, 4.0, 5.0)] == [
-        float("-inf"), float("-inf"), 3.0, 3.0, 5.0,
-    ]  # fmt: skip
 
 
 def test_what_is_subscribed_to(clock: Clock, monkeypatch: pytest.MonkeyPatch) -> None:

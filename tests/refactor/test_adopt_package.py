@@ -35,7 +35,7 @@ EARLY = LAUNCH.replace(
 
 @pytest.fixture
 def package(tmp_path: Path) -> Path:
-    """A package with one description."""
+    """Return a package with one description."""
     for folder in ("urdf", "launch", "src", "config"):
         (tmp_path / "r" / folder).mkdir(parents=True)
     (tmp_path / "r/package.xml").write_text("<package><name>r</name></package>")

@@ -31,7 +31,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def refused(words: list[str], folder: Path, capsys: pytest.CaptureFixture[str]) -> str:
-    """The line that says why; nothing is written."""
+    """Return the line that says why; nothing is written."""
     before = {it: it.read_bytes() for it in folder.rglob("*") if it.is_file()}
     assert main(words) == 2
     told = capsys.readouterr().err

@@ -44,7 +44,7 @@ def names(data: bytes, tag: str) -> list[str | None]:
 
 
 def joined(*inside: str, prefix: str = "p_", **more: object) -> bytes:
-    """A base with one link and each text as a part on it."""
+    """Return a base with one link and each text as a part on it."""
     first = Part(robot(link("base")), name="base")
     parts = [
         Part(robot(it), at="base", prefix=prefix and f"{prefix}{at}_", name=f"n{at}", **more)  # type: ignore[arg-type]

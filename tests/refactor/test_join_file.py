@@ -37,7 +37,7 @@ Write = Callable[[str], str]
 
 @pytest.fixture
 def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Write:
-    """Writes the list of parts and gives its path; the parts are beside it."""
+    """Return a function that writes the list of parts and returns its path; the parts are beside it."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "parts").mkdir()
     (tmp_path / "parts/arm.urdf").write_text(ARM)

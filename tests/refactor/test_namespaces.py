@@ -25,8 +25,8 @@ Tamper = Callable[[bytes], bytes]
 
 
 def verified(folder: Path, tamper: Tamper, more: str = "") -> tuple[tuple[str, ...], list[str]]:
-    """The names of files that are verified with the edits, which somebody tampered with, and why others
-    are not."""
+    """Return the names of files that are verified with the edits, which somebody tampered with,
+    and why others are not."""
     (folder / "r.urdf.xacro").write_text(ROBOT.format(more))
     tree, how = builtin_tree((), NEWEST_LTS), Expanding(BOUNDED, {})
     found = read_package(str(folder), tree, how).descriptions

@@ -698,7 +698,7 @@ NO_LIDAR = (
 
 
 def made_of(robot: int, *but: str) -> tuple[str, ...]:
-    """A robot of the usual parts but for some."""
+    """Return a robot of the usual parts but for some."""
     left = ((node, *it) for node, it in PARTS.items() if node not in but)
     return tuple(f"/robot{robot}/{node} {does} /robot{robot}/{name} {type_}"
                  for node, does, name, type_ in left)  # fmt: skip

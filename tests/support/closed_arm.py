@@ -145,7 +145,7 @@ moveit_simple_controller_manager:
 """,
     "fleet.yaml": """\
 distro: jazzy
-stack: [ros2_control]
+node_sets: [ros2_control]
 description: arm.urdf
 srdf: arm.srdf
 related_files:

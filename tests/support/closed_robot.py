@@ -141,7 +141,7 @@ controller_server:
 """,
     "fleet.yaml": """\
 distro: jazzy
-stack: [nav2_slam, twist_mux, stamper]
+node_sets: [nav2_slam, twist_mux, stamper]
 description: rover.urdf
 related_files:
   params: [controllers.yaml, ekf.yaml, nav2.yaml]
@@ -155,7 +155,7 @@ nodes: nodes.yaml
     package: own
     subscribes: {cmd_vel_out: {type: geometry_msgs/msg/Twist}}
     publishes: {base_controller/cmd_vel: {type: geometry_msgs/msg/TwistStamped}}
-stacks:
+node_sets:
   stamper: {nodes: [stamper]}
 """,
 }

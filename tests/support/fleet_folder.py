@@ -9,11 +9,12 @@ from pathlib import Path
 
 from paths import fixture_text
 
-from multibot_rewrite.fleet.build import Outputs, make_outputs
+from multibot_rewrite.checks.build import Outputs, make_outputs
+from multibot_rewrite.checks.judged_plan import plan_fleet
 from multibot_rewrite.fleet.file.fleet_data import FleetSource
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.file.robot_choice import ALL, Choice
-from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
 
 MASS = (
     '<inertial><mass value="1"/>'

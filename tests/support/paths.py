@@ -13,5 +13,5 @@ CORPUS = ROOT.parent / "shared" / "corpus"
 
 
 def fixture_text(name: str) -> str:
-    """A text that a test alone reads; it may be no valid file of its kind."""
+    """Return a text that a test alone reads; it may be no valid file of its kind."""
     return (FIXTURES / "texts" / name).read_text()

@@ -23,7 +23,7 @@ SECONDS = 120
 
 
 def ask(cases: Sequence[dict[str, Any]]) -> list[Any]:
-    """What rcl says to each case; a case that was asked before is not asked again."""
+    """Return what rcl says to each case; a case that was asked before is not asked again."""
     told, lines = _told(), [json.dumps(it) for it in cases]
     new = [it for it in dict.fromkeys(lines) if it not in told]
     if new:
@@ -33,7 +33,7 @@ def ask(cases: Sequence[dict[str, Any]]) -> list[Any]:
 
 @cache
 def _told() -> dict[str, Any]:
-    """What rcl has said, by case: it depends on nothing else."""
+    """Return what rcl has said, by case: it depends on nothing else."""
     return {}
 
 

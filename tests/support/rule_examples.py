@@ -19,8 +19,9 @@ from multibot_rewrite.base.findings.finding import SRDF, URDF, XACRO, Finding, R
 from multibot_rewrite.base.findings.selection import grouped
 from multibot_rewrite.base.naming import Policy
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.fleet import known_nodes, make_fleet
+from multibot_rewrite.checks.build import make_outputs
+from multibot_rewrite.checks.judged_plan import make_fleet
+from multibot_rewrite.fleet.fleet import known_nodes
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.producers.launch.read import read_own
@@ -92,14 +93,14 @@ def _write(folder: Path, files: Any) -> None:
 
 
 def whole(example: str) -> str:
-    """The document that an example stands for."""
+    """Return the document that an example stands for."""
     if re.match(r"\W*(<\?xml|<robot|<sdf)", example):
         return example
     return f'<robot name="r">{example}</robot>'
 
 
 def lint_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
-    """The file of the example, linted with the rule's options."""
+    """Return the file of the example, linted with the rule's options."""
     ending = "urdf.xacro" if XACRO in rule.formats or "xmlns:xacro" in example else "urdf"
     ending = "srdf" if rule.formats == (SRDF,) else ending
     file = folder / f"example.{ending}"
@@ -112,15 +113,15 @@ def lint_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
 
 
 def beside_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
-    """The example as a file of a package, with the rule's files beside it."""
+    """Return the example as a file of a package, with the rule's files beside it."""
     _write(folder, {"example.yaml": example})
     options: dict[str, Any] = dict(rule.options)
     return lint_file(str(folder / "example.yaml"), Settings(select=(rule.code,), **options))
 
 
 def rewrite_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
-    """The example rewritten for ``robots`` of the rule's options, or with ``strip`` taken back for
-    that robot; the other options are those of the call."""
+    """Return the example rewritten for ``robots`` of the rule's options, or with ``strip`` taken
+    back for that robot; the other options are those of the call."""
     endings = {SRDF: "srdf", XACRO: "urdf.xacro"}
     ending = next((endings[it] for it in rule.formats if it in endings), "urdf")
     file = folder / f"example.{ending}"
@@ -139,7 +140,7 @@ def rewrite_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
 
 
 def related_file_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
-    """A fleet of two robots with the example as one of their files."""
+    """Return a fleet of two robots with the example as one of their files."""
     file, key = RELATED_FILES[rule.formats[0]]
     _write(folder, {file: example})
     named = rule.options.get("related_files", {})
@@ -148,12 +149,12 @@ def related_file_example(rule: Rule, example: str, folder: Path) -> list[Finding
 
 
 def fleet_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
-    """The example is the fleet file; what it leaves out is appended."""
+    """Return the findings of the example as a fleet file; what it leaves out is appended."""
     return _fleet(rule, {}, folder, example)
 
 
 def description_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
-    """The example is the description of the robots of a fleet."""
+    """Return the findings of a fleet whose robots have the example as description."""
     return _fleet(rule, {}, folder, description=example)
 
 
@@ -164,7 +165,7 @@ def _fleet(
     text: str = "",
     description: str = DESCRIPTION,
 ) -> list[Finding]:
-    """What is found in a fleet file of ``text`` and, where that says nothing of them, ``keys``."""
+    """Return what is found in a fleet file of ``text`` and, where it lacks them, ``keys``."""
     if "robot.urdf" not in rule.page.beside:
         _write(folder, {"robot.urdf": description})
     said = yaml.safe_load(text) or {}
@@ -177,7 +178,7 @@ def _fleet(
 
 
 def remap_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
-    """The remap table of ``robots``: the example is their description, or a file of their nodes."""
+    """Return the findings of the remap table of ``robots`` by their description or file of nodes."""
     nodes = {} if example.startswith("<") else yaml.safe_load(example)["nodes"]
     _write(folder, {"robot.urdf": DESCRIPTION if nodes else example, "nodes.yaml": example})
     options: dict[str, Any] = {"robots": ["robot1", "robot2"], **POLICY, **rule.options}
@@ -191,7 +192,7 @@ def remap_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
 
 
 def system_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
-    """A graph in the lines of ``graph_examples``, and its plan for a rule that asks for one."""
+    """Return a graph in the lines of ``graph_examples``, and its plan for a rule that asks for one."""
     if "as before: " in example:
         before, graph = read_looks(example)
         return check(seen_plan(diagnose(before)), graph, before=before)
@@ -201,7 +202,7 @@ def system_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
 
 
 def launch_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
-    """A launch file, read without launch."""
+    """Return a launch file, read without launch."""
     file = folder / "example.launch.py"
     file.write_text(example)
     own = folder / "made"

@@ -40,7 +40,7 @@ _FILES = {
 
 
 def missing() -> str:
-    """What a build lacks on this machine and how to get it; empty where nothing is lacking."""
+    """Return what a build lacks on this machine and how to get it; empty where nothing is lacking."""
     path = _environ()["PATH"]
     tools = [tool for tool in ("cmake", "c++", "make") if shutil.which(tool, path=path) is None]
     if tools:
@@ -52,7 +52,7 @@ def missing() -> str:
 
 
 def build(cache: Path) -> dict[str, str]:
-    """The environment variables that make tf2_msgs importable; built at the first call.
+    """Return the environment variables that make tf2_msgs importable; built at the first call.
 
     ``cache`` is a folder that may be kept for the next run.
     """

@@ -66,7 +66,7 @@ def test_every_kind_of_record_is_valid_and_comes_back() -> None:
 def test_a_plan_is_written_as_any_system() -> None:
     robots, policy = ["robot1", "robot2"], {"layout": "both"}
     rover = ROOT / "fixtures" / "robots" / "rover.urdf"
-    plan = system_of_description(rover, robots, stacks=["nav2"], policy=policy)
+    plan = system_of_description(rover, robots, node_sets=["nav2"], policy=policy)
     assert any(not it.topic for it in plan.edges)
     VALID.validate(json.loads(to_json(plan)))
     assert from_json(to_json(plan), "plan") == plan

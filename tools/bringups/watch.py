@@ -20,8 +20,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 STUB = Path(__file__).with_name("stub.py")
-# Seconds without a new process after which a launch file has started what it starts.
-QUIET = 1.5
+# Seconds without a new process after which a launch file has started what it starts: more if the
+# machine is busy.
+QUIET = 1.5 * min(4.0, max(1.0, os.getloadavg()[0] / (os.cpu_count() or 1)))
 # Ends of processes that are waited for, one after the other.
 ROUNDS = 20
 # Programs that a shell is, and what runs as it is.

@@ -24,11 +24,16 @@ if TYPE_CHECKING:
         them to levels or ``OFF``."""
 
         @property
-        def select(self) -> Sequence[str]: ...
+        def select(self) -> Sequence[str]:
+            """Return the codes and names of rules that alone are wanted."""
+
         @property
-        def ignore(self) -> Sequence[str]: ...
+        def ignore(self) -> Sequence[str]:
+            """Return the codes and names of rules that are off."""
+
         @property
-        def levels(self) -> Mapping[str, str]: ...
+        def levels(self) -> Mapping[str, str]:
+            """Return the chosen level of each rule."""
 
 
 class Selection(NamedTuple):

@@ -165,8 +165,7 @@ def is_tree(robot: Robot) -> bool:
 
 
 def loops(robot: Robot) -> list[list[Joint]]:
-    """Return loops of joints; a joint from a link to itself is not one. Of loops that share links
-    one is found."""
+    """Return loops of joints, one of those that share links; a joint from a link to itself is none."""
     rest = _not_of_a_tree(robot)
     done: set[str] = set()
     found = []

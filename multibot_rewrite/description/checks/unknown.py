@@ -48,7 +48,7 @@ def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     by_ros = _by_ros(parts, tree.definitions)
     for part in parts:
         if not part.is_known:
-            message, hint = _said(part, tree.definitions, guesses)
+            message, hint = _message_and_hint(part, tree.definitions, guesses)
             yield Problem(part.element, message, None, hint, (), CODES.get(part.kind, "MB902"))
         elif part is old:
             message = f"plugin {part.name!r} is of Gazebo Classic, which is not in {release}"
@@ -77,7 +77,9 @@ def is_unknown(section: PluginDefinition) -> bool:
     return section.select == "plugin" or section.names[0] == ANY_WITH_ROS
 
 
-def _said(part: ActivePart, definitions: Definitions, guesses: Guesses) -> tuple[str, str]:
+def _message_and_hint(
+    part: ActivePart, definitions: Definitions, guesses: Guesses
+) -> tuple[str, str]:
     if part.kind == INCLUDE:
         return (
             f"the included {part.name!r} is not read: its topics and frames stay as they are",

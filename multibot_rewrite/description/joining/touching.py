@@ -124,8 +124,7 @@ def _pose(pin: Any, model: Any, random: Random) -> Any:
 
 
 def _with_files(root: _Element, files: Mapping[str, str]) -> Iterator[tuple[str, str]]:
-    """Put the paths of files into the meshes of collisions; yield links whose files are missing,
-    and take out their shapes."""
+    """Set paths in collision meshes; yield links with missing files, without these shapes."""
     for link in root.iterchildren("link"):
         name = link.get("name", "")
         for it in link.findall("visual"):

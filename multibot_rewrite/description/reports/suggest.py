@@ -80,8 +80,7 @@ class Loaded(NamedTuple):
 
 
 def suggest(inventory: Inventory) -> list[SuggestedSection]:
-    """Return a section for each unknown plugin, and each unknown hardware class with parameters, in the
-    order of the file."""
+    """Return a section for each unknown plugin and hardware class with parameters, in file order."""
     hosts: dict[tuple[str, str, str], list[Host]] = {}
     for host in inventory.hosts:
         thing = loaded_by(host)
@@ -138,10 +137,10 @@ def _values(
     if "" not in known and element.text and element.text.strip() and path:
         yield path, element.text.strip()
     for child in element.iterchildren("*"):
-        yield from _values(child, _below(node, child), f"{path}/{_step(child)}".lstrip("/"))
+        yield from _values(child, _child_node(node, child), f"{path}/{_step(child)}".lstrip("/"))
 
 
-def _below(node: tree.TreeNode | None, child: "_Element") -> tree.TreeNode | None:
+def _child_node(node: tree.TreeNode | None, child: "_Element") -> tree.TreeNode | None:
     below = node.children.get(str(child.tag)) if node is not None else None
     return below.select(child) if below is not None and below.select is not None else below
 
@@ -210,13 +209,13 @@ def _by_value(value: str, declared: Declared) -> Guess | None:
     for form, names in _readings(value):
         found = {kind: next((n for n in names if n in declared[kind]), "") for kind in MENTIONED}
         if named := [(kind, name) for kind, name in found.items() if name]:
-            return Guess(tuple(kind for kind, _ in named), form, _why(value, named))
+            return Guess(tuple(kind for kind, _ in named), form, _held_names(value, named))
     if value.startswith("/") and value[1:] in declared["link"]:
         return Guess(("frame",), "whole", f"{shown(value)} is a link here, but for the slash")
     return None
 
 
-def _why(value: str, named: Sequence[tuple[str, str]]) -> str:
+def _held_names(value: str, named: Sequence[tuple[str, str]]) -> str:
     if all(name == value for _, name in named):
         return f"{shown(value)} is a {' and a '.join(kind for kind, _ in named)} here"
     return f"{shown(value)} holds {' and '.join(f'the {k} {shown(name)}' for k, name in named)}"

@@ -35,8 +35,7 @@ class SaidRelease(NamedTuple):
 
 
 def release_said(told: str, text: bytes, file: str, who: str = "it") -> SaidRelease:
-    """Return the release that was ``told``, or that of a description's text, or of its repository;
-    ``who`` has the text."""
+    """Return the release that was ``told``, else that of a description's text or repository."""
     if told:
         return SaidRelease(told)
     if built := release_of_build(file):

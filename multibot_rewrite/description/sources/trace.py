@@ -96,10 +96,10 @@ def alike(path: str, given: str) -> str:
     if os.path.isabs(given) or not os.path.isabs(path):
         return path
     relative = os.path.relpath(path)
-    return relative if _climbs(relative) <= _climbs(os.path.normpath(given)) else path
+    return relative if _steps_up(relative) <= _steps_up(os.path.normpath(given)) else path
 
 
-def _climbs(path: str) -> int:
+def _steps_up(path: str) -> int:
     return path.split(os.sep).count(os.pardir)
 
 

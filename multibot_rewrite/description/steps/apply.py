@@ -81,8 +81,7 @@ def _change(source: bytes, claim: Claim, kind: str, new: str) -> Change:
 
 
 class Spans:
-    """The place of each element; an element ends before its next sibling, or before the end tag
-    of the one it is in."""
+    """The place of each element; it ends before its next sibling, or its parent's end tag."""
 
     def __init__(self, document: Document) -> None:
         self.document = document

@@ -37,7 +37,7 @@ from multibot_rewrite.description.sources.read import is_xacro, read_file
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
-from multibot_rewrite.rules.facts.simulators import SIMULATORS
+from multibot_rewrite.knowledge.worlds import SIMULATORS
 
 _NAME = lazy_compile(r"sim|gazebo|ignition|(?:^|_)(?:gz|ign|real|hardware|hw|fake|mock)(?:_|$)")
 _OTHER = {"true": "false", "True": "False", "1": "0"}

@@ -43,10 +43,10 @@ def relays(robot: str, naming: Naming, file: FleetFile) -> list[Relay]:
     if not file.relayed:
         return []
     copied = naming.layout.frames
-    return [*(_copies(robot, naming) if copied else _bridge(robot, naming, file.world))]
+    return [*(_relays_to_tf(robot, naming) if copied else _bridge(robot, naming, file.world))]
 
 
-def _copies(robot: str, naming: Naming) -> Iterator[Relay]:
+def _relays_to_tf(robot: str, naming: Naming) -> Iterator[Relay]:
     above = f"/{robot}" if naming.topics == NAMESPACE else ""
     for topic in TF_TOPICS:
         node = f"{topic}_relay"

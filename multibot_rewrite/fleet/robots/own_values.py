@@ -22,8 +22,7 @@ _MARK, _TRIED = "multibot_mark", 12
 
 
 class Written(NamedTuple):
-    """The file that a robot's description, or its model for the simulator, is made of, and the
-    arguments that it gets."""
+    """The file of a robot's description, or of its model for the simulator, and its arguments."""
 
     path: str
     arguments: Mapping[str, str]

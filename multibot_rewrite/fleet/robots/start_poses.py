@@ -185,8 +185,7 @@ def _sent(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, list[Edge]]:
 
 
 def _own_odometry(plan: FleetPlan, robot: RewrittenRobot) -> str:
-    """Return words of a message on an unknown node with an odometry frame that no known node sends;
-    empty if there is none."""
+    """Return a message about an unknown node's odometry frame that no known node sends, or ""."""
     described = {it.name for it in plan.fleet.facts}
     own = (edges for (name, _), edges in plan.fleet.edges.items() if name == robot.spec.namespace)
     frames = {frame for edges in own for it in edges for frame in (it.parent, it.child)}

@@ -3,7 +3,8 @@
 what a launch file sees of the machine.
 
 A xacro file is expanded behind the boundary that all xacro files have, and ``urdf-postfix`` is this
-package's own. Other programs are not started: their output is empty. Source: launch jazzy,
+package's own. ``ros2 param get`` prints a robot's description, of which only a run tells which it is.
+Other programs are not started: their output is empty. Source: launch jazzy,
 substitutions/command.py (the line is split as a shell does), find_executable.py.
 """
 
@@ -28,6 +29,7 @@ from multibot_rewrite.description.sources.expand import expand
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.producers.launch.describe import text
 from multibot_rewrite.producers.launch.door import of_launch
+from multibot_rewrite.producers.launch.handed_on import DESCRIPTION
 from multibot_rewrite.producers.launch.records import FileRead
 from multibot_rewrite.producers.launch.source_packages import NOT_INSTALLED
 
@@ -204,6 +206,11 @@ def _cat(words: Sequence[str]) -> str:
     return "".join(read_file(it).decode("utf-8", "replace") for it in words)
 
 
+def _asked(words: Sequence[str]) -> str:
+    is_description = [*words[:2], *words[-1:]] == ["param", "get", DESCRIPTION]
+    return "the description of a running node" if is_description else ""
+
+
 def _postfix(words: Sequence[str]) -> str:
     if any(it.startswith("-") and it.partition("=")[0] not in _OPTIONS for it in words):
         return ""
@@ -230,5 +237,5 @@ class _Kept(io.TextIOWrapper):
 
 
 _READERS: Mapping[str, Callable[[Sequence[str]], str]] = MappingProxyType(
-    {"xacro": _xacro, "cat": _cat, "urdf-postfix": _postfix}
+    {"xacro": _xacro, "cat": _cat, "urdf-postfix": _postfix, "ros2": _asked}
 )

@@ -89,8 +89,9 @@ def simulator(error: BaseException, include: Any, here: Visit) -> list[LaunchedN
     """Return the simulator of a package that is missing here, or whose launch file only a build
     makes: that it starts is known without it, and with which arguments."""
     path = path_of(include, here.context)
-    of_path = _SHARE.search(path)
-    package = missing_package(error) or (of_path[1] if of_path else "")
+    # A launch file that is here may itself ask for that package, and be called as one of it.
+    of_path = _SHARE.findall(path) or [""] * os.path.isfile(path)
+    package = of_path[-1] if of_path else missing_package(error)
     # Before it is read, launch has the parts of the path (jazzy launch_description_source.py).
     name = (_LAUNCH_FILE.findall(path) or [""])[-1]
     spawns = name in (_SPAWNS, _SPAWNS_BRIDGED)
@@ -107,8 +108,7 @@ def simulator(error: BaseException, include: Any, here: Visit) -> list[LaunchedN
 
 
 def not_here(error: BaseException, include: Any, here: Visit) -> list[LaunchedNode]:
-    """Return a launch file of a package that is missing here, with its arguments; an unknown one
-    has no lasting value."""
+    """Return a launch file of a package that is missing here, with its arguments."""
     it, package = included(include, here), missing_package(error)
     if not package or not it.file.startswith(f"{package}/"):
         return []

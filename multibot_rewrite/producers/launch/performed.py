@@ -42,8 +42,7 @@ _OF_COMPONENT = ("package", "node_plugin", "node_name", "node_namespace")
 
 
 class Launching(NamedTuple):
-    """How a launch file is launched: its arguments, the installed packages of those that it asks for,
-    and the environment."""
+    """How a launch file is launched: arguments, installed packages that it needs, environment."""
 
     arguments: Mapping[str, str]
     installed: frozenset[str] = frozenset()

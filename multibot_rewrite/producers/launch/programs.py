@@ -57,8 +57,7 @@ def once_for_all(node: LaunchedNode) -> str:
 
 
 def passes(it: LaunchedNode) -> bool:
-    """Return whether it is no node of a robot: a program that ends, a simulator, a command or a
-    launch file."""
+    """Return whether it is no robot's node: a program that ends, a simulator, a launch file."""
     is_none = not it.package or it.process.is_include
     return is_none or is_spawner(it) or program_of(it) in programs().passing
 

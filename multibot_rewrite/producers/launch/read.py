@@ -51,6 +51,7 @@ from multibot_rewrite.producers.launch.stand_in import standing_in
 from multibot_rewrite.producers.launch.stand_in.names import names
 from multibot_rewrite.producers.launch.stand_in.packages import (
     FindPackageShare,
+    PackageNotFoundError,
     get_package_share_directory,
 )
 from multibot_rewrite.producers.launch.unknown_modules import add_unknown, imported
@@ -84,8 +85,10 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
     # A launch file may look at the command line itself.
     sys.argv = order.command_line
     missing: list[str] = []
+    PackageNotFoundError.asked.clear()
     while (graph := _tried(order, folder, missing)) is None:
         pass
+    missing += [it for it in PackageNotFoundError.asked if it not in missing]
     files = (*graph.files, *descriptions_in(reads.paths))
     # What the launch files of these start is known without them.
     off = {it.package for it in graph.off} - graph.packages
@@ -216,8 +219,7 @@ def _lost_variables(seen: Visit, path: str) -> tuple[LaunchNote, ...]:
 
 
 def _declared(description: Any) -> tuple[LaunchArgument, ...]:
-    """Return the arguments of a launch file and of what it includes, each once; a default made from
-    others is unknown."""
+    """Return the arguments of a launch file and its includes, once; computed defaults: unknown."""
     found: dict[str, LaunchArgument] = {}
     for it, _ in getattr(description, ASKED)():
         given = it.default_value

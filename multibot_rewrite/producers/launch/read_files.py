@@ -23,8 +23,7 @@ _OWN = os.path.abspath(__file__).removesuffix(os.path.join("producers", "launch"
 
 
 class Reads(NamedTuple):
-    """What is read in this process: files of a robot that are opened, and xacros that are expanded with
-    values of arguments."""
+    """What is read in this process: a robot's files, and xacros expanded with arguments."""
 
     paths: list[str]
     xacros: list[FileRead]

@@ -139,8 +139,7 @@ class LaunchArgument(NamedTuple):
 
 
 class FileRead(NamedTuple):
-    """A description, an SRDF or a YAML file that a launch file reads, with the arguments that it gives
-    to a xacro."""
+    """A description, SRDF or YAML file that a launch file reads, with its xacro arguments."""
 
     file: str
     arguments: tuple[tuple[str, str], ...] = ()

@@ -24,8 +24,7 @@ _RULE, _VALUE, _FILE = ("-r", "--remap"), ("-p", "--param"), "--params-file"
 
 
 class RosArguments(NamedTuple):
-    """Name and namespace (empty for none), remap rules, parameter values and files, and the words
-    that are not ROS's own."""
+    """Name, namespace, remap rules, parameter values and files, and the words that are not ROS's."""
 
     name: str
     namespace: str

@@ -94,8 +94,7 @@ class ObservationClock(NamedTuple):
         )
 
     def starved(self) -> Iterator[Caveat]:
-        """Yield a limitation if a snapshot waited for a processor so long that nodes may have come
-        too late."""
+        """Yield a limitation if a snapshot lacked processor time so long that nodes may be missing."""
         part = self.delayed / max(self.observed + self.delayed, DELAY_SECONDS)
         if part > STARVED:
             text = (

@@ -115,8 +115,7 @@ def overview(session: GraphSession) -> tuple[list[str], list[End]]:
 
 
 def complete_view(session: GraphSession, cache: queries.TopicCache) -> tuple[list[str], list[End]]:
-    """Return names and endpoints; repeated for a while if nodes lack endpoints or a name, or
-    participants lack nodes."""
+    """Return names and endpoints, read again for a while if nodes lack endpoints, or a name."""
     limit = min(session.request.timeout, session.now() + assemble.QUIET_SECONDS)
     while True:
         names, endpoints = view(session, cache)

@@ -28,7 +28,12 @@ from multibot_rewrite.producers.ros.look import (
     receive,
     view,
 )
-from multibot_rewrite.producers.ros.participants import lost_here, make_room, participants_here
+from multibot_rewrite.producers.ros.participants import (
+    lost_by_us,
+    lost_here,
+    make_room,
+    participants_here,
+)
 from multibot_rewrite.producers.ros.request import (
     ENDED,
     SO_FAR,
@@ -186,7 +191,7 @@ def _wait_until_settled(
     """
     request = session.request
     times, last_change = _ChangeTimes(), assemble.ObservationClock()
-    losses = _Losses(session)
+    losses = _Losses()
     queried: object = None
     pause, spent, clock = POLL_SECONDS, 0.0, assemble.ObservationClock(last=session.now())
     while not session.stop.is_set():
@@ -229,14 +234,14 @@ def _wait_until_settled(
 
 
 class _Losses:
-    """When a datagram of the domain was last lost on this machine, in seconds of the look."""
+    """When this process last lost a datagram, in seconds of the look."""
 
-    def __init__(self, session: GraphSession) -> None:
-        self._domain, self._lost, self._at = session.domain(), session.lost, -inf
+    def __init__(self) -> None:
+        self._lost, self._at = 0, -inf
 
     def last(self, now: float) -> float:
-        """Return when something was last lost until ``now``; a count may fall when a process ends."""
-        lost = lost_here(self._domain)
+        """Return when something was last lost until ``now``."""
+        lost = lost_by_us()
         if lost != self._lost:
             self._lost, self._at = lost, now
         return self._at
@@ -259,8 +264,7 @@ def _enough(session: GraphSession, changed: float, lost: float) -> float:
 
 
 class _ChangeTimes:
-    """When the graph last changed, all of it and what is expected of it; ``last`` are the names that
-    came or went then."""
+    """When the graph, and what is expected of it, last changed; ``last``: names that came or went."""
 
     def __init__(self) -> None:
         self._before: tuple[object, object] = (None, None)

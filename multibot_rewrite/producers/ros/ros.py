@@ -199,7 +199,6 @@ def subscribe(
 
     The callback gets a message and its number, by which its publisher counts; None if that is unknown.
     """
-
     from rclpy.impl.implementation_singleton import rclpy_implementation
 
     def numbered(message: bytes, info: Any) -> None:

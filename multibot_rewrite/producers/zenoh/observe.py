@@ -64,8 +64,7 @@ def look(request: Request, router: Router) -> System:
 def watch(
     request: Request, routers: Mapping[int, Router]
 ) -> Generator[tuple[int, System], None, None]:
-    """Yield snapshots of each for ``request.timeout`` seconds, one after each change, with its
-    number; raises as ``look``."""
+    """Yield numbered snapshots after each change, for ``timeout`` seconds; raises as ``look``."""
     with ExitStack() as stack:
         views = [stack.enter_context(closing(_views(request, it))) for it in routers.values()]
         for seen in zip_longest(*views):

@@ -79,6 +79,7 @@ def character(document: Document, at: int) -> int:
 
 
 def is_model(element: "_Element") -> bool:
+    """Return whether the element is in the tree's declarations of nodes."""
     return element.tag == _MODEL or any(it.tag == _MODEL for it in element.iterancestors())
 
 
@@ -116,6 +117,7 @@ def _port_kind(element: "_Element", attribute: str, trees: _Trees, above: tuple[
 
 
 def node_name(element: "_Element") -> str:
+    """Return the name of the behavior tree node that an element is."""
     return str(element.get("ID", "")) if element.tag in _FORMS else str(element.tag)
 
 

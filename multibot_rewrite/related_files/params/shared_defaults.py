@@ -258,7 +258,7 @@ OUTSIDE = declare(
     "section-outside-of-bringup",
     ERROR,
     formats=("params",),
-    options={"stack": ["nav2", "rviz"], "params_style": "bringup", "layout": "both"},
+    options={"node_sets": ["nav2", "rviz"], "params_style": "bringup", "layout": "both"},
 )
 
 

@@ -227,7 +227,7 @@ def _hardware_without_node(subject: Subject) -> Iterator[Problem]:
         fault = check_node_name(name.replace("/", "_")) if name else None
         if fault is None or SUBSTITUTION in name or system in in_simulator:
             continue
-        from multibot_rewrite.knowledge.stacks import built_in  # hardly any name is wrong
+        from multibot_rewrite.knowledge.node_sets import built_in  # hardly any name is wrong
 
         if HARDWARE_NODE in built_in(subject.settings.distro).nodes:
             message = (

@@ -40,8 +40,7 @@ def memoized(make: Callable[[Subject], _Made]) -> Callable[[Subject], _Made]:
 
 @memoized
 def link_poses(subject: Subject) -> Mapping[str, Pose]:
-    """Return each link's pose in the root of its tree; those below an origin that is no number are
-    left out."""
+    """Return each link's pose in the root of its tree, without those below an invalid origin."""
     return poses.link_poses(subject.robot)
 
 

@@ -22,6 +22,7 @@ from multibot_rewrite.base.rosnames import resolve_bound
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.checks.shapes import filled_by
 from multibot_rewrite.description.rewriters.tree import library_key
+from multibot_rewrite.description.sources.world_systems import needed_systems
 from multibot_rewrite.knowledge.worlds import DEFAULTS
 from multibot_rewrite.planning.bridged_topics import DIRECTIONS, TF_TYPE
 from multibot_rewrite.planning.records import Run
@@ -29,7 +30,6 @@ from multibot_rewrite.producers.launch.bridges import bridged_by
 from multibot_rewrite.producers.launch.launched import InSimulator, Launched, worlds
 from multibot_rewrite.producers.launch.running import bound_of
 from multibot_rewrite.rules.declaration import at, launch_rule
-from multibot_rewrite.rules.facts.simulators import needed_systems
 from multibot_rewrite.system.records import SUBSCRIBES, TOPIC
 
 _POSE = ("-x", "-y", "-z")

@@ -65,8 +65,7 @@ class UrdfPart(NamedTuple):
 
 
 class Schema(NamedTuple):
-    """All of ``urdf.schema`` for a version: every tag in it, and the sections that must have a
-    child (``parents``)."""
+    """All of ``urdf.schema`` for a version: every tag, and ``parents``, which must have a child."""
 
     version: Version
     sections: Mapping[str, UrdfPart]

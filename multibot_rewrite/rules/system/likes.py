@@ -89,7 +89,7 @@ def _lost_descriptions(seen: Index) -> Iterator[Finding]:
 @once
 def made_of(seen: Index) -> Mapping[str, MadeOf]:
     """Return the nodes and their endpoints of each robot."""
-    return {robot: MadeOf(own, _ends(seen, own)) for robot, own in nodes_of_each(seen).items()}
+    return {robot: MadeOf(own, _uses(seen, own)) for robot, own in nodes_of_each(seen).items()}
 
 
 @once
@@ -104,7 +104,7 @@ def nodes_of_each(seen: Index) -> Mapping[str, Mapping[str, str]]:
     return own
 
 
-def _ends(seen: Index, nodes: Mapping[str, str]) -> Mapping[_Key, End]:
+def _uses(seen: Index, nodes: Mapping[str, str]) -> Mapping[_Key, End]:
     ends = {}
     by_node, plain_of = seen.by_node, seen.plain
     for plain, name in nodes.items():
@@ -350,8 +350,7 @@ def has_likes_of(seen: Index, robot: str, node: str) -> bool:
 
 @once
 def _first_to_do(seen: Index) -> Mapping[tuple[str, str, str, str], str]:
-    """Return the first node for what is done with a name of its own robot: by kind, name without
-    the robot's, type and role."""
+    """Return the first node for each use of its robot's names, by kind, plain name, type and role."""
     first: dict[tuple[str, str, str, str], str] = {}
     for ends in seen.by_name.values():
         robot = seen.robot(ends.name) if ends.kind in (TOPIC, ACTION) else ""

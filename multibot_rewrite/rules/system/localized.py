@@ -43,7 +43,7 @@ def map_not_joined(seen: Index) -> Iterator[Finding]:
             continue
         for node in unique(localizers):
             body, start = _body(seen, tree, seen.robot(node)), _starts_at(seen, node)
-            if body and node not in _told_not_to(seen):
+            if body and node not in _forbidden_senders(seen):
                 yield map_not_joined.finding(
                     f"sends no {_MAP} -> {body.root} on {tree.topic}, and no other node does",
                     **_why(seen, tree, node, body, start.name if start else "")._asdict(),
@@ -78,7 +78,7 @@ def _is_of(seen: Index, frame: str, robot: str) -> bool:
 
 
 @once
-def _told_not_to(seen: Index) -> Set[str]:
+def _forbidden_senders(seen: Index) -> Set[str]:
     """Return the nodes that a parameter forbids to send a transform."""
     return {node for it in seen.system.edges if it.sure == OFF for node in it.publishers}
 

@@ -11,7 +11,7 @@ from multibot_rewrite.base.conventions import EVERYBODYS, STAMP_SWITCHES, switch
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Setting
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import shorten
-from multibot_rewrite.knowledge.stacks import older_node
+from multibot_rewrite.knowledge.node_sets import older_node
 from multibot_rewrite.rules.declaration import see, system_rule, where
 from multibot_rewrite.rules.system.causes import Cause, caused, plugin_of, to_set
 from multibot_rewrite.system import words
@@ -52,7 +52,7 @@ def types_differ(seen: Index) -> Iterator[Finding]:
         if takers and not apart:
             # Every reader hears somebody; a sender may be heard by nobody.
             others, apart = takers, _apart(givers, _all_types(takers))
-        yield from (_differs(seen, ends, own, others) for own in apart.values())
+        yield from (_types_differ(seen, ends, own, others) for own in apart.values())
 
 
 @once
@@ -68,7 +68,7 @@ def planned_types(seen: Index) -> Mapping[tuple[str, str], Set[str]]:
     return found
 
 
-def _differs(seen: Index, ends: Ends, own: Sequence[End], others: Sequence[End]) -> Finding:
+def _types_differ(seen: Index, ends: Ends, own: Sequence[End], others: Sequence[End]) -> Finding:
     asked, given = dict(_all_types(own)), dict(_all_types(others))
     message, cause = _difference(ends.name, others[0].node, asked, given)
     stamped = _by_a_switch(asked.keys(), given.keys())

@@ -175,7 +175,7 @@ def _strays_of(plan: Index, tree: Tree, present: Set[str]) -> Strays:
     # A moving frame on a robot's own topic may be anything that it detects.
     own, robots = home_of(plan, tree), {*robots_on(plan, tree)}
     fixed = {it.child for it in tree.edges if it.static}
-    for name in (it for it in frames_in(tree) if it not in _known(plan)):
+    for name in (it for it in frames_in(tree) if it not in _planned_frame_names(plan)):
         robot = plan.frame_robot(name)
         meant = _meant_by(plan).get(name, {}) if not robot else {}
         plain = {one: it for one, it in meant.items() if one in robots}
@@ -198,7 +198,7 @@ def _strays_of(plan: Index, tree: Tree, present: Set[str]) -> Strays:
 
 
 @once
-def _known(plan: Index) -> Set[str]:
+def _planned_frame_names(plan: Index) -> Set[str]:
     return {*plan.system.shared_frames}.union(*plan.frames_of.values())
 
 

@@ -28,6 +28,7 @@ from multibot_rewrite.system.records import (
     Topic,
     alternatives,
 )
+from multibot_rewrite.system.words import is_viewer
 
 
 @planned_rule("MG101", "missing-node", ERROR, absence=True, drawn="missing")
@@ -71,12 +72,11 @@ def _waiting(plan: Index, seen: Index, node: str) -> str:
 
 
 def _missing(plan: Index, seen: Index, robot: Robot) -> list[str]:
-    """Return the missing nodes; an optional one is missing only if it runs under another name."""
-    return [
-        node
-        for node in plan.own[robot.name]
-        if node not in seen.nodes and (node not in plan.may_miss or node in matches(plan, seen))
-    ]
+    """Return the missing nodes; an optional one is missing only if it runs under another name.
+    A viewer is not: one outside the robot shows all robots."""
+    moved = {it for it in matches(plan, seen) if not is_viewer(it)}
+    due = (it for it in plan.own[robot.name] if it in moved or it not in plan.may_miss)
+    return [it for it in due if it not in seen.nodes]
 
 
 def is_absent(plan: Index, seen: Index, robot: str) -> bool:
@@ -116,7 +116,7 @@ def unplanned_node(plan: Index, seen: Index) -> Iterator[Finding]:
             foreign = [it for it in names if it not in shared and plan.robot(it) != robot]
             uses = f"; it uses {shorten(foreign)}, without the name of {robot}" if foreign else ""
             message = f"is a node of {robot}, but not in the plan{uses}"
-            cause = "add it to the plan: with --stack or --nodes, or by hand"
+            cause = "add it to the plan: with --node-set or --nodes, or by hand"
         else:
             message = "is of no robot, and not in shared_nodes of the plan"
             cause = "add it there if it serves all robots; otherwise give it its robot's namespace"
@@ -209,8 +209,7 @@ _BRIDGES = ("bridge", "parameter_bridge")
 
 @planned_rule("MG121", "sender-not-planned", ERROR, drawn="cross-talk", nodes=False)
 def sender_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Report each node that may not send; of too many senders one a topic, at one that is not
-    planned if there is one."""
+    """Report each node that may not send; of too many senders of a topic one, an unplanned one."""
     if not seen.nodes:
         yield from _too_many_recorded(plan, seen)
         return

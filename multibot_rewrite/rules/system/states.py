@@ -265,7 +265,7 @@ def missing(known: Sequence[Interface]) -> Iterator[Missing]:
         yield Missing((first, *more), meant or next(beside, None), near)
 
 
-def said_of_missing(it: Missing, shown: Callable[..., str] | None) -> tuple[str, str]:
+def missing_message(it: Missing, shown: Callable[..., str] | None) -> tuple[str, str]:
     """Return message and hint about a claim of one robot. Known places are ``shown`` so."""
     first, *more = it.claims
     also = f" and {len(more)} more" if more else ""

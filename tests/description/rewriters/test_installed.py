@@ -39,7 +39,7 @@ Make = Callable[..., Path]
 
 @pytest.fixture(scope="module")
 def acme(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder that pip installed the third-party package into."""
+    """Return the folder that pip installed the third-party package into."""
     source = tmp_path_factory.mktemp("source") / "acme"
     shutil.copytree(ACME, source)
     # Reading its plugin definitions must not run its code.
@@ -53,7 +53,7 @@ def acme(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def broken(acme: Path, tmp_path: Path) -> Path:
-    """A copy of what pip installed, to break."""
+    """Return a copy of what pip installed, to break."""
     return shutil.copytree(acme, tmp_path / "site")
 
 
@@ -110,7 +110,7 @@ def _path() -> list[str]:
 
 
 def complaint() -> str:
-    """What every call says now; always one line."""
+    """Return what every call says now; always one line."""
     with pytest.raises(DefinitionsError) as caught:
         rewrite('<robot name="a"><link name="none of it is needed"/></robot>', "r1")
     assert "\n" not in str(caught.value)

@@ -31,7 +31,7 @@ def write(folder: Path, text: str) -> str:
 
 
 def complaint(path: str) -> str:
-    """What the loader says about a file, wherever it notices."""
+    """Return what the loader says about a file, wherever it notices."""
     with pytest.raises(DefinitionsError) as caught:
         check_definitions(load_definitions((path,), NEWEST_LTS))
         builtin_tree((path,), NEWEST_LTS)

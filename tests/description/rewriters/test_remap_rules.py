@@ -43,7 +43,7 @@ def rule_texts(text: str) -> list[str]:
 
 
 def name_in_graph(text: str, name: str, kind: str = "topic") -> str:
-    """What rcl makes of a name in the code of the one plugin of a description."""
+    """Return what rcl makes of a name in the code of the one plugin of a description."""
     node = re.findall(r'<plugin name="([^"]*)"', text)[0]
     namespace = (re.findall(r"<namespace>([^<]*)<", text) or ["/"])[0]
     found = [it for it in map(parse_remap, rule_texts(text)) if it is not None]

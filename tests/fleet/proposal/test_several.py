@@ -14,9 +14,9 @@ from small_robots import PACKAGE, robot
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.proposal.looking import Looked
-from multibot_rewrite.fleet.proposal.owners import moveit_of_others
-from multibot_rewrite.fleet.proposal.searching import Found
+from multibot_rewrite.proposal.looking import Looked
+from multibot_rewrite.proposal.owners import moveit_of_others
+from multibot_rewrite.proposal.searching import Found
 
 MODEL = '<robot name="{0}"><link name="{0}_base"/></robot>'
 SECTION = "{}_node: {{ros__parameters: {{rate: 1}}}}\n"
@@ -30,7 +30,7 @@ def files(folder: Path, **texts: str) -> None:
 
 
 def fleet_of(folder: Path, *words: str) -> dict[str, Any]:
-    """The fleet file for these words, which init and build say builds."""
+    """Return the fleet file for these words, which init and build say builds."""
     file = folder / "made" / "fleet.yaml"
     assert main(["init", *words, "--yes", "-o", str(file), "--force"]) == 0
     assert main(["build", str(file), "-o", str(folder / "out"), "-q"]) == 0
@@ -44,11 +44,11 @@ def fleet_of(folder: Path, *words: str) -> dict[str, Any]:
     [[], ["-n", "1"], ["-n", "3", "--layout", "L4"], ["--layout", "L1"], ["--distro", "jazzy"]],
 )  # fmt: skip
 def test_what_is_tried_is_what_is_written(options: list[str], tmp_path: Path, capsys: Any) -> None:
-    """Two robots of one description share its stack, which a YAML writer shortens to an alias."""
+    """Two robots of one description share its node set, which a YAML writer shortens to an alias."""
     files(tmp_path, **{f"{it}/robot.urdf": MODEL.format(it) for it in ("a", "b", "c")})
     paths = [str(tmp_path / it / "robot.urdf") for it in ("a", "b", "c")]
     made = fleet_of(tmp_path, *paths, *options)
-    assert {it["stack"][0] for it in made["robots"]} == {"robot_state"}
+    assert {it["node_sets"][0] for it in made["robots"]} == {"robot_state"}
     assert {it["description"] for it in made["robots"]} == {
         f"../{it}/robot.urdf" for it in ("a", "b", "c")
     }
@@ -59,7 +59,7 @@ def test_what_is_tried_is_what_is_written(options: list[str], tmp_path: Path, ca
 
 def test_values_that_robots_share_may_be_one_object(tmp_path: Path) -> None:
     files(tmp_path, **{"a.urdf": MODEL.format("a")})
-    own = {"description": str(tmp_path / "a.urdf"), "stack": ["robot_state"]}
+    own = {"description": str(tmp_path / "a.urdf"), "node_sets": ["robot_state"]}
     robots = [{"name": it, **own} for it in ("one", "two")]
     assert [it.name for it in read_fleet({"robots": robots}, "", {}).robots] == ["one", "two"]
     circle: list[Any] = []
@@ -176,7 +176,7 @@ def test_robots_of_other_descriptions_may_have_other_frames(tmp_path: Path, caps
         files(tmp_path, **{f"{name}.urdf": text})
     kinds = ("rover.urdf", "rover.urdf", "scout.urdf")
     robots = [{"name": f"r{number}", "description": it} for number, it in enumerate(kinds)]
-    fleet = {"layout": "tf-per-robot", "stack": ["nav2", "robot_state"], "robots": robots}
+    fleet = {"layout": "tf-per-robot", "node_sets": ["nav2", "robot_state"], "robots": robots}
     (tmp_path / "f.yaml").write_text(yaml.safe_dump(fleet))
     assert main(["build", str(tmp_path / "f.yaml"), "-o", str(tmp_path / "out")]) == 0
     assert "MG328" not in capsys.readouterr().err

@@ -102,10 +102,10 @@ def test_hardware_of_the_other_world_stops_the_build(
 ) -> None:
     write(folder, "use_sim", value)
     file = folder / "fleet.yaml"
-    stack = "ros2_control" if simulator == "none" else "gz_ros2_control"
+    node_set = "ros2_control" if simulator == "none" else "gz_ros2_control"
     file.write_text(
         f"layout: tf-per-robot\ndistro: jazzy\nsimulator: {simulator}\n"
-        f"description: rover.urdf.xacro\nstack: [{stack}]\n"
+        f"description: rover.urdf.xacro\nnode_sets: [{node_set}]\n"
         "robots:\n  - {name: robot1}\n  - {name: robot2}\n"
     )
     assert main(["build", str(file), "-o", str(folder / "out")]) == 1

@@ -17,8 +17,8 @@ from lxml import etree
 from named_ends import named_ends
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.fleet.build import Outputs
-from multibot_rewrite.knowledge.stacks import load_nodes, load_stack
+from multibot_rewrite.checks.build import Outputs
+from multibot_rewrite.knowledge.node_sets import load_node_set, load_nodes
 from multibot_rewrite.planning.records import Table
 from multibot_rewrite.planning.transforms import sent_by
 from multibot_rewrite.planning.ways import HOST, deliveries, started
@@ -95,7 +95,7 @@ def found(outputs: Outputs, *codes: str) -> list[tuple[str, str]]:
 
 
 def parameters(outputs: Outputs, robot: str) -> dict[str, dict[str, object]]:
-    """Controller -> its parameters, by the names without the robot."""
+    """Return the parameters of each controller, by the names without the robot."""
     path = f"{robot}/controllers.yaml"
     (text,) = (it.data.decode() for it in outputs.files if it.path == path)
     words = yaml.safe_load(text)
@@ -152,7 +152,7 @@ def test_code_of_hardware_exports_what_no_description_names() -> None:
 
 def planned(text: str) -> dict[str, str]:
     given = given_in(text, file="c.yaml")
-    nodes = nodes_of(load_stack("ros2_control", "jazzy"), given, load_nodes("jazzy")).nodes
+    nodes = nodes_of(load_node_set("ros2_control", "jazzy"), given, load_nodes("jazzy")).nodes
     return {it.name: it.when for it in nodes}
 
 
@@ -262,7 +262,7 @@ def nodes_with(folder: Path, arm: str, layout: str, more: str = "") -> Table:
     return planned_fleet(fleet).fleet.table
 
 
-MANAGED = "stack: ros2_control\nrelated_files: {params: [controllers.yaml]}\n"
+MANAGED = "node_sets: ros2_control\nrelated_files: {params: [controllers.yaml]}\n"
 
 
 def test_nodes_that_hardware_makes(tmp_path: Path) -> None:

@@ -13,11 +13,11 @@ from paths import fixture_text
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.fleet.checks.closed_plan import gaps_of
-from multibot_rewrite.fleet.checks.robot_system import DRIVERS
+from multibot_rewrite.checks.closed_plan import gaps_of
+from multibot_rewrite.checks.judged_plan import plan_fleet
+from multibot_rewrite.checks.robot_system import DRIVERS
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
-from multibot_rewrite.knowledge.stacks import load_nodes
+from multibot_rewrite.knowledge.node_sets import load_nodes
 from multibot_rewrite.planning.records import Given, Run
 from multibot_rewrite.producers.ends import edge, edges_off
 from multibot_rewrite.rules.system.tf_pieces import tf_tree_in_pieces
@@ -112,7 +112,7 @@ AMCL = (
 SIMULATED = """\
 description: r.urdf
 simulator: gazebo
-stack: [navigation]
+node_sets: [navigation]
 related_files: {params: [p.yaml]}
 robots: [{name: r1}, {name: r2}]
 """

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import ClassVar
 
 from multibot_rewrite.producers.launch.stand_in.values import (
     Kept,
@@ -95,7 +96,9 @@ _INDEX = os.path.join("share", "ament_index", "resource_index")
 
 
 class PackageNotFoundError(KeyError):
-    """A package is not installed."""
+    """A package is not installed. ``asked`` are all that were: a launch file may go on without one."""
+
+    asked: ClassVar[dict[str, None]] = {}
 
 
 class FindPackage(Kept, Joined):
@@ -159,6 +162,7 @@ def get_package_prefix(package_name: str) -> str:
     """Return the folder that a package is installed in; raises PackageNotFoundError."""
     found = has_resource("packages", package_name)
     if not isinstance(found, str):
+        PackageNotFoundError.asked[package_name] = None
         raise PackageNotFoundError(f"package '{package_name}' not found")
     return found
 

@@ -56,7 +56,7 @@ def _read_now(subject: Subject, element: _Element) -> tuple[Edit, ...]:
     if element.tag == versions.CAPSULE:
         return () if link is None else convert.capsule_edits(text, link)
     if element.get("rpy") is None and _reads(subject) >= QUATERNIONS:
-        return _raised(subject)
+        return _raised_version(subject)
     return convert.as_rpy(text, element)
 
 
@@ -83,7 +83,7 @@ def version_of_release(subject: Subject) -> Iterator[Problem]:
     if root.tag == "robot" and declared in versions.KNOWN and declared > reads:
         reader = versions.reader_of(subject.settings.distro, versions.URDFDOM)
         message = f"URDF {declared} is not read by {reader}, which rejects the file"
-        edits = _lowered(subject)
+        edits = _lowered_version(subject)
         more = "; --fix does it" if edits else " and what that version has"
         yield Problem(root, message, "version", f"write version {reads}{more}", edits)
 
@@ -147,11 +147,11 @@ def _text(subject: Subject) -> convert.Spanned:
 
 
 @memoized
-def _raised(subject: Subject) -> tuple[Edit, ...]:
+def _raised_version(subject: Subject) -> tuple[Edit, ...]:
     return convert.raised(_text(subject), QUATERNIONS)
 
 
 @memoized
-def _lowered(subject: Subject) -> tuple[Edit, ...]:
+def _lowered_version(subject: Subject) -> tuple[Edit, ...]:
     refused = any(it.code in _REFUSED and it.level != WARNING for it in urdf_faults(subject))
     return () if refused else convert.lowered(_text(subject))

@@ -185,7 +185,9 @@ def adjacent_links(subject: Subject) -> Iterator[Problem]:
         return
     apart = {frozenset((text_of(it, "link1"), text_of(it, "link2"))) for it in pairs}
     alone = {text_of(it, "link") for it in root.iterchildren("disable_default_collisions")}
-    left = [it for it in robot.joints if _both_checked(it, robot, alone) and _ends(it) not in apart]
+    left = [
+        it for it in robot.joints if _both_checked(it, robot, alone) and _links(it) not in apart
+    ]
     if left:
         names = ", ".join(f"{it.parent}-{it.child}" for it in left[:SHOWN])
         more = ", ..." if len(left) > SHOWN else ""
@@ -197,13 +199,13 @@ def _has_shape(robot: Robot, link: str) -> bool:
     return robot.link[link].element.find("collision") is not None
 
 
-def _ends(joint: Joint) -> frozenset[str]:
+def _links(joint: Joint) -> frozenset[str]:
     return frozenset((joint.parent, joint.child))
 
 
 def _both_checked(joint: Joint, robot: Robot, alone: set[str]) -> bool:
     """Return whether both links of a joint are checked against each other."""
-    ends = _ends(joint)
+    ends = _links(joint)
     return len(ends) == 2 and all(
         it in robot.link and it not in alone and _has_shape(robot, it) for it in ends
     )
