@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 from built_faults import edited, in_launch
 from fleet_folder import planned_fleet
+from paths import fixture_text
 from rule_examples import DESCRIPTION
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
@@ -28,31 +29,7 @@ from multibot_rewrite.system.index import index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, End
 
-LAUNCH = """\
-from pathlib import Path
-
-from launch import LaunchDescription
-from launch_ros.actions import Node
-
-ROBOT = Path(__file__).parent / 'robot.urdf'
-
-
-def ekf(name, **more):
-    values = {'odom0': '/wheel/odom', 'world_frame': 'odom', 'base_link_frame': 'base_link'}
-    return Node(package='robot_localization', executable='ekf_node', name=name,
-                parameters=[{**values, **more}],
-                remappings=[('odometry/filtered', 'odometry/map')] if more else [])
-
-
-def generate_launch_description():
-    return LaunchDescription([
-        Node(package='robot_state_publisher', executable='robot_state_publisher',
-             parameters=[{'robot_description': ROBOT.read_text()}]),
-        ekf('ekf_local'),
-        ekf('ekf_global'),
-        ekf('ekf_map', publish_tf=False),
-    ])
-"""
+LAUNCH = fixture_text("as_the_vendor_has_it_launch.txt")
 FLEET = """\
 layout: {}
 {}
