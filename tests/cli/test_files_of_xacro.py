@@ -50,12 +50,11 @@ WRITERS: dict[str, Command] = {
 
 
 @pytest.fixture
-def robot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
+def robot(here: Path) -> Path:
     for name, text in FILES.items():
-        (tmp_path / name).parent.mkdir(exist_ok=True)
-        (tmp_path / name).write_text(text)
-    return tmp_path
+        (here / name).parent.mkdir(exist_ok=True)
+        (here / name).write_text(text)
+    return here
 
 
 def there(robot: Path) -> dict[str, str]:

@@ -131,12 +131,11 @@ robots: [{name: robot1}, {name: robot2}]
 
 
 def test_each_command_says_the_same_of_a_parameter_file(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    here: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Expected by robot_localization (parameters), rcl (names of topics) and the links of the robot."""
     for name, text in (("rover.urdf", ROVER), ("ekf.yaml", FAULTY), ("fleet.yaml", FLEET)):
-        (tmp_path / name).write_text(text)
-    monkeypatch.chdir(tmp_path)
+        (here / name).write_text(text)
     commands = [
         # Without the frame of its base the robot's tree is in pieces.
         ["build", "fleet.yaml", "-o", "out", "--ignore=MG406"],
@@ -147,8 +146,8 @@ def test_each_command_says_the_same_of_a_parameter_file(
     said = []
     for words in commands:
         if words[0] == "check":
-            plan = from_yaml((tmp_path / words[1]).read_bytes(), words[1])
-            (tmp_path / "graph.json").write_bytes(to_json(as_planned(plan)))
+            plan = from_yaml((here / words[1]).read_bytes(), words[1])
+            (here / "graph.json").write_bytes(to_json(as_planned(plan)))
         assert main(words) == 0
         lines = "".join(capsys.readouterr()).splitlines()
         said.append([it.partition(":")[2] for it in lines if "ekf.yaml:" in it])

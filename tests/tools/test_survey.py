@@ -202,12 +202,9 @@ def test_how_much_is_known() -> None:
     assert percentage(2000, 1999) == 99.9
 
 
-def test_the_program_reads_what_it_can(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_the_program_reads_what_it_can(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name, text in {"a.urdf": '<robot name="r"/>', "b.urdf": "<robot>", "c.xml": ""}.items():
-        (tmp_path / name).write_text(text)
+        (here / name).write_text(text)
     assert main(["."]) == 0
     first, second, *_ = capsys.readouterr().out.splitlines()
     assert first == "1 file read, 1 cannot be read"
