@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pytest
+from paths import write_files
 
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
 
@@ -51,9 +52,7 @@ WRITERS: dict[str, Command] = {
 
 @pytest.fixture
 def robot(here: Path) -> Path:
-    for name, text in FILES.items():
-        (here / name).parent.mkdir(exist_ok=True)
-        (here / name).write_text(text)
+    write_files(here, FILES)
     return here
 
 

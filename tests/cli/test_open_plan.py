@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from closed_robot import FILES
 from graph_cases import as_planned
-from paths import fixture_text
+from paths import fixture_text, write_files
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.system.json import from_yaml, to_json
@@ -29,8 +29,7 @@ class Folder:
     """A fleet file, the plan made of it, and a graph that is as planned."""
 
     def __init__(self, folder: Path, ekf: str) -> None:
-        for name, text in {**FILES, "ekf.yaml": ekf}.items():
-            (folder / name).write_text(text)
+        write_files(folder, {**FILES, "ekf.yaml": ekf})
         self.fleet, self.plan = str(folder / "fleet.yaml"), str(folder / "plan.yaml")
         self.graph, self.json = str(folder / "graph.json"), str(folder / "plan.json")
         assert main(["plan", self.fleet, "-o", self.plan]) == 0

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from built_faults import edited, in_launch
 from fleet_folder import planned_fleet
-from paths import fixture_text
+from paths import fixture_text, write_files
 from rule_examples import DESCRIPTION
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
@@ -196,8 +196,7 @@ def test_a_controller_of_the_vendor_that_lacks_an_interface_is_told_and_built(
 ) -> None:
     """It is not activated, in one robot as in two; its hardware is called by no robot's name."""
     launch = LAUNCH[: LAUNCH.index("ekf('ekf_local')")]
-    for name, text in {"robot.urdf": ARM, "arm.yaml": CONTROLLERS}.items():
-        (fleet.parent / name).write_text(text)
+    write_files(fleet.parent, {"robot.urdf": ARM, "arm.yaml": CONTROLLERS})
     (fleet.parent / "up.launch.py").write_text(f"{launch}{MANAGED}")
     assert main(["check-launch", str(fleet.parent / "up.launch.py")]) == 1
     assert "error: MB229" in capsys.readouterr().out

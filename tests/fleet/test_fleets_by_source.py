@@ -6,7 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from paths import fixture_text
+from paths import fixture_text, write_files
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.system.json import from_yaml
@@ -51,9 +51,7 @@ def folder(tmp_path: Path) -> Path:
         "bare.urdf": ROBOT,
         "fleet.yaml": FLEET,
     }
-    for name, text in files.items():
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_text(text)
+    write_files(tmp_path, files)
     return tmp_path
 
 

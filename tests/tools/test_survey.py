@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from lxml import etree
-from paths import CORPUS, ROOT
+from paths import CORPUS, ROOT, write_files
 from surveyed_robot import inventory, surveyed
 
 from multibot_rewrite.base.naming import make_naming
@@ -203,8 +203,7 @@ def test_how_much_is_known() -> None:
 
 
 def test_the_program_reads_what_it_can(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    for name, text in {"a.urdf": '<robot name="r"/>', "b.urdf": "<robot>", "c.xml": ""}.items():
-        (here / name).write_text(text)
+    write_files(here, {"a.urdf": '<robot name="r"/>', "b.urdf": "<robot>", "c.xml": ""})
     assert main(["."]) == 0
     first, second, *_ = capsys.readouterr().out.splitlines()
     assert first == "1 file read, 1 cannot be read"
