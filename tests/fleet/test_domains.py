@@ -403,13 +403,12 @@ def test_one_name_in_two_domains_is_no_clash(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("layout", ["tf-per-robot", "postfix"])
 def test_check_launch_reads_the_files_of_domain_bridge(
-    layout: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    layout: str, here: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Each side of a bridge is a node in its domain, with the topics of the file. Robots may be called
     as topics and parts of nodes are, one may be in the domain of all robots."""
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "rover.urdf").write_text(KINDS["gz rover"].text.replace("ROBOT", "rover"))
-    (tmp_path / "fleet.yaml").write_text(
+    (here / "rover.urdf").write_text(KINDS["gz rover"].text.replace("ROBOT", "rover"))
+    (here / "fleet.yaml").write_text(
         f"layout: {layout}\ndistro: jazzy\ndescription: rover.urdf\n"
         "domains: {scan: 11, a: 5, bridge: 0}\ncrossing: [robot_description]\n"
         "robots: [{name: scan}, {name: a, pose: {x: 3}}, {name: bridge, pose: {x: 6}}]\n"
@@ -423,7 +422,7 @@ def test_check_launch_reads_the_files_of_domain_bridge(
     # In one view of all domains the copies are left out.
     assert main(check[:2]) == 0
     assert "_bridge_0" not in capsys.readouterr().out
-    file = tmp_path / "out/domain_bridge/a_bridge.yaml"
+    file = here / "out/domain_bridge/a_bridge.yaml"
     config = yaml.safe_load(file.read_text())
     del config["topics"]["/clock"]
     file.write_text(yaml.safe_dump(config))
