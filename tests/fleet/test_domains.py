@@ -169,7 +169,7 @@ def test_free_fleet_gets_a_bridge_and_the_robots_of_its_adapter(made: Outputs) -
         "# The robots of the fleet adapter: put them below rmf_fleet of its configuration.\n"
         "rmf_fleet:\n  robots:\n"
     ) + "".join(
-        f'    {it}:\n      charger: "{it}_charger"\n      navigation_node_set: 2\n'
+        f'    {it}:\n      charger: "{it}_charger"\n      navigation_stack: 2\n'
         f'      initial_map: "L1"\n      map_frame: "map"\n'
         f'      robot_frame: "{it}/base_footprint"\n'
         for it in ("robot1", "robot2")
@@ -186,7 +186,7 @@ def test_the_adapter_of_free_fleet_finds_each_robot(layout: str, tmp_path: Path)
     robots = yaml.safe_load(text(made, "free_fleet/robots.yaml"))["rmf_fleet"]["robots"]
     edges = [it for it in made.planned.edges if not it.static]
     for robot, told in robots.items():
-        assert told["navigation_node_set"] == 2 and told["initial_map"]
+        assert told["navigation_stack"] == 2 and told["initial_map"]
         file = zenoh.Config.from_json5(text(made, f"free_fleet/{robot}.json5"))
         allow = json.loads(file.get_json("plugins/ros2dds/allow"))
         assert not any(own for what, own in allow.items() if what not in ALLOWED)
