@@ -23,10 +23,10 @@ from pairs import HOW, MACHINE, Row, as_installed, child, least_seconds, paired,
 from robots import robot
 
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.fleet.build import Outputs, make_outputs
-from multibot_rewrite.fleet.checks.read_back import read_back
+from multibot_rewrite.checks.build import Outputs, make_outputs
+from multibot_rewrite.checks.judged_plan import plan_fleet
+from multibot_rewrite.checks.read_back import read_back
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.fleet.robots.robot_groups import group_robots
 from multibot_rewrite.related_files.context import fill_template, make_context
 from multibot_rewrite.related_files.params.rewrite import rewrite_params
@@ -34,7 +34,7 @@ from multibot_rewrite.related_files.yaml_text import read_yaml
 
 ROBOTS = 100
 LINKS = 12
-HEAD = "layout: frames-per-robot\naffix: prefix\nstack: nav2\ndescription: rover.urdf\n"
+HEAD = "layout: frames-per-robot\naffix: prefix\nnode_sets: nav2\ndescription: rover.urdf\n"
 HEAD += "related_files: {params: params.yaml, rviz: nav2.rviz}\nrobots:\n"
 COSTMAP = """
 {name}:

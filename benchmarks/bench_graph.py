@@ -31,8 +31,8 @@ from plans import planned_end
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.knowledge.node_library import stack_of
-from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.knowledge.node_library import nodes_of_set
+from multibot_rewrite.knowledge.node_sets import built_in
 from multibot_rewrite.planning.plan import to_yaml
 from multibot_rewrite.planning.table import build_table
 from multibot_rewrite.rules.check import check
@@ -360,7 +360,7 @@ def as_installed(environ: Mapping[str, str]) -> dict[str, str]:
 
 
 def tables() -> Iterator[Row]:
-    nodes = stack_of(built_in(NEWEST_LTS), "nav2")
+    nodes = nodes_of_set(built_in(NEWEST_LTS), "nav2")
     names = [f"robot{at}" for at in range(1000)]
     for layout in ("frames-per-robot", "postfix"):
         naming = make_naming(layout)

@@ -22,7 +22,7 @@ from pairs import HOW, MACHINE, Row, paired, seconds, table
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.knowledge.stacks import load_stack
+from multibot_rewrite.knowledge.node_sets import load_node_set
 from multibot_rewrite.related_files.context import Context, fill_template, make_context
 from multibot_rewrite.related_files.params.rewrite import rewrite_params
 from multibot_rewrite.related_files.yaml_text import read_yaml
@@ -39,7 +39,7 @@ DECLARED: dict[str, dict[str, None]] = {
 def context(layout: str, affix: str) -> Context:
     """Nav2 on a robot of three links."""
     naming = make_naming(layout=layout, affix=affix)
-    return make_context(DECLARED, naming, load_stack("nav2", NEWEST_LTS), distro=NEWEST_LTS)  # type: ignore[arg-type]
+    return make_context(DECLARED, naming, load_node_set("nav2", NEWEST_LTS), distro=NEWEST_LTS)  # type: ignore[arg-type]
 
 
 def first(data: bytes, setting: Context) -> str:

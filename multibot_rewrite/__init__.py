@@ -21,7 +21,10 @@ if TYPE_CHECKING:
     )
     from multibot_rewrite.description.joining.part import Part
     from multibot_rewrite.description.library import Rewrite, explain, rewrite, rewrite_all, strip
-    from multibot_rewrite.fleet.file.system_sources import (
+    from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
+    from multibot_rewrite.library.loaded_fleet import LoadedFleet, load_fleet
+    from multibot_rewrite.library.one_file import RewrittenFile, rewrite_file, rewrite_files
+    from multibot_rewrite.library.systems import (
         compare,
         judge,
         system_of_bag,
@@ -32,9 +35,6 @@ if TYPE_CHECKING:
         system_of_graph,
         system_of_launch,
     )
-    from multibot_rewrite.fleet.one_file import RewrittenFile, rewrite_file, rewrite_files
-    from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
-    from multibot_rewrite.fleet.scripts import LoadedFleet, load_fleet
     from multibot_rewrite.refactor.adopt import Adopted, adopt
     from multibot_rewrite.refactor.rename import Renaming, rename_symbol
     from multibot_rewrite.related_files.join import Joined, join, split
@@ -86,10 +86,10 @@ _HOMES = {
     "related_files.join": ("Joined", "join", "split"),
     "description.joining.part": ("Part",),
     "description.library": ("Rewrite", "explain", "rewrite", "rewrite_all", "strip"),
-    "fleet.file.system_sources": ("compare", "judge", *(f"system_of_{it}" for it in _SOURCES)),
-    "fleet.one_file": ("RewrittenFile", "rewrite_file", "rewrite_files"),
+    "library.systems": ("compare", "judge", *(f"system_of_{it}" for it in _SOURCES)),
+    "library.one_file": ("RewrittenFile", "rewrite_file", "rewrite_files"),
     "fleet.robots.loaded_robot": ("LoadedRobot",),
-    "fleet.scripts": ("LoadedFleet", "load_fleet"),
+    "library.loaded_fleet": ("LoadedFleet", "load_fleet"),
     "refactor.adopt": ("Adopted", "adopt"),
     "refactor.rename": ("Renaming", "rename_symbol"),
     "system.records": ("System",),

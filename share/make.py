@@ -18,7 +18,7 @@ from argparse_manpage.manpage import Manpage
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 from multibot_rewrite.cli.declared.options import Option
 from multibot_rewrite.cli.parser import Parser, declare, make_parser
-from multibot_rewrite.knowledge.stacks import every_release
+from multibot_rewrite.knowledge.node_sets import every_release
 from multibot_rewrite.version import __version__
 
 HERE = Path(__file__).parent
@@ -28,7 +28,7 @@ ZSH = "zsh/site-functions/_{}"
 MAN = "man/man1/{}.1"
 ABOUT = "Many robots in one ROS 2 system: rewrite, plan, build and check a fleet."
 # What an argument called so is completed with.
-STACK, STACKS = "--stack", tuple(every_release().stacks)
+NODE_SET, NODE_SETS = "--node-set", tuple(every_release().node_sets)
 COMPLETED = dict.fromkeys(("FILE", "PATH", "INPUT", "PLAN", "FLEET", "FILE:LINE"), shtab.FILE)
 
 
@@ -66,7 +66,7 @@ def fish_option(option: Option) -> str:
     """Return what fish is told of an option: its names, whether a value follows and which there are."""
     kinds = ((it.lstrip("-"), "l" if it.startswith("--") else "s") for it in option.names)
     names = "".join(f" -{kind} {it}" for it, kind in kinds)
-    known = STACKS if STACK in option.names and "action" in option.keywords else ()
+    known = NODE_SETS if NODE_SET in option.names and "action" in option.keywords else ()
     choices = option.keywords.get("choices", known)
     value = " -r" * ("metavar" in option.keywords)
     one_of = f" -f -a {quoted(' '.join(choices))}" * bool(choices)
@@ -89,10 +89,10 @@ def multibot() -> argparse.ArgumentParser:
 
 
 def completed(parser: argparse.ArgumentParser) -> argparse.ArgumentParser:
-    """Return the same, with names of files or stacks where needed; a new stack is named freely."""
+    """Return the same, with names of files or node sets where needed; a new set is named freely."""
     for action in parser._actions:
-        if STACK in action.option_strings and isinstance(action.default, list):
-            action.choices = STACKS
+        if NODE_SET in action.option_strings and isinstance(action.default, list):
+            action.choices = NODE_SETS
         if action.metavar in COMPLETED and not action.choices:
             action.complete = COMPLETED[action.metavar]  # type: ignore[attr-defined]
         if isinstance(action, argparse._SubParsersAction):

@@ -35,7 +35,7 @@ collect_ignore = [*UNREAD]
 
 
 def pytest_report_header() -> str:
-    """The files that are left out."""
+    """Return the files that are left out."""
     return f"left out, no readers: {', '.join(UNREAD)}" if UNREAD else ""
 
 
@@ -79,7 +79,7 @@ MARKED = re.compile(r"^pytestmark = \[?\s*((?:pytest\.mark\.\w+,?\s*)+)", re.MUL
 
 
 def _left_out(config: pytest.Config) -> set[str]:
-    """The marks of tests that are not even made: two of three are in no fast run."""
+    """Return the marks of tests that are not even made: two of three are in no fast run."""
     return set() if _names_tests(config) else LEFT_OUT.get(config.option.markexpr, set())
 
 
@@ -89,13 +89,13 @@ def _names_tests(config: pytest.Config) -> bool:
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """A number by which fleets are drawn."""
+    """Add the option for the number by which fleets are drawn."""
     about = "draw fleets by this number; fresh: by one that is drawn and printed"
     parser.addoption("--drawn-seed", metavar="N", default="", help=about)
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """A file whose mark leaves all of it out is not imported; a fresh seed is drawn once, before there
+    """Leave out files whose mark leaves all of them out; draw a fresh seed once, before there
     are processes of xdist."""
     if config.option.drawn_seed == "fresh":
         config.option.drawn_seed = str(random.randrange(10**6))
@@ -145,7 +145,7 @@ def _marks_of_row(
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """What is deep is slow: ``-m "not slow"`` takes the place of the usual ``-m "not deep"``."""
+    """Mark deep tests as slow: ``-m "not slow"`` replaces the usual ``-m "not deep"``."""
     for item in items:
         if {"more", "deep"} & {it.name for it in item.iter_markers()}:
             item.add_marker("slow")
@@ -154,7 +154,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def pytest_collection_finish() -> None:
-    """What was collected is looked through no more."""
+    """Take what was collected out of the garbage collector's rounds."""
     gc.collect()
     gc.freeze()
 
@@ -166,8 +166,8 @@ SIZE = pytest.StashKey[int]()
 
 @pytest.hookimpl(trylast=True)
 def pytest_runtest_teardown(item: pytest.Item) -> None:
-    """What tests leave in circles, as large files in the frames of an error, is thrown away where it
-    is much: by the thresholds above it would stay for thousands of tests."""
+    """Collect circular garbage, such as large files in the frames of an error, once it is much:
+    by the thresholds above it would stay for thousands of tests."""
     stash = item.config.stash
     if _size() > stash.setdefault(SIZE, _size()) + GROWTH:
         gc.collect()
@@ -175,14 +175,14 @@ def pytest_runtest_teardown(item: pytest.Item) -> None:
 
 
 def _size() -> int:
-    """The bytes of memory that this process has; 0 where the system does not tell."""
+    """Return the bytes of memory that this process has; 0 where the system does not tell."""
     told = Path("/proc/self/statm")
     pages = int(told.read_text().split()[1]) if told.exists() else 0
     return pages * os.sysconf("SC_PAGE_SIZE")
 
 
 # Files whose tests build fleets for minutes.
-BUILDING_FILES = ("test_drawn_fleets.py", "test_cells_of_stacks.py")
+BUILDING_FILES = ("test_drawn_fleets.py", "test_cells_of_node_sets.py")
 # Files whose tests start nodes.
 LIVE_FILES = (
     *("test_live_", "rcl", "test_docs", "test_examples", "test_recipes", "test_scripts"),
@@ -216,16 +216,23 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
 
 @pytest.fixture(autouse=True, scope="session")
 def no_release(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """The facts that are tested are not those of the machine's ROS, nor what a user's cache keeps."""
+    """Test facts of the package alone: not of the machine's ROS, nor of a user's cache."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
         patch.delenv("ROS_DISTRO", raising=False)
         yield
 
 
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Return an empty folder, which is the working directory."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
 @pytest.fixture(scope="session")
 def corpus() -> dict[str, Path]:
-    """The real files beside the repository, by their relative path."""
+    """Return the real files beside the repository, by their relative path."""
     files = corpus_files()
     if not files:
         pytest.skip(f"no corpus of real robot files: looked for {CORPUS / 'urdf'}/**/*.urdf")
@@ -234,7 +241,7 @@ def corpus() -> dict[str, Path]:
 
 @pytest.fixture(scope="session")
 def wheels() -> dict[str, Path]:
-    """The files of the installed description wheels, by distribution and path."""
+    """Return the files of the installed description wheels, by distribution and path."""
     files = wheel_files()
     if not files:
         pytest.skip(f"no description wheel installed: pip install {' '.join(WHEELS)}")
@@ -243,7 +250,7 @@ def wheels() -> dict[str, Path]:
 
 @pytest.fixture(scope="session")
 def tf2(pytestconfig: pytest.Config) -> dict[str, str]:
-    """What makes tf2_msgs importable in children; empty where it cannot be had."""
+    """Return what makes tf2_msgs importable in children; empty where it cannot be had."""
     if find_spec("tf2_msgs") or tf2_build.missing():
         return {}
     return tf2_build.build(pytestconfig.cache.mkdir("tf2_msgs"))

@@ -55,7 +55,7 @@ class Verdict(NamedTuple):
 
     @property
     def is_known(self) -> bool:
-        """Is everything that runs in the file known?"""
+        """Return whether everything that runs in the file is known."""
         return self.word != REFUSED and all(code not in UNKNOWN for code, _ in self.why)
 
 

@@ -62,7 +62,7 @@ def robots_in(layout: str) -> Mapping[str, Robot]:
     affix = "postfix" if layout == "postfix" else "prefix"
     fleet = load_fleet(
         {
-            **{"layout": layout, "affix": affix, "stack": "robot_state", "distro": "jazzy"},
+            **{"layout": layout, "affix": affix, "node_sets": "robot_state", "distro": "jazzy"},
             **{"description": str(ROVER), "robots": [{"name": it} for it in ROBOTS]},
         }
     )

@@ -33,7 +33,7 @@ def checked(call: Callable[P, R]) -> Callable[P, R]:
         else:
             read = READERS[it.annotation]
             several = it.kind is Parameter.VAR_POSITIONAL
-            readers[it.name] = _every(read) if several else read
+            readers[it.name] = _reader_of_list(read) if several else read
     named = [it for it in takes.parameters.values() if it.kind is not Parameter.VAR_POSITIONAL]
     names = {it.name for it in named}
     needed = {it.name for it in named if it.default is Parameter.empty}
@@ -45,7 +45,7 @@ def checked(call: Callable[P, R]) -> Callable[P, R]:
         # inspect takes longer to bind arguments than all readers do: most calls do not need it.
         if len(values) == len(args) + len(kwargs) and needed <= values.keys() <= names:
             read = {name: readers[name](f"{title}: {name}", it) for name, it in values.items()}
-            return _call(call, read)
+            return _called_with(call, read)
         given = _bound(takes, title, args, kwargs)
         for name, value in given.arguments.items():
             given.arguments[name] = readers[name](f"{title}: {name}", value)
@@ -54,7 +54,7 @@ def checked(call: Callable[P, R]) -> Callable[P, R]:
     return run
 
 
-def _call(call: Callable[..., R], values: Mapping[str, Any]) -> R:
+def _called_with(call: Callable[..., R], values: Mapping[str, Any]) -> R:
     return call(**values)
 
 
@@ -70,7 +70,7 @@ def _bound(takes: Signature, title: str, args: tuple[Any, ...], kwargs: dict[str
         raise UsageError(f"{title}: {error}; it takes {', '.join(known)}") from None
 
 
-def _every(read: Reader) -> Reader:
+def _reader_of_list(read: Reader) -> Reader:
     return lambda what, values: tuple(read(f"{what}[{at}]", it) for at, it in enumerate(values))
 
 
@@ -78,7 +78,7 @@ def _or_none(read: Reader) -> Reader:
     return lambda what, value: None if value is None else read(what, value)
 
 
-def _wrong(what: str, value: object, write: str) -> UsageError:
+def _type_error(what: str, value: object, write: str) -> UsageError:
     type_ = type(value).__name__
     article = "an" if type_[:1] in "aeiouAEIOU" else "a"
     return UsageError(f"{what} is {value if value is None else f'{article} {type_}'}; {write}")
@@ -88,27 +88,27 @@ def _text(what: str, value: object) -> object:
     if isinstance(value, str):
         return value
     plain = isinstance(value, bool | int | float)
-    raise _wrong(what, value, f"write {str(value).lower()!r}" if plain else "write a str")
+    raise _type_error(what, value, f"write {str(value).lower()!r}" if plain else "write a str")
 
 
 def _names(what: str, value: object) -> object:
     if isinstance(value, str):
         words = value.replace(",", " ").split()
-        raise _wrong(what, value, f"write {words or [value]!r}")
+        raise _type_error(what, value, f"write {words or [value]!r}")
     if not isinstance(value, Iterable) or isinstance(value, bytes | bytearray):
-        raise _wrong(what, value, "write a list of str")
+        raise _type_error(what, value, "write a list of str")
     return tuple(_text(f"{what}[{at}]", it) for at, it in enumerate(value))
 
 
 def _records(what: str, value: object) -> object:
     if isinstance(value, Iterable) and not isinstance(value, str | bytes | bytearray | Mapping):
         return tuple(value)
-    raise _wrong(what, value, "write a list")
+    raise _type_error(what, value, "write a list")
 
 
 def _texts_by_name(what: str, value: object) -> object:
     if not isinstance(value, Mapping):
-        raise _wrong(what, value, "write a dict of str")
+        raise _type_error(what, value, "write a dict of str")
     for key in value:
         _text(f"a key of {what}", key)
     return {key: _text(f"{what}[{key!r}]", it) for key, it in value.items()}
@@ -117,20 +117,20 @@ def _texts_by_name(what: str, value: object) -> object:
 def _switch(what: str, value: object) -> object:
     if isinstance(value, bool):
         return value
-    raise _wrong(what, value, "write True or False")
+    raise _type_error(what, value, "write True or False")
 
 
 def _number(what: str, value: object) -> object:
     if isinstance(value, int) and not isinstance(value, bool):
         return value
-    raise _wrong(what, value, "write an int")
+    raise _type_error(what, value, "write an int")
 
 
 def _path(what: str, value: object) -> object:
     # A path of bytes would fail where it is put into a message.
     if isinstance(value, str | os.PathLike) and isinstance(os.fspath(value), str):
         return value
-    raise _wrong(what, value, "write a path")
+    raise _type_error(what, value, "write a path")
 
 
 def _path_or(other: type, write: str) -> Reader:
@@ -140,7 +140,7 @@ def _path_or(other: type, write: str) -> Reader:
         try:
             return _path(what, value)
         except UsageError:
-            raise _wrong(what, value, write) from None
+            raise _type_error(what, value, write) from None
 
     return read
 

@@ -97,8 +97,7 @@ def bytes_if_read(path: str) -> bytes:
 
 
 def read_text(path: str) -> str:
-    """Return the text of a file with newlines as line ends; raises what ``read_bytes`` raises, and
-    UnicodeDecodeError."""
+    """Return a file's text with plain line ends; raises as ``read_bytes``, or UnicodeDecodeError."""
     text = read_bytes(path).decode().removeprefix("\ufeff")  # utf-8-sig is a module to be loaded
     return text.replace("\r\n", "\n").replace("\r", "\n") if "\r" in text else text
 
@@ -219,10 +218,10 @@ def _loader() -> type[yaml.SafeLoader]:
     loader: Any = type("BoundedLoader", (base,), {})
     for kind in _CONVERTED:
         construct = base.yaml_constructors[_TAG + kind]
-        loader.add_constructor(_TAG + kind, _checked(construct, kind))
+        loader.add_constructor(_TAG + kind, _with_digit_limit(construct, kind))
     for tag, read in ANGLES.items():
         construct = partial(lambda read, own, node: read(float(own.construct_scalar(node))), read)
-        loader.add_constructor(tag, _checked(construct, tag))
+        loader.add_constructor(tag, _with_digit_limit(construct, tag))
     return loader  # type: ignore[no-any-return]
 
 
@@ -243,7 +242,7 @@ def _plain_loader() -> type[yaml.SafeLoader]:
     return own  # type: ignore[no-any-return]
 
 
-def _checked(construct: Any, kind: str) -> Any:
+def _with_digit_limit(construct: Any, kind: str) -> Any:
     from yaml.constructor import ConstructorError
 
     def checked(loader: Any, node: yaml.Node) -> Any:

@@ -6,8 +6,6 @@ Rows are in ``conventions.txt``, lines of words and no YAML: the start of every 
 none pays for a parser.
 """
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Mapping, Sequence

@@ -34,8 +34,7 @@ def schema_text(schema: str) -> bytes:
 
 
 def may_be_written(schema: str, path: str) -> bool:
-    """Return whether a schema may be written there: nothing, or this schema in another version,
-    exists."""
+    """Return whether a schema may be written there: no file is, or one with another version of it."""
     if not os.path.lexists(path):
         return True
     own = _name_in(os.path.join(_PACKAGE, schema))

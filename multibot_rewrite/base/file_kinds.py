@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a file is, by its text: asked before the reader of a command rejects it by its own schema."""
 
-from __future__ import annotations
-
 import re
 from codecs import BOM_UTF8
 from collections.abc import Mapping, Sequence

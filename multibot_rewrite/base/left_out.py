@@ -43,10 +43,10 @@ def ignored_by_git(paths: Iterable[str]) -> set[str]:
     for path in paths:
         if tree := _work_tree(os.path.dirname(os.path.abspath(path))):
             trees[tree].append(path)
-    return {path for tree, those in trees.items() for path in _ignored(tree, those)}
+    return {path for tree, those in trees.items() for path in _ignored_by_git(tree, those)}
 
 
-def _ignored(tree: str, paths: list[str]) -> list[str]:
+def _ignored_by_git(tree: str, paths: list[str]) -> list[str]:
     import subprocess  # a command that looks into no folder needs no git
 
     from multibot_rewrite.base.child import git

@@ -9,8 +9,6 @@ must occur before anything else"). urdfdom, sdformat, srdfdom, ros2_control and 
 All but the root's tag keeps its length, and every tag its place among the others.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from typing import NamedTuple

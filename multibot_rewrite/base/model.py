@@ -120,5 +120,4 @@ class ProofError(MultibotError):
 
 
 class Unusable(MultibotError):
-    """What a job needs besides, such as rclpy, is not there or does not start; the message says what to
-    do."""
+    """What a job needs, such as rclpy, is missing or does not start; the message has the remedy."""

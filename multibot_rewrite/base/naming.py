@@ -5,8 +5,6 @@ A renamed value is always the old value with one insertion, so a name's spelling
 where to insert, and what is put before and after the robot's name.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple, TypedDict
 

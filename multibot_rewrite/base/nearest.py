@@ -116,16 +116,16 @@ def _hint(near: str) -> str:
 
 def meant_name(name: str, known: Iterable[str]) -> str:
     """Return the known name that differs from ``name`` by one typing mistake in one word, or ""."""
-    words = _words(name)
+    words = _name_parts(name)
     for it, _ in zip(known, range(COMPARED), strict=False):
-        others = _words(it)
+        others = _name_parts(it)
         if len(words) == len(others) and (words == others or _one_typo(words, others)):
             return it
     return ""
 
 
 @lru_cache(maxsize=4096)  # each unknown name is compared with the same known ones
-def _words(name: str) -> tuple[str, ...]:
+def _name_parts(name: str) -> tuple[str, ...]:
     return tuple(fold(name).split("_"))
 
 
@@ -135,13 +135,23 @@ def _one_typo(words: Sequence[str], others: Sequence[str]) -> bool:
     if len(pairs) != 1:
         return False
     one, two = pairs[0]
-    if not (one.isalpha() and two.isalpha()) or max(len(one), len(two)) < 4:
-        return False
-    while one and two and one[0] == two[0]:
-        one, two = one[1:], two[1:]
-    while one and two and one[-1] == two[-1]:
-        one, two = one[:-1], two[:-1]
-    return max(len(one), len(two)) == 1 or (len(one) == 2 and one == two[::-1])
+    are_long = one.isalpha() and two.isalpha() and max(len(one), len(two)) >= 4
+    return are_long and typing_mistakes(one, two, most=2) == 1
+
+
+def typing_mistakes(one: str, other: str, most: int = 3) -> int:
+    """Return how many letters are wrong, missing, too many or swapped with the next, up to ``most``."""
+    before = last = list(range(len(other) + 1))
+    if abs(len(one) - len(other)) >= most:
+        return most
+    for at, letter in enumerate(one, 1):
+        row = [at]
+        for to, wanted in enumerate(other, 1):
+            swapped = at > 1 < to and one[at - 2 : at] == other[to - 2 : to][::-1]
+            found = [last[to], row[-1], last[to - 1] - (letter == wanted)]
+            row.append(1 + min(found + [before[to - 2]] * swapped))
+        before, last = last, row
+    return min(last[-1], most)
 
 
 @cache

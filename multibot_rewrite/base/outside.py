@@ -6,8 +6,6 @@ function is noted with a digest of its answer. ``answer_now`` asks again, so a r
 still holds where all answers are the same.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -56,10 +54,10 @@ def outside(function: Callable[_P, _T]) -> Callable[_P, _T]:
             return function(*arguments, **named)
         question = Question(name, arguments, tuple(sorted(named.items())))
         try:
-            with _noting(None):  # what it asks in turn is in its answer
+            with _notes_kept(None):  # what it asks in turn is in its answer
                 answer = function(*arguments, **named)
         except Exception as error:  # whatever it is, the caller gets it
-            _note(notes, question, _failed(error))
+            _note(notes, question, _error_digest(error))
             raise
         _note(notes, question, digest(answer))
         return answer
@@ -71,7 +69,7 @@ def outside(function: Callable[_P, _T]) -> Callable[_P, _T]:
 def recorded(job: Callable[[], _T]) -> tuple[_T, Asked | None]:
     """Return the result of a job and what it asked for; None for the latter if it may change."""
     notes: Asked = {}
-    with _noting(notes):
+    with _notes_kept(notes):
         result = job()
     return result, None if UNREPEATABLE in notes else notes
 
@@ -90,10 +88,10 @@ def answer_now(question: Question) -> str:
     if not getattr(function, "is_outside", False):
         raise LookupError(question.function)
     try:
-        with _noting(None):
+        with _notes_kept(None):
             return digest(function(*question.arguments, **dict(question.named)))  # type: ignore[misc]
     except Exception as error:  # the same error is the same answer
-        return _failed(error)
+        return _error_digest(error)
 
 
 def digest(answer: object) -> str:
@@ -108,7 +106,7 @@ def digest(answer: object) -> str:
     return text if len(text) <= SHORT else digest(text.encode("utf-8", "backslashreplace"))
 
 
-def _failed(error: Exception) -> str:
+def _error_digest(error: Exception) -> str:
     return f"{type(error).__name__} {digest(str(error))}"
 
 
@@ -118,7 +116,7 @@ def _note(notes: Asked, question: Question, answer: str) -> None:
 
 
 @contextmanager
-def _noting(notes: Asked | None) -> Iterator[None]:
+def _notes_kept(notes: Asked | None) -> Iterator[None]:
     before = _NOTES.set(notes)
     try:
         yield
@@ -170,5 +168,5 @@ def kept_bytes(path: str, most: int) -> bytes:
     """Return the first bytes of a large file; raises OSError. Results that use them hold as long as the
     file has its time and size: reading it again would cost more than the answer."""
     file_state(path)
-    with _noting(None), open(path, "rb") as file:
+    with _notes_kept(None), open(path, "rb") as file:
         return file.read(most)

@@ -34,10 +34,11 @@ OF_OLD = "humble"
 # MoveIt's adapters of planning requests have had another package since Jazzy (moveit2 MIGRATION.md).
 _ADAPTERS = b"default_planner_request_adapters/"
 CLASSIC = "libgazebo_"
-_OLD_WORDS = (CLASSIC.encode(), b"ignition-", b"ign_ros2_control", _ADAPTERS)
+# The plugins and the type of sensor of Field-Robotics-Lab/ds_sim (gazebo_src, src) are of Classic.
+_OLD_WORDS = (CLASSIC.encode(), b"ignition-", b"ign_ros2_control", b"dsros_", _ADAPTERS)
 # Two expressions: of one for both every character of a text is tried.
 _OLD = lazy_compile(
-    rb"[>\"'](libgazebo_[\w.-]+|(?:lib)?ignition-gazebo[\w.-]*|(?:lib)?ign_ros2_control[\w.-]*)"
+    rb"[>\"'](libgazebo_[\w.-]+|(?:lib)?(?:dsros_|ignition-gazebo|ign_ros2_control)[\w.-]*)"
 )
 _OLD_ADAPTER = lazy_compile(rb"(" + _ADAPTERS + rb"\w+)")
 _NEW_WORDS = (b"gz-sim", b"gz::sim", b"gz_ros2_control", b"default_planning_request_adapters/")
@@ -61,7 +62,7 @@ def chosen_release(given: str, environment: Mapping[str, str]) -> str:
     raise UsageError(f"{VARIABLE} is {found!r}, which is not known; {hint}")
 
 
-def told_release(given: str, environment: Mapping[str, str]) -> str:
+def release_for_description(given: str, environment: Mapping[str, str]) -> str:
     """Return the release for one description: the one asked for, otherwise that of ROS_DISTRO,
     otherwise of the sourced ROS; empty where none of them is known."""
     if given:
@@ -71,9 +72,9 @@ def told_release(given: str, environment: Mapping[str, str]) -> str:
     return known if known in RELEASES else ""
 
 
-def why_told(given: str, environment: Mapping[str, str]) -> str:
-    """Return what sets the release of ``told_release``: an option or variable; empty for neither."""
-    if not told_release(given, environment):
+def why_release(given: str, environment: Mapping[str, str]) -> str:
+    """Return what sets ``release_for_description``: an option or variable; empty for neither."""
+    if not release_for_description(given, environment):
         return ""
     by_variable = VARIABLE if environment.get(VARIABLE) else "that ROS is sourced"
     return "--distro" if given else by_variable
@@ -97,8 +98,7 @@ def unusual_release(given: str, environment: Mapping[str, str]) -> str:
 
 
 def evidence(text: bytes) -> str:
-    """Return the library that shows that a description is for ``OF_OLD`` or earlier; empty if none
-    does."""
+    """Return the library by which a description is for ``OF_OLD`` or earlier; empty if none does."""
     if not any(it in text for it in _OLD_WORDS):
         return ""
     # Words are found faster than an expression.
@@ -129,14 +129,14 @@ def release_here(given: str | None = None) -> str:
     return chosen_release(given or "", os.environ)
 
 
-def release_told(given: str | None = None) -> str:
-    """Return ``told_release`` with this process's environment: for commands and public calls."""
-    return told_release(given or "", os.environ)
+def release_chosen_here(given: str | None = None) -> str:
+    """Return ``release_for_description`` in this process: for commands and public calls."""
+    return release_for_description(given or "", os.environ)
 
 
 def why_here(given: str | None = None) -> str:
     """Return ``why_told`` with this process's environment."""
-    return why_told(given or "", os.environ)
+    return why_release(given or "", os.environ)
 
 
 def release_doubt(given: str | None = None) -> str:
@@ -144,15 +144,17 @@ def release_doubt(given: str | None = None) -> str:
     return unusual_release(given or "", os.environ)
 
 
-def facts_of_release(release: str, why: str = "") -> str:
+def facts_of_release(release: str, why: str = "", ros: str = ROS_2) -> str:
     """Return the end of a summary: the release and the reason for it; empty without one."""
+    if ros == ROS_1:
+        return " (ROS 1: its plugins or its package.xml say so)"
     return f" (ROS 2 {release}{why and f': {why}'})" if release else ""
 
 
 @cache  # so many facts, so few words
 def has_release(words: str, release: str) -> bool:
     """Return whether a fact with these release words holds in ``release``; always without words."""
-    return not words or any(_holds(it, release) for it in _terms(words))
+    return not words or any(_term_holds(it, release) for it in _terms(words))
 
 
 def releases_with(words: str) -> tuple[str, ...]:
@@ -167,7 +169,7 @@ def share_release(words: str, others: str) -> bool:
 
 def since_version(words: str, release: str) -> str:
     """Return the package version that brought a fact into ``release``; "" if it always had it."""
-    found = [it["version"] or "" for it in _terms(words) if _holds(it, release)]
+    found = [it["version"] or "" for it in _terms(words) if _term_holds(it, release)]
     return min(found, default="")
 
 
@@ -194,7 +196,7 @@ def _terms(words: str) -> Iterator[re.Match[str]]:
         yield found
 
 
-def _holds(term: re.Match[str], release: str) -> bool:
+def _term_holds(term: re.Match[str], release: str) -> bool:
     at, bound = RELEASES.index(release), RELEASES.index(term["release"])
     if term["until"]:
         return at <= bound

@@ -64,14 +64,14 @@ def one_line(text: str) -> str:
         text = f"{text[: LONGEST // 2]} … {text[-LONGEST // 2 :]}"
     if text.isprintable():
         return text  # as most are: the pattern takes longer to compile than a report to write
-    return re.sub(_IN_A_LINE, _escaped, text)
+    return re.sub(_IN_A_LINE, _escaped_match, text)
 
 
 def for_terminal(text: str) -> str:
     """Return several lines, possibly coloured, with every odd character escaped."""
     if text.replace("\n", "").isprintable():
         return text
-    return re.sub(_IN_A_TEXT, _escaped, text)
+    return re.sub(_IN_A_TEXT, _escaped_match, text)
 
 
 def in_json(text: str) -> str:
@@ -79,5 +79,5 @@ def in_json(text: str) -> str:
     return re.sub(_NOT_ESCAPED, lambda found: f"\\u{ord(found[0]):04x}", text)
 
 
-def _escaped(found: re.Match[str]) -> str:
+def _escaped_match(found: re.Match[str]) -> str:
     return found[0].encode("unicode_escape").decode()

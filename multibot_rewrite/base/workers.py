@@ -5,8 +5,6 @@ A pool of the standard library waits forever, or gives up altogether, when one o
 killed; and nothing but the end of a process stops an expression like 9**9**9.
 """
 
-from __future__ import annotations
-
 import gc
 import os
 import pickle

@@ -23,11 +23,11 @@ def run(options: argparse.Namespace) -> int:
         distro=options.distro or "",
     )
     deliver_changed(options, made.before, made.after, write=options.in_place)
-    _tell(options, made)
+    _print_result(options, made)
     return DONE
 
 
-def _tell(options: argparse.Namespace, made: Adopted) -> None:
+def _print_result(options: argparse.Namespace, made: Adopted) -> None:
     if made.argument:
         many = plural(len(made.verified), "description")
         if made.configurations:

@@ -12,32 +12,39 @@ from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import facts_of_release
 from multibot_rewrite.base.wording import plural
+from multibot_rewrite.checks.build import make_outputs
+from multibot_rewrite.checks.judged_plan import plan_fleet
+from multibot_rewrite.checks.read_back import read_back
 from multibot_rewrite.cli.fleet import note_interfaces
 from multibot_rewrite.cli.folders import change_folder, check_inside, clear_leftovers, locked
 from multibot_rewrite.cli.output import detail, note, print_lines, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
-from multibot_rewrite.cli.report import About, check_report, chosen, report_beside, with_coverage
+from multibot_rewrite.cli.report import (
+    About,
+    check_report,
+    chosen,
+    report_findings_too,
+    with_coverage,
+)
 from multibot_rewrite.cli.usage import asked_number
 from multibot_rewrite.cli.walk import check_link, is_same_file
 from multibot_rewrite.description.checks.meeting import not_verified
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.sources.release_said import MANIFEST
-from multibot_rewrite.fleet.build import (
+from multibot_rewrite.fleet.file.fleet_file import input_files, read_fleet
+from multibot_rewrite.fleet.file.robot_choice import Choice
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.launch.launch_file import LAUNCH
+from multibot_rewrite.fleet.outputs.manifest import (
     NOTE,
     OutputChanges,
     hash_of,
-    make_outputs,
     manifest,
     output_changes,
     read_manifest,
 )
-from multibot_rewrite.fleet.checks.read_back import read_back
-from multibot_rewrite.fleet.file.fleet_file import input_files, read_fleet
-from multibot_rewrite.fleet.file.robot_choice import Choice
-from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
-from multibot_rewrite.fleet.launch.launch_file import LAUNCH
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
-from multibot_rewrite.system.coverage import Coverage
+from multibot_rewrite.system.coverage import Coverage, coverage
 
 
 def run(options: argparse.Namespace) -> int:
@@ -59,13 +66,13 @@ def run(options: argparse.Namespace) -> int:
         for it in made.findings
         if it._replace(level=ERROR) not in back and (it.code, it.names) not in again
     )
-    held = plan.held(made.planned)
-    every = (*told, *plan.with_names((*back, *plan.fleet.table.problems)))
+    held = coverage(made.planned)
+    every = (*told, *back, *plan.fleet.table.problems)
     # A key of the fleet file in place of the option of urdf-postfix.
     both = dict.fromkeys(it._replace(hint=it.hint.replace("--topics ", "topics: ")) for it in every)
     ordered = sorted(both, key=lambda it: (it.file, it.line, it.column, it.code, it.place))
     about = About([options.fleet], plan.words, plan.file.distro, held)
-    if report_beside(options, chosen(options, ordered), about):
+    if report_findings_too(options, chosen(options, ordered), about):
         say("nothing was written", PROGRAM)
         return STOPPED
     read = _read(plan, made.files)
@@ -73,10 +80,10 @@ def run(options: argparse.Namespace) -> int:
     _check_inputs(options.output, files, {*read, *input_files(plan.file), *plan.fleet.read})
     with locked(options.output):
         known = _known(options.output)
-        there = _there(options.output, {*known, *(it.path for it in files)})
+        there = _existing_hashes(options.output, {*known, *(it.path for it in files)})
         found = output_changes(files, known, there)
         if options.check:
-            return _stale(options, found)
+            return _report_stale(options, found)
         why = not_verified({*made.findings, *plan.fleet.table.problems})
         end = f"; not verified: {', '.join(why)}" if why else ""
         end = f"{end}{facts_of_release(plan.file.distro, plan.file.why)}"
@@ -110,7 +117,7 @@ def _known(folder: str) -> dict[str, str]:
     """Return hashes of the files that the last build made, and that a killed build has made so far."""
     found = _of_manifest(folder, MANIFEST)
     begun = _of_manifest(folder, NOTE)
-    there = _there(folder, begun)
+    there = _existing_hashes(folder, begun)
     return {**found, **{path: it for path, it in begun.items() if there.get(path) == it}}
 
 
@@ -122,12 +129,12 @@ def _of_manifest(folder: str, name: str) -> dict[str, str]:
     return {**read_manifest(data, path), name: hash_of(data)}
 
 
-def _there(folder: str, paths: Iterable[str]) -> Mapping[str, str]:
+def _existing_hashes(folder: str, paths: Iterable[str]) -> Mapping[str, str]:
     full = {path: os.path.join(folder, path) for path in paths}
     return {path: hash_of(read_file(it)) for path, it in full.items() if os.path.isfile(it)}
 
 
-def _stale(options: argparse.Namespace, found: OutputChanges) -> int:
+def _report_stale(options: argparse.Namespace, found: OutputChanges) -> int:
     lines = [
         *(f"{path}: stale" for path in found.write),
         *(f"{it}: left over" for it in found.remove),
@@ -177,7 +184,7 @@ def _undone(options: argparse.Namespace) -> int:
         known = _known(folder)
         if not known:
             raise UsageError(f"{folder}: no build wrote into it, so there is nothing to undo")
-        found = output_changes((), known, _there(folder, known))
+        found = output_changes((), known, _existing_hashes(folder, known))
         if not options.force:
             _refuse(folder, found.edited, "it was edited since it was built")
         check_inside(folder, found.remove)

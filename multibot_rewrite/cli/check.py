@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``multibot check PLAN``: is the running system what was planned?"""
+"""``multibot check PLAN``: compare the running system with its plan."""
 
 from __future__ import annotations
 
@@ -135,11 +135,11 @@ def plan_of(options: argparse.Namespace) -> System:
         return seen_plan(diagnose(seen))
     if not is_fleet(data):
         return _of_release(options, read_plan(data, path))
+    from multibot_rewrite.checks.closed_plan import closed_plan
+    from multibot_rewrite.checks.judged_plan import plan_fleet
     from multibot_rewrite.cli.fleet import check_unread, note_interfaces  # a plan needs none of it
-    from multibot_rewrite.fleet.checks.closed_plan import closed_plan
     from multibot_rewrite.fleet.file.fleet_file import input_files, read_fleet
     from multibot_rewrite.fleet.fleet import expected
-    from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
     file = read_fleet(path, options.distro or "", os.environ)
     if options.output:

@@ -1,26 +1,32 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``multibot check-launch``: what would be wrong with the robots that a launch file starts?"""
+"""``multibot check-launch``: report what is wrong with the robots that a launch file starts."""
 
 from __future__ import annotations
 
 import argparse
+import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from functools import partial
 from itertools import islice
 
+from multibot_rewrite.base.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.base.findings.finding import ERROR, Finding
-from multibot_rewrite.base.model import MultibotError
-from multibot_rewrite.base.releases import release_told
+from multibot_rewrite.base.model import InputError, MultibotError
+from multibot_rewrite.base.releases import release_chosen_here
 from multibot_rewrite.cli import check, pictures, unplanned
 from multibot_rewrite.cli.fleet import orders_of, own_nodes
 from multibot_rewrite.cli.output import note
 from multibot_rewrite.cli.report import check_report, chosen
 from multibot_rewrite.cli.walk import check_target
+from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.description.sources.release_said import release_of_build
 from multibot_rewrite.fleet.file.simulator_switch import MOST, is_called_as_switch
-from multibot_rewrite.fleet.file.system_sources import launched_by
+from multibot_rewrite.fleet.outputs.output_file import PLAN
+from multibot_rewrite.library.systems import launched_by
 from multibot_rewrite.lint.launched import named_findings
 from multibot_rewrite.live.diagnose import diagnose
+from multibot_rewrite.planning.plan import read_plan
 from multibot_rewrite.producers.launch.findings import not_read
 from multibot_rewrite.producers.launch.includes import arguments_declared
 from multibot_rewrite.producers.launch.kept_paths import read_text
@@ -29,6 +35,7 @@ from multibot_rewrite.producers.launch.records import LaunchOrder
 from multibot_rewrite.rules.check import check_view, side_by_side
 from multibot_rewrite.rules.launch.judge import as_one_of_several, as_sure, judge_launch, placed
 from multibot_rewrite.rules.launch.started import no_manager
+from multibot_rewrite.system.records import System
 
 _Read = Callable[[Sequence[LaunchOrder]], Launched]
 
@@ -41,7 +48,7 @@ def run(options: argparse.Namespace) -> int:
     if options.output:
         check_target(options.output, [*filter(None, [options.plan]), *(it.file for it in orders)])
     plan, own = check.plan_of(options) if options.plan else None, own_nodes(options)
-    told = release_told(options.distro) or (plan.release if plan else "")
+    told = release_chosen_here(options.distro) or (plan.release if plan else "")
     read = partial(launched_by, told=told, nodes=own[0], nodl=own[1])
     made = read(orders)
     for it in made.system.environment.caveats:
@@ -57,9 +64,20 @@ def run(options: argparse.Namespace) -> int:
         return check.conclude(options, plan, made.system, judged, chosen(options, found))
     # What a check is told besides: there is no snapshot, and nothing to begin.
     whole = argparse.Namespace(**vars(options), snapshot=[], suggest=None)
-    seen = diagnose(made.system)
-    every = (*found, *placed((as_sure(it, made, seen.whose) for it in seen.findings), made))
+    seen = diagnose(made.system, names=plan_beside(orders))
+    sure = (as_sure(it, made, seen.whose) for it in seen.findings)
+    every = (*found, *placed(sure, made, seen.whose))
     return unplanned.report_on(whole, seen._replace(findings=every))
+
+
+def plan_beside(orders: Sequence[LaunchOrder]) -> System | None:
+    """Return the plan that a build wrote beside the one launch file; None without such a plan."""
+    path = os.path.join(os.path.dirname(orders[0].file), PLAN)
+    if len(orders) > 1 or not (release_of_build(orders[0].file) and os.path.isfile(path)):
+        return None
+    with suppress(InputError):
+        return read_plan(read_file(path, MAX_FLEET_BYTES), path)
+    return None
 
 
 def _with_remedies(

@@ -109,8 +109,7 @@ def _commit(staged: dict[str, str]) -> None:
 
 
 def _stage(path: str, data: bytes, staged: dict[str, str]) -> None:
-    """Put the data next to its target and note that in ``staged``, by target; a device or pipe is
-    written at once."""
+    """Write the data next to its target and note it in ``staged``; devices and pipes at once."""
     target, mode = _target(path)
     if mode and not stat.S_ISREG(mode):
         with open(path, "wb") as file:

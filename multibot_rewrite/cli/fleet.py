@@ -12,8 +12,9 @@ from multibot_rewrite.base.config import configured_definitions
 from multibot_rewrite.base.file_kinds import DESCRIPTIONS, refuse_others
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import release_doubt
+from multibot_rewrite.checks.judged_plan import make_fleet
 from multibot_rewrite.cli.output import note
-from multibot_rewrite.cli.report import About, check_report, chosen, report_beside
+from multibot_rewrite.cli.report import About, check_report, chosen, report_findings_too
 from multibot_rewrite.cli.usage import (
     asked_number,
     check_order,
@@ -25,7 +26,7 @@ from multibot_rewrite.cli.usage import (
 )
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.fleet.fleet import Fleet, make_fleet
+from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.knowledge.nodl.lookup import NO_DOCUMENTS, SUFFIXES
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.producers.launch.records import LaunchOrder, launch_order, orders_in_words
@@ -35,10 +36,10 @@ WRITTEN = ("output", "save_snapshot", "report")
 FLEET_FILES = (".yaml", ".yml")
 # What a fleet file says itself, and how the option is written.
 _OF_FLEET_FILE = (
-    *("robots", "stack", "nodes", "layout", "affix", "topics", "separator", "shared"),
+    *("robots", "node_set", "nodes", "layout", "affix", "topics", "separator", "shared"),
     *("definitions", "launch", "roots"),
 )
-OF_FLEET_FILE = {"words": "ROBOT", **{it: f"--{it}" for it in _OF_FLEET_FILE}}
+OF_FLEET_FILE = {"words": "ROBOT", **{it: f"--{it.replace('_', '-')}" for it in _OF_FLEET_FILE}}
 
 
 def check_use(options: argparse.Namespace, command: str, printed: bool) -> None:
@@ -72,13 +73,13 @@ def note_interfaces(options: argparse.Namespace, facts: Iterable[NodeFacts]) -> 
 
 
 def _from_file(options: argparse.Namespace) -> Fleet:
-    from multibot_rewrite.fleet.checks.closed_plan import closed_plan
+    from multibot_rewrite.checks.closed_plan import closed_plan
+    from multibot_rewrite.checks.judged_plan import plan_fleet
     from multibot_rewrite.fleet.file.fleet_file import (  # one description needs none of it
         input_files,
         read_fleet,
     )
     from multibot_rewrite.fleet.file.robot_choice import Choice
-    from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
     choice = Choice(number=asked_number(options))
     file = read_fleet(options.input, options.distro or "", os.environ, choice)
@@ -107,7 +108,7 @@ def _from_words(options: argparse.Namespace) -> Fleet:
     return make_fleet(
         options.input,
         names,
-        options.stack,
+        options.node_set,
         policy(options),
         nodes=nodes,
         nodl=nodl,
@@ -138,7 +139,7 @@ def report_table(options: argparse.Namespace, made: Fleet) -> bool:
     """Report what is wrong with the table and open in the robots; return whether that is a failure."""
     found = chosen(options, (*made.table.problems, *made.gaps))
     about = About([options.input], made.words, made.table.release)
-    return report_beside(options, found, about)
+    return report_findings_too(options, found, about)
 
 
 def orders_of(options: argparse.Namespace, words: Sequence[str]) -> list[LaunchOrder]:

@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Mapping, Sequence
 
-from multibot_rewrite.base.nearest import CHOICE, extensions, nearest, other_words
+from multibot_rewrite.base.grouping import lists_by_key
+from multibot_rewrite.base.nearest import CHOICE, extensions, nearest, other_words, typing_mistakes
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 
@@ -17,25 +18,39 @@ def option_hint(wrong: str, command: str, known: Collection[str], has_fleet: boo
     """Return what to write in place of an unknown option, behind a semicolon; "" if nothing is known.
 
     What its name means in other tools and earlier versions comes first, then an option of this command
-    that begins with it, a key of the fleet file, an option of another command, and one of like letters.
+    that begins with it, a key of the fleet file, an option of another command, and one that it is but
+    for a typing mistake or two: of this command, or one that has a meaning itself.
     """
-    word = f"-{wrong.removeprefix('-').replace('_', '-')}"
+    if meant := _meaning(wrong, command, known, has_fleet):
+        return f"; {meant}"
+    near = _mistyped(wrong, known)
+    if near and near not in known:
+        return f"; {_meaning(near, command, known, has_fleet, near)}"
+    return f"; did you mean '{near}'?" if near else ""
+
+
+def _meaning(
+    option: str, command: str, known: Collection[str], has_fleet: bool, name: str = "it"
+) -> str:
+    """Return what does what an option means; ``name`` is what to call it. Or ""."""
+    word = f"-{option.removeprefix('-').replace('_', '-')}"
     if own := other_words("options").get(f"{command} {word}"):
-        return f"; use {own}"
+        return f"use {own}"
     other = other_words("options").get(word, "")
     first_word = other.replace(",", "").partition(" ")[0]
     meant = first_word if first_word.startswith("-") else ""
     if meant in known:
-        return f"; use {other}"
-    bare = wrong.lstrip("-")
+        return f"use {other}"
+    bare = option.lstrip("-")
     begun = (it for it in known if len(bare) > _BEGUN and it.startswith(f"--{bare}"))
     if first := next(begun, ""):
-        return f"; did you mean '{first}'?"
-    if has_fleet and (keys := _fleet_keys(wrong) or _fleet_keys(meant)):
-        return f"; write the key {' or '.join(f'{it}:' for it in keys)} into the fleet file"
+        return f"did you mean '{first}'?"
+    if has_fleet and (keys := _fleet_keys(option) or _fleet_keys(meant)):
+        return f"write the key {' or '.join(f'{it}:' for it in keys)} into the fleet file"
     if meant:
-        return f"; {meant} does that, which {_takers(meant)}"
-    return f"; use {other}" if other else "".join(f"; {it}" for it in _by_letters(wrong, known))
+        return f"{meant} does that, which {_takers(meant)}"
+    takers = _takers(option)
+    return f"use {other}" if other else takers and f"{takers} {name}"
 
 
 def _fleet_keys(wrong: str) -> list[str]:
@@ -48,28 +63,37 @@ def _fleet_keys(wrong: str) -> list[str]:
     return [key] if key in top else extensions(key, top)
 
 
-def _by_letters(wrong: str, known: Collection[str]) -> Iterator[str]:
-    """Yield the commands that have the option, and the command's own one that is most like it."""
-    if takers := _takers(wrong):
-        yield f"{takers} it"
-    if near := _nearest(wrong.lstrip("-"), known):
-        yield f"did you mean '{near}'?"
+def _mistyped(wrong: str, known: Collection[str]) -> str:
+    """Return the option that was probably meant: an own one that is a part of the word (output-format:
+    format), or is it but for two typing mistakes, or another that begins with it or like it, but for
+    one in three letters; else an own one that is much like it, or ""."""
+    word, found = wrong.lstrip("-"), []
+    for option in dict.fromkeys((*known, *other_words("options"), *commands_of())):
+        name, is_own = option.lstrip("-"), option in known
+        is_begun = len(word) > _BEGUN and name.startswith(word)
+        is_part = is_own and name in word.split("-")[1:]
+        many = 0 if is_part else 1 if is_begun else typing_mistakes(word, name)
+        is_alike = name[0] == word[0] or (is_own and 2 * many < len(name))
+        if option.startswith("--") and is_alike and many <= min(2, len(name) // (3 - 2 * is_own)):
+            found.append((many, not is_own, option))
+    near = nearest(word, sorted(it[2:] for it in known if it.startswith(f"--{word[0]}")), CHOICE)
+    return min(found)[2] if found else near and f"--{near}"
 
 
-def _nearest(word: str, known: Iterable[str]) -> str:
-    """Return the known option that is a part of the word (output-format: format), or is written
-    like it and begins with the same letter; "" if none does."""
-    # Dashes are in all of them: compared with these, every short word is like every other.
-    full = {name.lstrip("-"): name for name in known if name.startswith("--")}
-    parts = (it for it in reversed(word.split("-")) if it in full)
-    alike = sorted(it for it in full if it[:1] == word[:1])
-    return full.get(next(parts, "") or nearest(word, alike, CHOICE), "")
+def commands_of() -> Mapping[str, Sequence[str]]:
+    """Return the commands that have an option, by its name."""
+    every = {**PROGRAMS, **{f"multibot {name}": it for name, it in COMMANDS.items()}}
+    return lists_by_key(
+        (option, name)
+        for name, it in every.items()
+        for group in it.groups
+        for one in group.options
+        for option in one.names
+    )
 
 
 def _takers(option: str) -> str:
     """Return the commands that have an option, with a verb: ``multibot init takes``; "" if none has."""
-    every = {**PROGRAMS, **{f"multibot {name}": it for name, it in COMMANDS.items()}}
-    options = {name: [one for of in it.groups for one in of.options] for name, it in every.items()}
-    names = [name for name, own in options.items() if any(option in it.names for it in own)]
+    names = commands_of().get(option, ())
     verb = "takes" if len(names) == 1 else "take"
     return f"{shorten(names)} {verb}" if names else ""

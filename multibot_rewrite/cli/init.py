@@ -24,22 +24,22 @@ from multibot_rewrite.cli.output import STANDARD, deliver, detail, goes_to_file,
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.usage import asked_number, plain_words, xacro_args
 from multibot_rewrite.description.sources.expand import kept_expansions
-from multibot_rewrite.fleet.proposal.fleet_text import text_of
-from multibot_rewrite.fleet.proposal.launches import order_text
-from multibot_rewrite.fleet.proposal.looking import Looked
-from multibot_rewrite.fleet.proposal.propose import MEANT, Choice, Proposal, names_of, release_of
-from multibot_rewrite.fleet.proposal.searching import Found, Undecided, is_below
-from multibot_rewrite.fleet.proposal.seeing import Seen, Wanted, see, with_arguments
-from multibot_rewrite.fleet.proposal.trying import (
+from multibot_rewrite.knowledge.node_library import nodes_of_set
+from multibot_rewrite.knowledge.node_sets import every_release
+from multibot_rewrite.producers.launch.records import LaunchOrder, launch_order, order_in_words
+from multibot_rewrite.proposal.fleet_text import text_of
+from multibot_rewrite.proposal.launches import order_text
+from multibot_rewrite.proposal.looking import Looked
+from multibot_rewrite.proposal.propose import MEANT, Choice, Proposal, names_of, release_of
+from multibot_rewrite.proposal.searching import Found, Undecided, is_below
+from multibot_rewrite.proposal.seeing import Seen, Wanted, see, with_arguments
+from multibot_rewrite.proposal.trying import (
     as_named,
     first_that_builds,
     in_layout,
     that_builds,
     with_faults_of_sources,
 )
-from multibot_rewrite.knowledge.node_library import stack_of
-from multibot_rewrite.knowledge.stacks import every_release
-from multibot_rewrite.producers.launch.records import LaunchOrder, launch_order, order_in_words
 
 SIMULATORS = ("gazebo", "none")
 # Nodes of launch files that are named on the terminal.
@@ -121,10 +121,10 @@ def _wanted(options: argparse.Namespace) -> Wanted:
         tuple(options.robots),
         simulator=options.simulator or "",
         launch=_launch(options),
-        stacks=tuple(options.stack),
+        node_sets=tuple(options.node_set),
     )
-    for it in wanted.stacks:
-        stack_of(every_release(), it)
+    for it in wanted.node_sets:
+        nodes_of_set(every_release(), it)
     return wanted._replace(file=options.output) if goes_to_file(options) else wanted
 
 
@@ -246,8 +246,7 @@ def _with_files_asked_for(
 def _of_these(
     shown: Sequence[str], question: str, default: str, or_none: bool = True
 ) -> int | None:
-    """Return which of these was chosen, by its number, None for the word ``none``: numbers are
-    easier to type than paths."""
+    """Return which of these was chosen by its number; None for the word ``none``."""
     for at, it in enumerate(shown, 1):
         say(f"  {at}: {it}", PROGRAM)
     numbers = [str(at) for at in range(1, len(shown) + 1)]
@@ -269,7 +268,7 @@ def _with_names(wanted: Wanted) -> Wanted:
     text = _valid("Robots: how many, or their names", given, _is_robots)
     if text.strip().isdigit():
         return wanted._replace(each=int(text))
-    names = tuple(_words(text))
+    names = tuple(_split_list(text))
     return wanted._replace(each=len(names), names=names)
 
 
@@ -304,12 +303,12 @@ def _left_out(made: Proposal) -> list[str]:
     numbers = {str(at): path for at, path in enumerate(paths, 1)}
 
     def fits(text: str) -> bool:
-        return text in ("none", "all") or all(it in numbers for it in _words(text))
+        return text in ("none", "all") or all(it in numbers for it in _split_list(text))
 
     text = _valid("Files to leave out: numbers, all, or none", "none", fits)
     if text == "all":
         return paths
-    return [numbers[it] for it in _words(text)] if text != "none" else []
+    return [numbers[it] for it in _split_list(text)] if text != "none" else []
 
 
 def _apart(made: Proposal) -> float:
@@ -330,7 +329,7 @@ def _in_layout(made: Proposal) -> Proposal:
     return made if word == layout.value else in_layout(made, Choice(word, MEANT))
 
 
-def _words(text: str) -> list[str]:
+def _split_list(text: str) -> list[str]:
     return text.replace(",", " ").split()
 
 
@@ -339,7 +338,7 @@ def _is_count(text: str) -> bool:
 
 
 def _is_robots(text: str) -> bool:
-    names = _words(text)
+    names = _split_list(text)
     apart = len(set(names)) == len(names)
     return _is_count(text) or (bool(names) and apart and all(map(_NAME.fullmatch, names)))
 

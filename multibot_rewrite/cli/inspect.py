@@ -50,7 +50,7 @@ from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.knowledge.declared import declared_by, plugin_bases
-from multibot_rewrite.knowledge.stacks import every_release
+from multibot_rewrite.knowledge.node_sets import every_release
 from multibot_rewrite.lint.catalogue import rules
 
 # A word that ends so is a file, there or not.
@@ -174,7 +174,7 @@ def _row(site: SiteRow, section: PluginDefinition) -> tuple[str, ...]:
 
 
 def as_json(section: PluginDefinition) -> dict[str, object]:
-    """Return a section as ``--output-kind json`` writes it; docs/stacks.md describes it."""
+    """Return a section as ``--output-kind json`` writes it; docs/node-sets.md describes it."""
     return {
         "type": section.type,
         "names": section.names,
@@ -210,8 +210,7 @@ def _row_json(site: SiteRow, section: PluginDefinition) -> dict[str, object]:
 
 
 def draft(options: argparse.Namespace) -> int:
-    """Write plugin definitions for what a description loads and nothing knows; returns the exit
-    code."""
+    """Write plugin definitions for what a description loads and nothing knows; return the exit code."""
     if plain_words(options) or options.output_kind == JSON:
         raise UsageError("--suggest goes with --definitions only: leave out NAME and --output-kind")
     check_xacro(options, [options.suggest])
@@ -249,8 +248,7 @@ def is_name(word: str) -> bool:
 
 
 def explain(options: argparse.Namespace, words: Sequence[str]) -> int:
-    """Explain rules by their codes, how codes begin, or names; more than a few are listed. Returns the
-    exit code."""
+    """Explain rules by codes, beginnings of codes or names; list many. Return the exit code."""
     known, found = rules(), dict[str, Rule]()
     for word in _split(words):
         asked = find_rules(word, known) if word else []
@@ -274,7 +272,7 @@ def rule_grid(found: Iterable[Rule] | None = None) -> Grid:
 
 
 def rules_json(found: Iterable[Rule] | None = None) -> list[dict[str, object]]:
-    """Return rules (by default all) as ``--output-kind json`` writes them (docs/stacks.md)."""
+    """Return rules (by default all) as ``--output-kind json`` writes them (docs/node-sets.md)."""
     fields = ("code", "name", "level", "what", "why", "fix")
     return [
         {**{name: getattr(it, name) for name in fields}, "examples": dict(examples(it))}

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """``multibot inspect FLEET``: each process that the launch files of a fleet start, for whom and why."""
 
-from __future__ import annotations
-
 import argparse
 import os
 from collections.abc import Iterator
@@ -17,8 +15,8 @@ from multibot_rewrite.fleet.file.fleet_file import FleetFile, read_fleet
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.launch.launched_robot import launch_of
 from multibot_rewrite.fleet.outputs.rviz_outputs import RVIZ, why_for_each
-from multibot_rewrite.fleet.proposal.launches import said_of
 from multibot_rewrite.producers.launch.programs import once_for_all
+from multibot_rewrite.proposal.launches import said_of
 
 _EACH = "each robot"
 

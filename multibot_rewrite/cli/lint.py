@@ -16,8 +16,8 @@ from multibot_rewrite.base.model import DefinitionsError, UsageError
 from multibot_rewrite.base.releases import (
     ROS_2,
     facts_of_release,
+    release_chosen_here,
     release_doubt,
-    release_told,
     why_here,
 )
 from multibot_rewrite.base.wording import plural
@@ -69,7 +69,7 @@ def run(options: argparse.Namespace) -> int:
     alone = config
     config = with_options(config, **given(options))
     paths, unreadable = _files(options, config)
-    told = release_told(asked)
+    told = release_chosen_here(asked)
     said = release_of_all(told, (it for it in paths if it.endswith(_TELLING)))
     settings = config.settings._replace(distro=said.release, ros=ROS_2 if told else "")
     config = config._replace(settings=settings)

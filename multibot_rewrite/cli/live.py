@@ -116,16 +116,14 @@ def at(options: argparse.Namespace, domain: int | None) -> argparse.Namespace:
 
 
 def by_domain(options: argparse.Namespace) -> tuple[argparse.Namespace, list[int]]:
-    """Return the options with the one domain of ``--domain``, or none; and all domains if it names
-    several."""
+    """Return the options with the domain of ``--domain``, if it is one; all domains if several."""
     asked = list(dict.fromkeys(options.domain or []))
     one = at(options, asked[0] if len(asked) == 1 else None)
     return one, asked if len(asked) > 1 else []
 
 
 def graphs(options: argparse.Namespace, domains: Collection[int]) -> dict[int, System]:
-    """Return the graph of each of these domains, live or of the saved snapshots; raises as
-    ``graph``."""
+    """Return the graph of each domain, live or of saved snapshots; raises as ``graph``."""
     if options.snapshot:
         from multibot_rewrite.producers.snapshot_file import read_by_domain
 

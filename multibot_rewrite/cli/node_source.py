@@ -16,9 +16,9 @@ from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.tables import JSON, Grid, deliver_report, json_bytes
 from multibot_rewrite.description.sources.packages import MANIFEST, package_of
 from multibot_rewrite.knowledge.conditions import said
+from multibot_rewrite.knowledge.node_sets import every_release
 from multibot_rewrite.knowledge.packages import older, versions_of
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts, NodeParameters, Param
-from multibot_rewrite.knowledge.stacks import every_release
 from multibot_rewrite.producers.launch.source_packages import packages_for
 from multibot_rewrite.producers.sources.facts import NodeSource, node_of_program
 
@@ -49,8 +49,7 @@ def run(options: argparse.Namespace, word: str) -> int:
 
 
 def run_known(options: argparse.Namespace, facts: NodeFacts) -> int:
-    """Show a known node and its package in the release that is asked for, or in all; returns the exit
-    code."""
+    """Show a known node and its package in a release, or in all; return the exit code."""
     releases = [options.distro] if options.distro else [*RELEASES]
     of_package = versions_of(facts.package)
     rows = [

@@ -56,7 +56,7 @@ def deliver(options: argparse.Namespace, data: bytes, schema: str = "") -> None:
     if options.output in (None, STANDARD):
         print_bytes(data)
     else:
-        check_target(options.output, (it for _, it in _given(options)))
+        check_target(options.output, (it for _, it in _read_files(options)))
         check_link(options.output)
         write_files(options, with_schema(options.output, data, schema))
 
@@ -73,7 +73,7 @@ def with_schema(path: str, data: bytes, schema: str) -> list[tuple[str, bytes]]:
     return [(path, line + data), (beside, editors.schema_text(schema))]
 
 
-def _given(options: argparse.Namespace) -> Iterator[tuple[str, str]]:
+def _read_files(options: argparse.Namespace) -> Iterator[tuple[str, str]]:
     """Yield each option that names files to read, with each of its files."""
     for name in READ:
         value = getattr(options, name, None) or ()
@@ -84,7 +84,7 @@ def check_there(options: argparse.Namespace) -> None:
     """Raise UsageError for a missing input file, with one of a similar name, or with what makes
     such a file. A word without an ending may be a package or a folder."""
     written = {"suggest", "fleet"} if vars(options).get("undo") else {"suggest"}
-    for option, path in _given(options):
+    for option, path in _read_files(options):
         folder, name = os.path.split(path)
         if not os.path.splitext(name)[1] or os.path.lexists(path) or option in written:
             continue
@@ -235,7 +235,7 @@ def diff(old: bytes, new: bytes, name: str, new_name: str, colour: bool = False)
     lines = diff_bytes(unified_diff, before, after, _named(name), _named(new_name))
     cut_short = b"\n\\ No newline at end of file\n"
     whole = (line if line.endswith(b"\n") else line + cut_short for line in lines)
-    return b"".join(map(_painted, whole) if colour else whole)
+    return b"".join(map(_painted_line, whole) if colour else whole)
 
 
 def _named(path: str) -> bytes:
@@ -243,7 +243,7 @@ def _named(path: str) -> bytes:
     return os.fsencode("".join(it if it >= " " else one_line(it) for it in path))
 
 
-def _painted(line: bytes) -> bytes:
+def _painted_line(line: bytes) -> bytes:
     paint = _PAINT.get(line[:1], b"")
     return paint + line[:-1] + _PLAIN + b"\n" if paint else line
 

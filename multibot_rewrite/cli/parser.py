@@ -37,9 +37,11 @@ class Parser(argparse.ArgumentParser):
     short = ""
 
     def error(self, message: str) -> NoReturn:
+        """Exit with a usage error in one line."""
         self.exit(UNUSABLE, f"{self.prog}: {one_line(message)}; see {self.prog} --help\n")
 
     def format_help(self) -> str:
+        """Return the help text, as wide as the terminal."""
         import shutil  # only a help text needs the terminal's width
 
         width = min(shutil.get_terminal_size().columns, WIDEST)
@@ -227,9 +229,9 @@ def _first_unknown_option(words: Sequence[str], known: Collection[str]) -> str:
     """Return the first option that is not known, without its value; "" where all are known."""
     before_end = takewhile(lambda word: word != "--", words)
     names = (it.partition("=")[0] for it in before_end if _OPTION.fullmatch(it))
-    # A short option may have others behind it, or its value, as ``-qv`` or ``-n3``.
     unknown = (it for it in names if it not in known)
-    return next((it for it in unknown if it.startswith("--") or it[:2] not in known), "")
+    # A short option may have others behind it, or its value, as ``-qv`` or ``-n3``; ``-quiet`` is none.
+    return next((it for it in unknown if it[:2] not in known or f"-{it}" in known), "")
 
 
 def _colour_asked(words: Sequence[str]) -> str:

@@ -8,15 +8,16 @@ import re
 
 from multibot_rewrite.base.editors import PLAN as PLAN_SCHEMA
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.releases import facts_of_release, release_told
+from multibot_rewrite.base.releases import facts_of_release, release_chosen_here
 from multibot_rewrite.cli import fleet
+from multibot_rewrite.cli.check_launch import plan_beside
 from multibot_rewrite.cli.output import deliver, goes_to_file, note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.tables import Grid, deliver_report
 from multibot_rewrite.cli.usage import given_options, robots
 from multibot_rewrite.cli.walk import check_folder, check_target
-from multibot_rewrite.fleet.file.system_sources import launched_by
 from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER, Fleet, expected, possible
+from multibot_rewrite.library.systems import launched_by
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.live.seen_plan import NAMELESS, seen_plan
 from multibot_rewrite.planning.bridged_topics import as_yaml, bridged_topics
@@ -32,8 +33,8 @@ PLAN, POLICY = "plan", "sros2"
 # How a plan calls a robot without a name; its frames are those of its description.
 ALONE, LAYOUT_ALONE = NAMELESS.name, "tf-per-robot"
 # What a plan of a description has, and that of a launch file has not.
-_OF_ROBOTS = ("robots", "count", "stack", "launch", "layout", "affix", "topics", "separator")
-NOT_OF_LAUNCH = {it: f"--{it}" for it in (*_OF_ROBOTS, "shared")}
+_OF_ROBOTS = ("robots", "count", "node_set", "launch", "layout", "affix", "topics", "separator")
+NOT_OF_LAUNCH = {it: f"--{it.replace('_', '-')}" for it in (*_OF_ROBOTS, "shared")}
 # A launch file is told by its name: no description or fleet file is called so.
 _LAUNCH = re.compile(r".*(\.py|[._]launch(\.\w+)?|system_model\.yaml)")
 TABLE, BRIDGE = "table", "bridge"
@@ -86,8 +87,10 @@ def _of_launch(options: argparse.Namespace) -> int:
     if options.output:
         check_target(options.output, [it.file for it in orders])
         check_folder(options.output)
-    made = launched_by(orders, release_told(options.distro), *fleet.own_nodes(options)).system
-    seen = diagnose(made)
+    made = launched_by(
+        orders, release_chosen_here(options.distro), *fleet.own_nodes(options)
+    ).system
+    seen = diagnose(made, names=plan_beside(orders))
     if not made.nodes:
         raise UsageError(f"{orders[0].file}: it starts no node, so there is no plan")
     for caveat in doubts(made):
@@ -99,25 +102,26 @@ def _of_launch(options: argparse.Namespace) -> int:
 
 def deliver_rules(options: argparse.Namespace, made: Fleet) -> None:
     """Write the rules in the form that is asked for."""
-    known = {node.robot for node in made.table.runs}
-    nothing = [robot for robot in made.inventories if robot not in known]
+    table = made.named_table
+    known = {node.robot for node in table.runs}
+    nothing = [name for name in map(made.name, made.inventories) if name not in known]
     if nothing:
         hint = f"name a node set of its nodes, or leave out {NO_STATE_PUBLISHER}"
         note(options, f"no node of {', '.join(nothing)} is known, so no rule is for it; {hint}")
     if options.output_kind == TABLE:
         rows = [
             (robot, it.node.node, it.node.full_name, text, given_to(it))
-            for robot, given in standing_by_robot(made.table)
+            for robot, given in standing_by_robot(table)
             for it in given
             for text in ([f"{source} -> {target}" for source, target in it.rules] or ["no rule"])
         ]
-        head = f"layout {made.table.layout}{facts_of_release(made.table.release)}"
+        head = f"layout {table.layout}{facts_of_release(table.release)}"
         grid = Grid(("robot", "node", "runs as", "rule", "given to"), rows)
         deliver_report(options, (head, grid))
     elif options.output_kind == BRIDGE:
         deliver(options, _bridge(options, made).encode())
     else:
-        deliver(options, FORMS[options.output_kind](made.table).encode())
+        deliver(options, FORMS[options.output_kind](table).encode())
 
 
 def _bridge(options: argparse.Namespace, made: Fleet) -> str:
@@ -126,7 +130,7 @@ def _bridge(options: argparse.Namespace, made: Fleet) -> str:
     )
     for item in left:
         message = f"line {item.line}: {item.what} is not bridged: {item.why}"
-        note(options, f"{item.robot}: warning: {message} ({item.hint})")
+        note(options, f"{made.name(item.robot)}: warning: {message} ({item.hint})")
     if not any(it.robot for it in carried):
         note(options, "no robot has a topic in Gazebo to bridge")
         return ""

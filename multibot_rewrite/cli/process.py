@@ -69,7 +69,7 @@ def _refused(options: argparse.Namespace, error: RewriteRefused) -> int:
         NO_ROBOTS,
         About,
         by_themselves,
-        report_beside,
+        report_findings_too,
         report_first,
     )
     from multibot_rewrite.cli.usage import robots
@@ -77,7 +77,9 @@ def _refused(options: argparse.Namespace, error: RewriteRefused) -> int:
     given = vars(options)
     read = given.get("input") or given.get("fleet") or given.get("plan") or ""
     about = About([read], by_themselves(robots(options)) if "robots" in given else NO_ROBOTS)
-    (report_first if options.findings_first else report_beside)(options, error.findings, about)
+    (report_first if options.findings_first else report_findings_too)(
+        options, error.findings, about
+    )
     return STOPPED
 
 
@@ -96,7 +98,7 @@ def guarded(program: str, run: Callable[[], int], own_process: bool) -> int:
     if own_process:
         # A short one: nothing it makes needs the collector of cycles.
         gc.disable()
-    code = _guarded(program, run, own_process)
+    code = _run_guarded(program, run, own_process)
     if own_process:
         leave(code)
     return code
@@ -111,7 +113,7 @@ def _not_lost(unraisable: sys.UnraisableHookArgs) -> None:
     signal.setitimer(signal.ITIMER_REAL, 0.001)
 
 
-def _guarded(program: str, run: Callable[[], int], own_process: bool) -> int:
+def _run_guarded(program: str, run: Callable[[], int], own_process: bool) -> int:
     # Closed by the caller: messages go nowhere.
     sys.stderr = sys.stderr or io.StringIO()
     try:

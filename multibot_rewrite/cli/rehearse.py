@@ -49,11 +49,14 @@ def run(options: argparse.Namespace) -> int:
     plan, table = expected(made)._replace(parameters=()), chosen(options, made.table.problems)
     edges, added = made.edges, []
     for robot in made.inventories:
-        # What no node of the stacks sends: the odometry of a driver.
+        # What no node of the node sets sends: the odometry of a driver.
         edges, own = with_odometry(edges, robot, made.naming)
-        added += [f"{own} of {robot}"] if own else []
+        added += [f"{own} of {made.name(robot)}"] if own else []
     ways = WAYS if "all" in options.without_rules else list(options.without_rules)
-    nodes = [*without_doubles(stub_nodes(made.table, edges, ways), plan)]
+    nodes = [
+        (run._replace(robot=made.name(run.robot)), sent)
+        for run, sent in without_doubles(stub_nodes(made.table, edges, ways), plan)
+    ]
     seen, replaced = _played(options, plan, nodes)
     for it in added:
         note(options, f"note: {it} comes from a driver or simulator; the rehearsal sends it")

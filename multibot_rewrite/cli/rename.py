@@ -26,11 +26,11 @@ def run(options: argparse.Namespace) -> int:
         distro=options.distro or "",
     )
     deliver_changed(options, made.before, made.after, write=not (options.diff or options.output))
-    _tell(options, made)
+    _print_result(options, made)
     return DONE
 
 
-def _tell(options: argparse.Namespace, made: Renaming) -> None:
+def _print_result(options: argparse.Namespace, made: Renaming) -> None:
     where = f"{plural(made.places, 'place')} in {plural(len(made.after), 'file')}"
     note(
         options,

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The findings of a command: selected, grouped over robots, in the format asked for, where they go."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections import Counter
@@ -37,7 +35,7 @@ class About(NamedTuple):
     files: Sequence[str]
     robots: Mapping[str, str] = NO_ROBOTS
     release: str = ""
-    coverage: Coverage | None = None
+    coverage: "Coverage | None" = None
 
 
 def counted_findings(findings: Sequence[Finding]) -> str:
@@ -46,7 +44,7 @@ def counted_findings(findings: Sequence[Finding]) -> str:
     return plural(len(findings), "note" if only_notes else "finding")
 
 
-def with_coverage(held: Coverage | None, text: str) -> str:
+def with_coverage(held: "Coverage | None", text: str) -> str:
     """Return a verdict behind how much of the robots it is about."""
     return "; ".join(filter(None, (held.in_words if held else "", text)))
 
@@ -92,7 +90,9 @@ def report_first(
     return fails(findings, options.fail_on)
 
 
-def report_beside(options: argparse.Namespace, findings: Sequence[Finding], about: About) -> bool:
+def report_findings_too(
+    options: argparse.Namespace, findings: Sequence[Finding], about: About
+) -> bool:
     """Write the findings in addition to the result: as text to standard error or standard output."""
     if options.format == TEXT and not findings:
         return False
@@ -106,8 +106,7 @@ def report_beside(options: argparse.Namespace, findings: Sequence[Finding], abou
 
 
 def _few_of_a_kind(findings: Sequence[Finding]) -> Iterator[Finding]:
-    """Yield the findings; of many of one kind in one file the first warning or the first notes, with
-    the lines of the rest."""
+    """Yield the findings; of many of one kind in a file one, with the lines of the others."""
     lines = lists_by_key((_kind_of(it), it.line) for it in findings)
     met: Counter[tuple[str, ...]] = Counter()
     for it in findings:

@@ -58,20 +58,20 @@ def run(options: argparse.Namespace) -> int:
     check_use(options, names)
     options.definitions = [*configured_definitions(options.input), *options.definitions]
     source: Source = standard_input() if options.input == "-" else options.input
-    if _is_beside(source):
+    if _is_related_file(source):
         from multibot_rewrite.cli import rewrite_file  # a description needs none of it
 
         return rewrite_file.run(options, source, names)
     return (_undo if options.undo else _rewrite)(options, source, names)
 
 
-def _is_beside(source: Source) -> bool:
-    """Return ``is_beside``; a source named as a description is not asked."""
+def _is_related_file(source: Source) -> bool:
+    """Return ``is_related_file``; a source named as a description is not asked."""
     if isinstance(source, str) and source.endswith((".urdf", ".sdf", ".xacro")):
         return False
-    from multibot_rewrite.related_files.named_file import is_beside
+    from multibot_rewrite.related_files.named_file import is_related_file
 
-    return is_beside(source)
+    return is_related_file(source)
 
 
 def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:
@@ -193,5 +193,5 @@ def summary(
     aside = dict(first.prepared.job.aside)
     verified = " ".join(filter(None, ["Verified", given(first.findings, aside)]))
     end = f"Not verified: {', '.join(why)}" if why else verified
-    end += facts_of_release(first.distro, of_release)
+    end += facts_of_release(first.distro, of_release, first.prepared.job.ros)
     return f"{who}: {renamed}{added}. {end}"

@@ -23,7 +23,7 @@ from multibot_rewrite.cli.rewrite_use import (
 from multibot_rewrite.cli.usage import rewriting
 from multibot_rewrite.description.sources.read import Source
 from multibot_rewrite.description.sources.whole import read_whole
-from multibot_rewrite.fleet.one_file import RewrittenFile, rewrite_files
+from multibot_rewrite.library.one_file import RewrittenFile, rewrite_files
 from multibot_rewrite.related_files.named_file import BRIDGE, LUA, MOVEIT, PARAMS, RVIZ, TREE
 
 WORDS = {

@@ -24,7 +24,13 @@ from multibot_rewrite.cli.output import (
     watched,
     write_files,
 )
-from multibot_rewrite.cli.report import About, by_themselves, check_report, chosen, report_beside
+from multibot_rewrite.cli.report import (
+    About,
+    by_themselves,
+    check_report,
+    chosen,
+    report_findings_too,
+)
 from multibot_rewrite.cli.usage import check_order, policy, xacro_args
 from multibot_rewrite.cli.walk import check_link, check_target
 from multibot_rewrite.description.sources.included_by import data_of_file
@@ -137,7 +143,7 @@ def is_stopped(
     if options.silent and not fails(findings, options.fail_on):
         findings = ()
     about = About([input_name(options)], by_themselves(robots), release)
-    stops = report_beside(options, findings, about)
+    stops = report_findings_too(options, findings, about)
     if stops:
         say(f"--fail-on {options.fail_on}: nothing was written", options.program)
     return stops

@@ -18,9 +18,9 @@ from multibot_rewrite.cli.output import STANDARD, deliver, goes_to_file, note, s
 from multibot_rewrite.cli.process import DONE, PROGRAM
 from multibot_rewrite.cli.tables import Grid, deliver_report
 from multibot_rewrite.cli.walk import check_folder, check_target
+from multibot_rewrite.knowledge.node_sets import built_in
 from multibot_rewrite.knowledge.nodl.lookup import SUFFIXES
 from multibot_rewrite.knowledge.nodl.writing import NodlFile, file_name
-from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.live.learning.choosing import choose_nodes, helpers_without_owner, left_out
 from multibot_rewrite.live.learning.learn import LearnedNode, learn
 from multibot_rewrite.live.learning.nodes_file import to_nodl, to_yaml as to_nodes_yaml
@@ -159,9 +159,10 @@ def is_asked(options: argparse.Namespace) -> bool:
     """Return whether nodes are to be described, not a snapshot written. Raises UsageError."""
     if options.output_kind in (NODES, NODL) or is_nodl(options):
         return True
-    given = [f"--{it}" for it in ("node", "namespace", "stack", "distro") if getattr(options, it)]
+    given = [it for it in ("node", "namespace", "node_set", "distro") if getattr(options, it)]
     if given:
-        raise UsageError(f"{given[0]} is for a description of nodes: add --output-kind {NODES}")
+        option = given[0].replace("_", "-")
+        raise UsageError(f"--{option} is for a description of nodes: add --output-kind {NODES}")
     return False
 
 
@@ -177,16 +178,16 @@ def write_nodes(options: argparse.Namespace, graph: System) -> int:
     learned = learn(graph, names, namespace, library)
     remarks = [*_notes(graph, learned, options.namespace, bool(options.node))]
     as_nodl = is_nodl(options)
-    stack = options.stack or "learned"
+    node_set = options.node_set or "learned"
     if as_nodl:
         in_json = (options.output or "").endswith(".json")
         made = [to_nodl(it, graph, namespace, library, in_json) for it in learned]
         remarks += _write_nodl(options, made)
     else:
-        deliver(options, to_nodes_yaml(learned, stack, library).encode(), editors.NODES)
+        deliver(options, to_nodes_yaml(learned, node_set, library).encode(), editors.NODES)
     for remark in remarks:
         note(options, f"note: {remark}")
-    shape = "NoDL" if as_nodl else f"node set {stack}"
+    shape = "NoDL" if as_nodl else f"node set {node_set}"
     what = f"{plural(len(learned), 'node')} learned as {shape}"
     note(options, f"{what}{facts_of_release(release)}")
     return live.INCONCLUSIVE if doubtful else DONE

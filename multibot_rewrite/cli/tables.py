@@ -2,8 +2,6 @@
 """Reports for a person: lines and tables. A name is never cut in two: a table folds between names,
 and where even that does not fit, each row becomes lines of its own."""
 
-from __future__ import annotations
-
 import argparse
 import sys
 from collections.abc import Iterable, Iterator, Sequence

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``multibot check`` without a plan: what is wrong with the robots that run now?"""
+"""``multibot check`` without a plan: report what is wrong with the robots that run now."""
 
 from __future__ import annotations
 
@@ -133,7 +133,7 @@ def _suggest(options: argparse.Namespace, each: Mapping[int, Diagnosis]) -> None
     """Write what a fleet begins with, for each domain by itself: a name may be in several of them."""
     if not options.suggest:
         return
-    from multibot_rewrite.knowledge.stacks import built_in
+    from multibot_rewrite.knowledge.node_sets import built_in
     from multibot_rewrite.live.suggestion import SCHEMAS, suggestion
 
     library = built_in(release_here(options.distro))
@@ -177,13 +177,13 @@ def _looking(each: dict[int, Diagnosis]) -> Look:
         for node in there:
             if robot := seen.whose.robot(node):
                 known.setdefault(robot, set()).add(node)
-        gone = [_gone(*it) for it in known.items() if there.isdisjoint(it[1])]
+        gone = [_missing_robot(*it) for it in known.items() if there.isdisjoint(it[1])]
         lost = map(unnamed, gone) if len(each) > 1 else gone
         return seen.graph, seen.coverage, (*seen.findings, *lost)
 
     return look
 
 
-def _gone(robot: str, nodes: Collection[str]) -> Finding:
+def _missing_robot(robot: str, nodes: Collection[str]) -> Finding:
     message = f"{robot} is gone: none of its {plural(len(nodes), 'node')} runs any more"
     return missing_robot.finding(message, "is it off, or out of the network?", robot=robot)

@@ -10,17 +10,18 @@ from typing import Any
 
 from multibot_rewrite.base.model import InputError, MultibotError, UsageError
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
+from multibot_rewrite.checks.judged_plan import plan_fleet
 from multibot_rewrite.cli.fleet import FLEET_FILES, check_own, check_use
 from multibot_rewrite.cli.output import deliver, goes_to_file, note, status
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.usage import asked_number, check_xacro, policy, robots, xacro_args
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.fleet.build import hash_of, inputs_of
 from multibot_rewrite.fleet.file.fleet_data import without_place
 from multibot_rewrite.fleet.file.fleet_file import input_files, read_fleet
 from multibot_rewrite.fleet.file.robot_choice import Choice
-from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.outputs.manifest import hash_of, inputs_of
 from multibot_rewrite.pages.page import Framed
 from multibot_rewrite.pages.view.page import Meshes, bare, meshes_of, title_of, to_frame, to_html
 from multibot_rewrite.pages.view.scene import ShownScene, ViewedRobot, moved, scene_of

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which files a command reads when it is given files and folders."""
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
@@ -72,8 +70,7 @@ def find_files(
 
 
 def _ignored(named: Collection[str], every: Iterable[str]) -> set[str]:
-    """Return the files that git ignores, but for those that are named, or in a folder that is named and
-    ignored itself."""
+    """Return the files that git ignores, but not those named, or in a named folder that git ignores."""
     found = ignored_by_git(it for it in every if it not in named)
     folders = [it for it in named if os.path.isdir(it)] if found else []
     meant = [f"{it.rstrip('/')}/" for it in ignored_by_git(folders)]

@@ -78,15 +78,15 @@ def _parts(planned: bool, state: WatchState) -> Iterator[str | Grid]:
     # Those with findings first: a screen does not hold a hundred.
     rows.sort(key=lambda row: row[2] == "0")
     yield Grid(("robot", "nodes", "findings"), rows[:_SHOWN])
-    yield from _more(len(rows), "robots")
+    yield from _line_for_more(len(rows), "robots")
     yield ""
     yield from map(
         str, sorted(state.findings, key=lambda finding: finding.level != "error")[:_SHOWN]
     )
-    yield from _more(len(state.findings), "findings")
+    yield from _line_for_more(len(state.findings), "findings")
 
 
-def _more(count: int, what: str) -> Iterator[str]:
+def _line_for_more(count: int, what: str) -> Iterator[str]:
     if count > _SHOWN:
         yield f"and {count - _SHOWN} more {what}"
 

@@ -13,13 +13,13 @@ from multibot_rewrite.cli.tables import deliver_report
 from multibot_rewrite.cli.usage import rewriting, robots
 from multibot_rewrite.description.library import explain
 from multibot_rewrite.description.reports.explain import Explanation
-from multibot_rewrite.related_files.named_file import is_beside
+from multibot_rewrite.related_files.named_file import is_related_file
 
 
 def run(options: argparse.Namespace) -> int:
     """Print an explanation of every value on the line."""
     path, line = _place(options.why)
-    if is_beside(path):
+    if is_related_file(path):
         raise UsageError(f"--why is for descriptions, {path} is none; --diff shows what changes")
     # The file is in the option: what stands first is a robot or a xacro argument.
     options.words[:0] = [options.input] if options.input else []

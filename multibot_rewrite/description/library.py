@@ -15,7 +15,7 @@ from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import Change
 from multibot_rewrite.base.naming import DEFAULT_LAYOUT, leaves, make_naming
-from multibot_rewrite.base.releases import release_told
+from multibot_rewrite.base.releases import release_chosen_here
 from multibot_rewrite.base.rosnames import check_robot_name, check_robot_names
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.checks.meeting import not_verified, said_of
@@ -149,7 +149,7 @@ def rewrite(
     check_robot_name(robot)
     given = (urdf, xacro_args, definitions, file, [robot], trust)
     aside = leaves(world_systems, [robot])
-    job = read_job(source, naming, *given, release=release_told(distro), aside=aside)
+    job = read_job(source, naming, *given, release=release_chosen_here(distro), aside=aside)
     return next(rewrite_job(job, [robot], again))
 
 
@@ -191,7 +191,7 @@ def rewrite_all(
     a note says what to load). Raises as ``rewrite`` does, before the first result."""
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     names = check_robot_names(robots)
-    given = (urdf, xacro_args, definitions, file, trust, release_told(distro))
+    given = (urdf, xacro_args, definitions, file, trust, release_chosen_here(distro))
     jobs = read_jobs(names, source, naming, *given, leaves(world_systems, names))
     return _with_own_ports(rewrite_jobs(jobs, again))
 
@@ -281,7 +281,7 @@ def explain(
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
-    release = release_told(distro)
+    release = release_chosen_here(distro)
     # A rewrite does not need it.
     from multibot_rewrite.description.reports.explain import explain_line, explain_source
 
@@ -329,7 +329,7 @@ def strip(
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
-    before, release = b"", release_told(distro)
+    before, release = b"", release_chosen_here(distro)
     if xacro is not None:
         made, beside = (xacro, None) if urdf is None else (source, xacro)
         of = read_job(

@@ -13,8 +13,6 @@ libraries/AP_HAL_SITL/SITL_cmdline.cpp (10 for each instance, ``sim_vehicle.py -
 launch/multi_uav_mavros_sitl.launch (1 for each instance); of hardware see its section.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
@@ -100,11 +98,11 @@ def numbered(robots: Mapping[str, tuple[bytes, Sequence[Port]]]) -> Numbered:
         edits = _edits(robot, ((it, new[it.number]) for it in own))
         changed |= {it.name for it in own if new[it.number] != it.number}
         texts.append(b"".join(cut(text, edits)) if edits else text)
-    notes = tuple(said_of_numbers(it, given[it]) for it in sorted(changed))
+    notes = tuple(numbers_message(it, given[it]) for it in sorted(changed))
     return Numbered(tuple(texts), notes)
 
 
-def said_of_numbers(name: str, given: Iterable[tuple[str, int]]) -> tuple[str, str]:
+def numbers_message(name: str, given: Iterable[tuple[str, int]]) -> tuple[str, str]:
     """Return which number each robot got for a port, and what to do; raises nothing."""
     words = [f"{robot} {number}" for robot, number in given]
     more = f" and {len(words) - _NAMED} more" if words[_NAMED:] else ""
@@ -185,11 +183,11 @@ def without_numbers(source: bytes, file: str, robot: str, tree: Tree) -> bytes:
     before, now = (ports_of(collect(it, tree)) for it in (read_document(text, file), document))
     again = _edits(robot, ((it, new.number) for it, new in zip(before, now, strict=False)))
     if b"".join(cut(text, again)) != source:
-        raise _edited(document, robot)
+        raise _edited_by_hand(document, robot)
     return text
 
 
-def _edited(document: Document, robot: str) -> InputError:
+def _edited_by_hand(document: Document, robot: str) -> InputError:
     what = f"a number of {robot} or the comment before it was edited by hand"
     return InputError(f"{document.file}: {what}")
 
@@ -206,7 +204,7 @@ def _taken_out(document: Document, robot: str) -> Iterator[Edit]:
         mark, old = f"<!--{said}-->".encode(), said[len(head) : -len(tail)]
         slot = text_slot(source, start, text_of(element)) if element is not None else None
         if slot is None or not source.endswith(mark, 0, start):
-            raise _edited(document, robot)
+            raise _edited_by_hand(document, robot)
         end = end_of(source, start) if old == _DEFAULT else start
         yield Edit(start - len(mark), end, b"", None)
         if old != _DEFAULT:
@@ -214,8 +212,7 @@ def _taken_out(document: Document, robot: str) -> Iterator[Edit]:
 
 
 def number_changes(template: Template, data: bytes) -> Iterator[Change]:
-    """Yield the numbers of a robot's text that differ from the source, with their places there; raises
-    nothing."""
+    """Yield the numbers of a robot's text that differ from the source, with places; raises nothing."""
     source, file, *_ = template.inventory.document
     written = collect(read_document(data, file), template.tree)
     for it, new in zip(ports_of(template.inventory), ports_of(written), strict=False):

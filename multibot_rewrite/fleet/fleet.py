@@ -1,43 +1,28 @@
 # SPDX-License-Identifier: Apache-2.0
 """A description, its robots and their node sets -> the remap table and the expected graph."""
 
-from __future__ import annotations
-
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.base.naming import Naming, Policy, make_naming
-from multibot_rewrite.description.library import rewrite_all
-from multibot_rewrite.description.sources.read import Source
+from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.description.steps.collect import Inventory
-from multibot_rewrite.fleet.checks.described import wrong_in_descriptions
-from multibot_rewrite.fleet.checks.meeting import robots_meet, shared_by_nothing
 from multibot_rewrite.fleet.file.domains import TOGETHER, Apart
-from multibot_rewrite.fleet.launch.launched_robot import (
-    given_with,
-    known_here,
-    launched_robot,
-    nodes_with,
-    under_plugins,
-)
-from multibot_rewrite.fleet.robots.member import Member, is_for_simulator, line_of, member
+from multibot_rewrite.fleet.robots.member import Member, line_of
 from multibot_rewrite.knowledge.node_library import with_included
+from multibot_rewrite.knowledge.node_sets import built_in, user_library
 from multibot_rewrite.knowledge.nodl.lookup import NodeKnowledge, find_interfaces, nodes_of
-from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.knowledge.stacks import built_in, user_stack
-from multibot_rewrite.planning.bridged_topics import AS_ROBOTS, Models, bridged_as, bridged_topics
+from multibot_rewrite.planning.bridged_topics import AS_ROBOTS, Models
 from multibot_rewrite.planning.domain_bridge import with_bridges
-from multibot_rewrite.planning.plan import expect, named_frames, vacuous
+from multibot_rewrite.planning.plan import expect, named_frames, vacuous, words_of
 from multibot_rewrite.planning.records import Run, Table
 from multibot_rewrite.planning.table import build_table, joined, plugin_nodes
 from multibot_rewrite.planning.transforms import STATE_PUBLISHER, Edges, edges_of, frames_of
 from multibot_rewrite.planning.ways import merged
-from multibot_rewrite.producers.evidence.hardware import components, with_hardware
-from multibot_rewrite.producers.launch.records import LaunchOrder
+from multibot_rewrite.producers.evidence.hardware import components
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import (
     NOT_KNOWN_PROCESS,
@@ -54,15 +39,16 @@ from multibot_rewrite.system.records import (
 
 NOTHING: Mapping[str, str] = {}
 ALIKE: Mapping[str, Inventory] = {}
-# The stack of a robot whose description is published by something else.
+# The node set of a robot whose description is published by something else.
 NO_STATE_PUBLISHER = f"no_{STATE_PUBLISHER}"
 FRAME_PREFIX = "frame_prefix"
 
 
 class Fleet(NamedTuple):
     """A fleet's remap table, what each robot's rewritten description holds, and the transforms that
-    each robot's nodes publish. ``facts`` are the nodes of the node sets, ``tags`` the robots whose
-    prefix or postfix differs from their namespace, with it. ``read`` are the files that were read
+    each robot's nodes publish. All have the robots by their namespaces: ``tags`` has the prefix or
+    postfix of those where it differs, ``names`` the name. ``facts`` are the nodes of the node sets.
+    ``read`` are the files that were read
     for descriptions, ``gaps`` what is open in the robots, ``bridged`` what a ros_gz_bridge has to
     bridge; ``maybe_real`` are robots of which nothing says that they are simulated, ``clocks`` the
     ``use_sim_time`` of robots for which the fleet file says it, ``described`` the descriptions of
@@ -77,6 +63,7 @@ class Fleet(NamedTuple):
     edges: Edges
     facts: tuple[NodeFacts, ...]
     tags: dict[str, str]
+    names: dict[str, str]
     read: tuple[str, ...]
     gaps: tuple[Finding, ...] = ()
     bridged: tuple[Topic, ...] = ()
@@ -89,74 +76,22 @@ class Fleet(NamedTuple):
 
     @property
     def words(self) -> dict[str, str]:
-        """The words that stand for each robot."""
-        return {**{it: it for it in self.inventories}, **{tag: it for it, tag in self.tags.items()}}
+        """The words that stand for robots in texts, each with the name of its robot."""
+        return words_of({self.name(it): (it, self.tags.get(it, it)) for it in self.inventories})
 
+    def name(self, robot: str) -> str:
+        """Return the name of the robot with this namespace."""
+        return self.names.get(robot, robot)
 
-def make_fleet(
-    source: Source,
-    robots: Sequence[str],
-    stacks: Sequence[str],
-    policy: Policy,
-    *,
-    nodes: str | None = None,
-    nodl: Sequence[str] = (),
-    definitions: Sequence[str] = (),
-    xacro_args: Mapping[str, str] = NOTHING,
-    trust: bool = False,
-    launch: Sequence[LaunchOrder] = (),
-    release: str,
-) -> Fleet:
-    """Rewrite a description for every robot and return the fleet with its table, by the facts of the
-    release that the rewrite is for: ``release``, or where it is empty what ``rewrite_all`` takes.
-
-    ``nodes`` is a file with more nodes and node sets, ``nodl`` are NoDL files, see
-    ``find_interfaces``; ``trust`` lets a xacro file do anything; ``launch`` are the launch files
-    that start each robot's nodes. Raises as ``rewrite_all``, and UsageError for an unknown node
-    set."""
-    how: dict[str, Any] = {
-        "definitions": definitions,
-        "xacro_args": xacro_args,
-        "trust": trust,
-        "distro": release,
-    }
-    found = list(rewrite_all(source, robots, **how, **policy))
-    release = found[0].prepared.job.release
-    library = known_nodes(nodes, release, nodl).library
-    known = known_here(library.nodes, launch, robots[0], release)
-    facts = facts_of(stacks, nodes, release, nodl)
-    usual = load_known_nodes(nodes or "", release)
-    launched = launched_robot(facts, launch, known, robots[:1], usual, release)
-    runs = nodes_with(launched, facts, given_with(launched, ()), known)
-    members = [member(it, it.data, it.robot) for it in found]
-    wired = under_plugins(runs.nodes, launched, members[0].handed_on, release)
-    every = with_hardware(wired, members[0].source.root, members[0].source.file, known)
-    fleet = assemble(members, every, make_naming(**policy), release)
-    return _with_bridge_and_findings(fleet, members, tuple(definitions), runs.findings)
-
-
-def _with_bridge_and_findings(
-    fleet: Fleet,
-    members: Sequence[Member],
-    definitions: tuple[str, ...],
-    findings: Iterable[Finding],
-) -> Fleet:
-    """Return the fleet with its robots' collisions, findings about their nodes, and bridged topics."""
-    table = fleet.table
-    met = dict.fromkeys(robots_meet(table, members, fleet.naming))
-    simulated = filter(is_for_simulator, members)
-    found = wrong_in_descriptions(members, definitions, simulated, members)
-    # Nothing is started, and nothing says that they are simulated.
-    wrong = (it._replace(level=WARNING) for it in found)
-    table = table._replace(problems=(*table.problems, *met, *wrong, *findings))
-    topics, _ = bridged_topics(fleet.inventories, fleet.naming, fleet.models, table.runs)
-    own = topics if any(it.robot for it in topics) else ()
-    gaps = tuple(shared_by_nothing(fleet))
-    return fleet._replace(table=table, bridged=bridged_as(own), gaps=gaps)
+    @property
+    def named_table(self) -> Table:
+        """The table with the robots by their names, for people."""
+        runs = (it._replace(robot=self.name(it.robot)) for it in self.table.runs)
+        return self.table._replace(runs=tuple(runs)) if self.names else self.table
 
 
 def facts_of(
-    stacks: Sequence[str], nodes: str | None, release: str, nodl: Sequence[str] = ()
+    node_sets: Sequence[str], nodes: str | None, release: str, nodl: Sequence[str] = ()
 ) -> tuple[NodeFacts, ...]:
     """Return the nodes that a robot with these node sets runs in a release, each once. Raises
     UsageError for an unknown node set, and for one that the release lacks. Every robot runs
@@ -164,15 +99,15 @@ def facts_of(
     set ``no_robot_state_publisher``."""
     known = known_nodes(nodes, release, nodl)
     library = known.library
-    runs = {name: list(nodes_of(known, name)) for name in stacks}
-    named = {node: name for name in reversed(stacks) for node in runs[name]}
-    order = dict.fromkeys(node for name in stacks for node in runs[name])
+    runs = {name: list(nodes_of(known, name)) for name in node_sets}
+    named = {node: name for name in reversed(node_sets) for node in runs[name]}
+    order = dict.fromkeys(node for name in node_sets for node in runs[name])
     # Without its folder: a plan is the same from every working directory.
     files = ((node, os.path.basename(node.interface)) for node in order)
     said = ((node, f", described in {file}" if file else "") for node, file in files)
     found = [node._replace(origin=Origin(f"{named[node]}{where}")) for node, where in said]
     has_publisher = any(node.package == STATE_PUBLISHER for node in found)
-    if not any(NO_STATE_PUBLISHER in with_included(library, name) for name in stacks):
+    if not any(NO_STATE_PUBLISHER in with_included(library, name) for name in node_sets):
         added = () if has_publisher else nodes_of(known, STATE_PUBLISHER)
         return (*found, *added)
     if has_publisher:
@@ -184,7 +119,7 @@ def facts_of(
 def known_nodes(nodes: str | None, release: str, nodl: Sequence[str]) -> NodeKnowledge:
     """Return what is known of nodes in a release: built in, by NoDL, in the user's file ``nodes``."""
     built = built_in(release)
-    library = user_stack(nodes, release) if nodes else built
+    library = user_library(nodes, release) if nodes else built
     own = (name for name, node in library.nodes.items() if node != built.nodes.get(name))
     return NodeKnowledge(library, find_interfaces(nodl), frozenset(own))
 
@@ -215,6 +150,7 @@ def assemble(
         edges,
         facts,
         {it.robot: it.tag for it in members if it.tag != it.robot},
+        {it.robot: it.name for it in members if it.name != it.robot},
         tuple(dict.fromkeys(path for it in members for path in it.read)),
         described={it.robot: it.described for it in members if it.described is not it.inventory},
     )
@@ -247,6 +183,7 @@ def merge(fleets: Sequence[Fleet]) -> Fleet:
             {**first.edges, **other.edges},
             tuple(dict.fromkeys((*first.facts, *other.facts))),
             {**first.tags, **other.tags},
+            {**first.names, **other.names},
             tuple(dict.fromkeys((*first.read, *other.read))),
             described={**first.described, **other.described},
         )
@@ -273,7 +210,8 @@ def planned(fleet: Fleet) -> System:
         for robot, found in {**fleet.inventories, **fleet.described}.items()
     }
     named = {robot: named_frames(found) for robot, found in fleet.inventories.items()}
-    plan = expect(fleet.table, fleet.naming, frames, named, fleet.tags, fleet.maybe_real)
+    how = (fleet.table, fleet.naming, frames, named, fleet.tags, fleet.maybe_real)
+    plan = expect(*how, fleet.names)
     # What could not be read of launch files: the nodes in it are not in the plan.
     asked = ((NOT_READ, WARNING), (NOT_KNOWN_PROCESS, NOTE))
     not_read = (it for it in fleet.table.problems if (it.code, it.level) in asked)

@@ -1,19 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """A fleet file -> its rewritten robots and their remap table; all output follows from these."""
 
-from __future__ import annotations
-
-from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import gc_paused
 from multibot_rewrite.base.naming import Naming, make_naming
-from multibot_rewrite.fleet.checks.described import wrong_in_descriptions
-from multibot_rewrite.fleet.checks.meeting import robots_meet
-from multibot_rewrite.fleet.checks.named_twice import declared_twice, other_manager
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import Sources
 from multibot_rewrite.fleet.file.shape import placed, with_shape
@@ -43,15 +37,11 @@ from multibot_rewrite.fleet.robots.robot_nodes import (
     robot_nodes,
 )
 from multibot_rewrite.fleet.robots.simulators import (
-    is_said,
-    is_simulated,
     may_be_real,
     note,
     without_world_systems,
 )
-from multibot_rewrite.planning.way_checks import UNREACHABLE_NAME
-from multibot_rewrite.system.coverage import Coverage, coverage
-from multibot_rewrite.system.records import System
+from multibot_rewrite.planning.plan import words_of
 
 
 class FleetPlan(NamedTuple):
@@ -82,34 +72,12 @@ class FleetPlan(NamedTuple):
 
     @property
     def words(self) -> dict[str, str]:
-        """Return the words that stand for robots in texts, each with the name of its robot: the names
-        first; another word only where it stands for one robot."""
-        specs = [it.spec for it in self.robots]
-        names = {it.name: it.name for it in specs}
-        others = {word: it.name for it in specs for word in (it.namespace, it.tag, it.model)}
-        robots = Counter(word for it in specs for word in {it.namespace, it.tag, it.model})
-        return names | {
-            it: name for it, name in others.items() if robots[it] == 1 and it not in names
-        }
-
-    def with_names(self, findings: Iterable[Finding]) -> Iterator[Finding]:
-        """Yield the findings with the names of robots; about nodes and frames they have namespaces."""
-        names = self._names()
-        for it in findings:
-            robots = tuple(names.get(one, one) for one in it.robots) if it.robot else it.robots
-            yield it._replace(robot=names.get(it.robot, it.robot), robots=robots)
-
-    def held(self, planned: System) -> Coverage:
-        """Return how much the plan holds, with the names of robots."""
-        names, all_held = self._names(), coverage(planned)
-        rows = (it._replace(robot=names.get(it.robot, it.robot)) for it in all_held.robots)
-        return all_held._replace(robots=tuple(rows))
-
-    def _names(self) -> Mapping[str, str]:
-        return {it.spec.namespace: it.spec.name for it in self.robots}
+        """Return the words that stand for robots in texts, each with the name of its robot."""
+        specs = (it.spec for it in self.robots)
+        return words_of({it.name: (it.namespace, it.tag, it.model) for it in specs})
 
 
-def plan_fleet(
+def make_plan(
     file: FleetFile, jobs: Mapping[Sources, Jobs] | None = None, trust: bool = False
 ) -> FleetPlan:
     """Rewrite every robot's description and make the table of the whole fleet.
@@ -189,18 +157,5 @@ def _fleet(
         fleets.append(assemble(group, found.nodes, naming, file.distro, found.given))
         notes += found.findings
     fleet = merge(fleets)
-    members = [it.member for it in robots]
-    written = {it.spec.namespace: it.written for it in robots}
-    domains = {it.robot: it.number for it in file.apart.domains}
-    own_domains = [it.number for it in file.apart.domains if it.robot]
-    never_meet = bool(own_domains) and len({*own_domains}) == len(own_domains)
-    table = fleet.table
-    met = (*table.problems, *robots_meet(table, members, naming, written, domains))
-    every = (it for it in met if it.code != UNREACHABLE_NAME.code or not never_meet)
-    simulated = [it.member for it in robots if is_simulated(it)]
-    said = [it.member for it in robots if is_said(it)]
-    own = [it.member for it in robots if it.spec.launch]
-    wrong = wrong_in_descriptions(members, file.definitions, simulated, said, own)
-    told = (*declared_twice(robots, naming, met), *other_manager(robots, table), *wrong)
-    problems = tuple(dict.fromkeys((*every, *told, *notes)))
-    return fleet._replace(table=table._replace(problems=problems))
+    problems = tuple(dict.fromkeys((*fleet.table.problems, *notes)))
+    return fleet._replace(table=fleet.table._replace(problems=problems))

@@ -3,8 +3,6 @@
 ``README.md`` has how they are written.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from functools import lru_cache
 from typing import NamedTuple
@@ -49,7 +47,7 @@ class Condition(NamedTuple):
 def parse_condition(text: str) -> tuple[tuple[Condition, ...], ...]:
     """Return the alternatives, each with the terms that must all hold; none for an empty text.
     Raises UsageError for a text that is no condition."""
-    return tuple(tuple(map(_one, it.split(AND))) for it in text.split(OR)) if text else ()
+    return tuple(tuple(map(_condition_of, it.split(AND))) for it in text.split(OR)) if text else ()
 
 
 def joined(text: str, other: str) -> str:
@@ -59,7 +57,7 @@ def joined(text: str, other: str) -> str:
 
 def said(text: str) -> str:
     """Return the condition as people read it."""
-    return OR.join(AND.join(map(_said, it.split(AND))) for it in text.split(OR))
+    return OR.join(AND.join(map(_readable_term, it.split(AND))) for it in text.split(OR))
 
 
 @lru_cache(maxsize=4096)  # so many facts, so few conditions
@@ -77,7 +75,7 @@ def settled(text: str, decide: Callable[[Condition], bool | None]) -> str | None
     alternative holds, it is empty."""
     left = []
     for terms in (it.split(AND) for it in text.split(OR)) if text else ():
-        known = {it: decide(_one(it)) for it in terms}
+        known = {it: decide(_condition_of(it)) for it in terms}
         if False not in known.values():
             left.append(AND.join(it for it, is_so in known.items() if is_so is None))
     return "" if "" in left or not text else OR.join(left) or None
@@ -91,11 +89,11 @@ def words_in(text: str, kind: str) -> Iterator[str]:
         )
 
 
-def _said(term: str) -> str:
+def _readable_term(term: str) -> str:
     """Return a term as people read it; another reason, such as a file of parameters, as it is."""
     if _TERM.fullmatch(term) is None and term.partition(": ")[0] not in KINDS:
         return term
-    it = _one(term)
+    it = _condition_of(term)
     values = " or ".join(it.values)
     if (it.how, it.parameter) == (":", OPEN_KIND):
         return OPEN[values]
@@ -104,14 +102,14 @@ def _said(term: str) -> str:
     return f"{it.parameter.replace(ALSO, ' or ')} {_SAID.get(it.how, it.how)} {values}".rstrip()
 
 
-def _one(text: str) -> Condition:
+def _condition_of(text: str) -> Condition:
     kind = _KIND.fullmatch(text.strip())
     if kind is not None:
         if kind["kind"] not in KINDS:
             near = did_you_mean_one_of(kind["kind"], KINDS)
             known = f"{near}{near and ' '}known: {', '.join(KINDS)}"
             raise UsageError(f"{text!r} is of no kind that is known; {known}")
-        words = _words(kind["words"])
+        words = _terms(kind["words"])
         if kind["kind"] == OPEN_KIND and (len(words) > 1 or words[0] not in OPEN):
             raise UsageError(f"open: {ALSO.join(words)!r} is none of {', '.join(OPEN)}")
         return Condition(kind["kind"], ":", words)
@@ -121,10 +119,10 @@ def _one(text: str) -> Condition:
         raise UsageError(f"{text!r} is no condition; {hint}")
     if found["state"]:
         return Condition(found["parameter"], found["state"], ())
-    return Condition(found["parameter"], found["how"] or "=", _words(found["value"] or "true"))
+    return Condition(found["parameter"], found["how"] or "=", _terms(found["value"] or "true"))
 
 
-def _words(text: str) -> tuple[str, ...]:
+def _terms(text: str) -> tuple[str, ...]:
     return tuple(it.strip() for it in text.split(ALSO))
 
 

@@ -4,8 +4,6 @@
 Source: ros2_control ``controller_manager.cpp`` (``determine_controller_node_options``), ``spawner.py``.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from multibot_rewrite.base.releases import has_release

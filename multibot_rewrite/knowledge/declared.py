@@ -7,8 +7,6 @@ The first one is made by ``python -m tools.interfaces.declared_table``; its firs
 grammar.
 """
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Iterator, Mapping

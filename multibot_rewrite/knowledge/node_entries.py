@@ -185,8 +185,7 @@ def read_node(
 
 
 def _frames(keys: Mapping[str, YamlItem], params: Iterable[Param]) -> Iterator[FrameParameter]:
-    """Yield the parameters that hold frames, with their defaults: those under ``params``, unless
-    ``frames`` has others."""
+    """Yield the parameters that hold frames, with defaults: ``frames``, then those of ``params``."""
     said = table_of(keys, "frames")
     own = (it for it in params if it.kind == "frame" and it.path not in said and has_default(it))
     yield from (FrameParameter(it.path, it.default, it.releases, it.source) for it in own)
@@ -284,7 +283,10 @@ def _endpoint(role: str, name: str, item: YamlItem) -> Endpoint:
         if type_.value not in every:
             wrong(type_, f"{type_.value!r} is neither the type nor in also ({', '.join(every)})")
         types.append((condition, str(type_.value)))
-    endpoint = Endpoint(_kind(role, word_of(keys, "type")), role, name)._replace(
+    endpoint = Endpoint(
+        _kind(role, word_of(keys, "type")),
+        role,
+        name,
         **{key: word_of(keys, key) for key in keys.keys() & set(ENDPOINT_WORDS)},
         also=also,
         types=tuple(types),

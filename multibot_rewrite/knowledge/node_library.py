@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Files of nodes and node sets -> records; errors name file and line."""
 
-from __future__ import annotations
-
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from typing import NamedTuple
@@ -41,20 +40,20 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
 )
 from multibot_rewrite.system.records import ROLES
 
-STACK_KEYS = ("about", "include", "container", "nodes", "remaps", "releases")
+NODE_SET_KEYS = ("about", "include", "container", "nodes", "remaps", "releases")
 ENTRY_KEYS = (
     *("node", "as", "plugin", "shared", "when", "with", "names", "remaps", "releases"),
     *("parameters", "by_sensor"),
 )
 ENTRY_OF_NODE = tuple(dict.fromkeys((*NODE_KEYS, *PARAMETER_KEYS)))
 # The schema of such a file, for editors.
-FILE_KEYS = ("parts", "nodes", "stacks", "guesses", "sent")
+FILE_KEYS = ("parts", "nodes", "node_sets", "guesses", "sent")
 NOTHING: Mapping[str, str] = {}
 NO_PARAMETERS: Mapping[str, NodeParameters] = {}
 NO_GUESSES: Mapping[str, tuple[str, ...]] = {}
 
 
-class Stack(NamedTuple):
+class NodeSet(NamedTuple):
     """Nodes that are started together; ``include`` are node sets that it contains, ``releases`` the
     words for the releases that have it.
 
@@ -80,7 +79,7 @@ class NodeLibrary(NamedTuple):
 
     parts: Mapping[str, tuple[Endpoint, ...]]
     nodes: Mapping[str, NodeFacts]
-    stacks: Mapping[str, Stack]
+    node_sets: Mapping[str, NodeSet]
     release: str = ""
     elsewhere: Mapping[str, str] = NOTHING
     parameters: Mapping[str, NodeParameters] = NO_PARAMETERS
@@ -88,7 +87,7 @@ class NodeLibrary(NamedTuple):
     sent: frozenset[str] = frozenset()
 
 
-def stack_of(library: NodeLibrary, name: str) -> tuple[NodeFacts, ...]:
+def nodes_of_set(library: NodeLibrary, name: str) -> tuple[NodeFacts, ...]:
     """Return the nodes of a node set, each once; nodes of included node sets come first. The name
     of a node is a node set of that node alone. Raises UsageError for other names, and for what the
     library's release lacks."""
@@ -96,11 +95,11 @@ def stack_of(library: NodeLibrary, name: str) -> tuple[NodeFacts, ...]:
         hint = "name one of these releases, or leave the node set out"
         has = f"it is in {library.elsewhere[name]}"
         raise UsageError(f"node set {name!r} has no node in {library.release}; {has}; {hint}")
-    if name not in library.stacks and name in library.nodes:
+    if name not in library.node_sets and name in library.nodes:
         return (library.nodes[name],)
-    if name not in library.stacks:
-        raise UsageError(unknown("stack", name, library.stacks, library.nodes))
-    found = tuple(dict.fromkeys(_gathered(library, name, ())))
+    if name not in library.node_sets:
+        raise UsageError(unknown("node set", name, library.node_sets, library.nodes))
+    found = tuple(dict.fromkeys(_all_nodes(library, name, ())))
     for node in found:
         others = (it for it in found if it is not node and it.name == node.name)
         if any(share_release(node.releases, other.releases) for other in others):
@@ -114,34 +113,35 @@ def stack_of(library: NodeLibrary, name: str) -> tuple[NodeFacts, ...]:
 def with_included(library: NodeLibrary, name: str) -> Iterator[str]:
     """Yield the names of a node set and of all that it includes; a node is no node set."""
     yield name
-    for other in library.stacks[name].include if name in library.stacks else ():
+    for other in library.node_sets[name].include if name in library.node_sets else ():
         yield from with_included(library, other)
 
 
-def _gathered(library: NodeLibrary, name: str, above: tuple[str, ...]) -> Iterator[NodeFacts]:
+def _all_nodes(library: NodeLibrary, name: str, above: tuple[str, ...]) -> Iterator[NodeFacts]:
     if name in above:
         raise UsageError(f"node set {name!r} includes itself: {' -> '.join((*above, name))}")
-    stack = library.stacks[name]
-    for other in stack.include:
-        yield from (_in_stack(it, stack) for it in _gathered(library, other, (*above, name)))
-    yield from (_in_stack(it, stack) for it in stack.nodes)
+    node_set = library.node_sets[name]
+    for other in node_set.include:
+        yield from (_in_set(it, node_set) for it in _all_nodes(library, other, (*above, name)))
+    yield from (_in_set(it, node_set) for it in node_set.nodes)
 
 
-def _in_stack(node: NodeFacts, stack: Stack) -> NodeFacts:
+def _in_set(node: NodeFacts, node_set: NodeSet) -> NodeFacts:
     """Return the node under a node set's rules, as a component if the node set has a container."""
-    rules = {given: target for name, given, target in stack.remaps if name == node.name}
+    rules = {given: target for name, given, target in node_set.remaps if name == node.name}
     ends = (it._replace(remapped=rules.get(it.name, it.remapped)) for it in node.endpoints)
     node = node._replace(endpoints=tuple(ends)) if rules else node
-    kept = node.host or node.shared or node.name == stack.container or not stack.container
-    return node if kept else node._replace(container=stack.container)
+    kept = node.host or node.shared or node.name == node_set.container or not node_set.container
+    return node if kept else node._replace(container=node_set.container)
 
 
 def extend(library: NodeLibrary, text: str, file: str, own: bool = False) -> NodeLibrary:
     """Return ``library`` with what a YAML text adds or changes. An entry replaces what was known of
     a node's endpoints, and adds to its parameters. ``own`` means that the text is of this
     package."""
+    text = re.sub(r"(?m)^stacks:", "node_sets:", text)  # as files of 0.2.0 call them
     top = table(read_yaml_with_lines(text, file, own), "the file", FILE_KEYS)
-    new = {key: table(top[key], key) for key in ("parts", "nodes", "stacks") if key in top}
+    new = {key: table(top[key], key) for key in ("parts", "nodes", "node_sets") if key in top}
     given_parts = {
         name: tuple(endpoints_of(table(item, "a part", ROLES)))
         for name, item in new.get("parts", {}).items()
@@ -163,7 +163,7 @@ def extend(library: NodeLibrary, text: str, file: str, own: bool = False) -> Nod
                 programs, component = node.programs or old.programs, node.component or old.component
                 node = node._replace(programs=programs, component=component)
             nodes[name] = node
-    known = {*library.stacks, *new.get("stacks", {})}
+    known = {*library.node_sets, *new.get("node_sets", {})}
     grown = library._replace(
         parts=parts,
         nodes=nodes,
@@ -171,15 +171,17 @@ def extend(library: NodeLibrary, text: str, file: str, own: bool = False) -> Nod
         guesses={**library.guesses, **dict(read_guesses(top))},
         sent=library.sent | frozenset(words_of(top, "sent")),
     )
-    stacks = {name: _stack(item, grown, known) for name, item in new.get("stacks", {}).items()}
-    whole = grown._replace(stacks={**library.stacks, **stacks})
-    for name, item in new.get("stacks", {}).items():
-        # Includes and names can be checked only when all stacks are known.
+    node_sets = {
+        name: _node_set(item, grown, known) for name, item in new.get("node_sets", {}).items()
+    }
+    whole = grown._replace(node_sets={**library.node_sets, **node_sets})
+    for name, item in new.get("node_sets", {}).items():
+        # Includes and names can be checked only when all node sets are known.
         try:
-            found_nodes = stack_of(whole, name)
+            found_nodes = nodes_of_set(whole, name)
         except UsageError as error:
             wrong(item, str(error))
-        for of_node, rules in table_of(table(item, "a node set", STACK_KEYS), "remaps").items():
+        for of_node, rules in table_of(table(item, "a node set", NODE_SET_KEYS), "remaps").items():
             ends = [end for it in found_nodes if it.name == of_node for end in it.endpoints]
             if not ends:
                 wrong(rules, unknown("node", of_node, {it.name for it in found_nodes}))
@@ -196,12 +198,12 @@ def _check_rule(item: YamlItem, given: str, ends: Iterable[Endpoint]) -> None:
     checked_endpoint(item, found._replace(remapped=word(item, f"remaps {given}")))
 
 
-def _stack(item: YamlItem, library: NodeLibrary, stacks: Iterable[str]) -> Stack:
-    keys = table(item, "a node set", STACK_KEYS)
-    known = {name: name for name in stacks}
-    return Stack(
+def _node_set(item: YamlItem, library: NodeLibrary, node_sets: Iterable[str]) -> NodeSet:
+    keys = table(item, "a node set", NODE_SET_KEYS)
+    known = {name: name for name in node_sets}
+    return NodeSet(
         word_of(keys, "about"),
-        tuple(known_word(entry, "stack", known) for entry in entries_of(keys, "include")),
+        tuple(known_word(entry, "node set", known) for entry in entries_of(keys, "include")),
         tuple(_placed(entry, library) for entry in entries_of(keys, "nodes")),
         releases_of(keys),
         word_of(keys, "container"),

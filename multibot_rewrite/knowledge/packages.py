@@ -2,8 +2,6 @@
 """Packages of known nodes: the versions that each release has, and of what day the source is that was
 read of them, as ``packages.schema`` has it, which ``python -m tools.interfaces.versions`` makes."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from functools import cache, lru_cache
 from typing import NamedTuple

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The parameters of known nodes in a release: by node, by the type of a controller, by their paths."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from fnmatch import translate
@@ -13,8 +11,8 @@ from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.knowledge.node_entries import OWN_KINDS, has_default
 from multibot_rewrite.knowledge.node_library import NodeLibrary
+from multibot_rewrite.knowledge.node_sets import every_release, with_file
 from multibot_rewrite.knowledge.records import Branch, NodeParameters, Param
-from multibot_rewrite.knowledge.stacks import every_release, with_file
 
 # Undeclared names of these kinds stay as they are, so a wrong guess does no harm.
 SAFE_KINDS = ("link", "joint")

@@ -6,13 +6,11 @@ launch/*.py of humble (1.1.20), jazzy (1.3.13), kilted (1.4.2), lyrical (1.5.1) 
 slam_toolbox launch/online_sync_launch.py.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from multibot_rewrite.base.releases import has_release
+from multibot_rewrite.knowledge.node_sets import built_in
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.knowledge.stacks import built_in
 
 LIFECYCLE_MANAGER, CONTAINER = "lifecycle_manager", "component_container"
 # What the launch files of Nav2 start; the manager last, so that what it manages is there.
@@ -34,8 +32,7 @@ class Program(NamedTuple):
 
 
 def program_of(node: NodeFacts, release: str) -> Program | None:
-    """Return the program of a node in a release; None if no package is known, and for one that is
-    only a component."""
+    """Return a node's program in a release; None for an unknown package or a pure component."""
     known = node.kind
     if known == CONTAINER:
         return container_of(release)

@@ -141,8 +141,7 @@ _MADE_OF = lazy_compile(r"<([^<>=]+)(?:=([^<>]*))?>")
 
 
 def made_of(text: str, values: Mapping[str, str]) -> str:
-    """Return a frame that code makes, with each ``<parameter=default>`` in it as it is set; what has
-    no value stays."""
+    """Return a frame that code makes, with each set ``<parameter=default>`` filled in."""
     return _MADE_OF.sub(lambda it: values.get(it[1], it[0] if it[2] is None else it[2]), text)
 
 
@@ -157,8 +156,7 @@ class Claim(NamedTuple):
 
 
 class Untold(NamedTuple):
-    """What the source of a node does not tell before it runs, with its place; a value of its
-    ``parameter`` tells it."""
+    """What a node's source leaves open until it runs, with its place; ``parameter`` decides it."""
 
     text: str
     parameter: str = ""

@@ -2,8 +2,6 @@
 """YAML with the file and line of every value, for errors in data files; and what every fact may say
 besides itself: the releases that have it, and where that can be read."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple, NoReturn, TypeAlias, TypeVar
 
@@ -40,7 +38,7 @@ def read_yaml_with_lines(text: str, file: str, own: bool = False) -> YamlItem:
         raise UsageError(str(error)) from None
 
 
-def _item(node: yaml.Node, where: str, file: str) -> YamlItem:
+def _item(node: "yaml.Node", where: str, file: str) -> YamlItem:
     if isinstance(node.value, str):
         if node.tag == "tag:yaml.org,2002:null":
             return YamlItem(where, None)
@@ -57,7 +55,7 @@ def _truth(word: str) -> bool:
     return word.lower() in ("true", "yes", "on")
 
 
-def _mapping(node: yaml.Node, file: str) -> dict[str, YamlItem]:
+def _mapping(node: "yaml.Node", file: str) -> dict[str, YamlItem]:
     found: dict[str, YamlItem] = {}
     for key, value in node.value:
         where = f"{file}:{key.start_mark.line + 1}"

@@ -10,7 +10,6 @@ from typing import Any
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.fleet.outputs import spawn as spawning
 from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
-from multibot_rewrite.fleet.scripts import LoadedFleet
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.launch import later
 from multibot_rewrite.launch.context import (
@@ -31,6 +30,7 @@ from multibot_rewrite.launch.context import (
     sim_time,
     written,
 )
+from multibot_rewrite.library.loaded_fleet import LoadedFleet
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.related_files.params.rcl_parameters import parameters_text
 
@@ -65,38 +65,38 @@ def each_robot(fleet: Text, make: Make, robots: Text = "", **action: Any) -> Act
     return of_launch("actions").OpaqueFunction(function=groups, **action)
 
 
-def node(of_stack: Text = "", **options: Any) -> Action:
+def node(name_in_set: Text = "", **options: Any) -> Action:
     """Return a node of a robot's node sets: launch_ros's Node with its program, names, remappings and
     parameters.
 
     For a controller it is that of its spawner, with its parameter files as ``-p``; a component is
-    loaded into its container. ``of_stack`` is its name in the node set; ``files`` are parameter
+    loaded into its container. ``name_in_set`` is its name in the node set; ``files`` are parameter
     files of the fleet, with commas or as a list; ``describe`` adds ``robot_description``; ``robot``
     and ``fleet`` say whose it is, ``use_sim_time`` which clock it has. All others are Node's own,
     and override. Raises UsageError for a name or a namespace, which the fleet has."""
-    return _node("node", node_class(), of_stack, options)
+    return _node("node", node_class(), name_in_set, options)
 
 
-def lifecycle_node(of_stack: Text = "", **options: Any) -> Action:
+def lifecycle_node(name_in_set: Text = "", **options: Any) -> Action:
     """Return a node of a robot's node sets as a LifecycleNode, for events that change its state."""
-    return _node("lifecycle_node", of_launch_ros("actions").LifecycleNode, of_stack, options)
+    return _node("lifecycle_node", of_launch_ros("actions").LifecycleNode, name_in_set, options)
 
 
-def container(of_stack: Text = "", **options: Any) -> Action:
+def container(name_in_set: Text = "", **options: Any) -> Action:
     """Return a container of a robot's node sets as launch_ros's ComposableNodeContainer. It takes
     the rules and parameter files of all nodes in its process, also of those that its components
     make, such as costmaps: give it the files of its components, too."""
     base = of_launch_ros("actions").ComposableNodeContainer
-    return _node("container", base, of_stack, options)
+    return _node("container", base, name_in_set, options)
 
 
-def composable_node(of_stack: Text = "", **options: Any) -> Any:
+def composable_node(name_in_set: Text = "", **options: Any) -> Any:
     """Return a component: launch_ros's ComposableNode, for containers and LoadComposableNodes."""
-    own, first = _taken("composable_node", of_stack, options)
+    own, first = _taken("composable_node", name_in_set, options)
 
     def made(context: Context) -> dict[str, Any]:
-        name, its = perform(context, of_stack), robot_of(context, own["of"])
-        return _made(context, name, own, _with_program(its, name, first, component=True))
+        name, its = perform(context, name_in_set), robot_of(context, own["of"])
+        return _node_options(context, name, own, _with_program(its, name, first, component=True))
 
     placeholders = {"package": "later", "plugin": "later"}
     base = of_launch_ros("descriptions").ComposableNode
@@ -105,7 +105,6 @@ def composable_node(of_stack: Text = "", **options: Any) -> Any:
 
 def spawn(simulator: Text, robot: Text = None, fleet: Text = None, **options: Any) -> Action:
     """Return a robot's spawner: ``gz`` (ros_gz_sim), ``classic`` (gazebo_ros); ``options`` of Node."""
-
     of = RobotRef(robot, fleet)
 
     def program(context: Context) -> tuple[tuple[str, str], list[str]]:
@@ -134,17 +133,17 @@ def node_class() -> Any:
     return of_launch_ros("actions").Node
 
 
-def _node(word: str, base: Any, of_stack: Text, options: Mapping[str, Any]) -> Action:
+def _node(word: str, base: Any, name_in_set: Text, options: Mapping[str, Any]) -> Action:
     """Return an action of the class ``base`` for a node of a node set."""
-    own, first = _taken(word, of_stack, options)
+    own, first = _taken(word, name_in_set, options)
 
     def made(context: Context) -> later.Made:
-        called, its = perform(context, of_stack), robot_of(context, own["of"])
+        called, its = perform(context, name_in_set), robot_of(context, own["of"])
         if its.table.is_controller(called):
-            return _made(context, called, own, first)
+            return _node_options(context, called, own, first)
         box = its.table.container(called)
         programmed = _with_program(its, called, first, component=bool(box))
-        given = _made(context, called, own, programmed)
+        given = _node_options(context, called, own, programmed)
         return _loaded(box, given, programmed) if box else given
 
     known = {key: it for key, it in first.items() if key != "plugin"}
@@ -153,11 +152,11 @@ def _node(word: str, base: Any, of_stack: Text, options: Mapping[str, Any]) -> A
 
 
 def _taken(
-    word: str, of_stack: Text, options: Mapping[str, Any]
+    word: str, name_in_set: Text, options: Mapping[str, Any]
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the options that are ours, and launch_ros's."""
     _check_options(word, options)
-    if not of_stack:
+    if not name_in_set:
         raise UsageError(f'{word}: which node? Write its name in the node set: {word}("amcl")')
     rest = dict(options)
     own = {key: rest.pop(key, None) for key in ("files", "describe", SIM_TIME)}
@@ -175,7 +174,7 @@ def _check_options(word: str, options: Mapping[str, Any]) -> None:
             raise UsageError(f"{word}: {it} comes from the fleet file; {first}remove {it}=")
 
 
-def _made(
+def _node_options(
     context: Context, name: str, own: Mapping[str, Any], options: Mapping[str, Any]
 ) -> dict[str, Any]:
     """Return the options with those of the node, or of a controller's spawner, in this launch.

@@ -6,8 +6,6 @@ A launch keeps each fleet and a folder for files that goes at its end. A robot o
 given is that of the enclosing group. It is among the locals of the context: launch keeps these for
 timers, and here for event handlers (launch jazzy launch_service.py, timer_action.py)."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
@@ -19,8 +17,8 @@ from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.fleet.file.robot_spec import Pose
 from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
-from multibot_rewrite.fleet.scripts import LoadedFleet, load_fleet
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
+from multibot_rewrite.library.loaded_fleet import LoadedFleet, load_fleet
 from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros
 
@@ -56,8 +54,7 @@ Here = tuple[LoadedFleet | None, str | None]
 
 
 def entered(context: Context, group: Here) -> None:
-    """Set the fleet and the robot from here on, also for events and timers set up now; None for
-    none."""
+    """Set the fleet and the robot from here on, also for later events and timers; None for none."""
     _carry(context)
     context.extend_locals(dict(zip((FLEET, ROBOT), group, strict=True)))
 
@@ -78,13 +75,13 @@ def _carry(context: Context) -> None:
     def registered(event_handler: Any, *more: Any, **options: Any) -> None:
         group = here(context)
         if any(group) and not _is_of_timers(event_handler):
-            event_handler.handle = _handled(event_handler.handle, group)
+            event_handler.handle = _handler_in(event_handler.handle, group)
         register(event_handler, *more, **options)
 
     context.register_event_handler = registered
 
 
-def _handled(handle: Callable[..., Any], group: Here) -> Callable[..., Any]:
+def _handler_in(handle: Callable[..., Any], group: Here) -> Callable[..., Any]:
     def handled(event: Any, context: Context) -> Any:
         # launch drops the locals when it has visited what this returns.
         entered(context, group)
@@ -107,7 +104,7 @@ def fleet_of(context: Context, fleet: Text = None) -> LoadedFleet:
     enclosing, _ = here(context)
     if fleet is None and enclosing:
         return enclosing
-    path = _said(context, FLEET, "fleet") if fleet is None else perform(context, fleet)
+    path = _launch_argument(context, FLEET, "fleet") if fleet is None else perform(context, fleet)
     known: dict[str, LoadedFleet] = _of_launch(context, _FLEETS, dict)
     words = (TRUST, DISTRO, ROBOTS, COUNT)
     trust, distro, robots, count = (str(context.launch_configurations.get(it, "")) for it in words)
@@ -131,7 +128,7 @@ def robot_of(context: Context, of: RobotRef = HERE) -> LoadedRobot:
     """Return a robot; raises as ``fleet_of``, and UsageError for an unknown robot."""
     _, enclosing = here(context)
     if of.robot is None:
-        name = enclosing or _said(context, ROBOT, "robot")
+        name = enclosing or _launch_argument(context, ROBOT, "robot")
     else:
         name = perform(context, of.robot)
     return fleet_of(context, of.fleet).robot(name)
@@ -184,15 +181,14 @@ def sim_time(context: Context, robot: LoadedRobot, told: Text) -> bool | None:
 
 
 def listed(context: Context, names: Text) -> list[str]:
-    """Return names or paths from a list or a text with commas; launch joins a list with
-    substitutions into one text."""
+    """Return the names of a list or of a text with commas: launch joins lists with substitutions."""
     several = not isinstance(names, str) and isinstance(names, Sequence)
     if several and all(isinstance(it, str | os.PathLike) for it in names):
         return [os.fspath(it) for it in names]
     return [it for it in map(str.strip, perform(context, names).split(",")) if it]
 
 
-def _said(context: Context, key: str, what: str) -> str:
+def _launch_argument(context: Context, key: str, what: str) -> str:
     if key not in context.launch_configurations:
         hint = f"set {what}, or put it into multibot_robots or each_robot"
         raise UsageError(f"no {what} is given; {hint}")
@@ -208,6 +204,7 @@ def _of_launch(context: Context, key: str, make: Callable[[], Any]) -> Any:
 
 
 def written(context: Context, robot: LoadedRobot | None, file: str, text: str) -> str:
+    """Return the path of a file that this launch writes with that text."""
     folder = _of_launch(context, _FOLDER, lambda: _folder(context))
     path = os.path.join(folder.name, robot.name if robot else "all", file)
     os.makedirs(os.path.dirname(path), exist_ok=True)
@@ -265,7 +262,7 @@ WORDS: Mapping[str, Callable[[LoadedRobot, str], str]] = MappingProxyType(
 
 
 def description(robot: Text = None, fleet: Text = None) -> Substitution:
-    """Return a robot's description: ``parameters=[{"robot_description": description()}]``."""
+    """Return a robot's description for ``parameters=[{"robot_description": ...}]``."""
     return value("description", robot=robot, fleet=fleet)
 
 

@@ -74,8 +74,7 @@ def container(entity: Any, parser: Any) -> Parsed:
 
 
 def composable_node(entity: Any, parser: Any) -> Parsed:
-    """Parse ``multibot_composable_node node= pkg= plugin=``: loaded into its container, see
-    ``launch.node``."""
+    """Parse ``multibot_composable_node node= pkg= plugin=``, which is loaded into its container."""
     return actions.node, {**action_options(entity, parser), **_component(entity, parser)}
 
 
@@ -115,7 +114,7 @@ def _node(word: str, base: Any, entity: Any, parser: Any) -> dict[str, Any]:
     for it in FROM_THE_FLEET:
         if it in given:
             raise ValueError(f"{word}: {it} comes from the fleet file; remove {it}=")
-    return {**given, **_parameters(given), **_ours(entity, parser)}
+    return {**given, **_parameters(given), **_own_attributes(entity, parser)}
 
 
 class _Programless:
@@ -134,11 +133,11 @@ class _Programless:
         return self._entity.get_attr(name, **{**options, "optional": True}) or "later"
 
 
-def _ours(entity: Any, parser: Any) -> dict[str, Any]:
+def _own_attributes(entity: Any, parser: Any) -> dict[str, Any]:
     name = parser.parse_substitution(entity.get_attr("node"))
     describe = entity.get_attr("describe", data_type=bool, optional=True, can_be_str=False)
     texts = _texts(entity, parser, "files", "robot", "fleet", SIM_TIME)
-    return {**texts, "of_stack": name, "describe": bool(describe)}
+    return {**texts, "name_in_set": name, "describe": bool(describe)}
 
 
 def _component(entity: Any, parser: Any) -> dict[str, Any]:
@@ -152,7 +151,7 @@ def _component(entity: Any, parser: Any) -> dict[str, Any]:
         given["parameters"] = actions.node_class().parse_nested_parameters(params, parser)
     if remaps := _nested(entity, "remap"):
         given["remappings"] = [_rule(it, parser) for it in remaps]
-    return {**given, **_parameters(given), **_ours(entity, parser)}
+    return {**given, **_parameters(given), **_own_attributes(entity, parser)}
 
 
 def _nested(entity: Any, word: str) -> list[Any]:

@@ -66,8 +66,7 @@ def _component(base: Any) -> Any:
 
         @property
         def package(self) -> Any:
-            """Its package. In all releases launch_ros asks for it before all else that is a
-            robot's."""
+            """Its package; launch_ros asks for it first of all that is a robot's."""
             return [_first_word()(self._made)]
 
         def _made(self, context: Context) -> str:

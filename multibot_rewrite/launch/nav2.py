@@ -40,7 +40,7 @@ NONE, ONE, EACH = "none", "one", "each"
 MAP_SERVER, STATE = "map_server", "robot_state_publisher"
 TRANSITIONS: Mapping[str, int] = MappingProxyType({"configure": 1, "activate": 3})
 _INFO = "costmap_filter_info_server"
-# Nodes of stacks that are called otherwise than what they are.
+# Nodes of node sets that are called otherwise than what they are.
 _KINDS: Mapping[str, str] = MappingProxyType(
     {f"{it}_filter_mask_server": MAP_SERVER for it in ("keepout", "speed")}
     | {f"{it}_{_INFO}": _INFO for it in ("keepout", "speed")}
@@ -66,13 +66,13 @@ def generate_launch_description() -> Any:
         actions.DeclareLaunchArgument(name, default_value=default, description=about)
         for name, default, about in ARGUMENTS
     ]
-    fleet, robots = _said("fleet"), _said("robots")
-    each = each_robot(fleet, lambda it: [opaque(function=partial(_started, it)), place()], robots)
+    fleet, robots = _configuration("fleet"), _configuration("robots")
+    each = each_robot(fleet, lambda it: [opaque(function=partial(_starts, it)), place()], robots)
     made = [opaque(function=_shared), each, opaque(function=_rviz)]
     return of_launch().LaunchDescription([*declared, *made])
 
 
-def _said(argument: str) -> Any:
+def _configuration(argument: str) -> Any:
     return of_launch("substitutions").LaunchConfiguration(argument)
 
 
@@ -80,12 +80,12 @@ def _is_on(context: Context, argument: str) -> bool:
     return str(context.launch_configurations.get(argument, "")).strip().lower() in ("true", "1")
 
 
-def _started(robot: LoadedRobot, context: Context) -> list[Action]:
+def _starts(robot: LoadedRobot, context: Context) -> list[Action]:
     names = robot.table
-    # Other nodes that its files have sections for may run, too: the stacks say which do.
-    known = nodes_of_nav2(it for it in robot.stack if it in names.nodes)
+    # Other nodes that its files have sections for may run, too: the node sets say which do.
+    known = nodes_of_nav2(it for it in robot.node_set if it in names.nodes)
     if not known:
-        hint = "add nav2, nav2_composed, nav2_slam or nav2_slam_composed to stack:"
+        hint = "add nav2, nav2_composed, nav2_slam or nav2_slam_composed to node_sets:"
         raise UsageError(f"robot {robot.name!r} has no node of Nav2; {hint}")
     with_state = _is_on(context, "robot_state_publisher") and STATE in names.nodes
     processes = [names.container(it) or names.full_name(it) for it in known]
@@ -103,21 +103,31 @@ def _started(robot: LoadedRobot, context: Context) -> list[Action]:
 
 def _process(context: Context, robot: LoadedRobot, it: Start) -> list[Action]:
     """Return a process with its components; slam_toolbox is activated as by its own launch file."""
-    actions, words = of_launch_ros("actions"), ["--ros-args", "--log-level", _said("log_level")]
-    given = {**_given(context, robot, it), "output": "screen", "arguments": [*it.arguments, *words]}
+    actions, words = (
+        of_launch_ros("actions"),
+        ["--ros-args", "--log-level", _configuration("log_level")],
+    )
+    given = {
+        **_keywords(context, robot, it),
+        "output": "screen",
+        "arguments": [*it.arguments, *words],
+    }
     if it.components:
         component = of_launch_ros("descriptions").ComposableNode
-        inside = [component(**_given(context, robot, one)) for one in it.components]
+        inside = [component(**_keywords(context, robot, one)) for one in it.components]
         return [actions.ComposableNodeContainer(**given, composable_node_descriptions=inside)]
     make = actions.LifecycleNode if it.brought_up else node_class()
-    made = make(**given, respawn=_said("use_respawn"), respawn_delay=2.0)
+    made = make(**given, respawn=_configuration("use_respawn"), respawn_delay=2.0)
     return [made, *(_activated(made) if it.brought_up and _is_on(context, "autostart") else ())]
 
 
-def _given(context: Context, robot: LoadedRobot, it: Start) -> dict[str, Any]:
+def _keywords(context: Context, robot: LoadedRobot, it: Start) -> dict[str, Any]:
     """Return the keywords of a process or component alone: paths of the files of this launch, one
     of them with what no file of the fleet sets, such as the nodes that it manages, and its map."""
-    of, shared = RobotRef(robot.name, _said("fleet")), fleet_of(context, _said("fleet")).table
+    of, shared = (
+        RobotRef(robot.name, _configuration("fleet")),
+        fleet_of(context, _configuration("fleet")).table,
+    )
     files = [node_file_of(context, one.path, of) for one in it.parameters if isinstance(one, File)]
     rows = [one for one in it.parameters if not isinstance(one, File)]
     values = {key: value for row in rows for key, value in row.items()}
@@ -159,7 +169,7 @@ def _activated(made: Action) -> Iterator[Action]:
 def _shared(context: Context) -> list[Action]:
     """Return the nodes that all robots share, with a lifecycle manager of their own: they have
     their sections in the files of every robot, and these are alike."""
-    fleet = fleet_of(context, _said("fleet"))
+    fleet = fleet_of(context, _configuration("fleet"))
     shared = (it for it in fleet.starts.shared if kind_of(it.name) in NAV2)
     return [one for it in shared for one in _process(context, fleet.robots[0], it)]
 
@@ -171,7 +181,7 @@ def _rviz(context: Context) -> list[Action]:
         raise UsageError(f"rviz:={word}: {unknown('way', word, (NONE, ONE, EACH))}")
     if word == NONE:
         return []
-    fleet = fleet_of(context, _said("fleet"))
+    fleet = fleet_of(context, _configuration("fleet"))
     windows = robot_windows(fleet.plan, each=word == EACH)
     if not windows:
         raise UsageError(f"rviz:={word}: {fleet.file} has no rviz: under related_files")
@@ -188,7 +198,7 @@ def _rviz(context: Context) -> list[Action]:
 def _window(context: Context, file: str, window: RvizText) -> Action:
     path = written(context, None, f"{window.robot or 'all'}/{file}", window.text)
     given = keywords(window_start(window, path))
-    clock = sim_time(context, fleet_of(context, _said("fleet")).robots[0], None)
+    clock = sim_time(context, fleet_of(context, _configuration("fleet")).robots[0], None)
     clocks = [] if clock is None else [{SIM_TIME: clock}]
     return node_class()(**given | {"arguments": ["-d", path], "parameters": clocks})
 
@@ -199,7 +209,6 @@ def kind_of(name: str) -> str:
 
 
 def nodes_of_nav2(names: Iterable[str]) -> list[str]:
-    """Return those of the nodes that are Nav2's or slam_toolbox, managers last, so that what they
-    manage is there."""
+    """Return the nodes of Nav2 and slam_toolbox among these, managers last: after what they manage."""
     known = (it for it in names if kind_of(it) in NAV2)
     return sorted(known, key=lambda it: NAV2.index(kind_of(it)))

@@ -91,7 +91,7 @@ def context_of(declared: Declared, settings: Settings) -> Context:
     return Context(names, names, {}, settings.distro)
 
 
-def beside_findings(path: str, data: bytes, settings: Settings) -> Iterator[Finding]:
+def related_file_findings(path: str, data: bytes, settings: Settings) -> Iterator[Finding]:
     """Yield what the active rules find in a file; raises InputError for one of no known kind."""
     kind = kind_of(data)
     if not kind:

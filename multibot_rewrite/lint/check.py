@@ -23,7 +23,7 @@ from multibot_rewrite.description.steps.document import tag_end
 from multibot_rewrite.lint.failures import breakdown, crash, failure, too_long
 from multibot_rewrite.lint.files.subjects import Failed, read_subjects
 from multibot_rewrite.lint.groups import active_rules
-from multibot_rewrite.related_files.named_file import is_named_beside, kind_of
+from multibot_rewrite.related_files.named_file import has_related_name, kind_of
 from multibot_rewrite.rules.facts.source_values import is_argument
 from multibot_rewrite.rules.settings import MARK, Settings, file_of, is_silent
 from multibot_rewrite.rules.subject import Subject
@@ -42,7 +42,7 @@ class _TooLongError(BaseException):
 
 def lint_file(path: str, settings: Settings) -> list[Finding]:
     """Return all findings of a file, in order; a file that cannot be read is a finding."""
-    return _linted(path, partial(read_file, path), settings)
+    return _lint_source(path, partial(read_file, path), settings)
 
 
 def lint_data(
@@ -50,10 +50,10 @@ def lint_data(
 ) -> list[Finding]:
     """Return the findings of a text; ``path`` is its name, and xacro resolves includes from there.
     A description is checked by the ``wanted`` rules."""
-    return _linted(path, lambda: data, settings, wanted)
+    return _lint_source(path, lambda: data, settings, wanted)
 
 
-def _linted(
+def _lint_source(
     path: str, read: Callable[[], bytes], settings: Settings, wanted: Callable[[Rule], bool] = bool
 ) -> list[Finding]:
     found: list[Finding] = []
@@ -61,14 +61,14 @@ def _linted(
     try:
         with _limited(settings.seconds), gc_paused():
             sources[path] = data = read()
-            beside = is_named_beside(path) or (path.endswith(_BY_TEXT) and kind_of(data))
+            beside = has_related_name(path) or (path.endswith(_BY_TEXT) and kind_of(data))
             if not beside or kind_of(data):
                 refuse_templates(data, path)
             if beside:
                 # A description needs none of it.
-                from multibot_rewrite.lint.beside import beside_findings
+                from multibot_rewrite.lint.beside import related_file_findings
 
-                its = list(beside_findings(path, data, settings))
+                its = list(related_file_findings(path, data, settings))
                 return sorted(unsuppressed(its, {}, settings), key=by_place)
             _look(path, data, settings, wanted, found, sources)
     except InputError as error:

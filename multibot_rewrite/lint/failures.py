@@ -62,12 +62,12 @@ def _level(path: str, cause: str, name: str) -> str:
     if cause == model.NOT_UTF8 and path.endswith((".sdf", ".world")):
         return WARNING
     if cause == model.NOT_DEFINED:  # a file may be a part of a robot
-        return NOTE if name and _is_made_beside(path, name) else WARNING
+        return NOTE if name and _is_defined_in_package(path, name) else WARNING
     # It may not be meant for xacro.
     return WARNING if cause == model.XACRO_FAILED and not path.endswith(XACRO) else ""
 
 
-def _is_made_beside(path: str, name: str) -> bool:
+def _is_defined_in_package(path: str, name: str) -> bool:
     """Return whether another file of the package makes a macro, property or argument of that name."""
     own = package_of(path)
     folder = own[1] if own else os.path.dirname(os.path.abspath(path))
@@ -81,14 +81,14 @@ def crash(rule: Rule, subject: Subject, error: Exception) -> Finding:
     """Return the finding for a rule that crashed: it did not check all of the document."""
     file = subject.document.file.removesuffix(" (expanded)")
     hint = "this is a bug in urdf-lint; use --ignore to go on"
-    return _crashed(file, f"{rule.code} crashed: {_words(error)}", hint)
+    return _crashed(file, f"{rule.code} crashed: {_error_text(error)}", hint)
 
 
 def breakdown(path: str, error: Exception) -> Finding:
     """Return the finding for a file on which the lint crashed: it was not checked completely."""
     if isinstance(error, MemoryError):
         return _crashed(path, "there is not enough memory for it", "does a macro call itself?")
-    return _crashed(path, f"the lint crashed: {_words(error)}", "this is a bug in urdf-lint")
+    return _crashed(path, f"the lint crashed: {_error_text(error)}", "this is a bug in urdf-lint")
 
 
 def lost(path: str, died_of: int) -> Finding:
@@ -103,7 +103,7 @@ def _crashed(path: str, message: str, hint: str) -> Finding:
     return Finding("MB001", ERROR, message, hint, path, 1, 1)
 
 
-def _words(error: Exception) -> str:
+def _error_text(error: Exception) -> str:
     return " ".join(f"{type(error).__name__}: {error}".split())
 
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Safe edits -> the fixed text, and the proof that nothing else changed and no finding is new."""
 
-from __future__ import annotations
-
 import re
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -68,7 +66,7 @@ def _verify(
     alike = same and all(_same(old, new, there) for old, new, there in pairs)
     if not alike and not same_meaning(before.root, after.root):
         raise ProofError(f"{path}: a fix would change more than it may")
-    if more := _said(new[1]) - _said(old[1]):
+    if more := _codes_and_messages(new[1]) - _codes_and_messages(old[1]):
         raise ProofError(f"{path}: a fix would cause a new finding: {min(more)}")
 
 
@@ -76,7 +74,7 @@ def _same(old: _Element, new: _Element, touched: bool) -> bool:
     return old.tag == new.tag and (touched or (old.attrib, old.text) == (new.attrib, new.text))
 
 
-def _said(findings: Iterable[Finding]) -> set[tuple[str, str]]:
+def _codes_and_messages(findings: Iterable[Finding]) -> set[tuple[str, str]]:
     # Lines move where an edit takes one out; what is said of an element is said of its copy.
     return {(it.code, _LINE.sub("line N", it.message)) for it in findings}
 
@@ -92,7 +90,7 @@ class Meaning(NamedTuple):
     attributes: Mapping[str, str]
     numbers: Sequence[float]
     texts: tuple[str, str]
-    children: tuple[Meaning, ...]
+    children: "tuple[Meaning, ...]"
 
 
 def same_meaning(one: _Element, other: _Element) -> bool:

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The groups of rules, and which rules are active for a document."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 from typing import NamedTuple
 

@@ -8,8 +8,6 @@ not read from a file of its own is told where the launch file has it.
 That is every error, and what Gazebo leaves out of a robot that runs in it. Where the description is
 only sent, nothing counts that only a simulator reads. The build and check-launch ask it."""
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping
@@ -29,7 +27,7 @@ from multibot_rewrite.lint.check import lint_data
 from multibot_rewrite.planning.bridged_topics import DIRECTIONS
 from multibot_rewrite.planning.records import Run
 from multibot_rewrite.producers.ends import BRIDGE_FILE
-from multibot_rewrite.producers.launch.bridges import expands, is_bridge, told_rows
+from multibot_rewrite.producers.launch.bridges import expands, is_bridge, rows_in_arguments
 from multibot_rewrite.producers.launch.launched import InSimulator, Launched, file_of
 from multibot_rewrite.producers.launch.records import LaunchedNode
 from multibot_rewrite.related_files.formats import read_named
@@ -103,7 +101,7 @@ def _descriptions(launched: Launched) -> Iterator[Finding]:
     for it in launched.models.found:
         file, data = file_of(launched.graph, it.text), it.text.encode()
         settings = Settings(distro=launched.release, ros=ROS_2, simulated=it.spawned)
-        found = lint_data(file or _beside(it.place, "robot.urdf"), data, settings, may_stop)
+        found = lint_data(file or _path_next_to(it.place, "robot.urdf"), data, settings, may_stop)
         if found:
             told = in_use(found, read_document(data, file), it.spawned)
             yield from (one if file else _at_launch(one, it.place) for one in told)
@@ -148,21 +146,21 @@ def _values(launched: Launched) -> Iterator[Finding]:
     nodes = {(it.place, it.namespace, it.program): it for it in launched.nodes if it.has_fact}
     for it in launched.graph.nodes:
         running = nodes.get((it.place, it.namespace, f"{it.package}/{it.executable}"))
-        given = _given(it) if running else {}
+        given = _own_parameters(it) if running else {}
         if running and given:
             text = yaml.safe_dump({running.full_name: {"ros__parameters": given}}, sort_keys=False)
-            beside = _beside(it.place, "launch.yaml")
+            beside = _path_next_to(it.place, "launch.yaml")
             for one in lint_data(beside, text.encode(), settings):
                 level = WARNING if one.level == NOTE else one.level
                 yield one._replace(level=level, file=it.place.file, line=it.place.line, column=1)
 
 
-def _beside(place: Place, name: str) -> str:
+def _path_next_to(place: Place, name: str) -> str:
     """Return a name for a text in a launch file: descriptions of its package are found from it."""
     return os.path.join(os.path.dirname(place.file), name)
 
 
-def _given(it: LaunchedNode) -> dict[str, object]:
+def _own_parameters(it: LaunchedNode) -> dict[str, object]:
     """Return the parameters that a launch file gives a node itself, without descriptions."""
     found: dict[str, object] = {}
     for text in (one.text for one in it.parameters if not one.file):
@@ -188,7 +186,7 @@ def bridge_findings(launched: Launched) -> Iterator[Finding]:
     """Yield what is wrong with the rows of bridges, with all models that the launch file spawns."""
     models = launched.simulated
     known = _topics(models) if models and not launched.models.lost else {}
-    for told in dict.fromkeys(it for node in launched.nodes for it in _told(node)):
+    for told in dict.fromkeys(it for node in launched.nodes for it in _told_texts(node)):
         # Names below the namespace of a bridge are not those of the file.
         mine = {} if told.expanded else known
         for it in _of_bridge(told, launched.release, mine):
@@ -200,12 +198,12 @@ def bridge_findings(launched: Launched) -> Iterator[Finding]:
             yield one if at == NOWHERE else one._replace(file=at.file, line=at.line, column=1)
 
 
-def _told(it: Run) -> Iterator[_Told]:
+def _told_texts(it: Run) -> Iterator[_Told]:
     given = it.values.get("config_file") if is_bridge(it) else None
     if given and os.path.isfile(str(given.value)):
         path = os.path.realpath(str(given.value))
         yield _Told(path, read_file(path).decode("utf-8", "replace"), expands(it), NOWHERE)
-    if text := told_rows(it):
+    if text := rows_in_arguments(it):
         yield _Told(BRIDGE_FILE, text, expands(it), it.place)
 
 

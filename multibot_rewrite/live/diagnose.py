@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A graph -> its robots, the layout that it looks like, and what is wrong with it. Pure."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
@@ -29,6 +27,7 @@ from multibot_rewrite.system.index import (
     index,
     nodes_of,
 )
+from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import PUBLISHES, SERVES, TOPIC, Robot, System, surely
 from multibot_rewrite.system.tf_copies import tree_topic
 
@@ -61,11 +60,16 @@ class Diagnosis(NamedTuple):
         return coverage(self.graph._replace(nodes=tuple(nodes), robots=tuple(robots)))
 
 
-def diagnose(graph: System, messages: Mapping[str, int] = NO_COUNTS) -> Diagnosis:
-    """Look at a graph without a plan; ``messages`` counts those of each topic, if they were counted."""
+def diagnose(
+    graph: System, messages: Mapping[str, int] = NO_COUNTS, names: System | None = None
+) -> Diagnosis:
+    """Look at a graph without comparing it with a plan; ``messages`` counts those of each topic, if
+    they were counted. Whose each name is says the plan ``names`` where there is one."""
     robots = guess_robots(surely(graph))
+    if names:
+        robots = tuple(GuessedRobot(it.name, f"/{it.space}") for it in names.robots)
     known = Known(messages=messages, seconds=graph.environment.seconds)
-    seen = index(graph, whose_by_guess(robots), known)
+    seen = index(graph, whose_by_plan(names) if names else whose_by_guess(robots), known)
     found = inconclusive_where_in_doubt(judge(seen), graph)
     # The nodes that publish on each tf topic or its tf_static.
     sent = (it for it in surely(graph).ends if (it.kind, it.role) == (TOPIC, PUBLISHES))
@@ -76,6 +80,8 @@ def diagnose(graph: System, messages: Mapping[str, int] = NO_COUNTS) -> Diagnosi
     wanted = (own_frames, any(seen.robot(topic) for topic, _ in tf), namespaces)
     fitting = (it for it in LAYOUTS if wanted == (it.frames, it.tf_per_robot, it.namespaced))
     layout = next(fitting, None) if robots else None
+    if names:
+        layout = next(it for it in LAYOUTS if it.name == names.layout)
     return Diagnosis(graph, robots, seen, layout, tf, tuple(found))
 
 
@@ -132,8 +138,7 @@ def _carried_across(each: Mapping[int, Diagnosis]) -> Iterator[Finding]:
 def _sent_elsewhere(
     it: Finding, together: Diagnosis, each: Mapping[int, Diagnosis], at: int | None = None
 ) -> Finding:
-    """Return the finding; if what is missing is a robot's by its name and another domain has it,
-    with that as the cause."""
+    """Return the finding, with the cause if another domain has what the robot lacks."""
     missed = [name for name in it.names if it.code in ABSENCE and together.whose.robot(name)]
     for other, seen in each.items():
         ends = (end for name in missed if other != at for end in ends_of(seen.whose, name))
@@ -153,8 +158,9 @@ def survey(seen: Diagnosis) -> str:
         nodes = "a recording" if is_recorded(seen.graph) else plural(len(seen.graph.nodes), "node")
         said = f"{nodes}, no name of a robot in them: one robot, or several that share all names"
     else:
-        before = "what their frames have" if any(it.before for it in seen.robots) else ""
-        where = "their namespaces" if any(it.namespace for it in seen.robots) else before
+        where = "what their frames have" if any(it.before for it in seen.robots) else ""
+        where = "their namespaces" if any(it.namespace for it in seen.robots) else where
+        where = "the plan in its folder" if seen.whose.of_names.robots else where
         robots = f"{plural(len(names), 'robot')} by {where or 'the ends of names'}"
         said = f"{robots}: {shorten(names, SEVERAL)}; layout: {_layout(seen)}"
     return "; ".join((said, *_tf_topics(seen)))
@@ -178,6 +184,8 @@ def _tf_topics(seen: Diagnosis) -> Iterator[str]:
 
 
 def _layout(seen: Diagnosis) -> str:
+    if seen.layout and seen.whose.of_names.robots:
+        return seen.layout.name
     if seen.layout:
         return f"looks like {seen.layout.name} ({seen.layout.short}: {seen.layout.about})"
     if any(robot.before or robot.behind for robot in seen.robots):

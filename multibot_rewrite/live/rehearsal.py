@@ -8,8 +8,6 @@ Pure; ``graph.live.stub_nodes`` runs them. Parameters are taken to be set as the
 QoS is the default, and endpoints that depend on a condition are left out.
 """
 
-from __future__ import annotations
-
 import json
 import os
 from collections import defaultdict
@@ -26,13 +24,13 @@ from multibot_rewrite.planning.records import Rules, Run, Table
 from multibot_rewrite.planning.transforms import Edges
 from multibot_rewrite.planning.way_checks import bound_to, is_stand_in, running_nodes
 from multibot_rewrite.planning.ways import ros_arguments
-from multibot_rewrite.producers.ros.assemble import BUSY_MACHINE
 from multibot_rewrite.producers.ros.child import RUN_STUBS, observe, running
 from multibot_rewrite.producers.ros.participants import participants_here
 from multibot_rewrite.producers.ros.request import Request, to_text
 from multibot_rewrite.system.environment import settings
 from multibot_rewrite.system.records import (
     ACTION,
+    BUSY_MACHINE,
     CALLS,
     PUBLISHES,
     RUNS,
@@ -108,8 +106,7 @@ def without_doubles(stubs: Iterable[Stub], plan: System) -> Iterator[Stub]:
 
 
 def bridge_stub(topics: Iterable[Topic]) -> Iterator[Stub]:
-    """Yield the bridge to a simulator that a plan needs, if it needs one, with what the simulator's
-    world serves."""
+    """Yield the stand-in of a bridge to a simulator, if the plan needs it, with the world's topics."""
     rows = [
         Endpoint(SERVICE if role == SERVES else TOPIC, role, topic.name, topic.type)
         for topic in topics
@@ -123,7 +120,7 @@ def domain_bridge_stubs(plan: System) -> Iterator[Stub]:
     """Yield the nodes of domain_bridge in a plan of one domain."""
     ends = lists_by_key((it.node, Endpoint(it.kind, it.role, it.name, it.type)) for it in plan.ends)
     for node in plan.nodes:
-        if node.stack == DOMAIN_BRIDGE:
+        if node.node_set == DOMAIN_BRIDGE:
             yield played(node.name[1:], ends.get(node.name, ()), node.robot), ()
 
 

@@ -80,4 +80,5 @@ def _robot(seen: Diagnosis, robot: GuessedRobot) -> Robot:
         or not mine
         or (not whose.frame_robot(it) and tree_topic(edge.topic) == tf != shared)
     }
-    return Robot(robot.name, tuple(sorted(own - set(WORLD_FRAMES))), tf)
+    frames, space = tuple(sorted(own - set(WORLD_FRAMES))), robot.namespace.strip("/")
+    return Robot(robot.name, frames, tf, namespace=space if space != robot.name else "")

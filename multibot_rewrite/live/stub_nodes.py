@@ -5,8 +5,6 @@ Its order is a list of stub nodes. Once all are in the graph it sends which type
 ends that the nodes have, and the frames that they send.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import sys

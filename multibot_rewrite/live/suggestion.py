@@ -24,7 +24,7 @@ from multibot_rewrite.rules.system.tf_trees import root_of
 from multibot_rewrite.system.guess import GuessedRobot
 from multibot_rewrite.system.words import is_tool
 
-STACK = "seen"
+NODE_SET = "seen"
 FILES = ("fleet.yaml", "nodes.yaml", "robot.urdf", "plan.yaml")
 FLEET_FILE, NODES_FILE, DESCRIPTION, PLAN_FILE = FILES
 # What an editor is told of them.
@@ -54,7 +54,7 @@ def suggestion(seen: Diagnosis, library: NodeLibrary) -> dict[str, str]:
     }
     if learned:
         found = learn(seen.graph, learned, robot.namespace or "/", library)
-        files[NODES_FILE] = nodes_to_yaml(found, STACK, library)
+        files[NODES_FILE] = nodes_to_yaml(found, NODE_SET, library)
     return files
 
 
@@ -73,9 +73,9 @@ def _fleet(seen: Diagnosis, nodes: Sequence[str], learned: bool) -> Iterator[str
     if learned:
         yield f"nodes: {NODES_FILE}"
     publisher = any(it.endswith(f"/{STATE_PUBLISHER}") for it in nodes)
-    stacks = [*[STACK] * learned, *["no_robot_state_publisher"] * (learned and not publisher)]
-    if stacks:
-        yield f"stack: [{', '.join(stacks)}]"
+    node_sets = [*[NODE_SET] * learned, *["no_robot_state_publisher"] * (learned and not publisher)]
+    if node_sets:
+        yield f"node_sets: [{', '.join(node_sets)}]"
     yield "robots:"
     for robot in robots:
         yield f"  - {{name: {robot.name.replace('/', '_')}}}"

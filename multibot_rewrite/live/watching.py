@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A plan and one snapshot after another -> what changed, and the worst verdict so far. Pure."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from enum import IntEnum
 from typing import NamedTuple

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The findings on the page: what is the same for many robots is one, opened it says where and why."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The scene as one HTML file without external resources; the same input gives the same bytes."""
 
-from __future__ import annotations
-
 import base64
 import hashlib
 from collections import Counter

@@ -2,8 +2,6 @@
 """The sections of the page and the robots at its head, groups with less in them, short ids, and the
 link of each finding."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple, TypeVar

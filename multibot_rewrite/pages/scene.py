@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is drawn of a checked graph, each part with its state. Pure, and without any drawing."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
@@ -157,8 +155,7 @@ class _RobotOf(NamedTuple):
 def make_scene(
     plan: System, graph: System, found: Sequence[Finding], outcome: Outcome | None = None
 ) -> Scene:
-    """Return the drawing of ``graph`` with its plan and findings; without an outcome it follows from
-    these."""
+    """Return the drawing of ``graph`` with plan and findings; the outcome follows if not given."""
     verdict, held = judge(found, graph), coverage(plan, graph)
     by_plan, seen = side_by_side(plan, graph)
     targets = find_targets(by_plan, seen, found)
@@ -198,9 +195,9 @@ def _rows(plan: Index, targets: Mapping[Finding, Targets]) -> Iterator[FindingRo
         place = f"{finding.file}:{finding.line}" if finding.line else finding.file
         node = plan.node.get(finding.node)
         if not place and node is not None:
-            # Where a planned node is from: its plugin, a file, or its stack.
-            stack = f"node set {node.stack}" if node.stack else ""
-            place = str(node.plugin) or str(node.place) or stack
+            # Where a planned node is from: its plugin, a file, or its node set.
+            node_set = f"node set {node.node_set}" if node.node_set else ""
+            place = str(node.plugin) or str(node.place) or node_set
         yield FindingRow(finding, merged(targets[it] for it in members), robots, place)
 
 

@@ -2,8 +2,6 @@
 """What each finding is about, and the states of endpoints, nodes and frames that follow from it; and
 the tf trees of a graph as rows: a frame, its depth, and what is wrong with it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 from typing import NamedTuple

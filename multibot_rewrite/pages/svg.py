@@ -6,8 +6,6 @@ Lengths are pixels. Names and nodes are ordered by barycenters: each moves towar
 it is connected to, which leaves few crossings. Faulty names are at the top.
 """
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from html import escape
@@ -88,7 +86,7 @@ def group_svg(group: DrawnGroup, ids: Ids, prefix: str) -> str:
     return "".join(parts)
 
 
-def _edges(group: DrawnGroup, place: GroupLayout, ids: Ids) -> Iterator[str]:
+def _edges(group: DrawnGroup, place: "GroupLayout", ids: Ids) -> Iterator[str]:
     """Yield the edges, faulty ones last and so above the others."""
     left = {node.name: y for node, y in place.left}
     right = {node.name: y for node, y in place.right}
@@ -105,7 +103,7 @@ def _edges(group: DrawnGroup, place: GroupLayout, ids: Ids) -> Iterator[str]:
         yield f'<path class="e {edge.state}" data-e="{joined}" d="{path}"/>'
 
 
-def _boxes(group: DrawnGroup, place: GroupLayout, ids: Ids, prefix: str) -> Iterator[str]:
+def _boxes(group: DrawnGroup, place: "GroupLayout", ids: Ids, prefix: str) -> Iterator[str]:
     drawn = set()
     sides = ((LEFT, place.left), (RIGHT, place.right))
     for (x, wide), node, y in ((column, *it) for column, things in sides for it in things):

@@ -5,8 +5,6 @@ description has in a release, and their names in Gazebo.
 Source: gazebosim/gz-sim src/systems, as the data says; transport::TopicUtils::AsValidTopic.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from itertools import product

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The topics that ros_gz_bridge must bridge for each robot, read from rewritten descriptions."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from types import MappingProxyType

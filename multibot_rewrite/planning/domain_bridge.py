@@ -7,8 +7,6 @@ alone, each once; services and actions do not cross (parse_domain_bridge_yaml_co
 latched keeps the last ten messages unless the file says more (qos_options.hpp).
 """
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
@@ -67,7 +65,7 @@ def with_bridges(plan: System, given: Sequence[str] = ()) -> System:
         name, own = bridge_name(robot), [it for it in found if it.robot == robot]
         here, there = f"/{name}_{numbers[robot]}", f"/{name}_{numbers['']}"
         made = [Node(f"/{name}", robot=robot), Node(here, robot=robot), Node(there)]
-        nodes += [it._replace(stack=DOMAIN_BRIDGE, known=DOMAIN_BRIDGE) for it in made]
+        nodes += [it._replace(node_set=DOMAIN_BRIDGE, known=DOMAIN_BRIDGE) for it in made]
         for it in own:
             from_, to = (here, there) if it.out else (there, here)
             ends.append(End(TOPIC, SUBSCRIBES, it.name, it.type, node=from_, code_name=it.name))
@@ -85,7 +83,7 @@ def beyond(plan: System) -> dict[str, str]:
 def crossings(plan: System, given: Sequence[str]) -> list[Crossing]:
     """Return the topics that a node reads and no node of its domain sends, and those requested."""
     numbers = domain_of(plan)
-    found = [*_needed(surely(plan), numbers), *_given(plan, numbers, given)]
+    found = [*_needed(surely(plan), numbers), *_crossings(plan, numbers, given)]
     return sorted(dict.fromkeys(found))
 
 
@@ -113,7 +111,9 @@ def _robots(plan: System) -> Mapping[str, str]:
     return defaultdict(str, {it.name: it.robot for it in plan.nodes})
 
 
-def _given(plan: System, numbers: Mapping[str, int], given: Sequence[str]) -> Iterator[Crossing]:
+def _crossings(
+    plan: System, numbers: Mapping[str, int], given: Sequence[str]
+) -> Iterator[Crossing]:
     robot_of = _robots(plan)
     known: dict[str, dict[str, Crossing]] = defaultdict(dict)
     sent = {(robot_of[it.node], it.name) for it in plan.ends if it.role == PUBLISHES}

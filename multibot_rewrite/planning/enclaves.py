@@ -6,8 +6,6 @@ enclave may do what any of its profiles allows, a name may be a pattern of ``fnm
 its hidden topics and services) and ``test/policies/common/node.xml`` (what every node needs).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
@@ -98,7 +96,7 @@ def profiles(plan: System, more: Iterable[End] = ()) -> Mapping[str, tuple[Profi
     result, nodes = {}, nodes_by_robot(plan)
     for robot in plan.robots:
         tf = [(TOPIC, SUBSCRIBES, f"{robot.tf_topic}{end}") for end in ("", "_static")]
-        listener = Profile(f"/{robot.name}/*", tuple(tf))
+        listener = Profile(f"/{robot.space}/*", tuple(tf))
         own = (_profile(node, allowed[node]) for node in nodes[robot.name])
         result[enclave_of(robot.name)] = (*own, listener)
     shared = tuple(_profile(node, allowed[node]) for node in nodes[""])

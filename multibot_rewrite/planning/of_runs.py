@@ -45,7 +45,7 @@ def with_names(run: Run) -> Run:
     )
 
 
-def asked_beside(end: Endpoint, bound: BoundNode) -> str:
+def name_made_of_other_end(end: Endpoint, bound: BoundNode) -> str:
     """Return the name that its node asks for: it is made of the one that another end has after all
     rules (image_transport camera_common.cpp getCameraInfoTopic)."""
     return sibling(resolve_bound(end.beside, end.kind, bound), end.name)
@@ -65,7 +65,7 @@ def sibling(other: str, name: str) -> str:
 def _name_of(run: Run, end: Endpoint, bound: BoundNode) -> str:
     """Return the name of an end."""
     if end.beside:
-        return resolve_bound(asked_beside(end, bound), end.kind, bound)
+        return resolve_bound(name_made_of_other_end(end, bound), end.kind, bound)
     name = end.name
     # A name that its node resolves in the namespace above its own.
     if end.above and not str(run.value(end.parameter) or "").startswith("/"):
@@ -102,7 +102,7 @@ def each_once(ends: Iterable[End]) -> Iterator[End]:
     every = dict.fromkeys(ends)
     known = {(it.node, it.kind, it.role, it.name): it for it in every if it.sure == RUNS}
     for it in every:
-        if known.setdefault((it.node, it.kind, it.role, it.name), it) is it or it.sure == RUNS:
+        if it.sure == RUNS or known.setdefault((it.node, it.kind, it.role, it.name), it) is it:
             yield it
 
 

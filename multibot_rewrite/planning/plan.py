@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from multibot_rewrite.base.conventions import BY_HAND, SENT_BY_EVERY_NODE, USUAL_FRAMES
 from multibot_rewrite.base.file_kinds import PLAN, ROBOTS, recognised, refuse_others
+from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming, spelled
@@ -41,8 +42,16 @@ NO_WORDS: Mapping[str, str] = {}
 
 
 def robot_words(plan: System) -> dict[str, str]:
-    """Return the words for robots, in names and in frames, with the robot of each."""
-    return {word: it.name for it in plan.robots for word in (it.name, it.tag) if word}
+    """Return the words that stand for robots in texts, each with the name of its robot."""
+    return words_of({it.name: (it.tag, it.namespace) for it in plan.robots})
+
+
+def words_of(others: Mapping[str, Iterable[str]]) -> dict[str, str]:
+    """Return the names of robots, and the ``others`` that stand for each, with the name of the robot;
+    another word only where it stands for one robot alone."""
+    robots = sets_by_key((word, name) for name, words in others.items() for word in words if word)
+    only = {word: min(names) for word, names in robots.items() if len(names) == 1}
+    return {name: name for name in others} | {k: it for k, it in only.items() if k not in others}
 
 
 def vacuous(plan: System) -> str:
@@ -62,12 +71,13 @@ def expect(
     named: Mapping[str, Sequence[str]] = NOTHING,
     words: Mapping[str, str] = NO_WORDS,
     maybe_real: Container[str] = (),
+    called: Mapping[str, str] = NO_WORDS,
 ) -> System:
     """Return the plan that follows from a remap table.
 
     ``frames`` are the declared frames of each robot, ``named`` further frames in its description.
     ``words`` has the name of a robot in its frames, if it differs; plugins of ``maybe_real`` robots may
-    be missing.
+    be missing. All of them have the robots by their namespaces; ``called`` has their names.
     """
     # The default frames of parameters; a name in <> stands for another parameter.
     facts = {id(it.fact): it.fact for it in table.runs if not it.written}
@@ -79,7 +89,9 @@ def expect(
         others = (*named.get(name, ()), *(spelled(naming, word, "frame", frame) for frame in usual))
         known = {*own, *naming.shared_frames}
         further = tuple(it for it in dict.fromkeys(others) if it not in known)
-        return Robot(name, own, tf_topic(name, naming), further, word if word != name else "")
+        known_as = called.get(name, name)
+        own_names = (it if it != known_as else "" for it in (word, name))
+        return Robot(known_as, own, tf_topic(name, naming), further, *own_names)
 
     # By robot: the full names of its nodes, each with whether it runs.
     own: dict[str, dict[str, Sure]] = {}
@@ -91,13 +103,13 @@ def expect(
     names = dict.fromkeys((*frames, *filter(None, own)))
     nodes = []
     for name in (*names, ""):
-        sure = own.get(name, {})
-        nodes += [Node(full, robot=name, sure=it) for full, it in sure.items()]
+        sure, robot_name = own.get(name, {}), called.get(name, name)
+        nodes += [Node(full, robot=robot_name, sure=it) for full, it in sure.items()]
         optional = tuple(full for full, it in sure.items() if it is MAY)
         # Those that they make for themselves: always, or by a parameter.
         for full in (it for it in made.get(name, ()) if name and it not in sure):
             runs = full in always.get(name, ()) and not full.startswith(optional)
-            nodes.append(Node(full, robot=name, sure=RUNS if runs else MAY))
+            nodes.append(Node(full, robot=robot_name, sure=RUNS if runs else MAY))
     return System(
         nodes=tuple(_placed(nodes, table)),
         ends=tuple(dict.fromkeys(_planned(table))),
@@ -121,8 +133,7 @@ def named_frames(inventory: Inventory) -> tuple[str, ...]:
 
 
 def _placed(nodes: Iterable[Node], table: Table) -> Iterator[Node]:
-    """Yield each node with its plugin and further names, and its way and taker, if it has no
-    --ros-args of its own."""
+    """Yield each node with its plugin, further names, way and taker (without own --ros-args)."""
     known: dict[str, NodeFacts] = {}
     for run in (it for it in table.runs if it.fact.is_known):
         # Also those that it makes for itself.
@@ -140,13 +151,13 @@ def _placed(nodes: Iterable[Node], table: Table) -> Iterator[Node]:
     origins = {it.full_name: it.fact.origin for it in table.runs if it.fact.origin != NO_ORIGIN}
     for it in nodes:
         way_of_node, taker = taken.get(it.name, ("", ""))
-        stack, place = origins.get(it.name, NO_ORIGIN)
+        node_set, place = origins.get(it.name, NO_ORIGIN)
         fact = known.get(it.name, UNKNOWN)
         yield it._replace(
             way=way_of_node,
             taker=taker,
             plugin=plugins.get(it.name, NOWHERE),
-            stack=stack,
+            node_set=node_set,
             place=place,
             known=fact.kind,
             untold=tuple(one.text for one in fact.untold),
@@ -156,8 +167,8 @@ def _placed(nodes: Iterable[Node], table: Table) -> Iterator[Node]:
 def _private_nodes(table: Table, always: bool = False) -> dict[str, tuple[str, ...]]:
     """Return by robot patterns of the nodes that its nodes make for themselves, or ``always`` make."""
     found: dict[str, tuple[str, ...]] = {}
-    made = ((run, end) for run, end, _ in table.ends if end.by and not (always and end.when))
-    for run, end in made:
+    each = ((run, end) for run in table.runs for end, _ in run.names if end.by)
+    for run, end in (it for it in each if not (always and it[1].when)):
         full = f"{run.full_name}{end.by}"
         if full not in found.get(run.robot, ()):
             found[run.robot] = (*found.get(run.robot, ()), full)

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Nodes as they run: their rules, and the names that these lead to."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple, TypeAlias
 
@@ -120,7 +118,7 @@ class Table(NamedTuple):
         """Every end, with its node and its full name."""
         yield from ((run, end, name) for run in self.runs for end, name in run.names)
 
-    def by_robot(self, robots: Iterable[str]) -> dict[str, Table]:
+    def by_robot(self, robots: Iterable[str]) -> "dict[str, Table]":
         """Return the nodes of each of the robots as a table without problems."""
         runs = lists_by_key((run.robot, run) for run in self.runs)
         return {it: self._replace(runs=tuple(runs[it]), problems=()) for it in robots}

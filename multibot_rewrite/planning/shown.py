@@ -2,14 +2,13 @@
 """What a viewer can show of each robot of a plan: topics, description, the frame it is in; a
 layout of Foxglove that shows it."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from multibot_rewrite.base.conventions import BODY_FRAMES, WORLD_FRAMES
 from multibot_rewrite.base.naming import LAYOUTS
+from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import (
     PUBLISHES,
     RUNS,
@@ -37,7 +36,7 @@ class Shown(NamedTuple):
     def description(self) -> str:
         """The topic of its description."""
         sent = self.of_type({_STRING})
-        usual = f"/{self.robot.name}/{_DESCRIPTION}"
+        usual = f"/{self.robot.space}/{_DESCRIPTION}"
         return next((it for it in sent if _DESCRIPTION in it), usual)
 
     def of_type(self, types: Iterable[str]) -> list[str]:
@@ -51,21 +50,20 @@ class Shown(NamedTuple):
 
     def is_called(self, topic: str, word: str) -> bool:
         """Return whether the topic is ``/robot1/WORD`` or ``/WORD/robot1``."""
-        own = ("", self.robot.name, self.robot.tag)
+        own = ("", *self.robot.space.split("/"), self.robot.tag)
         return [it for it in topic.split("/") if it not in own] == [word]
 
 
 def shown_by_robot(plan: System) -> tuple[list[Shown], Shown]:
     """Return every robot, and what is of all robots."""
     every = {it.name: Shown(it, {}, {}) for it in (Robot(""), *plan.robots)}
-    tags = {it.tag or it.name: it.name for it in plan.robots}
+    whose = whose_by_plan(plan).robot
     owners = {it.name: it.robot for it in plan.nodes}
     for end in plan.ends:
         if end.kind == TOPIC and end.sure == RUNS:
             _add(every.get(owners.get(end.node, "")), end.role, end.name, end.type)
     for topic in plan.topics:
-        words = topic.name.strip("/").split("/")
-        owner = words[0] if words[0] in every else tags.get(words[-1], "")
+        owner = whose(topic.name)
         for role in topic.bridge if owner else ():
             _add(every[owner], role, topic.name, topic.type)
     shared = every.pop("")

@@ -2,8 +2,6 @@
 """What is started, in one record: launch files, actions, lines for a shell and their checks are made of
 it."""
 
-from __future__ import annotations
-
 import re
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
@@ -131,7 +129,7 @@ class Start(NamedTuple):
     parameters: tuple[Parameters, ...] = ()
     remappings: Rules = ()
     arguments: tuple[str | File, ...] = ()
-    components: tuple[Start, ...] = ()
+    components: "tuple[Start, ...]" = ()
     brought_up: bool = False
     plugin: str = ""
     condition: str = ""
@@ -146,7 +144,7 @@ class Start(NamedTuple):
         return f"{self.namespace.rstrip('/')}/{self.name}"
 
     @property
-    def every(self) -> Iterator[Start]:
+    def every(self) -> "Iterator[Start]":
         """The process and the components in it."""
         yield from (self, *self.components)
 
@@ -176,11 +174,11 @@ class Led(NamedTuple):
     followers: tuple[Any, ...] = ()
 
     @property
-    def always(self) -> list[Led]:
+    def always(self) -> "list[Led]":
         """Return what starts without it where its condition does not hold."""
         return [it for it in self.followers if not {*self.start.terms} <= {*it.start.terms}]
 
-    def at(self, event: str) -> list[Led]:
+    def at(self, event: str) -> "list[Led]":
         """Return what starts at an event."""
         return [it for it in self.followers if EVENTS[it.start.process.event] == event]
 
@@ -234,8 +232,7 @@ def shell_line(it: Start) -> str:
 
 
 def keywords(it: Start) -> dict[str, Any]:
-    """Return the keywords of launch_ros's Node, of ComposableNode for a component, of ExecuteProcess
-    for a command."""
+    """Return launch_ros's keywords of a Node, a ComposableNode, or (commands) an ExecuteProcess."""
     how = {name: getattr(it.process, name) for name in HOW}
     inner = [keywords(one) for one in it.components]
     if inner and not it.package:

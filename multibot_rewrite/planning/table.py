@@ -5,8 +5,6 @@ A rule is made only for a name that would otherwise be the same for every robot.
 by resolving every name with its rules as rcl does (``rosnames``), not by trusting the rules.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple, TypeAlias
 
@@ -25,8 +23,8 @@ from multibot_rewrite.knowledge.records import (
 )
 from multibot_rewrite.planning.of_runs import (
     asked_alone,
-    asked_beside,
     expanded,
+    name_made_of_other_end,
     parsed,
     placed,
     target_of,
@@ -44,7 +42,7 @@ from multibot_rewrite.planning.way_checks import (
 )
 
 NOTHING: Mapping[str, Sequence[Run]] = {}
-# The full name of a robot's node, by its name in the stack.
+# The full name of a robot's node, by its name in the node set.
 Places: TypeAlias = Mapping[str, str]
 NOWHERE: Places = {}
 
@@ -80,7 +78,7 @@ def build_table(
         is_named = any(it.is_controller for it in nodes)
         for robot in robots:
             copies = [_copy(it, robot) for it in own]
-            # The controllers that get the rules of their plugin; None where no stack names them.
+            # The controllers that get the rules of their plugin; None where no node set names them.
             controllers = [it for it in copies if it.fact.is_controller] or None
             if not controller_way(release).of_manager:
                 controllers = []
@@ -89,9 +87,9 @@ def build_table(
             managers = [it for it in copies if it.fact.kind == MANAGER and not it.fact.plugin]
             for run in plugins.get(robot, ()):
                 if run.fact.of_hardware:
-                    runs += [_beside(it, run) for it in managers[:1]]
+                    runs += [_component_node(it, run) for it in managers[:1]]
                     continue
-                # What their controllers publish is the controllers' own, if a stack names those.
+                # What their controllers publish is the controllers' own, if a node set names those.
                 ends = run.fact.endpoints
                 kept = tuple(it for it in ends if not (is_named and is_stand_in(run, it)))
                 runs.append(with_names(run._replace(fact=run.fact._replace(endpoints=kept))))
@@ -99,7 +97,7 @@ def build_table(
         return made._replace(problems=(*made.problems, *not_taken(made)))
 
 
-def _beside(manager: Run, component: Run) -> Run:
+def _component_node(manager: Run, component: Run) -> Run:
     """Return the node of a hardware component where its controller manager makes it."""
     fact = component.fact._replace(host=manager.node, when=component.fact.when or manager.fact.when)
     home = manager.namespace
@@ -112,8 +110,8 @@ def _beside(manager: Run, component: Run) -> Run:
 
 def joined(table: Table, other: Table) -> Table:
     """Return two tables of different robots as one; nodes for all robots are in it once."""
-    # Two descriptions may know other things of a node for all robots; of a robot's node both its stack
-    # and the plugin that makes it may tell.
+    # Two descriptions may differ in what they say of a node for all robots. A robot's node may have
+    # facts from its node set and from the plugin that makes it.
     runs: dict[object, Run] = {}
     for at, it in enumerate((*table.runs, *other.runs)):
         runs.setdefault(at if it.robot else (it.node, it.full_name, it.rules), it)
@@ -155,7 +153,7 @@ def run_of(
     rules: dict[str, Rule] = {}
     named = [it for it in node.endpoints if not it.fixed]
     for endpoint in sorted(named, key=lambda it: bool(it.beside)):
-        asked = _asked(endpoint, node, (name, namespace, rules.values()))
+        asked = _end_as_asked(endpoint, node, (name, namespace, rules.values()))
         for source, target in _targets(asked, place):
             rules.setdefault(expand(source, namespace, name), (source, target))
     made = Run(robot, node.name, namespace, name, tuple(rules.values()), node)
@@ -163,13 +161,15 @@ def run_of(
     return with_names(made._replace(host_name=host_name))
 
 
-def _asked(endpoint: Endpoint, node: NodeFacts, at: tuple[str, str, Iterable[Rule]]) -> Endpoint:
+def _end_as_asked(
+    endpoint: Endpoint, node: NodeFacts, at: tuple[str, str, Iterable[Rule]]
+) -> Endpoint:
     """Return the endpoint under the name that its node asks for by the rules of the others; what is
     made of another's name has to lead where the robot alone has it."""
     if not endpoint.beside:
         return endpoint
     name, namespace, rules = at
-    asked = asked_beside(endpoint, bind(name, namespace, parsed(rules)))
+    asked = name_made_of_other_end(endpoint, bind(name, namespace, parsed(rules)))
     name = asked.removeprefix(f"{namespace.rstrip('/')}/")
     return endpoint._replace(name=name, remapped=endpoint.remapped or asked_alone(node, endpoint))
 

@@ -4,8 +4,6 @@ where they are written, and those that a node needs and does not get there, by r
 
 The first match counts: a node's own arguments come before those of its process."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cache
@@ -16,9 +14,9 @@ from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.naming import NAMESPACE, TF_TOPICS, Naming
 from multibot_rewrite.base.rosnames import BoundNode, bind, resolve_bound
 from multibot_rewrite.knowledge.controller_ways import ControllerWay, controller_way
+from multibot_rewrite.knowledge.node_sets import every_release
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
-from multibot_rewrite.knowledge.stacks import every_release
-from multibot_rewrite.planning.of_runs import asked_beside, expanded, parsed, target_of
+from multibot_rewrite.planning.of_runs import expanded, name_made_of_other_end, parsed, target_of
 from multibot_rewrite.planning.records import Names, Rule, Rules, Run, Table
 from multibot_rewrite.planning.ways import (
     COMPONENT,
@@ -140,7 +138,7 @@ def not_taken(table: Table) -> Iterator[Finding]:
 
     seen: Counter[str] = Counter()
     for it, running in running_nodes(some):
-        # What descriptions decide, of all robots; of the stack's nodes, which all have alike, two.
+        # What descriptions decide, of all robots; of the node set's nodes, which all have alike, two.
         seen[it.node.node] += 1
         is_decided = it.node.fact.plugin or it.node.fact.is_controller
         if not is_decided and seen[it.node.node] > ENOUGH:
@@ -294,7 +292,7 @@ def _names(run: Run) -> _Names:
     full = {(kind, resolve_bound(name, kind, bare)) for kind, name in asked}
     if any(it.beside for it in known):
         bound = bind(run.name, run.namespace, parsed(run.rules))
-        full |= {(it.kind, asked_beside(it, bound)) for it in known if it.beside}
+        full |= {(it.kind, name_made_of_other_end(it, bound)) for it in known if it.beside}
     return _Names(bare, frozenset(full))
 
 

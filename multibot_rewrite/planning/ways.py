@@ -9,8 +9,6 @@ that loads it, from its spawner, or from its plugin's tag. Sources: ros2_control
 navigation2 ``nav2_costmap_2d/src/costmap_2d_ros.cpp``; gz_ros2_control ``gz_ros2_control_plugin.cpp``.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple, TypeAlias
 
@@ -40,7 +38,7 @@ class Delivery(NamedTuple):
     rules: Rules
 
 
-# A robot and a node's name in its stack.
+# A robot and a node's name in its node set.
 Key: TypeAlias = tuple[str, str]
 Nodes: TypeAlias = Mapping[Key, Run]
 Sources: TypeAlias = Mapping[str, frozenset[str]]
@@ -52,8 +50,7 @@ def key_of(run: Run) -> Key:
 
 
 def deliveries(table: Table) -> tuple[Delivery, ...]:
-    """Return where the rules of every node are written; a node of several nodes' rules has them in
-    that order."""
+    """Return where each node's rules are written; several nodes' rules are in that order."""
     nodes = merged(table.runs)
     known = {(it.robot, it.node): it for it in nodes}
     # By the full name of a node: what helper nodes of it use.
@@ -154,7 +151,7 @@ def started(table: Table) -> Iterator[Started]:
     given = deliveries(table)
     rules = rules_by_taker(given)
     controllers = (it.node for it in given if it.node.fact.is_controller)
-    # The node that a stack has for the spawner of a controller is that spawner.
+    # The node that a node set has for the spawner of a controller is that spawner.
     spawners = {(it.robot, f"spawner_{it.node}") for it in controllers}
     # A node's first delivery is its own, another one that of its helper nodes.
     first = {key_of(it.node): it for it in reversed(given)}

@@ -6,8 +6,6 @@ Source: gz-sim8 src/systems/sensors/Sensors.cc and Imu.cc (a sensor is called as
 gz-sensors src/Sensor.cc (ign-sensors6, gz-sensors8, gz-sensors9: what names the frame, else its own
 name), ros_gz_bridge convert/utils.hpp (frame_id_gz_to_ros makes / of each ::)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain
 from typing import NamedTuple, cast

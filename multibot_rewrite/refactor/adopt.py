@@ -35,11 +35,16 @@ from multibot_rewrite.description.sources.included_by import robot_instead
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.renames import make_renames, respeller
-from multibot_rewrite.refactor.declaring import SPACES, declared, free_name
 from multibot_rewrite.refactor.launch_argument import Space
 from multibot_rewrite.refactor.launches import Trial, fillable, with_launches
 from multibot_rewrite.refactor.named_elsewhere import named_elsewhere, root_sections
-from multibot_rewrite.refactor.namespaces import namespaced, space_verified
+from multibot_rewrite.refactor.namespaces import (
+    SPACES,
+    declared,
+    free_name,
+    namespaced,
+    space_verified,
+)
 from multibot_rewrite.refactor.package import (
     Description,
     Expanding,
@@ -115,7 +120,7 @@ def adopt(
         return Adopted("", {}, {}, (), (), job.unread, already)
     own = {path: _space_of(its) for path, its in arguments.items()}
     found = list(_configured(found, job))
-    made = _with_files_beside(_with_namespace(found, own, job), found, job)
+    made = _with_related_files(_with_namespace(found, own, job), found, job)
     return made._replace(unread=job.unread, already=already)
 
 
@@ -129,7 +134,7 @@ class _Job(NamedTuple):
     unread: dict[str, str]
 
 
-def _with_files_beside(made: Adopted, found: Sequence[Description], job: _Job) -> Adopted:
+def _with_related_files(made: Adopted, found: Sequence[Description], job: _Job) -> Adopted:
     """Return the result with launch files, the parameters that they fill in, and other files."""
     there, shared = job.package.found, prefixing().shared_frames
     # What gets the prefix.
@@ -162,7 +167,7 @@ def _configured(found: Sequence[Description], job: _Job) -> Iterator[Description
         yield from own
 
 
-def _made(
+def _with_argument(
     found: Sequence[Description],
     texts: Mapping[str, bytes],
     argument: str,
@@ -211,7 +216,7 @@ def _with_namespace(found: Sequence[Description], own: Mapping[str, str], job: _
     )
     if space.argument:
         try:
-            made, after = _made(found, texts, prefix, job.how, space.edits)
+            made, after = _with_argument(found, texts, prefix, job.how, space.edits)
             verified, wrong = space_verified(space, prefix, TRIED, after, job.how, job.tree)
         except InputError as error:
             verified, wrong = (), (Left(found[0].path, f"it gets no namespace: {error}"),)
@@ -220,7 +225,7 @@ def _with_namespace(found: Sequence[Description], own: Mapping[str, str], job: _
             return made._replace(
                 left=(*made.left, *left), namespace=space.argument, spaced=verified
             )
-    made, _ = _made(found, texts, prefix, job.how)
+    made, _ = _with_argument(found, texts, prefix, job.how)
     return made._replace(left=(*made.left, *left))
 
 

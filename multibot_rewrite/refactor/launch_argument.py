@@ -6,8 +6,6 @@ Edited is what people write: ``Command(["xacro ", path])`` in a launch file in P
 list of its actions, and ``$(command 'xacro ...')`` in XML. What else runs xacro is left for its author.
 Sources: ros2/launch launch/substitutions/command.py, launch_xml; ros2/xacro README."""
 
-from __future__ import annotations
-
 import ast
 import os
 import re
@@ -44,7 +42,7 @@ _OWN_SPACE = re.compile(rb"namespace", re.IGNORECASE)
 
 
 class Space(NamedTuple):
-    """The argument for a namespace; do xacros take it?"""
+    """The argument for a namespace, and whether xacros take it."""
 
     name: str
     of_xacro: bool
@@ -52,7 +50,7 @@ class Space(NamedTuple):
 
 class LaunchEdit(NamedTuple):
     """A launch file with the argument; ``data`` is None where it is not changed, ``left`` says why.
-    ``filled`` are the parameter files that it fills in now; is it ``spaced`` by a namespace?"""
+    ``filled`` are the parameter files that it fills in now, ``spaced``: a namespace is set."""
 
     data: bytes | None
     left: tuple[Left, ...]
@@ -98,7 +96,7 @@ def _of_xml(
     commands = list(_COMMAND.finditer(source))
     root = _ROOT.search(source)
     if not commands or not root or b'<arg name="%s"' % argument.encode() in source:
-        return LaunchEdit(None, (_left(path, source),))
+        return LaunchEdit(None, (_by_hand(path, source),))
     given = "".join(f" {it}:=$(var {it})" for it in of_xacro).encode()
     edits = [SourceEdit(path, it.start(2), it.start(2), given) for it in commands]
     declared = "".join(f'\n  <arg name="{it}" default=""/>' for it in every).encode()
@@ -150,7 +148,7 @@ def _of_python(
     commands = [it for it in called if _XACRO.search(ast.unparse(it.elts[0]))]
     actions = next(_lists_of(tree, "LaunchDescription"), None)
     if not commands or actions is None or not actions.elts:
-        return LaunchEdit(None, (_left(path, source),))
+        return LaunchEdit(None, (_by_hand(path, source),))
     given = "".join(f', " {name}:=", LaunchConfiguration("{name}")' for name in of_xacro)
     edits = [it.insert(it.end(words.elts[-1]), given) for words in commands]
     # Each argument is declared before the first action, as far from the next as that is.
@@ -159,7 +157,7 @@ def _of_python(
     new = (f'DeclareLaunchArgument("{name}", default_value=""),{gap}' for name in every)
     edits.append(it.insert(first, "".join(new)))
     edits += _spaced(it, space.name) if space else ()
-    files = {name: found for name in parameters if (found := list(_given(tree, name)))}
+    files = {name: found for name in parameters if (found := list(_parameter_items(tree, name)))}
     for one in chain.from_iterable(files.values()):
         edits.append(it.insert(it.begin(one), "ParameterFile("))
         edits.append(it.insert(it.end(one), ", allow_substs=True)"))
@@ -183,7 +181,7 @@ def _spaced(it: _Text, space: str) -> Iterator[SourceEdit]:
             yield it.insert(it.end(package), f',{gap}namespace=LaunchConfiguration("{space}")')
 
 
-def _given(tree: ast.Module, file: str) -> Iterator[ast.expr]:
+def _parameter_items(tree: ast.Module, file: str) -> Iterator[ast.expr]:
     """Yield the items of ``parameters=[...]`` that name a file; none if it is named elsewhere, too."""
     lists = [
         it.value
@@ -191,32 +189,32 @@ def _given(tree: ast.Module, file: str) -> Iterator[ast.expr]:
         if isinstance(it, ast.keyword) and it.arg == "parameters" and isinstance(it.value, ast.List)
     ]
     items = [item for it in lists for item in it.elts if not isinstance(item, ast.Dict)]
-    inside = {one for it in items for one in ast.walk(it) if _is_said(one, file)}
+    inside = {one for it in items for one in ast.walk(it) if _names_file(one, file)}
     values = [it for it in ast.walk(tree) if isinstance(it, ast.Assign) and len(it.targets) == 1]
     # What has a node in it is no name of the file.
     named = {
         it.targets[0].id: it.value
         for it in values
         if isinstance(it.targets[0], ast.Name)
-        and _says(it.value, file)
+        and _names_the_file(it.value, file)
         and inside.isdisjoint(ast.walk(it.value))
     }
-    found = [it for it in items if _says(it, file)]
+    found = [it for it in items if _names_the_file(it, file)]
     found += [it for it in items if isinstance(it, ast.Name) and it.id in named]
-    direct = sum(_says(it, file) for it in (*items, *named.values()))
+    direct = sum(_names_the_file(it, file) for it in (*items, *named.values()))
     uses = [it for it in ast.walk(tree) if isinstance(it, ast.Name) and it.id in named]
     loads = sum(isinstance(it.ctx, ast.Load) for it in uses)
     by_name = sum(isinstance(it, ast.Name) for it in found)
-    every = sum(_is_said(it, file) for it in ast.walk(tree))
+    every = sum(_names_file(it, file) for it in ast.walk(tree))
     if direct == every and loads == by_name:
         yield from found
 
 
-def _says(expression: ast.expr, file: str) -> bool:
-    return any(_is_said(it, file) for it in ast.walk(expression))
+def _names_the_file(expression: ast.expr, file: str) -> bool:
+    return any(_names_file(it, file) for it in ast.walk(expression))
 
 
-def _is_said(node: ast.AST, file: str) -> bool:
+def _names_file(node: ast.AST, file: str) -> bool:
     if not isinstance(node, ast.Constant) or not isinstance(node.value, str):
         return False
     return os.path.basename(node.value) == file
@@ -248,6 +246,6 @@ def _called(node: ast.Call) -> str:
     return named if isinstance(named, str) else getattr(named, "id", "")
 
 
-def _left(path: str, source: bytes) -> Left:
+def _by_hand(path: str, source: bytes) -> Left:
     line = locate(source, max(source.find(b"xacro"), 0))[0]
     return Left(f"{path}:{line}", "give its xacro the argument by hand")

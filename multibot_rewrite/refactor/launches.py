@@ -10,8 +10,6 @@ file is a substitution). What else reads the file, as a plugin of Gazebo, would 
 launch file alone may name it.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -26,7 +24,7 @@ from multibot_rewrite.description.joining.part import PREFIXED
 from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.description.sources.packages import package_of
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.fleet.one_file import names_in_file
+from multibot_rewrite.library.one_file import names_in_file
 from multibot_rewrite.producers.launch.child import launch_graph
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder
 from multibot_rewrite.refactor.launch_argument import OF_ROBOT, LaunchEdit, Space, with_argument
@@ -53,7 +51,7 @@ class Trial(NamedTuple):
     argument: str
     prefix: str
     trust: bool
-    parameters: Mapping[str, Filled]
+    parameters: "Mapping[str, Filled]"
     space: Space | None
 
 
@@ -143,7 +141,7 @@ def _copy(home: str, root: str, files: Mapping[str, bytes]) -> None:
             out.write(data)
 
 
-def _verdict(order: LaunchOrder, how: Trial, filled: Sequence[Filled]) -> _Verdict:
+def _verdict(order: LaunchOrder, how: Trial, filled: "Sequence[Filled]") -> _Verdict:
     argument, prefix = how.argument, how.prefix
     try:
         graph = launch_graph(order)

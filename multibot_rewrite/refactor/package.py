@@ -6,8 +6,6 @@ A switch is turned; an argument that an expression compares with a word gets tha
 name a property or a macro has it. Several at a time are not tried.
 """
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -26,8 +24,8 @@ from multibot_rewrite.description.sources.expand import Expansion, expand_traced
 from multibot_rewrite.description.sources.read import is_xacro, read_file
 from multibot_rewrite.description.steps.collect import SRDF as SRDF_SECTION, Inventory, collect
 from multibot_rewrite.description.steps.document import read_document
-from multibot_rewrite.fleet.proposal.searching import Found, search
 from multibot_rewrite.lint.files.subjects import NO_URDF
+from multibot_rewrite.proposal.searching import Found, search
 
 
 class Expanding(NamedTuple):
@@ -108,10 +106,10 @@ def inventory_of(data: bytes, path: str, tree: Tree, urdfs: Iterable[Inventory] 
     if alone.format != SRDF_SECTION:
         return alone
     pairs = [collect(document, tree, it.declared) for it in urdfs if it.format != SRDF_SECTION]
-    return min(pairs, key=_lacks, default=collect(document, tree, NO_URDF))
+    return min(pairs, key=_count_undeclared, default=collect(document, tree, NO_URDF))
 
 
-def _lacks(pair: Inventory) -> int:
+def _count_undeclared(pair: Inventory) -> int:
     return sum(not name.kind for names in pair.names for name in names)
 
 
@@ -143,8 +141,7 @@ _WORD = re.compile(r"['\"]([^'\"]*)['\"]")
 def configurations(
     it: Description, how: Expanding, tree: Tree, urdfs: Sequence[Inventory], unread: dict[str, str]
 ) -> Iterator[Description]:
-    """Yield the other configurations of a xacro that make another text; those that do not expand
-    are noted in ``unread``."""
+    """Yield a xacro's other configurations with other texts; failures are noted in ``unread``."""
     assert it.read is not None
     known = {it.inventory.document.source}
     for name, value in islice(_values(it.read.sources, how.arguments), MOST):

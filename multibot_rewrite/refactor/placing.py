@@ -6,8 +6,6 @@ name: ``<parent link="${prefix}${parent}"/>``. Where the same place is also that
 robots share, as ``world``, it goes where the name is made: ``parent="${prefix}base_link"`` in the call
 of the macro. Then every other place that uses this piece has to take it from there as well."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import accumulate
@@ -96,12 +94,12 @@ def _names(of: int, it: Description, changes: Iterable[ValueEdit]) -> Iterator[_
             pieces = [*zip(accumulate(len(it.text) for it in own), own, strict=True)]
             for at in mine or [len(value) - len(value.lstrip())]:
                 used = _used(read, number, attribute, pieces, at)
-                made, other = _made(read, pieces, at)
+                made, other = _copied_from(read, pieces, at)
                 places = frozenset((real[file], start) for file, start in other)
-                yield _Name(of, _at(used, real), _at(made, real), places, mine.get(at))
+                yield _Name(of, _real(used, real), _real(made, real), places, mine.get(at))
 
 
-def _at(spot: Spot | None, real: Mapping[str, str]) -> Spot | None:
+def _real(spot: Spot | None, real: Mapping[str, str]) -> Spot | None:
     return spot and (real[spot[0]], spot[1])
 
 
@@ -139,7 +137,7 @@ def _slot(source: bytes, start: int, attribute: str) -> tuple[int, int] | None:
     return begin, source.find(b"<", begin)
 
 
-def _made(
+def _copied_from(
     read: Expansion, pieces: Sequence[tuple[int, Piece]], at: int
 ) -> tuple[Spot | None, frozenset[Spot]]:
     """Return where the piece at ``at`` is copied from, if in no expression; and the other pieces."""

@@ -25,7 +25,7 @@ from multibot_rewrite.description.rewriters.contact import respell_collisions
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED
 from multibot_rewrite.description.steps.renames import make_renames
-from multibot_rewrite.fleet.one_file import names_in_file
+from multibot_rewrite.library.one_file import names_in_file
 from multibot_rewrite.refactor.launches import respelled, starts_of
 from multibot_rewrite.refactor.named_elsewhere import files_below
 from multibot_rewrite.refactor.package import (
@@ -146,7 +146,7 @@ def _renamed(symbol: _Symbol, package: Package, folder: str, how: Expanding) -> 
             why = others if line else "the name cannot be changed alone"
             then = f"then there would be {line}; change what makes it by hand"
             raise InputError(f"{it.path}: {why}: {then}")
-    beside = dict(_beside(package, symbol, changes, after))
+    beside = dict(_changed_related_files(package, symbol, changes, after))
     places = len(edits) + sum(count for _, count in beside.values())
     after |= {path: data for path, (data, _) in beside.items()}
     found = tuple(_mentions(package, symbol.old, {os.path.realpath(it) for it in after}))
@@ -201,7 +201,7 @@ def _edits(it: Description, changes: Sequence[ValueEdit]) -> Iterator[SourceEdit
         yield found._replace(file=os.path.realpath(found.file))
 
 
-def _beside(
+def _changed_related_files(
     package: Package,
     symbol: _Symbol,
     changes: Mapping[str, Sequence[ValueEdit]],

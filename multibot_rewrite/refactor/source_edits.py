@@ -5,8 +5,6 @@ A value is put together from pieces (``description/sources/trace.py``). A change
 of it is in one piece that stands in a file as it is; what an expression computes is left to its author.
 """
 
-from __future__ import annotations
-
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
@@ -70,7 +68,7 @@ def source_edit(read: Expansion, document: Document, change: ValueEdit) -> Sourc
         if at < end and start < last:
             touched.append(piece)
         at = last
-    return Composed(change.value, _place(read, document, change, touched), _why(touched))
+    return Composed(change.value, _place(read, document, change, touched), _why_not_edited(touched))
 
 
 def _trimmed(change: ValueEdit) -> tuple[int, int, str]:
@@ -100,7 +98,7 @@ def place(file: str, source: bytes, offset: int) -> str:
     return ":".join(map(str, (file, *locate(source, offset))))
 
 
-def _why(touched: list[Piece]) -> str:
+def _why_not_edited(touched: list[Piece]) -> str:
     if len(touched) > 1:
         return "it is put together from " + " and ".join(repr(it.text) for it in touched)
     made = touched[0].kind if touched else EXPRESSION

@@ -6,8 +6,6 @@ Sources: ros_gz jazzy ``ros_gz_bridge/src/bridge_config.cpp``; gz-sim's names ``
 
 Source: gazebosim/ros_gz ros_gz_bridge/src/bridge_config.cpp (parseEntry, and its messages)."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
@@ -143,8 +141,7 @@ WORLD = frozenset({"clock", "stats"})
 
 
 class BridgeFile(NamedTuple):
-    """A bridge file: the entries of each robot with slots, the text of those that all share, and both
-    with slots."""
+    """A bridge file: each robot's entries with slots, the shared text, and both with slots."""
 
     own: RelatedFile
     shared: str
@@ -163,7 +160,7 @@ def rewrite_bridge(
     entries = _entries(document, context, known, above)
     own = [it for it in entries if it.own]
     shared = [it for it in entries if not it.own]
-    named = _named(document, context, entries)
+    named = _named_file(document, context, entries)
     frames = [site for it in own for site in _sites(it) if site.kind == "frame"]
     made = ((it, spelled_text(context, {}, it)) for it in frames)
     splices = [splice for it in own for splice in _splices(document, it)]
@@ -184,7 +181,7 @@ def read_bridge(document: YamlText, context: Context) -> NamedFile:
     loaded = (it for it in items(document.root) if not any(faults(it)))
     maps = (it for it in loaded if isinstance(it, yaml.MappingNode))
     entries = [_entry(it, nowhere, context, model, NOTHING, "") for it in maps]
-    return _named(document, context, entries)
+    return _named_file(document, context, entries)
 
 
 def _entries(
@@ -209,7 +206,7 @@ def _entries(
     ]
 
 
-def _named(document: YamlText, context: Context, entries: Iterable[BridgeEntry]) -> NamedFile:
+def _named_file(document: YamlText, context: Context, entries: Iterable[BridgeEntry]) -> NamedFile:
     names = tuple(site for it in entries for site in _sites(it))
     others = tuple(
         site_at(value, "", text_in(row, key), key)

@@ -3,8 +3,6 @@
 with slots for a robot's namespace and tag: made once, filled for each robot.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
@@ -61,11 +59,11 @@ def make_template(text: str, splices: Iterable[Splice]) -> FileTemplate:
 def fill_template(template: FileTemplate, namespace: str, tag: str, number: int = 0) -> str:
     """Return the text for a robot, the ``number``-th one after the first that has the file."""
     pieces = list(template.pieces)
-    pieces[1::2] = [_filled(slot, namespace, tag, number) for slot in pieces[1::2]]
+    pieces[1::2] = [_filled_slot(slot, namespace, tag, number) for slot in pieces[1::2]]
     return "".join(pieces)
 
 
-def _filled(slot: str, namespace: str, tag: str, number: int) -> str:
+def _filled_slot(slot: str, namespace: str, tag: str, number: int) -> str:
     if slot in (NAMESPACE_SLOT, TAG_SLOT):
         return namespace if slot == NAMESPACE_SLOT else tag
     return str(int(slot[len(_NUMBER) : -len("Slot")]) + number * NUMBER_STEP)
@@ -109,7 +107,6 @@ def make_context(
 
 
 def full_name(node: str, naming: Naming, apart: bool = False) -> str:
-    """Return the full name that a robot's node runs under, with a slot for the robot; ``apart`` is that
-    of ``NodeFacts``."""
+    """Return the full name of a robot's node, with a slot for the robot; ``apart``: ``NodeFacts``."""
     namespace, name = placed(NAMESPACE_SLOT, node, naming, apart)
     return f"{namespace.rstrip('/')}/{name}"

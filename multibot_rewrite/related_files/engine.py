@@ -31,8 +31,7 @@ _MARKS = re.compile(r"(?:[&!][^\s,\[\]{}]*\s+)*")
 
 
 def spell_site(context: Context, facts: Facts, site: Site) -> TopicText:
-    """Return the name of a site for a robot; ``facts`` are the robot's nodes, whose remap rules move
-    topics too."""
+    """Return a site's name for a robot; ``facts``: its nodes, whose remap rules move topics."""
     if site.kind in GRAPH:
         return spell_topic(context, site.node, site.kind, site.text, site.reach, facts)
     if site.kind == "controller_topic":

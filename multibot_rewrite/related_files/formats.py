@@ -3,8 +3,6 @@
 alone.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
@@ -125,7 +123,9 @@ def rewrite_alone(
             template = made.template
         text = fill_template(template, robot, robot, number).replace(MODEL_SLOT, robot)
         named, found = made.file, made.findings
-    kept = _kept(named, read_named(kind, text.encode(), file, _of(context, robot)), robot)
+    kept = _unrenamed_count(
+        named, read_named(kind, text.encode(), file, _of(context, robot)), robot
+    )
     return OneFile(text, named, found, kept)
 
 
@@ -140,7 +140,7 @@ def _of(context: Context, robot: str) -> Context:
     return context._replace(names=own, topics=own)
 
 
-def _kept(before: NamedFile, after: NamedFile, robot: str) -> int:
+def _unrenamed_count(before: NamedFile, after: NamedFile, robot: str) -> int:
     """Return how many names declared by the description are not the robot's in the result."""
     names = before.context.names._replace(robot=robot)
     wanted = Counter(

@@ -20,7 +20,7 @@ from multibot_rewrite.description.joining.semantic import (
     JoinedSemantics,
     PartSemantics,
     joined_srdf,
-    spelled_srdf,
+    renamed_srdf,
 )
 from multibot_rewrite.description.readback.meeting import meetings, said
 from multibot_rewrite.description.readback.reading import read
@@ -93,7 +93,7 @@ def join(
     texts = [read_whole(it.description, it.xacro_args, trust) for it in given]
     pairs = zip(given, texts, strict=True)
     made = join_texts([GivenPart(it, text.data, text.file) for it, text in pairs], tree)
-    found = _with_beside(given, made, tree, trust, samples)
+    found = _with_related_files(given, made, tree, trust, samples)
     unread = (
         f"{text.file}: no file of the xacro has the argument {name}"
         for it, text in zip(given, texts, strict=True)
@@ -108,13 +108,13 @@ def join_plain(parts: Sequence[Part], place: str, tree: Tree, trust: bool) -> Jo
     given, _ = plain_texts(parts, trust)
     try:
         made = join_texts(given, tree)
-        found = _with_beside(parts, made, tree, trust)
+        found = _with_related_files(parts, made, tree, trust)
     except UsageError as error:
         raise InputError(f"{place}: {error}") from None
     return found._replace(data=plain_text(made, place))
 
 
-def _with_beside(
+def _with_related_files(
     given: Sequence[Part], made: JoinedText, tree: Tree, trust: bool, samples: int = 0
 ) -> Joined:
     """Return the joined description with the related files of the parts."""
@@ -124,7 +124,7 @@ def _with_beside(
         before = _without_prefix(part, tree) if it.controllers or it.rviz else part.inventory
         srdf = _srdf(it, it.srdf, trust) if has_srdf and it.srdf is not None else None
         srdfs.append(
-            spelled_srdf(part, srdf.data, srdf.file, tree) if srdf else PartSemantics(part, b"", "")
+            renamed_srdf(part, srdf.data, srdf.file, tree) if srdf else PartSemantics(part, b"", "")
         )
         controllers += [part_file(read_file(at), at, before, part.prefix) for at in it.controllers]
         if it.rviz:

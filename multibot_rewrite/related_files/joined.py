@@ -11,8 +11,6 @@ it does not show yet follow as a group with the part's name.
 Source: joint_state_broadcaster.cpp: without ``joints`` and ``interfaces`` it takes all joints.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
@@ -74,8 +72,7 @@ _SOME = frozenset(("joints", "interfaces"))
 
 
 class PartFile(NamedTuple):
-    """A parameter file of a part as its prefix spells it: its sections, and the nodes in it that serve
-    all parts."""
+    """A part's parameter file as its prefix names it: its sections, and nodes that serve all parts."""
 
     file: str
     sections: tuple[RawSection, ...]
@@ -177,13 +174,13 @@ def added(into: yaml.MappingNode, more: yaml.MappingNode, at: str) -> Iterator[s
         elif isinstance(first, yaml.MappingNode) and isinstance(further, yaml.MappingNode):
             yield from added(first, further, f"{name}.")
         elif isinstance(first, yaml.SequenceNode) and isinstance(further, yaml.SequenceNode):
-            there = {_plain(it) for it in first.value}
-            first.value += [it for it in further.value if _plain(it) not in there]
-        elif _plain(first) != _plain(further):
-            yield f"{name} is {_plain(further)}, before it {_plain(first)}, which is taken"
+            there = {_plain_text(it) for it in first.value}
+            first.value += [it for it in further.value if _plain_text(it) not in there]
+        elif _plain_text(first) != _plain_text(further):
+            yield f"{name} is {_plain_text(further)}, before it {_plain_text(first)}, which is taken"
 
 
-def _plain(node: yaml.Node) -> str:
+def _plain_text(node: yaml.Node) -> str:
     return node.value if isinstance(node, yaml.ScalarNode) else yaml.serialize(node).strip()
 
 

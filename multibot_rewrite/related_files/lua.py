@@ -5,8 +5,6 @@ Cartographer reads its frames from Lua only (cartographer_ros node_options, traj
 topics are fixed relative names that remap rules move. Comments and other strings stay.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
@@ -62,7 +60,7 @@ def rewrite_lua(data: bytes, file: str, context: Context) -> RelatedFile:
 
 def read_lua(data: bytes, file: str, context: Context) -> NamedFile:
     """Return the names of a file; raises as ``rewrite_lua``."""
-    text = _decoded(data, file)
+    text = _decoded_text(data, file)
     tokens = list(tokens_of(text, file))
     values, computed = {}, []
     for _, key, value in (it for it in _options(tokens) if it[0] in FRAMES):
@@ -78,7 +76,7 @@ def read_lua(data: bytes, file: str, context: Context) -> NamedFile:
     included = tuple(
         _site("", it)
         for it in files
-        if it and it.kind in ("string", "long") and _plain(it) not in OWN_FILES
+        if it and it.kind in ("string", "long") and _plain_text(it) not in OWN_FILES
     )
     return NamedFile(
         LUA, file, text, context, {}, names, others, included=included, computed=tuple(computed)
@@ -88,11 +86,11 @@ def read_lua(data: bytes, file: str, context: Context) -> NamedFile:
 def lua_values(data: bytes, file: str) -> dict[str, Given]:
     """Return the options that a file sets to a plain value, by their last names; of several values
     the last one. Raises as ``rewrite_lua``."""
-    options = _options([*tokens_of(_decoded(data, file), file)])
-    return {name: Given(_plain(it), Place(file, it.line)) for name, _, it in options if it}
+    options = _options([*tokens_of(_decoded_text(data, file), file)])
+    return {name: Given(_plain_text(it), Place(file, it.line)) for name, _, it in options if it}
 
 
-def _decoded(data: bytes, file: str) -> str:
+def _decoded_text(data: bytes, file: str) -> str:
     try:
         return data.decode()
     except UnicodeDecodeError:
@@ -143,11 +141,11 @@ def _ends(tokens: Sequence[Token], at: int) -> bool:
 
 def _site(kind: str, token: Token, key: str = "") -> Site:
     end = token.at + len(token.text)
-    value = token.text[1:-1] if kind else _plain(token)
+    value = token.text[1:-1] if kind else _plain_text(token)
     return Site(
         kind, value, key, Slot(token.line, token.column, token.at + 1, end - 1, value, AS_IS)
     )
 
 
-def _plain(token: Token) -> str:
+def _plain_text(token: Token) -> str:
     return token.text.strip("\"'[]=")

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A related file: its kind, which its text tells, and its names as a list."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -26,19 +24,19 @@ _XML = ".xml"
 _IS_TREE = dict(BESIDE)[TREE]
 
 
-def is_named_beside(path: str) -> bool:
+def has_related_name(path: str) -> bool:
     """Return whether a file has a name that only related files have."""
     return path.lower().endswith(SUFFIXES) and not path.lower().endswith(_XML)
 
 
-def is_beside(source: object) -> bool:
+def is_related_file(source: object) -> bool:
     """Return whether it is the path or the text (a tree in XML) of such a file, not a description."""
     if isinstance(source, bytes):
         start = source.lstrip(b"\xef\xbb\xbf \t\r\n")[:1]
         return bool(_IS_TREE.search(source)) if start == b"<" else True
     path = str(source)
     if not path.lower().endswith(_XML):
-        return is_named_beside(path)
+        return has_related_name(path)
     return bool(_IS_TREE.search(_text_of(path) or b""))
 
 
@@ -46,8 +44,8 @@ def is_linted(path: str) -> bool:
     """Return whether a file found in a folder is linted. Most YAML and XML files are not; one that
     cannot be read is reported."""
     if path.lower().endswith(_XML):
-        return is_beside(path)
-    text = _text_of(path) if is_beside(path) else None
+        return is_related_file(path)
+    text = _text_of(path) if is_related_file(path) else None
     return text is None or bool(kind_of(text))
 
 
@@ -79,15 +77,15 @@ class NamedFile(NamedTuple):
     kind: str
     file: str
     text: str
-    context: Context
+    context: "Context"
     memo: dict[object, Any]
-    names: tuple[Site, ...] = ()
-    others: tuple[Site, ...] = ()
-    twice: tuple[Site, ...] = ()
-    document: YamlText | None = None
-    pages: tuple[Page, ...] = ()
-    known: KnownNodes | None = None
-    shown: tuple[RvizItem, ...] = ()
+    names: "tuple[Site, ...]" = ()
+    others: "tuple[Site, ...]" = ()
+    twice: "tuple[Site, ...]" = ()
+    document: "YamlText | None" = None
+    pages: "tuple[Page, ...]" = ()
+    known: "KnownNodes | None" = None
+    shown: "tuple[RvizItem, ...]" = ()
     is_certain: bool = True
     is_whole: bool = True
     is_for_one: bool = False
@@ -95,8 +93,8 @@ class NamedFile(NamedTuple):
     robots: frozenset[str] = frozenset()
     own: frozenset[str] = frozenset()
     roots: tuple[str, ...] = ()
-    included: tuple[Site, ...] = ()
-    computed: tuple[Site, ...] = ()
+    included: "tuple[Site, ...]" = ()
+    computed: "tuple[Site, ...]" = ()
 
     @property
     def declared(self) -> Mapping[str, Collection[str]]:
@@ -107,6 +105,6 @@ class NamedFile(NamedTuple):
 class RelatedFile(NamedTuple):
     """A related file as a template for any robot, what was read, and what only its rewrite finds."""
 
-    template: FileTemplate
+    template: "FileTemplate"
     file: NamedFile
-    findings: tuple[Finding, ...] = ()
+    findings: "tuple[Finding, ...]" = ()

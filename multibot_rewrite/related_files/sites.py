@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Names in a related file: what each is, where it is, what is known of it."""
 
-from __future__ import annotations
-
 from typing import TYPE_CHECKING, NamedTuple
 
 import yaml
@@ -63,7 +61,7 @@ class Site(NamedTuple):
     bare: bool = False
     node: str = ""
     reach: str = FROM_NODE
-    param: Param | None = None
+    param: "Param | None" = None
 
     @property
     def line(self) -> int:

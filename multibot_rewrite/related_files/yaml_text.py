@@ -5,8 +5,6 @@ lines of it: the entries of lists and maps, to be copied, moved or left out.
 Comments, quoting, order and line ends stay. Positions are character offsets.
 """
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Iterable, Iterator

@@ -34,7 +34,13 @@ from multibot_rewrite.system.domains import (
 )
 from multibot_rewrite.system.index import NO_COUNTS, Index, beside, index
 from multibot_rewrite.system.ownership import whose_by_plan
-from multibot_rewrite.system.records import End, System, clocks as time_by_node, unseen
+from multibot_rewrite.system.records import (
+    BUSY_MACHINE,
+    End,
+    System,
+    clocks as time_by_node,
+    unseen,
+)
 from multibot_rewrite.system.tf_copies import without_bridged
 
 # What is made at run time, in names of a plan.
@@ -43,6 +49,8 @@ RULES = {it.code: it for it in sorted(rules_in("system"), key=lambda it: it.code
 _LACKS = likes.lacks_what_its_likes_have
 # Findings about something missing: an incomplete view cannot prove them.
 ABSENCE = frozenset(it.code for it in RULES.values() if it.options["absence"])
+# About rates and ages: a machine that was too busy shows messages as seldom and old.
+_TIMED = {likes.less_than_another_robot.code, clocks.stamp_of_another_time.code}
 
 
 def judge(seen: Index) -> list[Finding]:
@@ -51,13 +59,13 @@ def judge(seen: Index) -> list[Finding]:
     with gc_paused():
         plan = seen.expected
         if plan is None:
-            return in_order(seen, folded(seen, _judged(seen, _rules(planned=False))))
+            return in_order(seen, folded(seen, _judged_findings(seen, _rules(planned=False))))
         # What a robot has not and others have is meant where nothing that is planned is missing.
         asked = (it for it in _rules(planned=False) if it is not _LACKS or missing(plan, seen))
         recorded = is_recorded(seen.system)
         only = (it for it in _rules(planned=True) if not (recorded and it.options["nodes"]))
         by_plan = [*_found_by(only, seen)]
-        found = _judged(seen, asked)
+        found = _judged_findings(seen, asked)
         told = one_for_a_cause(seen, plan, found, by_plan, RULES, bool(unseen(seen.system)))
         return in_order(seen, folded(seen, told))
 
@@ -66,7 +74,7 @@ def _rules(planned: bool) -> Iterator[Rule]:
     return (it for it in RULES.values() if it.options["planned"] is planned)
 
 
-def _judged(seen: Index, rules: Iterable[Rule]) -> list[Finding]:
+def _judged_findings(seen: Index, rules: Iterable[Rule]) -> list[Finding]:
     with gc_paused():
         found = [*_found_by(rules, seen)]
         return differing.unexplained(_of_localizers(seen, _of_readers(found)))
@@ -101,16 +109,18 @@ def _of_readers(found: Sequence[Finding]) -> list[Finding]:
 
 def contradictions(seen: Index) -> list[Finding]:
     """Return the faults that ends, senders or nodes have with each other, whatever else runs."""
-    return _part(seen, absent=False)
+    return _absent(seen, absent=False)
 
 
 def absences(seen: Index) -> list[Finding]:
     """Return the findings about what is missing, as far as the system is known."""
-    return _part(seen, absent=True)
+    return _absent(seen, absent=True)
 
 
-def _part(seen: Index, absent: bool) -> list[Finding]:
-    found = _judged(seen, (it for it in _rules(planned=False) if (it.code in ABSENCE) is absent))
+def _absent(seen: Index, absent: bool) -> list[Finding]:
+    found = _judged_findings(
+        seen, (it for it in _rules(planned=False) if (it.code in ABSENCE) is absent)
+    )
     # What is found of robots held against each other is left to any other finding.
     if any(it.code in differing.BETWEEN_ROBOTS for it in found):
         found = judge(seen)
@@ -147,7 +157,7 @@ def side_by_side(
 def _with_patterns(plan: System, graph: System) -> System:
     """Return the graph, with a pattern of the plan in place of each node name that fits it. Two
     nodes of one process that a pattern fits are one node of the plan."""
-    patterns = {it.name: _compiled(it.name) for it in plan.nodes if ANY in it.name}
+    patterns = {it.name: _compiled_pattern(it.name) for it in plan.nodes if ANY in it.name}
     if not patterns:
         return graph
     names = {
@@ -178,23 +188,25 @@ def _matching_ends(planned: End, by_node: Mapping[str, Sequence[End]]) -> Iterat
     if ANY not in planned.name:
         yield planned
         return
-    pattern, kind = _compiled(planned.name), (planned.kind, planned.role)
+    pattern, kind = _compiled_pattern(planned.name), (planned.kind, planned.role)
     own = [it.name for it in by_node.get(planned.node, ()) if (it.kind, it.role) == kind]
     fitting = [name for name in own if pattern.fullmatch(name)]
     yield from (planned._replace(name=name) for name in fitting or [planned.name])
 
 
-def _compiled(pattern: str) -> re.Pattern[str]:
+def _compiled_pattern(pattern: str) -> re.Pattern[str]:
     return re.compile(with_gaps(pattern.split(ANY), "[^/]"))
 
 
 def inconclusive_where_in_doubt(found: list[Finding], graph: System) -> list[Finding]:
     """Return the findings; in an incomplete view those about missing things become inconclusive.
     Clocks that a node has by its parameters are known there, too."""
-    if not unseen(graph):
+    reasons = {it.code for it in unseen(graph)}
+    if not reasons:
         return found
     told, mixed = time_by_node(graph), clocks.clocks_mixed.code
-    sure = {it for it in found if it.code not in ABSENCE or (it.code == mixed and it.node in told)}
+    doubtful = ABSENCE | _TIMED if BUSY_MACHINE in reasons else ABSENCE
+    sure = {it for it in found if it.code not in doubtful or (it.code == mixed and it.node in told)}
     hint = "the view of the graph may be incomplete: the line `incomplete:` says why"
     return [
         it
@@ -239,7 +251,7 @@ def _without_bridges(system: System, plan: System) -> System:
 
 
 def _bridges(plan: System) -> set[str]:
-    return {it.name for it in plan.nodes if it.stack == DOMAIN_BRIDGE}
+    return {it.name for it in plan.nodes if it.node_set == DOMAIN_BRIDGE}
 
 
 def _with_domain(it: Finding, number: int, plan: System, seen: Mapping[int, System]) -> Finding:

@@ -7,8 +7,6 @@ where the capsule is; the spheres go to the end of the link, so that the numbers
 stay.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from functools import partial
 from typing import NamedTuple
@@ -117,7 +115,7 @@ def as_rpy(text: Spanned, origin: _Element) -> tuple[Edit, ...]:
     rpy = poses.rpy_of(matrix)
     if not poses.is_same(matrix, poses.matrix_of_quaternion(poses.quaternion_of_rpy(rpy))):
         return ()
-    return _one(renamed(text, origin, "quat_xyzw", "rpy", " ".join(map(written, rpy))))
+    return _edits_of(renamed(text, origin, "quat_xyzw", "rpy", " ".join(map(written, rpy))))
 
 
 def one_rotation(text: Spanned, origin: _Element, other: str) -> tuple[Edit, ...]:
@@ -126,7 +124,7 @@ def one_rotation(text: Spanned, origin: _Element, other: str) -> tuple[Edit, ...
     if turn is None or matrix is None:
         return ()
     same = poses.is_same(matrix, poses.matrix_of_quaternion(turn))
-    return _one(removed(text, origin, other)) if same else ()
+    return _edits_of(removed(text, origin, other)) if same else ()
 
 
 def raised(text: Spanned, version: Version) -> tuple[Edit, ...]:
@@ -135,7 +133,7 @@ def raised(text: Spanned, version: Version) -> tuple[Edit, ...]:
     capsule = any(capsules(link) for link in root.iterchildren("link"))
     if capsule or not all(map(_is_readable, rotated_origins(root))):
         return ()
-    return _one(revalued(text, root, "version", str(version)))
+    return _edits_of(revalued(text, root, "version", str(version)))
 
 
 def lowered(text: Spanned) -> tuple[Edit, ...]:
@@ -148,7 +146,7 @@ def lowered(text: Spanned) -> tuple[Edit, ...]:
     groups = [
         *(as_rpy(text, it) for it in rotated_origins(root)),
         *(capsule_edits(text, it) for it in links),
-        _one(revalued(text, root, "version", str(OLDEST))),
+        _edits_of(revalued(text, root, "version", str(OLDEST))),
     ]
     return tuple(edit for group in groups for edit in group) if all(groups) else ()
 
@@ -159,7 +157,7 @@ def _is_readable(origin: _Element) -> bool:
     return alone and turn is not None and 0 < poses.length_of(turn) < float("inf")
 
 
-def _one(edit: Edit | None) -> tuple[Edit, ...]:
+def _edits_of(edit: Edit | None) -> tuple[Edit, ...]:
     return () if edit is None else (edit,)
 
 

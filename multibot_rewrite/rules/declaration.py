@@ -142,7 +142,7 @@ OF_NO_NODE = declare("MB244", "section-of-no-node", ERROR, formats=(LAUNCH,))
 ONE_DEVICE = declare("MB412", "one-device", WARNING, formats=(SYSTEM,), options=system_options())
 
 
-def said_of_section(path: str, readers: Sequence[str]) -> tuple[str, str]:
+def section_message(path: str, readers: Sequence[str]) -> tuple[str, str]:
     """Return message and hint about a section that is for no node, though it has these nodes' name."""
     names = sorted(set(readers))
     base = names[0].rpartition("/")[2]
@@ -154,21 +154,24 @@ class Placed(Protocol):
     """A record with the place where a file has it."""
 
     @property
-    def place(self) -> Place: ...
+    def place(self) -> Place:
+        """Return the file and line that the finding is about."""
 
 
 class OnLine(Protocol):
     """What has a place in a text; lines and columns count from 1."""
 
     @property
-    def line(self) -> int: ...
+    def line(self) -> int:
+        """Return the line, from 1."""
+
     @property
-    def column(self) -> int: ...
+    def column(self) -> int:
+        """Return the column, from 1."""
 
 
 def remark(at: OnLine, message: str, hint: str = "", level: str = "") -> Finding:
-    """Return a finding at a name, to which the file and the rule asked are added. An empty
-    ``level`` is that of the rule."""
+    """Return a finding at a name, without file and rule; an empty ``level`` is the rule's."""
     return Finding("", level, message, hint, "", at.line, at.column)
 
 

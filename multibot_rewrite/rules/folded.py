@@ -30,7 +30,7 @@ def _ends(seen: Index | None, names: Iterable[str]) -> Iterator[End]:
     return (end for name in names for end in ends_of(seen, name)) if seen else iter(())
 
 
-def _planned(seen: Index, it: Finding) -> Sequence[End]:
+def _planned_ends(seen: Index, it: Finding) -> Sequence[End]:
     return seen.expected.by_node.get(it.node, ()) if seen.expected else ()
 
 
@@ -75,14 +75,14 @@ _FACETS: Mapping[str, Callable[[Index, Finding], Iterable[str]]] = {
     "frame senders": lambda seen, it: (x for name in it.names for x in _frame_senders(seen)[name]),
     "server": lambda seen, it: (seen.plain(name.rpartition("/")[0]) for name in it.names),
     "givers": lambda seen, it: (x for name in it.names for x in _senders(seen)[seen.plain(name)]),
-    "planned names": lambda seen, it: (seen.plain(end.name) for end in _planned(seen, it)),
-    "given names": lambda seen, it: (x.name for x in _planned(seen, it) if x.role in _GIVES),
+    "planned names": lambda seen, it: (seen.plain(end.name) for end in _planned_ends(seen, it)),
+    "given names": lambda seen, it: (x.name for x in _planned_ends(seen, it) if x.role in _GIVES),
     "wanted names": lambda seen, it: it.names[:1] * (not has_to_give(seen, it)),
     "described robots": _described,
     "a clock": lambda seen, it: ("",) * is_about_a_clock(seen, it),
     "no tf": lambda seen, it: ("" for x in _ends(seen.expected, it.names[:1]) if x.type == TF),
     "sent tf": lambda seen, it: (
-        "" for x in _planned(seen, it) if x.type == TF and x.role == PUBLISHES
+        "" for x in _planned_ends(seen, it) if x.type == TF and x.role == PUBLISHES
     ),
 }
 
@@ -214,7 +214,7 @@ def _users(seen: Index, it: Finding) -> Sequence[str]:
 
 
 def is_about_a_clock(seen: Index, it: Finding) -> bool:
-    """Is it about the time that nodes get?"""
+    """Return whether it is about the time that nodes get."""
     return any(end.type == "rosgraph_msgs/msg/Clock" for end in _ends(seen, it.names))
 
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a description is linted with: the settings of a command, a configuration file or a test."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Mapping
 from fnmatch import fnmatchcase
@@ -72,7 +70,7 @@ class Settings(NamedTuple):
     seconds: float = 60.0
     trust: bool = False
     readable: tuple[str, ...] = ()
-    elsewhere: KnownArguments | None = None
+    elsewhere: "KnownArguments | None" = None
     distro: str = NEWEST_LTS
     ros: str = ""
     simulated: bool = False

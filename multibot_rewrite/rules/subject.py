@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The subject of lint rules: one document, its elements by their tags, and what is known about it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -41,11 +39,11 @@ class Elements:
 
     def every(self, *tags: str) -> Sequence[_Element]:
         """Return all of these tags, tag by tag in document order."""
-        return _of(self._every, tags)
+        return _elements_of(self._every, tags)
 
     def tops(self, *tags: str) -> Sequence[_Element]:
         """Return the root's children that have one of these tags."""
-        return _of(self._tops, tags)
+        return _elements_of(self._tops, tags)
 
     def owners(self) -> Iterator[_Element]:
         """Yield the joints, sensors and gpios of every <ros2_control>, which have interfaces."""
@@ -61,7 +59,7 @@ class Elements:
         return found
 
 
-def _of(found: _ByTag, tags: tuple[str, ...]) -> Sequence[_Element]:
+def _elements_of(found: _ByTag, tags: tuple[str, ...]) -> Sequence[_Element]:
     if len(tags) == 1:
         return found.get(tags[0], ())
     return [it for tag in tags for it in found.get(tag, ())]
@@ -98,7 +96,7 @@ class Subject(NamedTuple):
     settings: Settings
     memo: dict[object, Any]
     beside: Robot | None = None
-    origins: Origins | None = None
+    origins: "Origins | None" = None
     sources: Mapping[str, bytes] = {}
     arguments: str = ""
     given: tuple[str, ...] = ()

@@ -43,7 +43,7 @@ def one_for_a_cause(
     # What is there counts before what is missing, then the first.
     places: list[dict[_About, int]] = [{}, {}]
     for at, it in reversed([*enumerate(left)]):
-        places[_is_absence(it, rules)].update(dict.fromkeys(_abouts(it, rules), at))
+        places[_is_absence(it, rules)].update(dict.fromkeys(_subjects(it, rules), at))
     causes: dict[int, list[Finding]] = defaultdict(list)
     others: list[Finding] = []
     for it in by_plan:
@@ -70,7 +70,7 @@ def _is_absence(it: Finding, rules: Mapping[str, Rule]) -> bool:
     return bool(rules[it.code].options["absence"])
 
 
-def _abouts(it: Finding, rules: Mapping[str, Rule]) -> Iterator[_About]:
+def _subjects(it: Finding, rules: Mapping[str, Rule]) -> Iterator[_About]:
     if it.code in BETWEEN_ROBOTS:
         return
     yield it.node, ""

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """How much of what is there a system holds: which every verdict reports."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
@@ -110,7 +108,7 @@ def coverage(system: System, graph: System | None = None) -> Coverage:
             nodes.setdefault(it.robot, []).append(it)
     rows = []
     for robot, own in nodes.items():
-        named = (it.known or it.stack or it.plugin != NOWHERE or it.name in ends for it in own)
+        named = (it.known or it.node_set or it.plugin != NOWHERE or it.name in ends for it in own)
         known = sum(not told or bool(it) for it in named)
         seen = there.intersection(it.name for it in own)
         silent = len(seen.difference(answers)) if answers else 0

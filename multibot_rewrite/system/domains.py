@@ -35,7 +35,7 @@ def by_domain(plan: System) -> dict[int, System]:
     empty for a plan of one domain."""
     numbers = domain_of(plan)
     own = {it.name: numbers[it.robot] for it in plan.nodes} if numbers else {}
-    return {it: _part(plan, numbers, own, it) for it in sorted({*own.values()})}
+    return {it: _of_domain(plan, numbers, own, it) for it in sorted({*own.values()})}
 
 
 def seen_by_domain(plan: System, seen: System) -> dict[int, System]:
@@ -80,7 +80,7 @@ def _of_nodes(system: System, own: Mapping[str, int], at: int) -> System:
     )
 
 
-def _part(plan: System, numbers: Mapping[str, int], own: Mapping[str, int], at: int) -> System:
+def _of_domain(plan: System, numbers: Mapping[str, int], own: Mapping[str, int], at: int) -> System:
     part, robot = _of_nodes(plan, own, at), whose_by_plan(plan).robot
     nodes = {it.name for it in part.nodes}
     return part._replace(
@@ -148,13 +148,13 @@ def named(view: System, domain: int) -> System:
 def unnamed(it: Finding) -> Finding:
     """Return a finding about such a view in the names that run: ``/amcl of domain 11``."""
     return it._replace(
-        message=_said(it.message),
-        hint=_said(it.hint),
-        robot=_said(it.robot),
+        message=_with_domain_last(it.message),
+        hint=_with_domain_last(it.hint),
+        robot=_with_domain_last(it.robot),
         node=_FULL.sub(r"\2", it.node),
         names=tuple(_FULL.sub(r"\2", name) for name in it.names),
     )
 
 
-def _said(text: str) -> str:
+def _with_domain_last(text: str) -> str:
     return _SHORT.sub(r"domain \1", _FULL.sub(r"\2 of domain \1", text))

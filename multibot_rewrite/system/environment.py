@@ -8,8 +8,6 @@ on a machine under LOCALHOST, else Fast DDS's own 4); the ROS 2 domain id page (
 "Not seen from here" is "missing" only where a robot would have been seen.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from math import inf

@@ -8,8 +8,6 @@ at the end of such topics (``cmd_vel/robot1``), or one that several trees of fra
 (``robot1/base_link``).
 """
 
-from __future__ import annotations
-
 import re
 from collections import Counter, defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Set
@@ -251,7 +249,7 @@ def whose_by_guess(robots: Iterable[GuessedRobot]) -> Whose:
     return Whose(
         tuple(sorted(it.name for it in known)),
         cache(lambda name: name_of(of_name(name))),
-        cache(lambda name: _plain(name, of_name(name))),
+        cache(lambda name: _plain_name(name, of_name(name))),
         cache(lambda frame: name_of(of_frame(frame))),
         cache(plain_frame),
     )
@@ -278,7 +276,7 @@ def _words_in(name: str) -> Iterator[str]:
         yield last[found.end() :]
 
 
-def _plain(name: str, robot: GuessedRobot | None) -> str:
+def _plain_name(name: str, robot: GuessedRobot | None) -> str:
     if robot is None:
         return name
     if robot.namespace and name.startswith(f"{robot.namespace}/"):

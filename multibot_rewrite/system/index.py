@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A system with the look-ups that its rules share, and whose each of its names is."""
 
-from __future__ import annotations
-
 from collections import Counter, defaultdict
 from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence, Set
 from functools import wraps
@@ -128,11 +126,11 @@ class Index(NamedTuple):
     of_frames: NameOwnership
     known: Known
     memo: dict[object, Any]
-    expected: Index | None = None
+    expected: "Index | None" = None
 
     @property
     @once
-    def sure(self) -> Index:
+    def sure(self) -> "Index":
         """The same without the ends that only may be there."""
         system = surely(self.system)
         return self if system is self.system else self._replace(system=system, memo={})

@@ -68,7 +68,8 @@ def _block(value: Mapping[str, Any], indent: str) -> Iterator[str]:
 def _flow(value: object) -> str:
     if isinstance(value, list):
         # Nearly all are rows of texts.
-        return f"[{', '.join(_scalar(it) if type(it) is str else _flow(it) for it in value)}]"
+        each = _scalar if {*map(type, value)} == {str} else _flow
+        return f"[{', '.join(map(each, value))}]"
     if isinstance(value, dict):
         return f"{{{', '.join(f'{_flow(key)}: {_flow(it)}' for key, it in value.items())}}}"
     return _scalar(value)
@@ -91,8 +92,7 @@ def is_json(data: bytes) -> bool:
 
 
 def read_system(data: bytes, file: str) -> System:
-    """Read what ``to_yaml`` or ``to_json`` wrote; raises InputError with file, key, what is wrong, what
-    to do."""
+    """Read a system from YAML or JSON; raises InputError with file, key, fault and remedy."""
     return from_json(data, file) if is_json(data) else from_yaml(data, file)
 
 

@@ -4,8 +4,6 @@
 A snapshot from one machine may miss what the network hides from it, so a node is in the result if
 any snapshot has it."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
@@ -143,10 +141,10 @@ def _environment(
     asked = around[0]
     peers = dict.fromkeys(peer for one in around for peer in one.static_peers)
     return asked._replace(
-        range=_words(one.range for one in around),
+        range=_joined_once(one.range for one in around),
         static_peers=tuple(peers),
-        rmw=_words(one.rmw for one in around),
-        discovery_server=_words(one.discovery_server for one in around),
+        rmw=_joined_once(one.rmw for one in around),
+        discovery_server=_joined_once(one.discovery_server for one in around),
         super_client=all(one.super_client for one in around),
         participants=participants(endpoints),
         settled=max((one.settled for one in around), key=WORST_LAST.index),
@@ -155,7 +153,7 @@ def _environment(
     )
 
 
-def _words(words: Iterable[str]) -> str:
+def _joined_once(words: Iterable[str]) -> str:
     return ", ".join(dict.fromkeys(filter(None, words)))
 
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which robot a node, topic or frame belongs to, by the plan and by how its name is written."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
 from typing import NamedTuple
@@ -145,7 +143,7 @@ def is_alone(plan: System) -> bool:
     """Return whether it is the plan of one robot, whose name no node or end has."""
     if len(plan.robots) != 1:
         return False
-    word = plan.robots[0].name
+    word = plan.robots[0].space
     names = (*(it.name for it in plan.nodes), *(it.name for it in plan.ends))
     return bool(plan.nodes) and not any(word in name for name in names)
 
@@ -153,7 +151,7 @@ def is_alone(plan: System) -> bool:
 def without_name(plan: System) -> System:
     """Return the plan of a robot without its namespace: its nodes and names are in the root."""
     (robot,) = plan.robots
-    space = f"/{robot.name}"
+    space = f"/{robot.space}"
 
     def bare(name: str) -> str:
         return (name.removeprefix(space) or "/") if f"{name}/".startswith(f"{space}/") else name
@@ -214,11 +212,13 @@ def name_ownership(plan: System) -> NameOwnership:
     """Return the ownership of graph names: nodes, topics, services, actions."""
     nodes = {it.name: it.robot for it in plan.nodes if it.robot}
     planned = [(w.name, nodes[w.node]) for w in plan.ends if w.node in nodes]
-    robots = {robot.name: robot.name for robot in plan.robots}
+    robots = {robot.space: robot.name for robot in plan.robots}
+    tags = {robot.name: robot.namespace for robot in plan.robots if robot.namespace}
     tf = ((robot.tf_topic, robot.name) for robot in plan.robots)
-    last = _is_last({*nodes.items(), *planned, *tf})
-    levels = max((name.count("/") + 1 for name in robots), default=1)
-    draft = NameOwnership({}, nodes, robots, frozenset(), last, levels=levels)
+    every = {*nodes.items(), *planned, *tf}
+    last = _is_last((name, tags.get(robot, robot)) for name, robot in every)
+    levels = max((space.count("/") + 1 for space in robots), default=1)
+    draft = NameOwnership({}, nodes, robots, frozenset(), last, tags, levels)
     # The topics of which a plan says more, each with the robot whose tag is at its place there, or in
     # the topic that it is below: of /scan/a/points that of /scan/a.
     topics: dict[str, str] = {}
@@ -233,7 +233,7 @@ def name_ownership(plan: System) -> NameOwnership:
 def _plain_words(plan: System, draft: NameOwnership, topics: Mapping[str, str]) -> set[str]:
     """Return the words of nodes and names without the robot's name that may be a robot's."""
     nodes = draft.nodes
-    likely = draft.robots.keys() & _words({w.code_name for w in plan.ends})
+    likely = draft.robots.keys() & _segments_and_ends({w.code_name for w in plan.ends})
     # A node of all robots may name a robot's topic in its code, as a domain_bridge does.
     in_code = {
         (w.code_name, nodes.get(w.node) or draft.exact.get(w.code_name, ""))
@@ -246,7 +246,7 @@ def _plain_words(plan: System, draft: NameOwnership, topics: Mapping[str, str]) 
     # Of what is below a link of its robot, the link has the robot's name, too.
     every = (*topics.items(), *parts)
     twice = {draft.without_robot(draft.without_robot(*it), it[1]) for it in every}
-    return _words(once | twice)
+    return _segments_and_ends(once | twice)
 
 
 def frame_ownership(plan: System) -> NameOwnership:
@@ -267,7 +267,7 @@ def frame_ownership(plan: System) -> NameOwnership:
     plain = frozenset((*(draft.without_robot(*pair) for pair in declared), *common))
     any_rest = is_glued or not plain
     return draft._replace(
-        ambiguous_words=frozenset(robots.keys() & _words(plain)),
+        ambiguous_words=frozenset(robots.keys() & _segments_and_ends(plain)),
         plain_names=NO_WORDS if any_rest else plain.union(USUAL_FRAMES, SENT_FRAMES),
     )
 
@@ -299,6 +299,6 @@ def _is_last(names: Iterable[tuple[str, str]]) -> bool:
     return more > 0
 
 
-def _words(names: Iterable[str]) -> set[str]:
+def _segments_and_ends(names: Iterable[str]) -> set[str]:
     segments = {segment for name in names for segment in name.strip("/").split("/")}
     return segments.union(end for segment in segments for end in _ends(segment))

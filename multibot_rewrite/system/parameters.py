@@ -2,8 +2,6 @@
 """Which nodes of a graph are asked for what of their state, what they answer, and the values of
 parameters as texts. Pure."""
 
-from __future__ import annotations
-
 import json
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -52,10 +50,9 @@ class Answer(NamedTuple):
 
 
 def with_answers(
-    system: System, answers: Iterable[Answer], asked: Iterable[Question] = ()
+    system: System, answers: Iterable[Answer], asked: "Iterable[Question]" = ()
 ) -> System:
-    """Return the system with the answers of nodes; nodes ``asked`` for parameters that did not
-    answer are named."""
+    """Return the system with the nodes' answers; names ``asked`` nodes that did not answer."""
     said = tuple(answers)
     silent = {it.node for it in asked if it.type == GET_PARAMETERS} - {it.node for it in said}
     states = {it.node: it.lifecycle for it in said if it.lifecycle}

@@ -66,21 +66,21 @@ def place_of(text: str) -> Place:
     return Place(file, int(last))
 
 
-# What a plan writes before the name of a stack that names a node.
-_STACK = "stack"
+# What a plan writes before the name of a node set that names a node.
+_NODE_SET = "node set"
 
 
 class Origin(NamedTuple):
     """What names a node: a node set, or a place in a file; as a text, it is what a plan writes."""
 
-    stack: str = ""
+    node_set: str = ""
     place: Place = NOWHERE
 
     def __str__(self) -> str:
         text = str(self.place)
-        # A file of such a name is no stack.
-        text = f"./{text}" if text.startswith(f"{_STACK} ") else text
-        return f"{_STACK} {self.stack}" if self.stack else text
+        # A file of such a name is no node set.
+        text = f"./{text}" if text.startswith(f"{_NODE_SET} ") else text
+        return f"{_NODE_SET} {self.node_set}" if self.node_set else text
 
 
 NO_ORIGIN = Origin()
@@ -88,8 +88,8 @@ NO_ORIGIN = Origin()
 
 def origin_of(text: str) -> Origin:
     """Return the origin that a plan writes as this text."""
-    if text.startswith(f"{_STACK} "):
-        return Origin(text.removeprefix(f"{_STACK} "))
+    if text.startswith(f"{_NODE_SET} "):
+        return Origin(text.removeprefix(f"{_NODE_SET} "))
     return Origin(place=place_of(text))
 
 
@@ -117,6 +117,8 @@ NOT_KNOWN_PROCESS = "MF859"
 WAITED_FOR = "expected-not-seen"
 # That of nodes that were asked for their state and did not answer.
 SILENT = "silent-nodes"
+# That of a look that waited for a processor: what it measured in time is doubtful, too.
+BUSY_MACHINE = "busy-machine"
 
 
 class Qos(NamedTuple):
@@ -139,8 +141,8 @@ class Qos(NamedTuple):
 class Robot(NamedTuple):
     """One robot: its tf topic, the frames of its description.
 
-    ``other_frames`` are further frames that its nodes may send. ``tag`` is its name in
-    frames, where that is another one than its name.
+    ``other_frames`` are further frames that its nodes may send. ``tag`` is its name in frames,
+    ``namespace`` that in nodes and topics, where it is another one than its name.
     """
 
     name: str
@@ -148,6 +150,12 @@ class Robot(NamedTuple):
     tf_topic: FullName = "/tf"
     other_frames: tuple[str, ...] = ()
     tag: str = ""
+    namespace: str = ""
+
+    @property
+    def space(self) -> str:
+        """Its name in nodes and topics, without a slash in front."""
+        return self.namespace or self.name
 
 
 class Node(NamedTuple):
@@ -159,7 +167,7 @@ class Node(NamedTuple):
     ``host`` is any word: nodes of one host run on one machine, those of two on two. ``way`` is how it
     gets its remap rules if not by --ros-args of its own (``remap.ways``), ``taker`` the node that takes
     them for it. ``plugin`` is where a description has the plugin that starts it, ``place`` what else
-    names it, ``stack`` the node set that it is from. ``known`` is what its node set or file
+    names it, ``node_set`` the node set that it is from. ``known`` is what its node set or file
     calls it, ``untold`` what its source does not tell before it runs, each with its place.
     """
 
@@ -171,7 +179,7 @@ class Node(NamedTuple):
     host: str = ""
     way: str = ""
     taker: str = ""
-    stack: str = ""
+    node_set: str = ""
     sure: Sure = RUNS
     place: Place = NOWHERE
     plugin: Place = NOWHERE
@@ -277,8 +285,7 @@ class Parameter(NamedTuple):
 
 
 class Controller(NamedTuple):
-    """A controller of the controller manager ``manager``, a node; ``claims`` are command interfaces,
-    while it is active."""
+    """A controller of the node ``manager``; ``claims``: command interfaces while it is active."""
 
     manager: FullName
     name: str

@@ -30,8 +30,7 @@ def static_topic(topic: str) -> str:
 
 
 def copying_nodes(plan: System) -> Mapping[str, str]:
-    """Return by node the robot whose tf the plan's nodes only copy to ``/tf``, or whose transform
-    they send for such a copy."""
+    """Return by node the robot whose tf it copies to ``/tf``, or sends a transform for."""
     home = {
         it.name: tree_topic(it.tf_topic) for it in plan.robots if tree_topic(it.tf_topic) != _TF
     }

@@ -33,6 +33,8 @@ DESCRIPTION, _TEXT = "robot_description", "std_msgs/msg/String"
 # The node of `ros2 bag play`.
 CHANGE_STATE, NODE_NAMES = "/change_state", "node_names"
 PLAYER = "rosbag2_player"
+# The node of a build that sends where its robot starts.
+START_POSE = "start_pose"
 
 
 def moves(name: str, type_: str) -> bool:
@@ -91,8 +93,7 @@ def is_of_one_sensor(type_: str) -> bool:
 
 
 def is_of_one_robot(plain: str, type_: str) -> bool:
-    """Return whether data of two robots would be mixed on the topic: sensors, odometry, maps,
-    commands, a description."""
+    """Return whether a topic is one robot's: sensors, odometry, maps, commands, a description."""
     sensors = type_.startswith(_OF_ONE_ROBOT)
     return sensors or moves(plain, type_) or plain.endswith(DESCRIPTION)
 

@@ -11,8 +11,8 @@ import pytest
 from multibot_rewrite.base.file_kinds import KINDS, recognised
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.proposal.searching import search
 from multibot_rewrite.lint.check import lint_data
+from multibot_rewrite.proposal.searching import search
 from multibot_rewrite.rules.settings import Settings
 from multibot_rewrite.system.json import from_json
 

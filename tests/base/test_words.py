@@ -83,7 +83,7 @@ def test_the_release_that_is_meant(
     given: str, around: dict[str, str], chosen: str, told: str
 ) -> None:
     assert releases.chosen_release(given, around) == chosen
-    assert releases.told_release(given, around) == told
+    assert releases.release_for_description(given, around) == told
     assert releases.unusual_release(given, around) == ""
 
 

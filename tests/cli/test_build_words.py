@@ -12,7 +12,7 @@ import pytest
 from refusals import said
 
 from multibot_rewrite.cli import build, inspect
-from multibot_rewrite.fleet.build import OutputChanges
+from multibot_rewrite.fleet.outputs.manifest import OutputChanges
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 
 
@@ -46,13 +46,13 @@ def test_a_build_goes_into_a_folder_and_not_over_its_input(tmp_path: Path) -> No
 
 def test_what_a_check_of_a_build_says(capsys: pytest.CaptureFixture[str]) -> None:
     stale = changes(write=("a", "b"), remove=("c",))
-    assert build._stale(options(), stale) == 1
+    assert build._report_stale(options(), stale) == 1
     told = capsys.readouterr()
     assert told.out == "a: stale\nb: stale\nc: left over\n"
     assert told.err == "multibot: 3 files of out differ from what f.yaml makes\n"
-    assert build._stale(options(), changes(remove=("c",))) == 1
+    assert build._report_stale(options(), changes(remove=("c",))) == 1
     assert capsys.readouterr().err == "multibot: 1 file of out differ from what f.yaml makes\n"
-    assert build._stale(options(), changes()) == 0
+    assert build._report_stale(options(), changes()) == 0
     assert capsys.readouterr().err == "multibot: out is up to date\n"
 
 

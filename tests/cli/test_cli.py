@@ -52,13 +52,13 @@ def run_shell(folder: Path, redirection: str, *words: str) -> Result:
 
 
 def names(data: bytes, tag: str) -> list[str]:
-    """The names of the root's children of that tag."""
+    """Return the names of the root's children of that tag."""
     return [str(element.get("name")) for element in etree.fromstring(data).findall(tag)]
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A folder with the fixture robots, where the command runs."""
+    """Return a folder with the fixture robots, where the command runs."""
     for path in ROBOTS.iterdir():
         shutil.copy(path, tmp_path)
     return tmp_path
@@ -66,7 +66,7 @@ def folder(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def rover(folder: Path) -> bytes:
-    """The rover as it was given."""
+    """Return the rover as it was given."""
     return (folder / "rover.urdf").read_bytes()
 
 

@@ -40,9 +40,9 @@ from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.description.reports.xacro_arguments import Argument, Use, XacroArguments
 from multibot_rewrite.description.rewriters.lookup import look_up
 from multibot_rewrite.description.rewriters.plugin_definitions import load_definitions
-from multibot_rewrite.fleet.one_file import RewrittenFile
 from multibot_rewrite.knowledge.nodl.writing import NodlFile
 from multibot_rewrite.knowledge.records import NodeFacts
+from multibot_rewrite.library.one_file import RewrittenFile
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.live.learning.learn import LearnedNode
 from multibot_rewrite.system.records import (
@@ -123,7 +123,7 @@ words/word  uses topic form=list releases=jazzy
 """
 
 
-def test_a_section_of_the_definitions_as_docs_stacks_md_has_it(tmp_path: Path) -> None:
+def test_a_section_of_the_definitions_as_docs_node_sets_md_has_it(tmp_path: Path) -> None:
     for insert in ("yes", "no"):
         file = tmp_path / f"{insert}.vocab"
         file.write_text(SECTION.format(insert))
@@ -276,11 +276,11 @@ def test_what_a_fleet_was_made_from_is_not_written_over(tmp_path: Path) -> None:
 
 def test_what_a_fleet_file_says_itself() -> None:
     names = (
-        "robots", "stack", "nodes", "layout", "affix", "topics", "separator", "shared",
+        "robots", "node_set", "nodes", "layout", "affix", "topics", "separator", "shared",
         "definitions", "launch", "roots",
     )  # fmt: skip
     assert {
-        "words": "ROBOT", **{it: f"--{it}" for it in names},
+        "words": "ROBOT", **{it: f"--{it}".replace("_", "-") for it in names},
     } == commands_of_fleets.OF_FLEET_FILE  # fmt: skip
 
 
@@ -301,7 +301,7 @@ def test_a_launch_file_is_told_by_its_name(name: str, it_is: bool) -> None:
 
 def test_options_that_a_plan_of_a_launch_file_has_not() -> None:
     assert plan.NOT_OF_LAUNCH == {
-        "robots": "--robots", "count": "--count", "stack": "--stack", "launch": "--launch",
+        "robots": "--robots", "count": "--count", "node_set": "--node-set", "launch": "--launch",
         "layout": "--layout",
         "affix": "--affix", "topics": "--topics", "separator": "--separator", "shared": "--shared",
     }  # fmt: skip
@@ -350,17 +350,17 @@ def test_what_a_rename_changes_and_leaves(capsys: pytest.CaptureFixture[str]) ->
         "unread": {},
         "mentions": (),
     }
-    rename._tell(given, options(**usual))  # type: ignore[arg-type]
+    rename._print_result(given, options(**usual))  # type: ignore[arg-type]
     assert capsys.readouterr().err == "multibot: link a -> b: 3 places in 2 files; verified\n"
     left = [f"f:{at}" for at in range(rename.MOST_MENTIONS + 1)]
     more = {**usual, "unread": {"p": "p: odd", "q": ""}, "mentions": left}
-    rename._tell(given, options(**more))  # type: ignore[arg-type]
+    rename._print_result(given, options(**more))  # type: ignore[arg-type]
     assert capsys.readouterr().err.splitlines() == [
         "multibot: link a -> b: 3 places in 2 files; verified, 2 descriptions not read",
         "multibot: not checked: p: odd", "multibot: not checked: q",
         f"multibot: left as they are: {len(left)} lines with 'a': {', '.join(left[:-1])} and 1 more",
     ]  # fmt: skip
-    rename._tell(options(**{**vars(given), "verbose": False}), options(**more))  # type: ignore[arg-type]
+    rename._print_result(options(**{**vars(given), "verbose": False}), options(**more))  # type: ignore[arg-type]
     assert capsys.readouterr().err.endswith(f": {', '.join(left[:5])} and {len(left) - 5} more\n")
 
 
@@ -372,7 +372,7 @@ def test_what_a_package_takes_from_now_on(capsys: pytest.CaptureFixture[str]) ->
     }  # fmt: skip
 
     def told(**more: Any) -> list[str]:
-        adopt._tell(given, options(**{**usual, **more}))  # type: ignore[arg-type]
+        adopt._print_result(given, options(**{**usual, **more}))  # type: ignore[arg-type]
         return [it.removeprefix("multibot: ") for it in capsys.readouterr().err.splitlines()]
 
     assert told() == ["argument prefix: 1 description in 1 file; verified"]
@@ -434,7 +434,7 @@ def test_headings_and_names_are_painted() -> None:
         (["--quite"], "unknown option --quite; did you mean '--quiet'?"),
         (["--from=a"],
          "unknown option --from; multibot check, multibot snapshot, multibot view take it"),
-        (["--changed"], "unknown option --changed"),
+        (["--changed"], "unknown option --changed; urdf-lint takes --changed-since"),
         (["--dry-run"],
          "unknown option --dry-run; --diff does that,"
          " which urdf-postfix, urdf-lint, multibot rename take"),
@@ -445,8 +445,9 @@ def test_headings_and_names_are_painted() -> None:
         # Dashes are not counted.
         (["--oxtput-kxnd"], "unknown option --oxtput-kxnd; did you mean '--output-kind'?"),
         (["a", "b"], "unexpected b"),
-        # A part of it says what it is, another first letter does not.
+        # A part of it says what it is, another first letter of a short one does not.
         (["--form", "b"], "unknown option --form; use --output-kind KIND"),
+        (["--stack", "b"], "unknown option --stack; use --node-set NAME"),
         (["--output-form", "b"], "unknown option --output-form; did you mean '--output-kind'?"),
         (["--norm"], "unknown option --norm"),
         # A short option, alone or with its value; what is no option is a value.

@@ -179,7 +179,7 @@ def test_a_rehearsal_has_unknown_nodes_by_name_alone(
 
 
 def planned(robots: Iterable[tuple[str, int, int]]) -> System:
-    """A plan with nodes of robots: of so many something is known, of so many nothing but the name."""
+    """Return a plan with nodes of robots: something is known of so many, of the others the name."""
     nodes, ends, names = [], [], []
     for robot, known, unknown in robots:
         names += [Robot(robot)] if robot else []

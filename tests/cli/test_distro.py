@@ -19,12 +19,11 @@ URDF = (
 
 
 @pytest.fixture(autouse=True)
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
+def folder(here: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.delenv("ROS_DISTRO", raising=False)
-    (tmp_path / "m.sdf").write_text(MODEL)
-    (tmp_path / "m.urdf").write_text(URDF)
-    return tmp_path
+    (here / "m.sdf").write_text(MODEL)
+    (here / "m.urdf").write_text(URDF)
+    return here
 
 
 def test_a_release_that_is_not_known(capsys: pytest.CaptureFixture[str]) -> None:
@@ -92,6 +91,11 @@ def test_a_rewrite_says_which_release_it_is_for_and_why(
     (folder / "c.urdf").write_text(CLASSIC)
     urdf_postfix.main(["c.urdf", "robot1", "-o", "o.urdf"])
     assert "(ROS 2 humble: it loads libgazebo_ros_p3d.so)" in capsys.readouterr().err
+    # ROS 1 alone has gazebo_ros_control (gazebo_ros_pkgs, branches noetic-devel and ros2).
+    control = '<plugin name="q" filename="libgazebo_ros_control.so"/></gazebo>'
+    (folder / "one.urdf").write_text(CLASSIC.replace("</gazebo>", control))
+    urdf_postfix.main(["one.urdf", "robot1", "-o", "o.urdf"])
+    assert "erified (ROS 1: " in capsys.readouterr().err
     monkeypatch.setenv("ROS_DISTRO", "noetic")
     assert urdf_postfix.main(["c.urdf", "robot1", "-o", "o.urdf"]) == 0
     said = capsys.readouterr().err

@@ -48,7 +48,7 @@ LARGEST, LARGEST_VIEW = 70_000_000, 110_000_000
 
 @pytest.fixture
 def bare(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A working folder of somebody who has no extra."""
+    """Return a working folder of somebody who has no extra."""
     modules = tmp_path / "none"
     modules.mkdir()
     for name in IN_CHILDREN:
@@ -90,7 +90,7 @@ def test_the_exit_code_is_in_the_help() -> None:
 
 
 def brought(name: str, seen: dict[str, Distribution]) -> None:
-    """A distribution and all that it needs, without extras."""
+    """Add a distribution to ``seen`` with all that it needs, without extras."""
     found = importlib.metadata.distribution(name)
     seen[found.name.lower()] = found
     for line in found.requires or ():

@@ -66,7 +66,7 @@ def counted(folder: Path) -> int:
 
 @pytest.fixture
 def calls(tmp_path_factory: pytest.TempPathFactory) -> range:
-    """The number of each call of a write over the old files."""
+    """Return the number of each call of a write over the old files."""
     beside = tmp_path_factory.mktemp("beside")
     for name, data in OLD.items():
         (beside / name).write_bytes(data)
@@ -154,7 +154,7 @@ def test_a_process_that_is_killed_at_any_call_leaves_each_file_old_or_new(
 
 
 def stopped_disks(events: list[tuple[str, str, str]]) -> Iterator[str]:
-    """The targets that a disk may hold torn, after a stop of the machine at any event.
+    """Yield the targets that a disk may hold torn, after a stop of the machine at any event.
 
     Of what a file holds the disk has nothing for sure until the file was seen onto it; a new name of
     the file may be there at once.

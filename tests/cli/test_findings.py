@@ -17,7 +17,7 @@ from paths import FIXTURES
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.base.findings.formats import FORMATS
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
-from multibot_rewrite.cli.report import About, report_beside
+from multibot_rewrite.cli.report import About, report_findings_too
 from multibot_rewrite.system.json import from_yaml, to_json
 
 ROVER = str(FIXTURES / "robots" / "rover.urdf")
@@ -28,7 +28,7 @@ Said = Callable[..., tuple[int, str, str]]
 
 @pytest.fixture
 def said(capsys: pytest.CaptureFixture[str]) -> Said:
-    """Runs one of the three programs; exit code, standard output, standard error."""
+    """Run one of the three programs; return exit code, standard output, standard error."""
     programs = {"urdf-postfix": urdf_postfix.main, "urdf-lint": urdf_lint.main}
 
     def run(*words: str) -> tuple[int, str, str]:
@@ -41,7 +41,7 @@ def said(capsys: pytest.CaptureFixture[str]) -> Said:
 
 @pytest.fixture
 def fleet(tmp_path: Path) -> Path:
-    """A fleet file whose description has a warning."""
+    """Return a fleet file whose description has a warning."""
     path = tmp_path / "fleet.yaml"
     path.write_text(f"robots:\n  - {{name: robot1, description: {SIBLINGS}}}\n")
     return path
@@ -49,9 +49,9 @@ def fleet(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def check(tmp_path: Path, said: Said) -> list[str]:
-    """A check of twenty robots, each without its robot_state_publisher."""
+    """Return a check of twenty robots, each without its robot_state_publisher."""
     plan, graph = tmp_path / "plan.yaml", tmp_path / "graph.json"
-    words = ["plan", ROVER, *TWENTY, "--stack", "robot_state", "--layout", "L2", "-o", str(plan)]
+    words = ["plan", ROVER, *TWENTY, "--node-set", "robot_state", "--layout", "L2", "-o", str(plan)]
     assert said("multibot", *words)[0] == 0
     wanted = from_yaml(plan.read_bytes(), "plan")
     found = as_planned(wanted)
@@ -66,7 +66,7 @@ def codes(text: str) -> list[str]:
 
 
 def commands(tmp_path: Path, fleet: Path) -> dict[str, list[str]]:
-    """A command line of each kind with findings, its result in a file."""
+    """Return a command line of each kind with findings, its result in a file."""
     out = str(tmp_path / "out")
     return {
         "urdf-postfix": ["urdf-postfix", SIBLINGS, "robot1", "-o", out],
@@ -181,7 +181,7 @@ def test_of_many_notes_three_are_told_and_the_lines_of_the_rest(
         program="multibot", command="build",
     )  # fmt: skip
     found = [*notes, notes[0]._replace(message="of the file", line=0), *others]
-    report_beside(options, found, About(["a.yaml"], {}))
+    report_findings_too(options, found, About(["a.yaml"], {}))
     said = capsys.readouterr().err
     told = [it for it in range(1, 7) if f"note {it}" in said]
     assert told == [1, 2, 3] and "of the file" in said

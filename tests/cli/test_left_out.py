@@ -11,7 +11,7 @@ import pytest
 
 from multibot_rewrite.cli import urdf_lint
 from multibot_rewrite.description.sources import included_by
-from multibot_rewrite.fleet.proposal.searching import search
+from multibot_rewrite.proposal.searching import search
 from multibot_rewrite.refactor.named_elsewhere import files_below
 
 ROBOT = '<robot name="{}"><link name="base"/><link name="lost"/></robot>'
@@ -33,19 +33,18 @@ SOURCES = ["src/arm/a.urdf", "src/arm/kept.tmp.urdf"]
 
 
 @pytest.fixture
-def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A workspace that was built, of which git ignores some files, one of them tracked."""
+def workspace(here: Path) -> Path:
+    """Return a workspace that was built, of which git ignores some files, one of them tracked."""
     for name in FILES:
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_text(ROBOT.format(Path(name).stem.replace(".", "_")))
-    (tmp_path / "old" / "COLCON_IGNORE").touch()
-    (tmp_path / "other" / "AMENT_IGNORE").touch()
-    (tmp_path / "src" / "arm" / ".gitignore").write_text("gen/\n*.tmp.urdf\n")
-    run(tmp_path, "init", "-q")
-    run(tmp_path, "add", "-f", "src/arm/a.urdf", "src/arm/kept.tmp.urdf")
-    run(tmp_path, "commit", "-qm", "first")
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
+        (here / name).parent.mkdir(parents=True, exist_ok=True)
+        (here / name).write_text(ROBOT.format(Path(name).stem.replace(".", "_")))
+    (here / "old" / "COLCON_IGNORE").touch()
+    (here / "other" / "AMENT_IGNORE").touch()
+    (here / "src" / "arm" / ".gitignore").write_text("gen/\n*.tmp.urdf\n")
+    run(here, "init", "-q")
+    run(here, "add", "-f", "src/arm/a.urdf", "src/arm/kept.tmp.urdf")
+    run(here, "commit", "-qm", "first")
+    return here
 
 
 def run(folder: Path, *words: str) -> None:
@@ -57,7 +56,7 @@ Linted = Callable[..., tuple[list[str], str]]
 
 @pytest.fixture
 def linted(capsys: pytest.CaptureFixture[str]) -> Linted:
-    """The files that a lint finds something in, and what it says on standard error."""
+    """Return the files that a lint finds something in, and what it says on standard error."""
 
     def lint(*words: str) -> tuple[list[str], str]:
         assert urdf_lint.main([*words, "--select", "MB501"]) in (0, 1)

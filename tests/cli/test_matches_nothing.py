@@ -110,7 +110,7 @@ BESIDE = "urdf-postfix params.yaml robot1 --urdf rover.urdf -o out/p.yaml"
             "graph.json is a graph of domain 67; leave it out",
         ),
         ("multibot check fleet.yaml --from graph.json --domain 5", "is a graph of domain 67"),
-        ("multibot plan rover.urdf r1 --stack nosuch", "stack 'nosuch' is not known"),
+        ("multibot plan rover.urdf r1 --node-set nosuch", "node set 'nosuch' is not known"),
         (
             "multibot snapshot --from graph.json --output-kind nodes --node /nosuch",
             "no node has this name",

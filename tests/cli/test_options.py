@@ -6,11 +6,13 @@ from __future__ import annotations
 import argparse
 import io
 import json
+import random
 import re
 import subprocess
 import sys
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -18,10 +20,12 @@ from paths import FIXTURES, ROOT
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.naming import DEFAULT_LAYOUT, LAYOUTS, make_naming
+from multibot_rewrite.base.nearest import typing_mistakes
 from multibot_rewrite.base.wording import plural
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
 from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 from multibot_rewrite.cli.declared.options import Command
+from multibot_rewrite.cli.hints import option_hint
 from multibot_rewrite.cli.parser import make_parser, parsed
 from multibot_rewrite.cli.report import check_report
 from multibot_rewrite.cli.usage import check_xacro, policy, robots, separators, xacro_args
@@ -44,6 +48,14 @@ DESCRIPTION = ("urdf-postfix", "urdf-lint", "plan", "rehearse")
 HAS = {**{name: EVERY | OUTPUT for name in ALL if name != "help"}, "help": EVERY}
 REPORTS = (*DESCRIPTION, "build", "check")
 
+# A letter that lacks, is too many, is another, or is swapped with the next.
+MISTAKES: tuple[Callable[[str, int], str], ...] = (
+    lambda it, at: it[:at] + it[at + 1 :],
+    lambda it, at: f"{it[:at]}x{it[at:]}",
+    lambda it, at: f"{it[:at]}x{it[at + 1 :]}",
+    lambda it, at: it[:at] + it[at + 1] + it[at] + it[at + 2 :],
+)
+
 
 def names(command: Command) -> set[str]:
     return set(make_parser(command).known())
@@ -63,11 +75,11 @@ def test_an_option_has_one_help_wherever_it_is() -> None:
         for action in make_parser(command)._actions:
             for option in action.option_strings:
                 texts[option].add(str(action.help))
-    # What is written or suggested differs with the command; --stack learns or uses one; init has
+    # What is written or suggested differs with the command; --node-set learns or uses one; init has
     # a layout of its own; check takes several domains.
     own = OUTPUT | {
-        "--domain", "--output-kind", "--stack", "--diff", "--suggest", "--layout", "--force", "--undo",
-        "-n", "--count",
+        "--domain", "--output-kind", "--node-set", "--diff", "--suggest", "--layout", "--force",
+        "--undo", "-n", "--count",
     }  # fmt: skip
     assert [it for it, told in texts.items() if len(told) > 1 and it not in own] == []
     assert all(text.endswith("missing folders are made") for text in texts["--output"])
@@ -188,7 +200,7 @@ def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str
             "multibot build --keep /scan",
             "write the key shared_frames: or shared_topics: or shared_nodes: into the fleet file",
         ),
-        (f"multibot init {ROVER} -o new.yaml --stack nav", "did you mean 'nav2'?"),
+        (f"multibot init {ROVER} -o new.yaml --node-set nav", "did you mean 'nav2'?"),
         ("multibot init a.urdf --prefix r_", "write the key affix: into the fleet file"),
         ("multibot init a.urdf --namespace r", "write the key topics: into the fleet file"),
         ("multibot init --urdf a.urdf", "use the file as a word: multibot init FILE"),
@@ -246,6 +258,30 @@ def test_a_mistake_is_one_line_with_a_hint(
     code, out, err = said(capsys, *line.split())
     assert (code, out, err.count("\n")) == (2, "", 1)
     assert hint in err
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_a_mistyped_option_has_a_hint(name: str) -> None:
+    """Each pair of typing mistakes in each option of five letters or more."""
+    known = make_parser(ALL[name], name).known()
+    drawn = random.Random(name)
+    for option in (it for it in known if len(it) > 6):
+        for mistakes in product(MISTAKES, repeat=2):
+            wrong = option
+            for mistake in mistakes:
+                wrong = mistake(wrong, drawn.randrange(3, min(len(option), len(wrong)) - 1))
+            hint = option_hint(wrong, name.rpartition(" ")[2], known, has_fleet=False)
+            is_another = wrong in known or typing_mistakes(wrong[2:], option[2:]) > 2
+            assert hint or is_another, (option, wrong)
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "mistakes"),
+    [("", "", 0), ("quite", "quiet", 1), ("disabel", "disable", 1), ("lyout", "layout", 1),
+     ("formatt", "format", 1), ("stirkt", "strict", 2), ("a", "abcd", 3), ("abc", "xyz", 3)],
+)  # fmt: skip
+def test_typing_mistakes_are_counted(one: str, other: str, mistakes: int) -> None:
+    assert (typing_mistakes(one, other), typing_mistakes(other, one)) == (mistakes, mistakes)
 
 
 def test_a_person_can_read_the_options_of_all_commands() -> None:
@@ -331,7 +367,7 @@ def test_the_plan_knows_the_names_that_a_rewrite_with_the_same_options_makes(
     options = ["--affix", "prefix", "--separator", "_", "--shared", "base_footprint"]
     assert said(capsys, "urdf-postfix", ROVER, "left", *options, "-o", str(tmp_path / "a"))[0] == 0
     assert 'name="left_base_link"' in (tmp_path / "a").read_text()
-    code, out, _ = said(capsys, "multibot", "plan", ROVER, "left", *options, "--stack", "nav2")
+    code, out, _ = said(capsys, "multibot", "plan", ROVER, "left", *options, "--node-set", "nav2")
     assert code == 0
     assert "left_base_link" in out
     assert "left_base_footprint" not in out
@@ -571,8 +607,13 @@ def test_json_goes_to_a_file_as_it_is(tmp_path: Path, capsys: pytest.CaptureFixt
         (("multibot", "lint"), "use urdf-lint"),
         (("multibot", "doctor"), "use multibot check"),
         (("multibot", "init", "--undo"), "multibot build FLEET --undo"),
-        (("multibot", "check", "--fleeet", "f"), "unknown option --fleeet; see"),
-        (("urdf-postfix", "r.urdf", "a", "--stripp"), "unknown option --stripp; see"),
+        (("multibot", "check", "--fleeet", "f"), "use the fleet file as the first word"),
+        (("urdf-postfix", "r.urdf", "a", "--stripp"), "use urdf-postfix FILE ROBOT --undo"),
+        (("urdf-lint", "--disabel=MG102"), "unknown option --disabel; use --ignore CODES; see"),
+        (("urdf-lint", "-quiet", "a"), "unknown option -quiet; did you mean '--quiet'?"),
+        (("multibot", "check", "--layuot", "L1"), "and 3 more take --layout; see"),
+        (("multibot", "build", "--lay", "L1"), "write the key layout: into the fleet file"),
+        (("multibot", "check", "--norm"), "unknown option --norm; see"),
         (("urdf-postfix", "r.urdf", "a", "--strip"), "use urdf-postfix FILE ROBOT --undo"),
     ],
 )

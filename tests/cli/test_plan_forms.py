@@ -26,7 +26,7 @@ def run(capture: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str
 
 
 def test_a_postfix_names_six_rules_for_an_action(capsys: pytest.CaptureFixture[str]) -> None:
-    _, out, _ = run(capsys, ROVER, "robot1", "--stack", "nav2", "--output-kind", "ros-args")
+    _, out, _ = run(capsys, ROVER, "robot1", "--node-set", "nav2", "--output-kind", "ros-args")
     for part in ("", "/_action/send_goal", "/_action/cancel_goal", "/_action/feedback"):
         assert f"navigate_to_pose{part}:=navigate_to_pose/robot1{part}" in out, part
 
@@ -55,7 +55,7 @@ def test_the_bridge_of_a_fleet(capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        pytest.param((ROVER, "robot1", "--stack", "nva2"), "nav2", id="stack"),
+        pytest.param((ROVER, "robot1", "--node-set", "nva2"), "nav2", id="node_sets"),
         pytest.param((ROVER, "robot-1"), "robot_1", id="robot"),
         pytest.param(("gone.urdf", "a"), "is not there", id="no-file"),
         pytest.param((ROVER, "a", "a"), "twice", id="robot-twice"),
@@ -81,7 +81,7 @@ def test_a_robot_without_a_name_has_a_plan(
 ) -> None:
     """Its names are those of the code; the graph of such a robot is as planned, a lost node is not."""
     file = tmp_path / "plan.yaml"
-    words = ("--stack", "nav2", "--distro", "jazzy", "-o", str(file))
+    words = ("--node-set", "nav2", "--distro", "jazzy", "-o", str(file))
     assert main(["plan", ROVER, *words]) == 0
     plan = read_plan(file.read_bytes(), "plan.yaml")
     (own,) = plan.robots
@@ -100,5 +100,5 @@ def test_a_robot_without_a_name_has_a_plan(
 
 
 def test_rules_are_of_a_robot_with_a_name(capsys: pytest.CaptureFixture[str]) -> None:
-    code, _, err = run(capsys, ROVER, "--stack", "nav2")
+    code, _, err = run(capsys, ROVER, "--node-set", "nav2")
     assert code == 2 and "no ROBOT given" in err

@@ -33,7 +33,7 @@ def test_the_files_are_what_the_options_make(folder: str) -> None:
         (["multibot", "plan", "--layo"], "--layout"),
         (["multibot", "plan", "--layout", "frames"], "frames-per-robot"),
         (["multibot", "check", "--format", "sa"], "sarif"),
-        (["multibot", "plan", "--stack", "slam_t"], "slam_toolbox"),
+        (["multibot", "plan", "--node-set", "slam_t"], "slam_toolbox"),
         (["urdf-postfix", "--in-p"], "--in-place"),
         (["urdf-lint", "--fail-on", "w"], "warning"),
     ],

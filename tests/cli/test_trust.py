@@ -31,14 +31,14 @@ COMMAND_LINES: dict[str, tuple[Callable[[Sequence[str]], int], list[str], int]] 
     "check": (multibot.main, ["check", "fleet.yaml", "--from", "graph.json"], 2),
     "check-launch": (multibot.main, ["check-launch", "r.launch.py", "--plan", "fleet.yaml"], 2),
     "init": (multibot.main, ["init", PATH, "-o", "-"], 2),
-    "plan": (multibot.main, ["plan", PATH, "robot1", "--stack", "nav2"], 2),
+    "plan": (multibot.main, ["plan", PATH, "robot1", "--node-set", "nav2"], 2),
     "plan of a fleet": (multibot.main, ["plan", "fleet.yaml"], 2),
     "plan --output-kind": (
         multibot.main,
-        ["plan", "--output-kind=table", PATH, "robot1", "--stack", "nav2"],
+        ["plan", "--output-kind=table", PATH, "robot1", "--node-set", "nav2"],
         2,
     ),
-    "rehearse": (multibot.main, ["rehearse", PATH, "robot1", "--stack", "nav2"], 2),
+    "rehearse": (multibot.main, ["rehearse", PATH, "robot1", "--node-set", "nav2"], 2),
     "view": (multibot.main, ["view", PATH, "-o", "-"], 2),
     "adopt": (multibot.main, ["adopt", "."], 2),
     "join": (multibot.main, ["join", PATH, PATH, "--at", "base"], 2),
@@ -50,13 +50,12 @@ OTHERS = {"snapshot", "completion"}
 
 
 @pytest.fixture
-def target(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """What the hostile file in the working directory writes where it is let."""
-    monkeypatch.chdir(tmp_path)
-    found = tmp_path / "taken"
-    (tmp_path / PATH).write_text(ROBOT.replace("TARGET", str(found)))
-    (tmp_path / "fleet.yaml").write_text(FLEET)
-    (tmp_path / "graph.json").write_text("{}")
+def target(here: Path) -> Path:
+    """Return what the hostile file in the working directory writes where it is let."""
+    found = here / "taken"
+    (here / PATH).write_text(ROBOT.replace("TARGET", str(found)))
+    (here / "fleet.yaml").write_text(FLEET)
+    (here / "graph.json").write_text("{}")
     return found
 
 

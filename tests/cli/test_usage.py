@@ -188,7 +188,7 @@ def test_the_name_or_the_form_says_that_it_is_nodl(
 
 
 def test_what_a_snapshot_does_not_take_together() -> None:
-    names = {"node": [], "namespace": None, "stack": None, "distro": None}
+    names = {"node": [], "namespace": None, "node_set": None, "distro": None}
     usual = {
         **USUAL,
         **names,
@@ -210,9 +210,10 @@ def test_what_a_snapshot_does_not_take_together() -> None:
     assert said(snapshot._check_use, same).startswith("./g.json is a file that is read")
     assert snapshot._check_use(options(**{**usual, "snapshot": ["g.json"], "output": "n.yaml"}))
     assert not snapshot._check_use(options(**{**usual, "output_kind": "rosgraph"}))
-    for name, given in (("node", ["/a"]), ("namespace", "/a"), ("stack", "s"), ("distro", "jazzy")):
+    words = {"node": ["/a"], "namespace": "/a", "node_set": "s", "distro": "jazzy"}
+    for name, given in words.items():
         lonely = options(**{**usual, "output_kind": None, name: given})
-        hint = f"--{name} is for a description of nodes: add --output-kind nodes"
+        hint = f"--{name} is for a description of nodes: add --output-kind nodes".replace("_", "-")
         assert said(snapshot._check_use, lonely) == hint
     assert said(snapshot.is_nodl, options(output="a.nodl.yaml", output_kind="nodes")) == (
         "a.nodl.yaml is the name of a NoDL file; leave out --output-kind nodes"
@@ -366,7 +367,7 @@ def test_a_diff_is_one_that_patch_reads() -> None:
 
 def test_files_that_options_name_to_be_read() -> None:
     given = options(input="a", plan="b", snapshot=["c", "d"], urdf=None, nodes="", config="e")
-    assert [path for _, path in output._given(given)] == ["a", "b", "c", "d", "e"]
+    assert [path for _, path in output._read_files(given)] == ["a", "b", "c", "d", "e"]
     known = (
         "input",
         "plan",
@@ -396,9 +397,8 @@ def test_files_that_options_name_to_be_read() -> None:
     ],
 )  # fmt: skip
 def test_a_file_that_is_not_there_is_told_with_what_helps(
-    given: dict[str, object], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    given: dict[str, object], message: str, here: Path
 ) -> None:
-    monkeypatch.chdir(tmp_path)
     for name in ("rover.urdf", "fleet.yaml"):
         Path(name).write_text("")
     assert said(output.check_there, options(**{"command": "plan", **given})) == message

@@ -41,7 +41,7 @@ KNOWN = ("text", "json", "sarif")
         ),
         (values.one_of(KNOWN), "json", "json"),
         (values.some_of(KNOWN), "json,text", ["json", "text"]),
-        (values.word, "my.stack_2-a", "my.stack_2-a"),
+        (values.word, "my.node_set_2-a", "my.node_set_2-a"),
         (values.seconds, "0.5", 0.5),
         (values.seconds, "3600", 3600.0),
         (values.domain, "0", 0),

@@ -27,7 +27,7 @@ def look(views: Views) -> tuple[System, Coverage, Sequence[Finding]]:
 
 
 def views(*graphs: System, ended: bool = False) -> Generator[Views, None, None]:
-    """The views, and Ctrl-C after the last."""
+    """Yield the views, and Ctrl-C after the last."""
     yield from ({0: it} for it in graphs)
     if ended:
         raise KeyboardInterrupt
@@ -46,7 +46,7 @@ class Terminal(io.StringIO):
 
 
 def shown(monkeypatch: pytest.MonkeyPatch, found: Sequence[Finding]) -> list[str]:
-    """The lines of the last screen."""
+    """Return the lines of the last screen."""
     monkeypatch.setenv("COLUMNS", "200")
     monkeypatch.setenv("LINES", "60")
     monkeypatch.setenv("TERM", "dumb")

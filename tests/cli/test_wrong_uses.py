@@ -107,7 +107,7 @@ def test_a_lint_that_cannot_be_meant(given: dict[str, object], message: str) -> 
 
 
 PLAN = {
-    **dict.fromkeys(("robots", "count", "stack", "launch", "layout", "affix", "topics")),
+    **dict.fromkeys(("robots", "count", "node_set", "launch", "layout", "affix", "topics")),
     "output_kind": "plan",
     "separator": [], "shared": [], "input": "a.launch.py", "words": [], "output": None,
 }  # fmt: skip

@@ -32,14 +32,14 @@ def arguments() -> argparse.Namespace:
 
 
 def release_of(folder: Path) -> str:
-    """The release that a folder was built for, as its list of files says."""
+    """Return the release that a folder was built for, as its list of files says."""
     return str(json.loads((folder / "manifest.json").read_text())["distro"])
 
 
 def judged(
     folder: Path, release: str, sources: tuple[Path, ...] = ()
 ) -> tuple[int, dict[str, object]]:
-    """The exit code, and what is printed."""
+    """Return the exit code, and what is printed."""
     found = fleet.read(folder.resolve(), release, sources)
     robots, wrong = verdict.done(found), verdict.judged(found)
     unsure = any(word.startswith("unknown") for it in robots.values() for word in it.values())

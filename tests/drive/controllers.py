@@ -48,7 +48,7 @@ class Found(NamedTuple):
 def read(
     given: Any, roots: Mapping[str, Any], nodes: list[Any], joints: Mapping[str, tuple[str, ...]]
 ) -> Found:
-    """The controllers of every spawner; ``joints`` are those that the simulator keeps."""
+    """Return the controllers of every spawner; ``joints`` are those that the simulator keeps."""
     managers = [*outside(given, nodes), *in_simulator(roots, given)]
     found = Found([], [])
     for who, start in given.of("spawner"):
@@ -94,7 +94,7 @@ def in_simulator(roots: Mapping[str, Any], given: Any) -> Iterator[Manager]:
 
 
 def manager_of(start: Mapping[str, Any]) -> str:
-    """The manager that a spawner asks, as its namespace resolves it."""
+    """Return the manager that a spawner asks, as its namespace resolves it."""
     words, space = start["arguments"], "/" + start["namespace"].strip("/")
     given = next(
         (words[at + 1] for at, it in enumerate(words) if it in ("-c", "--controller-manager")), ""
@@ -104,27 +104,27 @@ def manager_of(start: Mapping[str, Any]) -> str:
 
 
 def names_of(words: list[str]) -> list[str]:
-    """The controllers among a spawner's arguments: the words before its options."""
+    """Return the controllers among a spawner's arguments: the words before its options."""
     at = next((at for at, it in enumerate(words) if it.startswith("-")), len(words))
     return words[:at]
 
 
 def files_of(words: list[str]) -> list[Mapping[str, Any]]:
-    """What the parameter files of a spawner hold."""
+    """Return what the parameter files of a spawner hold."""
     names = (words[at + 1] for at, it in enumerate(words[:-1]) if it in ("-p", "--param-file"))
     files = [Path(it) for it in names]
     return [yaml.safe_load(it.read_text()) or {} for it in files if it.is_file()]
 
 
 def rules_of(words: list[str]) -> list[tuple[str, str]]:
-    """The rules that a spawner gives its controllers (spawner.py: node_options_args)."""
+    """Return the rules that a spawner gives its controllers (spawner.py: node_options_args)."""
     given = (words[at + 1] for at, it in enumerate(words[:-1]) if it == "--controller-ros-args")
     return rules_in([it for text in given for it in text.split()])
 
 
 def with_files(manager: Manager, name: str, files: list[Mapping[str, Any]]) -> Manager:
-    """The manager with what a spawner tells it of a controller: its files, and the type that the
-    controller's own section in them has (controller_manager_services.py,
+    """Return the manager with what a spawner tells it of a controller: its files, and the type
+    that the controller's own section in them has (controller_manager_services.py,
     set_controller_parameters_from_param_files)."""
     fqn = f"{manager.namespace.rstrip('/')}/{name}"
     kind = programs.parameters_of(fqn, files).get("type")
@@ -162,7 +162,7 @@ def snake(name: str) -> str:
 
 
 def exported(root: Any, kept: tuple[str, ...] | None) -> set[str]:
-    """The command interfaces of a description; in the simulator those of joints that it keeps."""
+    """Return a description's command interfaces; in the simulator those of joints that it keeps."""
     joints = [] if root is None else root.iterfind("ros2_control/joint")
     return {
         f"{joint.get('name')}/{it.get('name')}"

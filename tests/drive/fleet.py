@@ -76,14 +76,14 @@ class Fleet(NamedTuple):
 
 
 def launched(file: Path, robot: str = "") -> Mapping[str, Any]:
-    """What the launch file starts; a file that raises is a fault of the folder."""
+    """Return what the launch file starts; a file that raises is a fault of the folder."""
     words = [f"robots:={robot}"] if robot else []
     child = HERE / ("launched.py" if find_spec("launch_ros") else "started.py")
     return run(child, file, *words)
 
 
 def run(child: Path, file: Path, *words: str) -> Mapping[str, Any]:
-    """What a child says that a launch file starts."""
+    """Return what a child says that a launch file starts."""
     command = [sys.executable, str(child), str(file), *words]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
     if done.returncode:
@@ -93,8 +93,8 @@ def run(child: Path, file: Path, *words: str) -> Mapping[str, Any]:
 
 
 def read(folder: Path, release: str, sources: tuple[Path, ...] = ()) -> Fleet:
-    """The fleet of a built folder; with ``sources`` of the vendor's packages it is whole if nothing in
-    it is unknown."""
+    """Return the fleet of a built folder; with ``sources`` of the vendor's packages it is whole
+    if nothing in it is unknown."""
     file = folder / "fleet.launch.py"
     try:
         every = launched(file)
@@ -197,7 +197,7 @@ def missing_files(given: Reader) -> Iterator[tuple[str, str]]:
 
 
 def descriptions(given: Reader) -> Iterator[tuple[str, etree._Element]]:
-    """The description that each robot's robot_state_publisher has."""
+    """Yield the description that each robot's robot_state_publisher has."""
     for who, it in given.of("robot_state_publisher"):
         text = programs.parameters_of("/x", [x for x in sections_of(it) if "" in x]).get(
             "robot_description"
@@ -207,7 +207,7 @@ def descriptions(given: Reader) -> Iterator[tuple[str, etree._Element]]:
 
 
 def spawned_files(given: Reader) -> Iterator[tuple[str, etree._Element]]:
-    """The model that the simulator gets from a file, which may be another than the description."""
+    """Yield the model that the simulator gets from a file, perhaps not the description."""
     for who, it in given.of(*SPAWNERS):
         words = it["arguments"]
         path = words[words.index("-file") + 1] if "-file" in words else ""
@@ -216,7 +216,7 @@ def spawned_files(given: Reader) -> Iterator[tuple[str, etree._Element]]:
 
 
 def models_of(given: Reader) -> Iterator[tuple[str, str]]:
-    """The name of each robot in the simulator."""
+    """Yield the name of each robot in the simulator."""
     for who, it in given.of(*SPAWNERS):
         words = it["arguments"]
         yield who, words[words.index(SPAWNERS[it["executable"]]) + 1]
@@ -253,12 +253,12 @@ def resolve(nodes: list[Node]) -> dict[tuple[str, programs.Opened], str]:
 
 
 def is_in(node: Node, end: programs.Opened) -> bool:
-    """Does a helper in a process of several nodes open it?"""
+    """Return whether a helper in a process of several nodes opens the end."""
     return end.helper and node.process is not None
 
 
 def asked(node: Node, end: programs.Opened) -> list[str]:
-    """What rcl resolves for an end; of an action that is the service that takes its goals."""
+    """Return what rcl resolves for an end; of an action that is the service that takes its goals."""
     kind = "topic" if end.role in ("publishes", "subscribes") else "service"
     return [kind, above(node, end.name) + (GOAL if "/action/" in end.type else "")]
 
@@ -278,7 +278,7 @@ def ends_of(nodes: list[Node], resolved: Mapping[Any, str]) -> Iterator[End]:
 
 
 def bridges_of(given: Reader, nodes: list[Node], resolved: Mapping[Any, str]) -> Iterator[Bridge]:
-    """The rows of all bridges, with the ROS name as the bridge's node resolves it."""
+    """Yield the rows of all bridges, with the ROS name as the bridge's node resolves it."""
     rows = []
     for it in nodes:
         file = Path(str(it.values.get("config_file", "")))

@@ -92,7 +92,7 @@ def plugin_key(element: etree._Element) -> str:
 
 
 def of_plugin(plugin: etree._Element, model: str, world: str, link: str) -> Iterator[GzEnd]:
-    """What gz-sim opens for a plugin of a model; ``link`` is the canonical one."""
+    """Yield what gz-sim opens for a plugin of a model; ``link`` is the canonical one."""
     turns = text(plugin, "use_angvel_cmd") in ("true", "1")
     words = {"model": model, "world": world, "link": link, "joint_index": "0"}
     words |= {"cmd": "cmd_vel" if turns else "cmd_thrust", "state": "force" if turns else "ang_vel"}
@@ -102,7 +102,7 @@ def of_plugin(plugin: etree._Element, model: str, world: str, link: str) -> Iter
 
 
 def of_sensor(sensor: etree._Element, model: str, world: str, link: str) -> Iterator[GzEnd]:
-    """What it opens for a sensor, and the frame of its messages: ros_gz_bridge makes / of each ::."""
+    """Yield what it opens for a sensor, and the frame of its messages (ros_gz_bridge: / for ::)."""
     kind, name = sensor.get("type", ""), sensor.get("name", "")
     at = f"/world/{world}/model/{model}/link/{link}/sensor/{name}"
     found = (text(sensor, it) for it in ("gz_frame_id", "ignition_frame_id", "frame_id"))
@@ -125,14 +125,15 @@ def of_rows(element: etree._Element, key: str, words: Mapping[str, str]) -> Iter
 
 
 def commanded(autopilot: etree._Element) -> list[str]:
-    """The topics on which an autopilot sends to the systems of its model (ArduPilotPlugin.cc)."""
+    """Return the topics on which an autopilot sends to its model's systems (ArduPilotPlugin.cc)."""
     controls = [it for it in autopilot.iterfind("control") if text(it, "type") == "COMMAND"]
     return [text(it, "cmd_topic") for it in controls if text(it, "cmd_topic")]
 
 
 def given(element: etree._Element, path: str, words: Mapping[str, str]) -> str:
-    """The topic that an element gives, the first that is there of ``a|b``; ``topic/points`` is below
-    that of topic, ``topic/..`` a camera_info beside it, ``{a}/{b}`` is made of elements or words."""
+    """Return the topic that an element gives, the first that is there of ``a|b``;
+    ``topic/points`` is below that of topic, ``topic/..`` a camera_info beside it, ``{a}/{b}`` is
+    made of elements or words."""
     made = (
         below(element, it) if "{" not in it else joined(element, it, words)
         for it in path.split("|")
@@ -171,7 +172,7 @@ def text(element: etree._Element, tag: str) -> str:
 
 
 def classic_plugins(root: etree._Element) -> Iterator[Plugin]:
-    """The ROS nodes that plugins of Classic are (gazebo_ros/src/node.cpp)."""
+    """Yield the ROS nodes that plugins of Classic are (gazebo_ros/src/node.cpp)."""
     for it in root.iter("plugin"):
         file = it.get("filename", "")
         key = plugin_key(it)
@@ -220,7 +221,7 @@ def filled(name: str, plugin: etree._Element) -> str:
 
 
 def rules_of(ros: etree._Element) -> Iterator[tuple[str, str]]:
-    """The rules of a plugin: ``<remapping>``, and arguments as on a command line."""
+    """Yield the rules of a plugin: ``<remapping>``, and arguments as on a command line."""
     for it in (*ros.findall("remapping"), *ros.findall("argument")):
         old, found, new = (it.text or "").strip().rpartition(" ")[2].partition(":=")
         if found:

@@ -33,7 +33,7 @@ class Kept(NamedTuple):
 
 
 def kept(root: etree._Element) -> Kept:
-    """What Gazebo has of a description, URDF or SDF."""
+    """Return what Gazebo has of a description, URDF or SDF."""
     if root.tag == "sdf":
         return of_sdf(root)
     program = sdf_program()
@@ -48,7 +48,7 @@ def sdf_program() -> str:
 
 @cache
 def version(program: str) -> tuple[int, int]:
-    """The version of sdformat that a program has."""
+    """Return the version of sdformat that a program has."""
     done = subprocess.run(
         [program, "sdf", "--versions"], capture_output=True, text=True, timeout=30, check=False
     )
@@ -57,7 +57,7 @@ def version(program: str) -> tuple[int, int]:
 
 
 def printed(program: str, root: etree._Element) -> Kept | None:
-    """What ``sdf -p`` makes of a URDF; nothing where it says nothing."""
+    """Return what ``sdf -p`` makes of a URDF; nothing where it says nothing."""
     with tempfile.NamedTemporaryFile(suffix=".urdf") as file:
         file.write(etree.tostring(root))
         file.flush()
@@ -93,7 +93,7 @@ class Joint(NamedTuple):
 
 
 def of_urdf(root: etree._Element, old: bool = False) -> Kept:
-    """The rules of sdformat; ``old`` are those before 12.7."""
+    """Return the rules of sdformat; ``old`` are those before 12.7."""
     joints = list(joints_of(root))
     body = bodies(root, joints)
     masses = {it.get("name", ""): mass_of(it) for it in root.iterfind("link")}
@@ -160,7 +160,7 @@ def mass_of(link: etree._Element) -> float:
 
 
 def weight(name: str, masses: dict[str, float], joints: list[Joint]) -> float:
-    """The mass of a link with all that is lumped into it."""
+    """Return the mass of a link with all that is lumped into it."""
     parts = [it.child for it in joints if it.parent == name and it.lumped]
     return masses.get(name, 0.0) + sum(weight(it, masses, joints) for it in parts)
 
@@ -168,7 +168,7 @@ def weight(name: str, masses: dict[str, float], joints: list[Joint]) -> float:
 def sensors_of(
     root: etree._Element, body: dict[str, str], there: set[str]
 ) -> Iterator[tuple[str, etree._Element]]:
-    """The sensors of blocks whose link or joint is there."""
+    """Yield the sensors of blocks whose link or joint is there."""
     for block in root.iterfind("gazebo"):
         place = block.get("reference", "")
         place = body.get(place, place)
@@ -177,5 +177,5 @@ def sensors_of(
 
 
 def plugins_of(block: etree._Element) -> list[etree._Element]:
-    """The model's plugins: those of blocks without a reference."""
+    """Return the model's plugins: those of blocks without a reference."""
     return [] if block.get("reference") else block.findall("plugin")

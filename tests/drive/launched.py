@@ -40,7 +40,7 @@ FILES = re.compile(r"'([\w./]+\.launch\.py)'")
 
 
 def installed(file: Path, prefix: Path) -> None:
-    """Packages that the launch file looks for, each with every launch file that it names."""
+    """Install the packages that the launch file looks for, each with all launch files that it names."""
     text = file.read_text()
     index = prefix / "share" / "ament_index" / "resource_index" / "packages"
     index.mkdir(parents=True)
@@ -84,7 +84,7 @@ def noting_changes(rows: list[dict[str, Any]]) -> None:
 
 
 def start_of(row: dict[str, Any]) -> dict[str, Any]:
-    """A row of the recorder as ``started.py`` has it."""
+    """Return a row of the recorder as ``started.py`` has it."""
     if "change" in row:
         return row
     if row["package"] == "include":
@@ -99,7 +99,7 @@ def start_of(row: dict[str, Any]) -> dict[str, Any]:
 
 
 def parameters_of(made: dict[str, str]) -> dict[str, Any]:
-    """A file that launch was given, or the values of the file that it made."""
+    """Return a file that launch was given, or the values of the file that it made."""
     if made["file"]:
         return {"": made["file"]}
     (section,) = yaml.load(made["text"], Values).values()

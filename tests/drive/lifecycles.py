@@ -11,7 +11,7 @@ CHANGE = "/change_state"
 
 
 def faults(given: Any, nodes: list[Any]) -> Iterator[tuple[str, str]]:
-    """Managers that wait for nodes, and nodes that wait for a manager."""
+    """Yield managers that wait for nodes, and nodes that wait for a manager."""
     there = {it.fqn for it in nodes}
     asked = {(it.fqn, name) for it in nodes for name in managed(it)}
     for it in nodes:
@@ -28,8 +28,9 @@ def faults(given: Any, nodes: list[Any]) -> Iterator[tuple[str, str]]:
 
 
 def managed(node: Any) -> list[str]:
-    """The full names of the nodes whose service a manager calls (nav2_lifecycle_manager: relative to
-    its namespace; nav2_util lifecycle_service_client.cpp: as its own rules rename the service)."""
+    """Return the full names of the nodes whose service a manager calls (nav2_lifecycle_manager:
+    relative to its namespace; nav2_util lifecycle_service_client.cpp: as its own rules rename
+    the service)."""
     if node.what != "lifecycle_manager":
         return []
     # The first rule that matches counts.
@@ -43,13 +44,13 @@ def below(node: Any, name: str) -> str:
 
 
 def is_managed(node: Any) -> bool:
-    """A node with a bond to its manager; the costmaps inside a server are the server's to change."""
+    """Return whether a node has a bond to its manager; a server changes its costmaps itself."""
     bonds = any(it.type == "bond/msg/Status" and it.role == "publishes" for it in node.ends)
     return bonds and node.what != "lifecycle_manager" and not node.inside
 
 
 def changed(given: Any, node: Any) -> set[int]:
-    """The transitions that the launch file itself asks for."""
+    """Return the transitions that the launch file itself asks for."""
     return {
         int(it["change"])
         for _, it in given.starts

@@ -54,7 +54,7 @@ class Node(NamedTuple):
 
 
 def nodes_of(given: Reader) -> Iterator[Node]:
-    """The nodes of programs and components, and those that they have inside."""
+    """Yield the nodes of programs and components, and those that they have inside."""
     containers = {
         who: ("/" + it["namespace"].strip("/"), tuple(tuple(rule) for rule in it["rules"]))
         for who, it in given.starts
@@ -116,7 +116,7 @@ def costmap_of(who: str, start: Start, name: str, space: str, rules: Any, releas
 
 
 def plugin_nodes(roots: Mapping[str, Any], models: Mapping[str, str]) -> list[Node]:
-    """The nodes that Classic's plugins are."""
+    """Return the nodes that Classic's plugins are."""
     return [
         Node(
             who,
@@ -134,7 +134,7 @@ def plugin_nodes(roots: Mapping[str, Any], models: Mapping[str, str]) -> list[No
 
 
 def sections_of(start: Start) -> list[Mapping[str, Any]]:
-    """The parameters of a start: files as they are, values under ""."""
+    """Return the parameters of a start: files as they are, values under ""."""
     found: list[Mapping[str, Any]] = []
     for it in start.get("parameters", ()):
         if set(it) == {""}:

@@ -151,7 +151,7 @@ def place(data: Any, model: Any, robot: Robot) -> list[float]:
 
 
 def listen(node: Node, robots: list[Robot]) -> dict[str, dict[str, Any]]:
-    """What comes of each robot, in the context of the one who sends."""
+    """Return what comes of each robot, in the context of the one who sends."""
     said: dict[str, dict[str, Any]] = {it.given["name"]: {} for it in robots}
 
     def odom(name: str) -> Any:

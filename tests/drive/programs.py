@@ -126,7 +126,7 @@ class Opened(NamedTuple):
 
 @cache
 def table(release: str) -> Mapping[str, tuple[Mapping[str, str], ...]]:
-    """The rows of each node of a release."""
+    """Return the rows of each node of a release."""
     rows: dict[str, list[Mapping[str, str]]] = {}
     with (ROOT / "fixtures" / "interfaces" / f"{release}.tsv").open() as file:
         for row in csv.DictReader(file, delimiter="\t", quoting=csv.QUOTE_NONE):
@@ -135,7 +135,7 @@ def table(release: str) -> Mapping[str, tuple[Mapping[str, str], ...]]:
 
 
 def node_of(executable: str) -> str:
-    """The node that a program is, as the table calls it."""
+    """Return the node that a program is, as the table calls it."""
     last = executable.rpartition("::")[2]
     return NODES.get(last, last)
 
@@ -145,7 +145,7 @@ def is_known(node: str, release: str) -> bool:
 
 
 def opened(node: str, values: Mapping[str, Any], release: str) -> Iterator[Opened]:
-    """The ends of a node with these parameters."""
+    """Yield the ends of a node with these parameters."""
     for row in table(release).get(SAME.get(node, node), ()):
         name = led_by(node, row, values)
         # Until Jazzy rectify.cpp names its image as it stands in the code (camera_subscriber.cpp:119).
@@ -165,8 +165,8 @@ def type_of(row: Mapping[str, str]) -> str:
 
 
 def synchronised(values: Mapping[str, Any]) -> set[str]:
-    """The topics that rtabmap waits for before it does anything, as its parameters say: by default a
-    colour and a depth image with odometry."""
+    """Return the topics that rtabmap waits for before it does anything, as its parameters say:
+    by default a colour and a depth image with odometry."""
     on = subscribed(values)
     camera = next((it for it in CAMERAS if it in on), "")
     of_camera = CAMERAS.get(camera, ())
@@ -179,7 +179,7 @@ def synchronised(values: Mapping[str, Any]) -> set[str]:
 
 
 def subscribed(values: Mapping[str, Any]) -> set[str]:
-    """What its parameters ask rtabmap to subscribe to, whether or not that counts."""
+    """Return what its parameters ask rtabmap to subscribe to, whether or not that counts."""
     on = {"depth", "rgb", "odom"}
     for it in (*CAMERAS, *SCANS, *BESIDE):
         given = values.get(f"subscribe_{it}")
@@ -196,8 +196,8 @@ def is_exact(values: Mapping[str, Any]) -> bool:
 
 
 def muxed(values: Mapping[str, Any]) -> Iterator[Opened]:
-    """The inputs of twist_mux (src/twist_mux.cpp, getTopicHandles), and what it sends where its
-    parameter says that commands are stamped."""
+    """Yield the inputs of twist_mux (src/twist_mux.cpp, getTopicHandles), and what it sends
+    where its parameter says that commands are stamped."""
     stamped = values.get("use_stamped") is True
     kind = f"geometry_msgs/msg/Twist{'Stamped' if stamped else ''}"
     for key, it in values.items():
@@ -208,7 +208,7 @@ def muxed(values: Mapping[str, Any]) -> Iterator[Opened]:
 
 
 def executed(values: Mapping[str, Any]) -> Iterator[Opened]:
-    """The actions of controllers that move_group sends goals to."""
+    """Yield the actions of controllers that move_group sends goals to."""
     yield from (goal for goal, _ in handles(values))
 
 
@@ -224,7 +224,7 @@ def handles(values: Mapping[str, Any]) -> Iterator[tuple[Opened, list[str]]]:
 
 
 def led_by(node: str, row: Mapping[str, str], values: Mapping[str, Any]) -> str:
-    """The name that a parameter gives, or that of the code."""
+    """Return the name that a parameter gives, or that of the code."""
     if row["name"] == "<either>joint_states":  # joint_state_broadcaster.cpp
         return f"{'~/' if values.get('use_local_topics') is True else ''}joint_states"
     # Below the name of the node itself: get_name() + "/..."
@@ -248,8 +248,9 @@ def is_met(condition: str, values: Mapping[str, Any], release: str) -> bool | No
 
 
 def costmap_sources(values: Mapping[str, Any], release: str) -> Iterator[Opened]:
-    """The sensors of a costmap (nav2_costmap_2d/plugins/obstacle_layer.cpp): until Jazzy their relative
-    topics are the costmap's own, later those of its parent, as joinWithParentNamespace makes them."""
+    """Yield the sensors of a costmap (nav2_costmap_2d/plugins/obstacle_layer.cpp): until Jazzy
+    their relative topics are the costmap's own, later those of its parent, as
+    joinWithParentNamespace makes them."""
     for layer in values.get("plugins", ()):
         if str(values.get(f"{layer}.plugin", "")).endswith("StaticLayer"):
             yield map_of(str(values.get(f"{layer}.map_topic", "")), release)
@@ -263,8 +264,8 @@ def costmap_sources(values: Mapping[str, Any], release: str) -> Iterator[Opened]
 
 
 def map_of(topic: str, release: str) -> Opened:
-    """The map of a static layer (nav2_costmap_2d/plugins/static_layer.cpp): by default the one of the
-    namespace above; a relative one is the costmap's own until Jazzy."""
+    """Return the map of a static layer (nav2_costmap_2d/plugins/static_layer.cpp): by default
+    the one of the namespace above; a relative one is the costmap's own until Jazzy."""
     own = topic and (topic.startswith("/") or release in ("humble", "iron", "jazzy"))
     return Opened("subscribes", topic if own else f"../{topic or 'map'}", MAP)
 
@@ -278,7 +279,7 @@ def flat(values: Mapping[str, Any], at: str = "") -> dict[str, Any]:
 
 
 def parameters_of(fqn: str, sections: list[Mapping[str, Any]]) -> dict[str, Any]:
-    """What a node takes of parameter files, later ones over earlier ones (rcl_yaml_param_parser)."""
+    """Return a node's values in parameter files, later over earlier ones (rcl_yaml_param_parser)."""
     found: dict[str, Any] = {}
     for file in sections:
         if "" in file:
@@ -291,7 +292,7 @@ def parameters_of(fqn: str, sections: list[Mapping[str, Any]]) -> dict[str, Any]
 
 
 def keys_of(file: Any, at: str = "") -> Iterator[tuple[str, Mapping[str, Any]]]:
-    """The nodes of a parameter file with their values."""
+    """Yield the nodes of a parameter file with their values."""
     if not isinstance(file, dict):
         return
     for key, it in file.items():
@@ -310,7 +311,7 @@ def pattern(key: str) -> str:
 
 @cache
 def defaults(node: str, release: str) -> Mapping[str, Any]:
-    """The frames and switches that a node has without a parameter file."""
+    """Return the frames and switches that a node has without a parameter file."""
     found = {}
     with (ROOT / "fixtures" / "interfaces" / f"parameters_{release}.tsv").open() as file:
         for row in csv.reader(file, delimiter="\t", quoting=csv.QUOTE_NONE):

@@ -32,7 +32,7 @@ def built(example: str, folder: Path) -> fleet.Fleet:
 
 
 def sent(found: fleet.Fleet, robot: str, kind: str) -> str:
-    """The topic on which a robot sends such messages, by its nodes or its bridge."""
+    """Return the topic on which a robot sends such messages, by its nodes or its bridge."""
     nodes = [
         it.name for it in found.ends if (it.robot, it.role, it.type) == (robot, "publishes", kind)
     ]
@@ -42,7 +42,7 @@ def sent(found: fleet.Fleet, robot: str, kind: str) -> str:
 
 
 def base(found: fleet.Fleet, robot: str, file: Path, at: float) -> dict[str, Any]:
-    """A robot with a drive: its joints, sizes and frames are those of its description."""
+    """Return a robot with a drive: its joints, sizes and frames are those of its description."""
     root = etree.parse(str(file)).getroot()
     drive = next(it for it in root.iter("plugin") if "diff-drive" in it.get("filename"))
     (commands,) = {topic for who, topic, _ in verdict.heard(found) if who == robot}
@@ -60,7 +60,7 @@ def base(found: fleet.Fleet, robot: str, file: Path, at: float) -> dict[str, Any
 
 
 def arm(found: fleet.Fleet, robot: str, file: Path, at: float) -> dict[str, Any]:
-    """A robot with a trajectory controller: the joints are those that its parameters name."""
+    """Return a robot with a trajectory controller: the joints are those that its parameters name."""
     own = [it for it in found.nodes if it.robot == robot and it.name == "arm_controller"]
     topics = [it.name for it in found.ends if it.node == own[0].fqn and it.type == TRAJECTORY]
     return {

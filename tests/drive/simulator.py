@@ -59,7 +59,7 @@ class Model(NamedTuple):
 
 
 def world_of(starts: list[tuple[str, Any]], folder: Path) -> World:
-    """The world that the simulator is started with; of one elsewhere nothing is known."""
+    """Return the world that the simulator is started with; of one elsewhere nothing is known."""
     said = " ".join(
         str(it["arguments"].get("gz_args", it["arguments"].get("world", "")))
         for _, it in starts
@@ -75,7 +75,7 @@ def world_of(starts: list[tuple[str, Any]], folder: Path) -> World:
 
 
 def models_of(roots: Mapping[str, Any], names: Mapping[str, str]) -> Iterator[Model]:
-    """The robots that are spawned in gz-sim; those with plugins of Classic are not."""
+    """Yield the robots that are spawned in gz-sim; those with plugins of Classic are not."""
     for robot, name in names.items():
         root = roots.get(robot)
         if root is not None and not any(True for _ in gazebo.classic_plugins(root)):
@@ -83,7 +83,7 @@ def models_of(roots: Mapping[str, Any], names: Mapping[str, str]) -> Iterator[Mo
 
 
 def ends_of(model: Model, world: World) -> Iterator[gazebo.GzEnd]:
-    """What is served of a model: not the drives without joints, nor sensors without their system."""
+    """Yield what is served of a model: no drives without joints, no sensors without their system."""
     systems = running(model, world)
     for plugin in model.kept.plugins:
         if not lacking(plugin, model.kept):
@@ -98,7 +98,7 @@ def first_link(model: Kept) -> str:
 
 
 def running(model: Model, world: World) -> frozenset[str] | None:
-    """The systems of the world, and those that a model brings."""
+    """Return the systems of the world, and those that a model brings."""
     own = {gazebo.plugin_key(it) for it in model.kept.plugins}
     return None if world.systems is None else world.systems | own
 
@@ -109,7 +109,7 @@ def kind_of(sensor: etree._Element) -> str:
 
 
 def lacking(plugin: etree._Element, model: Kept) -> list[str]:
-    """The elements of a drive of whose joints none is in the model."""
+    """Return the elements of a drive of whose joints none is in the model."""
     groups = JOINTS.get(gazebo.plugin_key(plugin), ())
     return [
         it
@@ -119,7 +119,7 @@ def lacking(plugin: etree._Element, model: Kept) -> list[str]:
 
 
 def broken(model: Model, world: World, poses: bool) -> Iterator[Broken]:
-    """What does not work in the simulator; ``poses`` says that another sends every joint's state."""
+    """Yield what does not work in the simulator; ``poses``: another one sends every joint's state."""
     robot, have = model.robot, model.kept
     if not have.links:
         yield robot, "starts", "Gazebo keeps no link of its description"
@@ -143,7 +143,7 @@ def broken(model: Model, world: World, poses: bool) -> Iterator[Broken]:
 
 
 def unheard(model: Model, world: World) -> Iterator[Broken]:
-    """What an autopilot sends and no system of its robot hears."""
+    """Yield what an autopilot sends and no system of its robot hears."""
     ends = list(ends_of(model, world))
     heard = {it.topic for it in ends if it.role == "hears"}
     for it in ends:
@@ -163,7 +163,7 @@ def one_port(models: Iterable[Model]) -> Iterator[Broken]:
 
 
 def rendered_twice(models: Iterable[Model], world: World) -> Iterator[Broken]:
-    """A second Sensors system ends Gazebo (gz-sensors issue 497, create3_sim issue 218)."""
+    """Yield second Sensors systems, which end Gazebo (gz-sensors issue 497, create3_sim issue 218)."""
     before = "the world" if "sensors" in (world.systems or ()) else ""
     for model in models:
         if any(gazebo.plugin_key(it) == "sensors" for it in model.kept.plugins):

@@ -37,7 +37,7 @@ class Kept:
 
 
 def text_of(value: Any, context: Context) -> str:
-    """What a value, a substitution or a list of them comes to."""
+    """Return what a value, a substitution or a list of them comes to."""
     if isinstance(value, Kept):
         return value.perform(context)
     if isinstance(value, (list, tuple)):
@@ -46,7 +46,7 @@ def text_of(value: Any, context: Context) -> str:
 
 
 def plain(value: Any, context: Context) -> Any:
-    """A parameter's value: substitutions are evaluated, numbers and lists stay what they are."""
+    """Return a parameter's value: substitutions are evaluated, numbers and lists stay what they are."""
     if isinstance(value, Kept) and type(value).__name__ == "ParameterValue":
         found = plain(value.given[0], context)
         made = value.words.get("value_type")
@@ -114,7 +114,7 @@ def holds(action: Kept, context: Context) -> bool:
 
 
 def visit(action: Any, context: Context) -> Iterator[Words]:
-    """What an action starts."""
+    """Yield what an action starts."""
     kind = type(action).__name__
     if not isinstance(action, Kept) or not holds(action, context):
         return
@@ -154,7 +154,7 @@ def namespace(node: Kept, context: Context) -> Words:
 
 
 def started(action: Kept, kind: str, context: Context) -> Iterator[Words]:
-    """A program, or the components that are loaded into one."""
+    """Yield a program, or the components that are loaded into one."""
     if kind == "ExecuteProcess":
         yield {"command": [text_of(it, context) for it in action.words["cmd"]]}
     elif kind in ACTIONS:
@@ -167,7 +167,7 @@ def started(action: Kept, kind: str, context: Context) -> Iterator[Words]:
 
 
 def node_of(node: Kept, context: Context) -> Words:
-    """The words of a node or component."""
+    """Return the words of a node or component."""
     words = node.words
     executable = words.get("executable", words.get("plugin", ""))
     return {

@@ -5,7 +5,6 @@ arm."""
 
 from __future__ import annotations
 
-import importlib.util
 from itertools import product
 from pathlib import Path
 from typing import NamedTuple
@@ -14,19 +13,13 @@ import fleet
 import pytest
 import rcl_names
 import verdict
+from node_set_cells import LAYOUTS, shares_rules
 from paths import ROOT
-from stack_cells import LAYOUTS, shares_rules
 
 from multibot_rewrite.base.releases import RELEASES, has_release
 from multibot_rewrite.cli import multibot
 
-pytestmark = [
-    pytest.mark.live,
-    pytest.mark.skipif(
-        not importlib.util.find_spec("rclpy"),
-        reason=f"names are resolved by the real rcl; install rclpy: {rcl_names.INSTALL}",
-    ),
-]
+pytestmark = [pytest.mark.live, rcl_names.needed()]
 EXAMPLE = ROOT / "examples/two_arms_moveit"
 MOCK = "mock_components/GenericSystem"
 PARAMETERS = "<parameters>controllers.yaml</parameters>"
@@ -34,9 +27,9 @@ JOINTS = {"arm_controller": ("shoulder_joint", "elbow_joint"), "hand_controller"
 
 
 class Arm(NamedTuple):
-    """What moves the joints: its hardware, what the simulator loads, and the stack that starts it."""
+    """What moves the joints: its hardware, what a simulator loads, and the set that starts it."""
 
-    stack: str
+    node_set: str
     simulator: str
     hardware: str = ""
     plugins: str = ""
@@ -81,7 +74,7 @@ ROWS = [
 
 
 def description(arm: Arm) -> str:
-    """The arm of the example with what moves its joints."""
+    """Return the arm of the example with what moves its joints."""
     text = (EXAMPLE / "arm.urdf").read_text()
     before, _, rest = text.partition("<ros2_control")
     control, end, after = rest.partition("</ros2_control>")
@@ -91,13 +84,13 @@ def description(arm: Arm) -> str:
 
 
 def fleet_of(arm: Arm, more: str, release: str, layout: str) -> str:
-    """The text of the fleet file of two such arms, with the files that an arm has."""
-    stack = ", ".join(filter(None, (arm.stack, more)))
+    """Return the text of the fleet file of two such arms, with the files that an arm has."""
+    node_set = ", ".join(filter(None, (arm.node_set, more)))
     files = ["params: controllers.yaml"] if arm.hardware else []
     files += ["moveit: [kinematics.yaml, moveit_controllers.yaml]"] if more else []
     poses = [f", pose: {{y: {y}}}" if arm.simulator == "gazebo" else "" for y in (0.0, 3.0)]
     return (
-        f"distro: {release}\nlayout: {layout}\nsimulator: {arm.simulator}\nstack: [{stack}]\n"
+        f"distro: {release}\nlayout: {layout}\nsimulator: {arm.simulator}\nnode_sets: [{node_set}]\n"
         f"description: arm.urdf\n{f'srdf: {EXAMPLE}/arm.srdf' if more else ''}\n"
         f"robots: [{{name: left{poses[0]}}}, {{name: right{poses[1]}}}]\n"
         f"related_files: {{{', '.join(files)}}}\n"
@@ -142,6 +135,6 @@ def ends_of(arm: Arm) -> int:
 
 
 def moved_by(found: fleet.Fleet, robot: str) -> set[tuple[str, str, str]]:
-    """What moves an arm, where that moves no other one."""
+    """Return what moves an arm, where that moves no other one."""
     own = {it for it in verdict.heard(found) if it[0] == robot}
     return {it for it in own if verdict.reached(found, *it[1:]) == {robot}}

@@ -31,7 +31,7 @@ def moved(found: dict[str, Any], robot: str) -> list[float]:
 
 
 def drove(found: dict[str, Any], one: dict[str, Any], other: dict[str, Any]) -> None:
-    """The first drove forward and to the left, the second stands; both know it."""
+    """Assert that the first drove forward and left, the second stands, and both know it."""
     x, y, _ = moved(found, one["name"])
     assert x > 0.5
     assert y > 0.02

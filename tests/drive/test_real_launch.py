@@ -27,8 +27,8 @@ FLEETS = sorted((ROOT / "examples").glob("*/fleet.yaml"))
 
 
 def plain(start: dict[str, Any], real: dict[str, Any]) -> str:
-    """A start as text; of what is included the file's name and the arguments that the stand-in has:
-    the real launch passes on all that is set."""
+    """Return a start as text; of what is included the file's name and the arguments that the
+    stand-in has: the real launch passes on all that is set."""
     if "include" not in start:
         return json.dumps(start, sort_keys=True)
     wanted = real.get(Path(start["include"]).name, {})

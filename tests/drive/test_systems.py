@@ -11,7 +11,7 @@ from lxml import etree
 
 
 def opened(text: str) -> set[tuple[str, str]]:
-    """The role and topic of each end of a plugin or sensor of model m."""
+    """Return the role and topic of each end of a plugin or sensor of model m."""
     element = etree.fromstring(text)
     of = gazebo.of_sensor if element.tag == "sensor" else gazebo.of_plugin
     return {(it.role, it.topic) for it in of(element, "m", "w", "l")}
@@ -74,7 +74,7 @@ def test_a_system_opens_what_its_source_says(name: str) -> None:
 
 
 def diver(robot: str, topic: str, port: str = "") -> simulator.Model:
-    """A robot with one thruster, and an autopilot that sends on a topic."""
+    """Return a robot with one thruster, and an autopilot that sends on a topic."""
     given = f"<fdm_port_in>{port}</fdm_port_in>" if port else ""
     texts = (
         plugin("ArduPilotPlugin", given + CONTROL.format(0, topic)),

@@ -52,7 +52,7 @@ def is_static(topic: str) -> bool:
 
 
 def static_of(topic: str) -> str:
-    """The topic of the transforms that hold for ever, beside that of the others: /tf_static/robot1."""
+    """Return the topic of static transforms, beside that of the others: /tf_static/robot1."""
     return "/".join("tf_static" if it == "tf" else it for it in topic.split("/"))
 
 
@@ -61,8 +61,8 @@ def moving_of(topic: str) -> str:
 
 
 def with_odometry(node: Any, nodes: Iterable[Any], ends: Any, gz: Any, bridges: Any) -> Any:
-    """The node with the frame of the odometry that it hears: what places the map against it and has no
-    name for it takes that (rtabmap_slam/src/CoreWrapper.cpp, odomFrameId_)."""
+    """Return the node with the frame of the odometry that it hears: what places the map against
+    it and has no name for it takes that (rtabmap_slam/src/CoreWrapper.cpp, odomFrameId_)."""
     if node.what != "rtabmap":
         return node
     heard = [it.name for it in ends if it[1:3] == (node.fqn, "subscribes") and it.type == ODOMETRY]
@@ -72,7 +72,7 @@ def with_odometry(node: Any, nodes: Iterable[Any], ends: Any, gz: Any, bridges: 
 
 
 def begun(topic: str, nodes: Iterable[Any], ends: Any, gz: Any, bridges: Any) -> Iterator[str]:
-    """The frames in which the odometry on a topic begins."""
+    """Yield the frames in which the odometry on a topic begins."""
     rows = [it.gz for it in bridges if it.to_ros and (it.ros, it.type) == (topic, ODOMETRY)]
     for end in gz:
         if end.role == "sends" and end.topic in rows and end.type == "gz.msgs.Odometry":

@@ -36,8 +36,8 @@ def models_twice(fleet: Fleet) -> Iterator[Fault]:
 
 
 def topics_twice(fleet: Fleet) -> Iterator[Fault]:
-    """A gz topic that two models hear, or on which both send: nothing tells them apart. Transforms of
-    all robots may be on one."""
+    """Yield a gz topic that two models hear, or on which both send: nothing tells them apart.
+    Transforms of all robots may be on one."""
     robots = {model: robot for robot, model in fleet.models.items()}
     first: dict[tuple[str, str], str] = {}
     for it in fleet.gz:
@@ -54,7 +54,7 @@ TOGETHER = (
 
 
 def sent_twice(fleet: Fleet) -> Iterator[Fault]:
-    """A topic of ROS on which nodes of two robots send: who reads it cannot tell them apart."""
+    """Yield a topic of ROS on which nodes of two robots send: who reads it cannot tell them apart."""
     first: dict[tuple[str, str], str] = {}
     for it in fleet.ends:
         if it.role == "publishes" and it.robot and it.sure and it.type not in TOGETHER:

@@ -34,7 +34,7 @@ class Source(NamedTuple):
 
 
 def source_of(package: str, program: str, roots: Sequence[Path]) -> Path | None:
-    """The file of a program of a package below some folders."""
+    """Return the file of a program of a package below some folders."""
     for xml in (it for root in roots for it in root.rglob("package.xml")):
         if f"<name>{package}</name>" not in xml.read_text(errors="replace"):
             continue
@@ -46,7 +46,7 @@ def source_of(package: str, program: str, roots: Sequence[Path]) -> Path | None:
 
 
 def opened(file: Path, values: Mapping[str, Any]) -> Source:
-    """What the node of a file opens with these parameters; nothing if a part of it is not known."""
+    """Return what a file's node opens with these parameters; nothing if a part is not known."""
     try:
         tree = ast.parse(file.read_text())
         return Source(tuple(ends_of(tree, values)), frames_of(tree, values))
@@ -86,15 +86,15 @@ def called(call: ast.Call) -> str:
 
 
 def assigned(tree: ast.AST) -> Iterator[tuple[str, ast.expr]]:
-    """What is assigned, by the name that it gets."""
+    """Yield what is assigned, by the name that it gets."""
     for it in ast.walk(tree):
         if isinstance(it, ast.Assign):
             yield ast.unparse(it.targets[0]), it.value
 
 
 def text_of(it: ast.expr, tree: ast.AST, values: Mapping[str, Any]) -> str:
-    """The text of an expression; raises LookupError for another one than a text, a parameter, or a name
-    that has one of these."""
+    """Return the text of an expression; raises LookupError for another one than a text, a
+    parameter, or a name that has one of these."""
     if isinstance(it, ast.Constant):
         return str(it.value)
     for call in (one for one in ast.walk(it) if isinstance(one, ast.Call)):

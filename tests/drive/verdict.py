@@ -77,8 +77,9 @@ def judged(fleet: Fleet) -> tuple[Fault, ...]:
 
 
 def done(fleet: Fleet) -> dict[str, dict[str, str]]:
-    """What each robot does: "yes", "no" or "unknown: PROGRAM" for each word; a word is missing where
-    the robot has nothing to do it with. A program that was not read may do anything."""
+    """Return what each robot does: "yes", "no" or "unknown: PROGRAM" for each word; a word is
+    missing where the robot has nothing to do it with. A program that was not read may do
+    anything."""
     wrong = {(it.robot, it.what) for it in judged(fleet)}
     return {robot: dict(words(fleet, robot, wrong)) for robot in fleet.robots}
 
@@ -102,7 +103,7 @@ def words(fleet: Fleet, robot: str, wrong: set[tuple[str, str]]) -> Iterator[tup
 
 
 def said(found: dict[str, str]) -> str:
-    """The words of a robot in one line."""
+    """Return the words of a robot in one line."""
     return ", ".join(
         {"yes": word, "no": f"no {word}"}.get(it, f"{word} {it}") for word, it in found.items()
     )
@@ -141,13 +142,13 @@ def classic(fleet: Fleet) -> set[str]:
 
 
 def reached(fleet: Fleet, topic: str, kind: str) -> set[str]:
-    """The robots whose drives move when something is sent on a topic."""
+    """Return the robots whose drives move when something is sent on a topic."""
     topics = carried(fleet, topic, kind)
     return {robot for robot, name, sort in heard(fleet) if (name, sort) in topics}
 
 
 def carried(fleet: Fleet, topic: str, kind: str) -> set[tuple[str, str]]:
-    """The topics and types on which a command is sent again by those that pass it on."""
+    """Return the topics and types on which a command is sent again by those that pass it on."""
     passing = {it.fqn for it in fleet.nodes if it.what in PASSING or it.own}
     topics, queue = {(topic, kind)}, [(topic, kind)]
     while queue:
@@ -203,7 +204,7 @@ def drives(fleet: Fleet, robot: str) -> Iterator[Fault]:
 
 
 def senders(fleet: Fleet, robot: str) -> list[End]:
-    """The ends on which nodes of a robot send commands of their own, and goals."""
+    """Return the ends on which nodes of a robot send commands of their own, and goals."""
     every = (it for it in fleet.nodes if it.robot == robot)
     nodes = {it.fqn for it in every if it.what in SENDING or it.own}
     kinds = {"publishes": COMMANDS, "calls": GOALS}
@@ -234,7 +235,7 @@ def wrong(robot: str, topic: str, whom: set[str]) -> Iterator[Fault]:
 
 
 def readers(fleet: Fleet) -> list[End]:
-    """The ends that read a sensor or odometry."""
+    """Return the ends that read a sensor or odometry."""
     return [it for it in fleet.ends if it.role == "subscribes" and it.type in SEEN and it.sure]
 
 
@@ -265,8 +266,8 @@ def is_posed(fleet: Fleet, robot: str) -> bool:
 
 
 def waits(fleet: Fleet, robot: str) -> Iterator[Fault]:
-    """What rtabmap synchronises, and of which a part never comes: it drops the rest, too. Where its
-    robot has nothing of the kind, no other setting would do."""
+    """Yield what rtabmap synchronises, and of which a part never comes: it drops the rest, too.
+    Where its robot has nothing of the kind, no other setting would do."""
     for it in (it for it in fleet.nodes if it.robot == robot and it.what == "rtabmap"):
         node, ends = it.fqn, [end for end in fleet.ends if end.node == it.fqn]
         if programs.is_exact(it.values) and len(programs.synchronised(it.values)) > 1:
@@ -286,7 +287,7 @@ def waits(fleet: Fleet, robot: str) -> Iterator[Fault]:
 
 
 def frames_sent(fleet: Fleet) -> dict[str, str]:
-    """The frame of what sensors in the simulator send, by the topic of ROS."""
+    """Return the frame of what sensors in the simulator send, by the topic of ROS."""
     return {
         row.ros: it.frame
         for row in fleet.bridges
@@ -331,7 +332,7 @@ def senders_of(fleet: Fleet, name: str, kind: str) -> Iterator[str]:
 
 
 def offered(fleet: Fleet, robot: str, kind: str) -> set[str]:
-    """The topics on which a robot has such messages, but for those that are made of others."""
+    """Return the topics on which a robot has such messages, but for those that are made of others."""
     made = {it.fqn for it in fleet.nodes if it.what in programs.MAKING}
     ends = {
         it.name
@@ -401,7 +402,7 @@ def unknown_frames(
 
 
 def two_senders(fleet: Fleet, robot: str) -> Iterator[Fault]:
-    """Transforms that two nodes of a robot send: the frame jumps from one place to the other."""
+    """Yield transforms that two nodes of a robot send: the frame jumps from one place to the other."""
     first: dict[tuple[str, str], str] = {}
     for it in one_tree(fleet.edges):
         if it.robot in (robot, fleet.models.get(robot)):

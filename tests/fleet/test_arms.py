@@ -14,6 +14,7 @@ import pytest
 import yaml
 from fleet_folder import built_fleet, planned_fleet
 from lxml import etree
+from paths import write_files
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.planning.way_checks import running_nodes
@@ -87,7 +88,7 @@ affix: prefix
 distro: jazzy
 description: arm.urdf.xacro
 srdf: arm.srdf.xacro
-stack: [ros2_control, moveit]
+node_sets: [ros2_control, moveit]
 simulator: none
 related_files: {moveit: [kinematics.yaml, servo.yaml, sensors_3d.yaml], rviz: moveit.rviz}
 """
@@ -98,7 +99,7 @@ OWN = "arguments: {prefix: '{robot}_'}\n"
 def built(
     folder: Path, more: str = TWO, layout: str = "both", **words: str
 ) -> tuple[dict[str, str], list[Finding]]:
-    """The files of a fleet and its findings; ``words`` replace those of the sources."""
+    """Return the files of a fleet and its findings; ``words`` replace those of the sources."""
     plugin, own, group = (words.get(it, "") for it in ("plugin", "own", "group"))
     files = {
         "arm.urdf.xacro": URDF.replace("PLUGIN", plugin or MOCK),
@@ -109,8 +110,7 @@ def built(
         "moveit.rviz": RVIZ,
         "fleet.yaml": FLEET.replace("LAYOUT", layout) + more,
     }
-    for name, text in files.items():
-        (folder / name).write_text(text)
+    write_files(folder, files)
     made = built_fleet(folder / "fleet.yaml")
     return {it.path: it.data.decode() for it in made.files}, list(made.findings)
 
@@ -151,7 +151,7 @@ def test_each_robot_has_a_window_with_its_motion_planning(layout: str, tmp_path:
 
 
 def test_without_namespaces_a_window_has_the_rules_of_its_robot(tmp_path: Path) -> None:
-    more = TWO.replace("[{name: left}", "[{name: left, stack: [moveit, rviz_moveit]}")
+    more = TWO.replace("[{name: left}", "[{name: left, node_sets: [moveit, rviz_moveit]}")
     files, findings = built(tmp_path, more, "postfix")
     lines = files["commands.md"].splitlines()
     (left, right) = (it for it in lines if it.startswith("rviz2"))

@@ -18,9 +18,9 @@ import pytest
 from fleet_folder import planned_fleet
 from paths import ROBOTS, ROOT
 
-from multibot_rewrite.fleet.build import Outputs, make_outputs
-from multibot_rewrite.fleet.checks.as_printed import not_as_commanded
-from multibot_rewrite.fleet.checks.read_back import read_back
+from multibot_rewrite.checks.as_printed import not_as_commanded
+from multibot_rewrite.checks.build import Outputs, make_outputs
+from multibot_rewrite.checks.read_back import read_back
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 
 TOLD = (
@@ -29,7 +29,7 @@ TOLD = (
 )
 TWO = "robots: [{name: r1, model: red}, {name: r2, pose: {x: 2}}]\n"
 FLEETS = {
-    "gz": f"layout: both\ndescription: rover_gz.urdf\nstack: gz_ros2_control\n{TWO}",
+    "gz": f"layout: both\ndescription: rover_gz.urdf\nnode_sets: gz_ros2_control\n{TWO}",
     "classic": f"layout: frames-per-robot\ndescription: rover.urdf\n{TWO}",
     "relayed": f"layout: tf-per-robot\nrelayed: true\ndescription: rover.urdf\n{TWO}",
     "copied": f"layout: both\nrelayed: true\ndescription: rover.urdf\n{TWO}",
@@ -62,7 +62,7 @@ def commands(made: Outputs) -> str:
 
 
 def changes(text: str) -> Iterator[tuple[str, str]]:
-    """The text with one word of a line changed, or without it."""
+    """Yield the text with one word of a line changed, or without it."""
     lines = text.splitlines()
     for at, line in enumerate(lines):
         words = shlex.split(line) if line.startswith(("ros2 run", "rviz2")) else []

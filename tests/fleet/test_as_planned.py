@@ -7,7 +7,7 @@ import pytest
 from graph_examples import read_example
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.fleet.checks.as_planned import not_as_planned
+from multibot_rewrite.checks.as_planned import not_as_planned
 from multibot_rewrite.producers.launch.launched import NOT_WHOLE
 from multibot_rewrite.system.records import Caveat, Environment
 

@@ -19,10 +19,10 @@ from fleet_folder import planned_fleet
 from paths import ROBOTS, ROOT
 from printed_mutants import mutants
 
+from multibot_rewrite.checks.as_printed import Difference, not_as_printed
+from multibot_rewrite.checks.build import Outputs, make_outputs
+from multibot_rewrite.checks.read_back import read_back
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.build import Outputs, make_outputs
-from multibot_rewrite.fleet.checks.as_printed import Difference, not_as_printed
-from multibot_rewrite.fleet.checks.read_back import read_back
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch import launch_file
 from multibot_rewrite.fleet.launch.launch_python import to_python
@@ -34,7 +34,7 @@ LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "frame-prefix", "postfix"
 
 
 def robot(name: str, model: str, x: str, robots_number: int) -> RobotStarts:
-    """A robot with all that one may start."""
+    """Return a robot with all that one may start."""
     params, more = File(f"{name}/p.yaml"), File(f"{name}/q.yaml", substituted=True)
     frames = {"frame_prefix": f"{name}/", "rate": 1.5, "n": 2}
     box = Start(
@@ -92,7 +92,7 @@ ALL = FleetStarts(
 
 
 def launched(name: str) -> RobotStarts:
-    """A robot with all that a vendor's launch file may start."""
+    """Return a robot with all that a vendor's launch file may start."""
     later = Process(delay=2.5, event="OnProcessExit", after=0)
     how = Process("nice", True, 1.5, "/srv", delay=4.0)
     included = Process(is_include=True)
@@ -303,7 +303,7 @@ def test_whatever_is_changed_in_an_example_is_noticed(path: str, tmp_path: Path)
 
 
 def spoiled(starts: FleetStarts) -> str:
-    """The file of a printer that takes a model for a template."""
+    """Return the file of a printer that takes a model for a template."""
     return to_python(starts).replace("model='r1_red'", "model='{name}_red'")
 
 
@@ -365,7 +365,7 @@ def test_whatever_is_changed_in_a_row_of_a_bridge_is_noticed(path: str, tmp_path
     for is known by the description that is spawned."""
     shutil.copy(ROOT / "examples" / "launch_tutorial" / "rover.urdf", tmp_path)
     (tmp_path / "fleet.yaml").write_text(
-        "distro: jazzy\nlayout: tf-per-robot\nstack: nav2\ndescription: rover.urdf\n"
+        "distro: jazzy\nlayout: tf-per-robot\nnode_sets: nav2\ndescription: rover.urdf\n"
         "robots: [{name: r1, model: red}, {name: r2, pose: {x: 2}}]\n"
     )
     plan, made = planned(str(tmp_path / "fleet.yaml"))

@@ -13,14 +13,15 @@ from pathlib import Path
 import pytest
 from built_faults import edited, in_launch
 from fleet_folder import planned_fleet
+from paths import fixture_text, write_files
 from rule_examples import DESCRIPTION
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
+from multibot_rewrite.checks import of_bringup
+from multibot_rewrite.checks.build import make_outputs
+from multibot_rewrite.checks.of_bringup import as_the_vendor_has_it
+from multibot_rewrite.checks.read_back import read_back
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.checks import of_bringup
-from multibot_rewrite.fleet.checks.of_bringup import as_the_vendor_has_it
-from multibot_rewrite.fleet.checks.read_back import read_back
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.rules.system.sharing import sensor_twice
@@ -28,31 +29,7 @@ from multibot_rewrite.system.index import index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, End
 
-LAUNCH = """\
-from pathlib import Path
-
-from launch import LaunchDescription
-from launch_ros.actions import Node
-
-ROBOT = Path(__file__).parent / 'robot.urdf'
-
-
-def ekf(name, **more):
-    values = {'odom0': '/wheel/odom', 'world_frame': 'odom', 'base_link_frame': 'base_link'}
-    return Node(package='robot_localization', executable='ekf_node', name=name,
-                parameters=[{**values, **more}],
-                remappings=[('odometry/filtered', 'odometry/map')] if more else [])
-
-
-def generate_launch_description():
-    return LaunchDescription([
-        Node(package='robot_state_publisher', executable='robot_state_publisher',
-             parameters=[{'robot_description': ROBOT.read_text()}]),
-        ekf('ekf_local'),
-        ekf('ekf_global'),
-        ekf('ekf_map', publish_tf=False),
-    ])
-"""
+LAUNCH = fixture_text("as_the_vendor_has_it_launch.txt")
 FLEET = """\
 layout: {}
 {}
@@ -186,7 +163,7 @@ def test_a_fault_of_a_file_of_the_vendor_is_told_and_built(
     (fleet.parent / "up.launch.py").write_text(LAUNCH.replace("ekf('ekf_map'", READER))
     if not by_launch:
         text = FLEET.format("both", LAYOUTS["both"]).replace("launch: up.launch.py\n", "")
-        fleet.write_text(f"{text}stack: [nav2]\nrelated_files: {{params: [nav2.yaml]}}\n")
+        fleet.write_text(f"{text}node_sets: [nav2]\nrelated_files: {{params: [nav2.yaml]}}\n")
     code = main(["build", str(fleet), "-o", str(fleet.parent / "out")])
     (told,) = (it for it in capsys.readouterr().err.splitlines() if "MB120" in it)
     assert "nav2.yaml:4:" in told and ("for one robot, too" in told) is by_launch
@@ -219,8 +196,7 @@ def test_a_controller_of_the_vendor_that_lacks_an_interface_is_told_and_built(
 ) -> None:
     """It is not activated, in one robot as in two; its hardware is called by no robot's name."""
     launch = LAUNCH[: LAUNCH.index("ekf('ekf_local')")]
-    for name, text in {"robot.urdf": ARM, "arm.yaml": CONTROLLERS}.items():
-        (fleet.parent / name).write_text(text)
+    write_files(fleet.parent, {"robot.urdf": ARM, "arm.yaml": CONTROLLERS})
     (fleet.parent / "up.launch.py").write_text(f"{launch}{MANAGED}")
     assert main(["check-launch", str(fleet.parent / "up.launch.py")]) == 1
     assert "error: MB229" in capsys.readouterr().out

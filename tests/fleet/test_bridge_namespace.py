@@ -14,7 +14,7 @@ import yaml
 from fleet_folder import built_fleet
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.fleet.build import Outputs
+from multibot_rewrite.checks.build import Outputs
 
 ROW = """\
 - ros_topic_name: {}
@@ -27,7 +27,7 @@ FILTER = "ekf_filter_node: {ros__parameters: {imu0: sensors/imu_0/data, odom_fra
 FLEET = """\
 layout: L1
 description: r.urdf
-stack: robot_localization
+node_sets: robot_localization
 robots:
   - {name: robot1, model: robot1/robot}
   - {name: robot2, model: robot2/robot}

@@ -27,13 +27,13 @@ from plans import PlannedRobot, from_plugin, planned, planned_end
 
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.model import InputError
+from multibot_rewrite.checks.judged_plan import plan_fleet
 from multibot_rewrite.cli import folders
 from multibot_rewrite.cli.files import write_new
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.sources.release_said import MANIFEST
-from multibot_rewrite.fleet.build import NOTE
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
+from multibot_rewrite.fleet.outputs.manifest import NOTE
 from multibot_rewrite.fleet.robots.robot_groups import said_once
 from multibot_rewrite.planning.plan import to_yaml
 from multibot_rewrite.system.json import from_yaml
@@ -56,13 +56,13 @@ def held(folder: Path) -> Files:
 
 
 def leftovers(folder: Path) -> list[str]:
-    """What only a killed build leaves."""
+    """Return what only a killed build leaves."""
     return [it.name for it in folder.rglob("*") if "multibot-build" in it.name or ".tmp" in it.name]
 
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with a fleet that was built once."""
+    """Return a folder with a fleet that was built once."""
     folder = tmp_path_factory.mktemp("built")
     fleet_folder(folder)
     assert build(folder) == 0
@@ -701,10 +701,7 @@ def test_there_is_nothing_to_undo(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert "so there is nothing to undo" in capsys.readouterr().err
 
 
-def test_the_fleet_file_and_the_folder_have_defaults(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    fleet_folder(tmp_path)
-    monkeypatch.chdir(tmp_path)
+def test_the_fleet_file_and_the_folder_have_defaults(here: Path) -> None:
+    fleet_folder(here)
     assert main(["build", "-q"]) == 0
-    assert (tmp_path / "out" / MANIFEST).exists()
+    assert (here / "out" / MANIFEST).exists()

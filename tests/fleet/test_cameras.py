@@ -27,7 +27,7 @@ def camera(topic: str, kind: str = "camera") -> str:
 
 
 def robot(folder: Path, *cameras: str) -> Path:
-    """A description in gz-sim with these cameras."""
+    """Return a description in gz-sim with these cameras."""
     file = folder / "robot.urdf"
     file.write_text(
         '<robot name="rover"><link name="base_link"><inertial><mass value="1"/><inertia ixx="0.1" '
@@ -38,12 +38,12 @@ def robot(folder: Path, *cameras: str) -> Path:
 
 
 def built(
-    folder: Path, release: str, layout: str, stack: str, description: Path, more: str = ""
+    folder: Path, release: str, layout: str, node_set: str, description: Path, more: str = ""
 ) -> Path:
-    """The folder that is built for two robots, without an error."""
+    """Return the folder that is built for two robots, without an error."""
     fleet, out = folder / "fleet.yaml", folder / "out"
     fleet.write_text(
-        f"distro: {release}\nlayout: {layout}\nsimulator: gazebo\nstack: [{stack}]\n"
+        f"distro: {release}\nlayout: {layout}\nsimulator: gazebo\nnode_sets: [{node_set}]\n"
         f"description: {description}\n{more}"
         "robots: [{name: robot1, pose: {y: 0.0}}, {name: robot2, pose: {y: 3.0}}]\n"
     )
@@ -52,7 +52,7 @@ def built(
 
 
 def heard(out: Path, node: str, *types: str) -> set[str]:
-    """The topics of these types that a node hears by the plan, whoever listens to it."""
+    """Return the topics of these types that a node hears by the plan, whoever listens to it."""
     plan = read_plan((out / "plan.yaml").read_bytes(), "plan.yaml")
     found = (it for it in ends_of(plan, node) if it.role == "subscribes")
     return {it.name for it in found if it.type in types}
@@ -108,8 +108,8 @@ def test_the_topics_of_a_classic_camera_are_below_its_name(
 def test_depths_are_no_colours(release: str, tmp_path: Path) -> None:
     """gz-sensors RgbdCameraSensor.cc: <topic>/image and /depth_image, with one camera_info."""
     description = robot(tmp_path, camera("eye", "rgbd_camera"))
-    stack = "image_proc, PointCloudXyzNode, PointCloudXyzrgbNode"
-    out = built(tmp_path, release, "tf-per-robot", stack, description)
+    node_set = "image_proc, PointCloudXyzNode, PointCloudXyzrgbNode"
+    out = built(tmp_path, release, "tf-per-robot", node_set, description)
     assert heard(out, "/robot1/debayer_node", IMAGE) == {"/robot1/eye/image"}
     assert heard(out, "/robot1/PointCloudXyzNode", IMAGE) == {"/robot1/eye/depth_image"}
     assert heard(out, "/robot1/PointCloudXyzNode", INFO) == {"/robot1/eye/camera_info"}

@@ -18,7 +18,7 @@ from plans import ends_of, own
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.checks.build import make_outputs
 from multibot_rewrite.planning.plan import read_plan
 
 URDF = """\
@@ -70,7 +70,7 @@ layout: frames-per-robot
 affix: prefix
 distro: jazzy
 srdf: arm.srdf
-stack: moveit
+node_sets: moveit
 simulator: none
 related_files: {moveit: [limits.yaml, controllers.yaml, servo.yaml], rviz: moveit.rviz}
 robots:
@@ -90,7 +90,7 @@ FILES = {
 
 
 def built(folder: Path, **changed: str) -> tuple[dict[str, bytes], list[Finding]]:
-    """The files and findings of the fleet; ``changed`` are other texts, ``_`` for a dot in names."""
+    """Return the fleet's files and findings; ``changed`` are other texts, ``_`` for a dot in names."""
     for name, text in {
         **FILES,
         **{it.replace("_", "."): text for it, text in changed.items()},
@@ -247,6 +247,6 @@ def test_moveit_does_not_fit_layout_frame_prefix(tmp_path: Path) -> None:
     assert said.level == "error"
     assert "'left/base'" in said.message
     # Without its SRDF the robot runs no MoveIt.
-    quiet = own.replace("stack: moveit", "stack: robot_state").splitlines(keepends=True)
+    quiet = own.replace("node_sets: moveit", "node_sets: robot_state").splitlines(keepends=True)
     text = "".join(it for it in quiet if not it.startswith(("related_files", "srdf")))
     assert [it for it in built(tmp_path, fleet_yaml=text)[1] if it.code == "MF837"] == []

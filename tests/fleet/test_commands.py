@@ -15,7 +15,7 @@ from multibot_rewrite.planning.plan import read_plan
 FLEET = """\
 distro: {release}
 layout: tf-per-robot
-stack: gz_ros2_control
+node_sets: gz_ros2_control
 robots:
   - {{name: robot1, description: {robot}}}
   - {{name: robot2, description: {robot}}}
@@ -121,7 +121,7 @@ def test_all_nodes_have_the_clock_of_the_fleet_file(told: str, wanted: str, tmp_
     robot = ROBOTS / "rover_gz.urdf"
     key = f"use_sim_time: {told}\n" if told else ""
     text = (
-        f"{key}layout: tf-per-robot\nstack: robot_state\nrobots:\n"
+        f"{key}layout: tf-per-robot\nnode_sets: robot_state\nrobots:\n"
         f"  - {{name: robot1, description: {robot}, pose: {{x: 1.0}}}}\n"
         f"  - {{name: robot2, description: {robot}, use_sim_time: true}}\n"
     )
@@ -161,7 +161,7 @@ def test_a_twist_mux_that_no_file_tells_its_topics_gets_those_of_its_package(
         "      pad: {topic: joy_vel, timeout: 0.5, priority: 1}\n"
         "      keys: {topic: key_vel, timeout: 0.5, priority: 2}\n"
     )
-    text = f"description: {ROBOTS / 'rover.urdf'}\nlayout: both\nstack: teleop\n"
+    text = f"description: {ROBOTS / 'rover.urdf'}\nlayout: both\nnode_sets: teleop\n"
     text += "robots: [{name: robot1}, {name: robot2}]\n"
     text += "related_files: {params: mux.yaml}\n" if own else ""
     (tmp_path / "fleet.yaml").write_text(text)

@@ -37,7 +37,7 @@ related_files: {params: [config/arm.yaml]}
 
 @pytest.fixture
 def package(tmp_path: Path) -> Path:
-    """A package my_arm in a folder of another name."""
+    """Return a package my_arm in a folder of another name."""
     folder = tmp_path / "src" / "arm_repo"
     (folder / "urdf").mkdir(parents=True)
     (folder / "config").mkdir()
@@ -48,7 +48,7 @@ def package(tmp_path: Path) -> Path:
 
 
 def built(package: Path, path: str, *options: str, fleet: str = FLEET) -> Sequence[str]:
-    """What the first plugin of each robot loads."""
+    """Return what the first plugin of each robot loads."""
     (package / "urdf" / "arm.urdf").write_text(ARM.format(path))
     (package / "fleet.yaml").write_text(fleet)
     out = package / "out"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A real arm of a stack, without a parameter file: its controllers still have a type, as
+"""A real arm of a node set, without a parameter file: its controllers still have a type, as
 ros2_control's controller_manager.cpp needs ("The 'type' param was not defined")."""
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ FLEET = """layout: {}
 distro: {}
 description: arm.urdf.xacro
 simulator: none
-stack: ros2_control
+node_sets: ros2_control
 robots:
   - {{name: robot1, arguments: {{robot_ip: 10.0.0.1}}}}
   - {{name: robot2, arguments: {{robot_ip: {}}}}}

@@ -16,9 +16,9 @@ from nav2_graphs import ROVER
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError, UsageError
+from multibot_rewrite.checks.build import Outputs
+from multibot_rewrite.checks.closed_plan import closed_plan
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.build import Outputs
-from multibot_rewrite.fleet.checks.closed_plan import closed_plan
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.planning.plan import read_plan, to_yaml
@@ -30,7 +30,7 @@ FLEET = f"""\
 layout: {{layout}}
 affix: prefix
 description: {ROVER}
-stack: nav2
+node_sets: nav2
 distro: jazzy
 simulator: none
 shared_topics: [/map, /clock, /rosout, /parameter_events, /diagnostics]
@@ -75,7 +75,7 @@ class Bridged(NamedTuple):
 
 
 def as_domain_bridge_reads(text: str) -> tuple[str, list[Bridged]]:
-    """The name and the topics, by parse_domain_bridge_yaml_config.cpp and bridge_topic of
+    """Return the name and the topics, by parse_domain_bridge_yaml_config.cpp and bridge_topic of
     domain_bridge.cpp (c2523e1); what these throw at, or leave out, fails here."""
     root = yaml.compose(text)
     (topics,) = [value for key, value in root.value if key.value == "topics"]
@@ -266,13 +266,13 @@ def test_what_a_fleet_file_may_not_say(more: str, said: str, tmp_path: Path) -> 
     [
         ("both", "tf_static,", "odometry,", "no robot has a topic 'odometry'"),
         ("frames-per-robot", "", "", "take layout tf-per-robot or both"),
-        ("both", "stack: nav2", "stack: robot_state", "no node of robot1 serves"),
+        ("both", "node_sets: nav2", "node_sets: robot_state", "no node of robot1 serves"),
     ],
 )
 def test_what_no_plan_fulfils(layout: str, old: str, new: str, said: str, tmp_path: Path) -> None:
     file = tmp_path / "fleet.yaml"
     given = FLEET.format(layout=layout).replace(old, new)
-    if new == "stack: robot_state":
+    if new == "node_sets: robot_state":
         given = given.replace("shared_nodes: map_server\n", "").replace(", /robot1/scan", "")
     file.write_text(given)
     with pytest.raises(UsageError, match=said):
@@ -336,24 +336,24 @@ def test_what_a_launch_file_loads_or_brings_up_is_reached_from_one_domain(tmp_pa
         (tmp_path / f"{name}.launch.py").write_text(LOADS.format(actions))
     (tmp_path / "box.launch.py").write_text(LOADS.format("Node(**box)"))
     head = "description: robot.urdf\ndistro: jazzy\nsimulator: none\n"
-    for stack, numbers, told in (
-        ("stack: nav2_composed", (11, 12), True),
-        ("stack: slam_toolbox", (11, 12), True),
-        ("stack: slam_toolbox", (11, 11), False),
-        ("stack: nav2", (11, 12), False),
+    for source, numbers, told in (
+        ("node_sets: nav2_composed", (11, 12), True),
+        ("node_sets: slam_toolbox", (11, 12), True),
+        ("node_sets: slam_toolbox", (11, 11), False),
+        ("node_sets: nav2", (11, 12), False),
         ("launch: part.launch.py", (11, 12), True),
         ("launch: part_later.launch.py", (11, 12), True),
         ("launch: part_later.launch.py", (11, 11), False),
         ("launch: box.launch.py", (11, 12), False),
     ):
         domains = "domains: {{robot1: {}, robot2: {}}}\n".format(*numbers)
-        (tmp_path / "fleet.yaml").write_text(f"{head}{stack}\n{domains}{SMALL}")
+        (tmp_path / "fleet.yaml").write_text(f"{head}{source}\n{domains}{SMALL}")
         made = built_fleet(tmp_path / "fleet.yaml")
         found = [it for it in made.findings if it.code == "MF849"]
-        assert [it.line for it in found] == [5] * told, stack
+        assert [it.line for it in found] == [5] * told, source
         # The class of this one is known from the launch file alone.
         loaded = {it.plugin for it in made.starts.every}
-        assert ("image_proc::RectifyNode" in loaded) == ("part" in stack), stack
+        assert ("image_proc::RectifyNode" in loaded) == ("part" in source), source
 
 
 NODES = """\
@@ -365,11 +365,11 @@ nodes:
   front:
     package: acme
     calls: {/get_plan: nav_msgs/srv/GetPlan}
-stacks: {own: {about: ours, nodes: [planner, front]}}
+node_sets: {own: {about: ours, nodes: [planner, front]}}
 """
 OWN = """\
 nodes: nodes.yaml
-stack: own
+node_sets: own
 simulator: none
 shared_topics: [/get_plan]
 shared_nodes: front
@@ -403,13 +403,12 @@ def test_one_name_in_two_domains_is_no_clash(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("layout", ["tf-per-robot", "postfix"])
 def test_check_launch_reads_the_files_of_domain_bridge(
-    layout: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    layout: str, here: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Each side of a bridge is a node in its domain, with the topics of the file. Robots may be called
     as topics and parts of nodes are, one may be in the domain of all robots."""
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "rover.urdf").write_text(KINDS["gz rover"].text.replace("ROBOT", "rover"))
-    (tmp_path / "fleet.yaml").write_text(
+    (here / "rover.urdf").write_text(KINDS["gz rover"].text.replace("ROBOT", "rover"))
+    (here / "fleet.yaml").write_text(
         f"layout: {layout}\ndistro: jazzy\ndescription: rover.urdf\n"
         "domains: {scan: 11, a: 5, bridge: 0}\ncrossing: [robot_description]\n"
         "robots: [{name: scan}, {name: a, pose: {x: 3}}, {name: bridge, pose: {x: 6}}]\n"
@@ -423,7 +422,7 @@ def test_check_launch_reads_the_files_of_domain_bridge(
     # In one view of all domains the copies are left out.
     assert main(check[:2]) == 0
     assert "_bridge_0" not in capsys.readouterr().out
-    file = tmp_path / "out/domain_bridge/a_bridge.yaml"
+    file = here / "out/domain_bridge/a_bridge.yaml"
     config = yaml.safe_load(file.read_text())
     del config["topics"]["/clock"]
     file.write_text(yaml.safe_dump(config))

@@ -18,7 +18,7 @@ GZ, CART, XACRO, ARM = "gz rover", "plain cart", "xacro rover", "arm"
 
 
 def fleet(kinds: str, *robots: Data, **keys: object) -> DrawnFleet:
-    """A fleet of robots of these kinds, three metres apart."""
+    """Return a fleet of robots of these kinds, three metres apart."""
     each = tuple(kinds.split(", "))
     texts = {it: KINDS[it].text.replace("ROBOT", "robot") for it in KINDS}
     files = {f"{it.replace(' ', '_')}{KINDS[it].ending}": text for it, text in texts.items()}
@@ -37,14 +37,14 @@ CASES = {
     # base_link and lidar_link are alike behind a long prefix, and no slip of each other.
     "a prefix that makes frames alike": fleet(
         f"{CART}, {GZ}", {"name": "burger", "prefix": "burger0"}, {"name": "left", "prefix": "left1"},
-        layout="both", separators={"link": "_"}, stack="teleop",
+        layout="both", separators={"link": "_"}, node_sets="teleop",
         related_files={"params": ["nav.yaml"]},
     ),
     "a drive of the other robot": fleet(
-        f"{CART}, {GZ}", {"name": "r1"}, {"name": "r2"}, layout="tf-per-robot", stack="nav2"
+        f"{CART}, {GZ}", {"name": "r1"}, {"name": "r2"}, layout="tf-per-robot", node_sets="nav2"
     ),
     "only one of them has a lidar": fleet(
-        f"{CART}, {GZ}", {"name": "r1"}, {"name": "r2"}, layout="both", stack="localization"
+        f"{CART}, {GZ}", {"name": "r1"}, {"name": "r2"}, layout="both", node_sets="localization"
     ),
     "a robot called as a topic": fleet(
         f"{GZ}, {GZ}", {"name": "gz", "namespace": "gz_x"}, {"name": "cmd_vel", "namespace": "c"},
@@ -72,18 +72,18 @@ CASES = {
         {"name": "r2", "related_files": {"rviz": "arm/one.rviz"}}, layout="frames-per-robot",
     ),
     "costmaps without namespaces, behind a prefix": fleet(
-        f"{CART}, {CART}", {"name": "r1"}, {"name": "r2"}, layout="postfix", stack="navigation"
+        f"{CART}, {CART}", {"name": "r1"}, {"name": "r2"}, layout="postfix", node_sets="navigation"
     ),
     "a robot called as a node begins": fleet(
         f"{CART}, {CART}", {"name": "robot"}, {"name": "r2"}, layout="postfix", affix="postfix",
-        stack="localization",
+        node_sets="localization",
     ),
     "a robot called as frames of all end": fleet(
-        f"{GZ}, {GZ}", {"name": "link"}, {"name": "r1"}, layout="tf-per-robot", stack="localization",
+        f"{GZ}, {GZ}", {"name": "link"}, {"name": "r1"}, layout="L1", node_sets="localization",
     ),
     "arms of a cell send one topic of joint states": fleet(
         f"{ARM}, {ARM}", {"name": "left"}, {"name": "right"}, layout="frames-per-robot", cell={},
-        stack=["ros2_control", "moveit"], srdf="arm.srdf", separators={"link": "_"},
+        node_sets=["ros2_control", "moveit"], srdf="arm.srdf", separators={"link": "_"},
     ),
     "an argument that is the robot's name": fleet(
         f"{XACRO}, {XACRO}", {"name": "low", "arguments": {"mast": "low"}}, {"name": "r2"},
@@ -92,11 +92,11 @@ CASES = {
     # Its bridge, which no plan has, is ros_gz_bridge_map, and the other robot's scan is its driver's.
     "a robot called as the topic of a real one's node": fleet(
         f"{GZ}, {GZ}", {"name": "r1", "simulator": "none"}, {"name": "map"}, layout="postfix",
-        distro="humble", stack="nav2",
+        distro="humble", node_sets="nav2",
     ),
     # The parameters of a manager with a name are not those of the nodes that its hardware makes.
     "hardware on the machine's time": fleet(
-        f"{GZ}, {ARM}", {"name": "r1"}, {"name": "r2", "stack": "ros2_control"},
+        f"{GZ}, {ARM}", {"name": "r1"}, {"name": "r2", "node_sets": "ros2_control"},
         layout="tf-per-robot", use_sim_time=True,
     ),
 }  # fmt: skip
@@ -140,21 +140,19 @@ def test_the_words_of_a_robot_are_those_of_no_other(tmp_path: Path) -> None:
     assert plan.words == {"r1": "r1", "r2": "r2", "alpha": "r1", "beta": "r2"}
 
 
-def test_a_node_of_a_file_that_is_called_like_a_stack_is_the_files(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """It was refused: no SRDF for a node that a stack starts."""
-    monkeypatch.chdir(tmp_path)
+def test_a_node_of_a_file_that_is_called_like_a_node_set_is_the_files(here: Path) -> None:
+    """It was refused: no SRDF for a node that a node set starts."""
     Path("rover.urdf").write_bytes((ROBOTS / "rover_gz.urdf").read_bytes())
-    Path("stack of mine.yaml").write_text("move_group:\n  ros__parameters: {a: b}\n")
+    Path("node set of mine.yaml").write_text("move_group:\n  ros__parameters: {a: b}\n")
     Path("fleet.yaml").write_text(
-        "layout: both\ndistro: jazzy\ndescription: rover.urdf\nstack: moveit\n"
-        "related_files: {params: stack of mine.yaml}\nrobots: [{name: r1}, {name: r2, pose: {x: 2}}]\n"
+        "layout: both\ndistro: jazzy\ndescription: rover.urdf\nnode_sets: moveit\n"
+        "related_files: {params: node set of mine.yaml}\n"
+        "robots: [{name: r1}, {name: r2, pose: {x: 2}}]\n"
     )
     assert run("build", "fleet.yaml", "-o", "out")[0] == 0
     plan = read_plan(Path("out/plan.yaml").read_bytes(), "plan.yaml")
     (found,) = (it for it in plan.nodes if it.name == "/r1/move_group")
-    assert (found.stack, found.place.line) == ("", 1)
+    assert (found.node_set, found.place.line) == ("", 1)
 
 
 def test_configs_of_one_name_have_a_name_each(tmp_path: Path) -> None:
@@ -168,22 +166,19 @@ def test_an_empty_list_of_files_is_none(tmp_path: Path) -> None:
     nobody had files."""
     own: Data = {"name": "r1", "related_files": {"params": []}}
     drawn = fleet(
-        f"{CART}, {GZ}", own, {"name": "r2", "stack": []}, layout="both", stack="localization",
+        f"{CART}, {GZ}", own, {"name": "r2", "node_sets": []}, layout="both", node_sets="localization",
         related_files={"params": ["nav.yaml"]},
     )  # fmt: skip
     judge(drawn, tmp_path)
     assert "odom_frame_id: r1/odom" in (tmp_path / "out/r1/params.yaml").read_text()
 
 
-def test_a_parameter_file_may_be_called_as_the_bridge_is(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_parameter_file_may_be_called_as_the_bridge_is(here: Path) -> None:
     """It was refused: two files would be written to ``r1/bridge.yaml``."""
-    monkeypatch.chdir(tmp_path)
     Path("rover.urdf").write_bytes((ROBOTS / "rover_gz.urdf").read_bytes())
     Path("bridge.yaml").write_text("amcl:\n  ros__parameters: {base_frame_id: base_link}\n")
     Path("fleet.yaml").write_text(
-        "layout: tf-per-robot\ndistro: jazzy\nstack: [nav2]\ndescription: rover.urdf\n"
+        "layout: tf-per-robot\ndistro: jazzy\nnode_sets: [nav2]\ndescription: rover.urdf\n"
         "related_files: {params: bridge.yaml}\n"
         "robots: [{name: r1, pose: {x: 0}}, {name: r2, pose: {x: 2}}]\n"
     )

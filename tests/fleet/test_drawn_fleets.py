@@ -15,7 +15,7 @@ SEED = 51
 
 @pytest.fixture
 def first(pytestconfig: pytest.Config) -> int:
-    """The number by which the first fleets are drawn."""
+    """Return the number by which the first fleets are drawn."""
     return int(pytestconfig.option.drawn_seed or SEED)
 
 

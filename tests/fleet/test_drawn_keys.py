@@ -45,7 +45,7 @@ NOT_DRAWN = {
 
 
 def either(key: str) -> str:
-    """A key that a robot has of its own, or all have from the fleet; places are drawn by their axes."""
+    """Return a key that a robot has, or all have from the fleet; places are drawn by their axes."""
     return key.removeprefix("robots.").partition("pose.")[0].partition("step.")[0]
 
 

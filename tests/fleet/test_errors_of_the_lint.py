@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from fleet_folder import planned_fleet
+from paths import write_files
 from support.rule_examples import DESCRIPTION, whole
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, URDF, Finding, Rule
@@ -26,10 +27,8 @@ ASKED = [it for it in RULES.values() if it.level == ERROR and URDF in it.formats
 
 
 def described(rule: Rule, folder: Path) -> Path:
-    """The bad example of a rule; where it has a package beside it, in this package."""
-    for name, text in rule.page.beside.items():
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / name).write_text(text)
+    """Return the bad example of a rule; where it has a package beside it, in this package."""
+    write_files(folder, rule.page.beside)
     home = next(folder.glob("*/package.xml"), folder / "package.xml").parent
     ending = "urdf.xacro" if "xmlns:xacro" in rule.page.bad else "urdf"
     file = home / f"example.{ending}"
@@ -38,7 +37,7 @@ def described(rule: Rule, folder: Path) -> Path:
 
 
 def said(file: Path, simulator: str = "gazebo", layout: str = "frames-per-robot") -> list[Finding]:
-    """What the plan of two such robots says; nothing of one that is refused."""
+    """Return what the plan of two such robots says; nothing of one that is refused."""
     robots = [
         {"name": name, "description": str(file), "pose": {"y": 3 * at}}
         for at, name in enumerate(("robot1", "robot2"))
@@ -81,7 +80,7 @@ REFUSED = {"MB101", "MB102", "MB103", "MB109", "MB201", "MB244", "MB420", "MB424
 
 
 def errors(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, set[str]]:
-    """The exit code of a command, and the codes of its errors."""
+    """Return the exit code of a command, and the codes of its errors."""
     ended = main([*words, "-q"])
     return ended, set(re.findall(r" error: (M\w\d+)", "".join(capsys.readouterr())))
 
@@ -89,7 +88,7 @@ def errors(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, set[st
 def built_all_the_same(
     fleet: Path, out: Path, capsys: pytest.CaptureFixture[str]
 ) -> set[str] | None:
-    """The errors of a build that is made in spite of them; None where the rewrite refuses it."""
+    """Return the errors of a build that is made in spite of them; None where the rewrite refuses it."""
     build = ("build", str(fleet), "-o", str(out))
     ended, wrong = errors(capsys, *build)
     if ended and errors(capsys, *build, *(f"--ignore={it}" for it in wrong))[0]:
@@ -152,11 +151,9 @@ def test_no_error_of_a_parameter_file_is_new_to_the_folder(
 ) -> None:
     """What ``check-launch`` calls wrong with or without the plan, ``build`` has called wrong."""
     (own, beside), fleet, out = PARAMS[code], tmp_path / "fleet.yaml", tmp_path / "out"
-    for name, text in {"robot.urdf": DESCRIPTION, **beside, "own.yaml": own}.items():
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_text(text)
+    write_files(tmp_path, {"robot.urdf": DESCRIPTION, **beside, "own.yaml": own})
     fleet.write_text(
-        f"layout: {layout}\ndistro: jazzy\nsimulator: none\nstack: [nav2]\n"
+        f"layout: {layout}\ndistro: jazzy\nsimulator: none\nnode_sets: [nav2]\n"
         f"description: robot.urdf\nrelated_files: {{params: own.yaml}}\n{ROBOTS}"
     )
     wrong = built_all_the_same(fleet, out, capsys)

@@ -17,8 +17,8 @@ from lxml import etree
 
 from multibot_rewrite import InputError
 from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.checks.build import Outputs
 from multibot_rewrite.description.reports import xacro_arguments
-from multibot_rewrite.fleet.build import Outputs
 from multibot_rewrite.fleet.file import simulator_switch
 
 SPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'

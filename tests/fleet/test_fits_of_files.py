@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a stack adds finds the drive that a robot's own files have: a controller of ros2_control, a
+"""What a node set adds finds the drive that a robot's own files have: a controller of ros2_control, a
 filter that places the robot, a bridge file of one type."""
 
 from __future__ import annotations
@@ -60,7 +60,8 @@ ROBOTS = "robots: [{name: robot1, pose: {y: 0.0}}, {name: robot2, pose: {y: 3.0}
 
 
 def build(folder: Path, text: str, **files: str) -> int:
-    """The exit code of a build of a fleet file of these lines, beside these files, into ``out``."""
+    """Return the exit code of a build of these lines as a fleet file, beside these files, into
+    ``out``."""
     for name, data in files.items():
         (folder / name.replace("_", ".")).write_text(data)
     fleet = folder / "fleet.yaml"
@@ -69,7 +70,7 @@ def build(folder: Path, text: str, **files: str) -> int:
 
 
 def ends(folder: Path, node: str) -> set[tuple[str, str]]:
-    """What the plan says that a node does with topics."""
+    """Return what the plan says that a node does with topics."""
     plan = read_plan((folder / "out" / "plan.yaml").read_bytes(), "plan.yaml")
     return {(it.role, it.name) for it in ends_of(plan, node)}
 
@@ -88,7 +89,7 @@ def is_as_planned(folder: Path) -> bool:
 def test_nav2_drives_a_controller(release: str, layout: str, tmp_path: Path) -> None:
     """diff_drive_controller.cpp: commands at ~/cmd_vel, odometry at ~/odom; no launch file of the robot
     has a rule for them. In Humble nothing but the plugin hands the description over."""
-    text = f"layout: {layout}\naffix: prefix\ndistro: {release}\nstack: nav2\n"
+    text = f"layout: {layout}\naffix: prefix\ndistro: {release}\nnode_sets: nav2\n"
     more = "description: driven.urdf\nrelated_files: {params: controllers.yaml}\n"
     assert build(tmp_path, text + more, driven_urdf=DRIVEN, controllers_yaml=CONTROLLERS) == 0
     last = "velocity_smoother" if release == "humble" else "collision_monitor"
@@ -102,7 +103,7 @@ def test_nav2_drives_a_controller(release: str, layout: str, tmp_path: Path) -> 
 
 def test_a_section_without_the_type_takes_that_of_the_bridge(tmp_path: Path) -> None:
     """Kilted's Nav2 sends TwistStamped, the bridge file has Twist, and no file says otherwise."""
-    text = f"layout: both\ndistro: kilted\nstack: navigation\ndescription: {ROVER}\n"
+    text = f"layout: both\ndistro: kilted\nnode_sets: navigation\ndescription: {ROVER}\n"
     more = "related_files: {params: nav2.yaml, bridge: bridge.yaml}\n"
     assert build(tmp_path, text + more, nav2_yaml=NAV2, bridge_yaml=PLAIN) == 0
     launch = (tmp_path / "out" / "fleet.launch.py").read_text()
@@ -115,9 +116,8 @@ def test_a_section_without_the_type_takes_that_of_the_bridge(tmp_path: Path) -> 
 
 def test_real_robots_in_domains_need_no_bridge_to_gazebo(tmp_path: Path) -> None:
     """The file is kept for simulated ones; a domain_bridge is none to Gazebo."""
-    text = (
-        f"layout: both\ndistro: jazzy\nstack: slam_toolbox\nsimulator: none\ndescription: {ROVER}\n"
-    )
+    text = "layout: both\ndistro: jazzy\nnode_sets: slam_toolbox\n"
+    text += f"simulator: none\ndescription: {ROVER}\n"
     more = (
         "domains: {robot1: 11, robot2: 12}\ncrossing: [tf]\nrelated_files: {bridge: bridge.yaml}\n"
     )
@@ -128,7 +128,7 @@ def test_real_robots_in_domains_need_no_bridge_to_gazebo(tmp_path: Path) -> None
 
 def test_rviz_shows_what_its_file_has(tmp_path: Path) -> None:
     """The panels of Nav2 are in nav2_default_view.rviz; this file has none."""
-    text = f"layout: both\ndistro: kilted\nstack: [nav2, rviz_nav2]\ndescription: {ROVER}\n"
+    text = f"layout: both\ndistro: kilted\nnode_sets: [nav2, rviz_nav2]\ndescription: {ROVER}\n"
     assert build(tmp_path, f"{text}related_files: {{rviz: {RVIZ}}}\n") == 0
     assert is_as_planned(tmp_path)
 
@@ -139,22 +139,22 @@ BARE = f"{REAL[: REAL.index('<gazebo>')]}</robot>"
 
 @pytest.mark.sample(2)
 @pytest.mark.parametrize("layout", ["postfix", "both"])
-@pytest.mark.parametrize("stack", ["controllers", "gz_ros2_control"])
+@pytest.mark.parametrize("node_set", ["controllers", "gz_ros2_control"])
 @pytest.mark.parametrize(
     ("robot", "codes"), [(DRIVEN, {"MF843"}), (REAL, set()), (BARE, {"MG723"})]
 )
-def test_a_manager_that_no_stack_starts_is_one_finding(
-    robot: str, codes: set[str], stack: str, layout: str,
+def test_a_manager_that_no_node_set_starts_is_one_finding(
+    robot: str, codes: set[str], node_set: str, layout: str,
     tmp_path: Path, capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
     """In layouts without namespaces the manager is the robot's by its name, whoever starts it."""
-    text = f"layout: {layout}\ndistro: jazzy\nsimulator: none\nstack: {stack}\n"
+    text = f"layout: {layout}\ndistro: jazzy\nsimulator: none\nnode_sets: {node_set}\n"
     more = "description: driven.urdf\n"
     assert build(tmp_path, text + more, driven_urdf=robot) == bool(codes)
     errors = [it for it in capsys.readouterr().err.splitlines() if " error: " in it]
     assert {it.split(" error: ")[1].split()[0] for it in errors} == codes
     assert len(errors) == len(codes)
-    assert all("add ros2_control to `stack:`" in it for it in errors if "MG723" in it)
+    assert all("add ros2_control to `node_sets:`" in it for it in errors if "MG723" in it)
     if codes:
         return
     manager = "/controller_manager_robot1" if layout == "postfix" else "/robot1/controller_manager"
@@ -180,19 +180,19 @@ MUX = """twist_mux:
 
 
 @pytest.mark.sample(6)
-@pytest.mark.parametrize("stack", ["nav2", "[nav2, teleop]", "[navigation, twist_mux]"])
+@pytest.mark.parametrize("node_set", ["nav2", "[nav2, teleop]", "[navigation, twist_mux]"])
 @pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
 @pytest.mark.parametrize(
     ("behaviors", "mux"),
     [("", "use_stamped: true"), ("", ""), ("enable_stamped_cmd_vel: true", "")],
 )
 def test_assisted_teleop_takes_the_type_of_its_server(
-    behaviors: str, mux: str, release: str, stack: str, tmp_path: Path
+    behaviors: str, mux: str, release: str, node_set: str, tmp_path: Path
 ) -> None:
     """nav2_behaviors assisted_teleop.cpp: a TwistSubscriber, which asks for the server's
     enable_stamped_cmd_vel; the build sets that where the files leave it open."""
     nav2, own = (f"    {it}\n" if it else "" for it in (behaviors, mux))
-    text = f"layout: both\ndistro: {release}\nstack: {stack}\ndescription: {ROVER}\n"
+    text = f"layout: both\ndistro: {release}\nnode_sets: {node_set}\ndescription: {ROVER}\n"
     files = {"nav2_yaml": ASSISTED.format(nav2), "mux_yaml": MUX.format(own)}
     assert (
         build(tmp_path, f"{text}related_files: {{params: [nav2.yaml, mux.yaml]}}\n", **files) == 0
@@ -217,7 +217,7 @@ def test_the_launch_replaces_the_share_folders_in_a_parameter_file(
 """
     (tmp_path / "nav2.yaml").write_text(f"{NAV2}{own}")
     (tmp_path / "fleet.yaml").write_text(
-        f"distro: {release}\nlayout: {layout}\nstack: nav2\ndescription: {ROVER}\n"
+        f"distro: {release}\nlayout: {layout}\nnode_sets: nav2\ndescription: {ROVER}\n"
         "related_files: {params: [nav2.yaml]}\nrobots: [{name: a}, {name: b}]\n"
     )
     build = ["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out"), "-q"]

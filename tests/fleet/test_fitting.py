@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a stack adds fits what the user's files say: commands, frames, transforms and sensors."""
+"""What a node set adds fits what the user's files say: commands, frames, transforms and sensors."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ROBOTS = "robots: [{name: robot1, pose: {y: 0.0}}, {name: robot2, pose: {y: 3.0}
 
 
 def built(folder: Path, text: str, robot: Path = ROVER) -> Path:
-    """The folder that is built of a fleet file of these lines, without an error."""
+    """Return the folder that is built of a fleet file of these lines, without an error."""
     fleet, out = folder / "fleet.yaml", folder / "out"
     fleet.write_text(f"layout: tf-per-robot\ndescription: {robot}\n{text}\n{ROBOTS}\n")
     assert main(["build", str(fleet), "-o", str(out), "-q"]) == 0
@@ -28,13 +28,13 @@ def built(folder: Path, text: str, robot: Path = ROVER) -> Path:
 
 
 def rows(out: Path) -> dict[str, str]:
-    """The type of each topic of the first robot's bridge."""
+    """Return the type of each topic of the first robot's bridge."""
     bridge = yaml.safe_load((out / "robot1" / "bridge.yaml").read_text())
     return {it["ros_topic_name"]: it["ros_type_name"] for it in bridge}
 
 
 def given(out: Path, parameter: str) -> dict[str, str]:
-    """The value that the launch file itself gives a parameter, by the node's name."""
+    """Return the value that the launch file itself gives a parameter, by the node's name."""
     found, name = {}, ""
     for line in (out / "fleet.launch.py").read_text().splitlines():
         if line.strip().startswith("name='"):
@@ -45,7 +45,7 @@ def given(out: Path, parameter: str) -> dict[str, str]:
 
 
 def planned(out: Path, node: str, role: str, topic: str) -> list[str]:
-    """The types of an end in the plan."""
+    """Return the types of an end in the plan."""
     plan = read_plan((out / "plan.yaml").read_bytes(), "plan.yaml")
     found = [it for it in ends_of(plan, node) if (it.role, it.name) == (role, topic)]
     return [type_ for it in found for type_ in (it.type, *it.also)]
@@ -57,7 +57,7 @@ def planned(out: Path, node: str, role: str, topic: str) -> list[str]:
 def test_the_bridge_takes_what_nav2_sends(release: str, type_: str, tmp_path: Path) -> None:
     """nav2_util twist_publisher.hpp: stamped by default since Kilted. ros_gz_bridge mappings.py has
     both types for gz.msgs.Twist."""
-    out = built(tmp_path, f"distro: {release}\nstack: nav2")
+    out = built(tmp_path, f"distro: {release}\nnode_sets: nav2")
     assert rows(out)["/robot1/cmd_vel"] == type_
     assert not given(out, "enable_stamped_cmd_vel")
     if type_ == STAMPED:
@@ -66,9 +66,9 @@ def test_the_bridge_takes_what_nav2_sends(release: str, type_: str, tmp_path: Pa
     assert stamped == (type_ == STAMPED)
 
 
-def test_two_stacks_of_other_defaults_agree(tmp_path: Path) -> None:
+def test_two_node_sets_of_other_defaults_agree(tmp_path: Path) -> None:
     """Commands of Nav2 are stamped on Lyrical, those of twist_mux are not."""
-    out = built(tmp_path, "distro: lyrical\nstack: [nav2, teleop]")
+    out = built(tmp_path, "distro: lyrical\nnode_sets: [nav2, teleop]")
     assert rows(out)["/robot1/cmd_vel"] == PLAIN
     assert set(given(out, "enable_stamped_cmd_vel").values()) == {"False"}
 
@@ -76,15 +76,17 @@ def test_two_stacks_of_other_defaults_agree(tmp_path: Path) -> None:
 @pytest.mark.parametrize("release", ["humble", "lyrical"])
 def test_a_filter_leaves_the_odometry_to_the_drive(release: str, tmp_path: Path) -> None:
     """Without a file both would send odom -> base_link (ros_filter.cpp: publish_tf)."""
-    out = built(tmp_path, f"distro: {release}\nstack: robot_localization")
+    out = built(tmp_path, f"distro: {release}\nnode_sets: robot_localization")
     assert given(out, "publish_tf") == {"ekf_filter_node": "False"}
 
 
 def test_odometry_without_a_topic_comes_where_it_is_read(tmp_path: Path) -> None:
     """The drive of the SDF has no <odom_topic>; Nav2 reads odom."""
-    out = built(tmp_path, "distro: jazzy\nstack: nav2", FIXTURES / "robots" / "rover.sdf")
+    out = built(tmp_path, "distro: jazzy\nnode_sets: nav2", FIXTURES / "robots" / "rover.sdf")
     assert rows(out)["/robot1/odom"] == "nav_msgs/msg/Odometry"
-    alone = built(tmp_path, "distro: jazzy\nstack: robot_state", FIXTURES / "robots" / "rover.sdf")
+    alone = built(
+        tmp_path, "distro: jazzy\nnode_sets: robot_state", FIXTURES / "robots" / "rover.sdf"
+    )
     assert rows(alone)["/robot1/odometry"] == "nav_msgs/msg/Odometry"
 
 
@@ -92,7 +94,7 @@ def test_cartographer_gets_its_options(tmp_path: Path) -> None:
     """node_main.cc ends without both flags."""
     (tmp_path / "carto.lua").write_text('options = {map_frame = "map"}\nreturn options\n')
     more = "simulator: none\nrelated_files: {lua: carto.lua}"
-    out = built(tmp_path, f"distro: jazzy\nstack: cartographer\n{more}")
+    out = built(tmp_path, f"distro: jazzy\nnode_sets: cartographer\n{more}")
     text = (out / "fleet.launch.py").read_text()
     assert "'-configuration_directory', file(" in text
     assert "'-configuration_basename', 'carto.lua'" in text
@@ -117,7 +119,7 @@ def test_cartographer_sends_what_its_options_say(
     option has a default) that leaves odom to the drive and reads what is there."""
     (tmp_path / "own.lua").write_text(f"options = {{{options}}}\nreturn options\n")
     given = "\nsimulator: none\nrelated_files: {lua: own.lua}" if options else ""
-    out = built(tmp_path, f"distro: jazzy\nstack: cartographer{given}")
+    out = built(tmp_path, f"distro: jazzy\nnode_sets: cartographer{given}")
     plan = read_plan((out / "plan.yaml").read_bytes(), "plan.yaml")
     (node,) = (it for it in own(plan, "robot1") if it.endswith("cartographer_node"))
     assert {it.parent: it.child for it in plan.edges if node in it.publishers} == sent
@@ -141,7 +143,7 @@ def test_nav2_sends_to_an_input_of_twist_mux(
 ) -> None:
     """A drive obeys one sender: what Nav2 would send beside the mux is its first free input."""
     last = "velocity_smoother" if release == "humble" else "collision_monitor"
-    text = f"distro: {release}\nsimulator: gazebo\nstack: [nav2, teleop]"
+    text = f"distro: {release}\nsimulator: gazebo\nnode_sets: [nav2, teleop]"
     if is_filed:
         section = f"{last}: {{ros__parameters: {{cmd_vel_out_topic: cmd_vel}}}}\n"
         (tmp_path / "p.yaml").write_text(section)
@@ -153,7 +155,7 @@ def test_nav2_sends_to_an_input_of_twist_mux(
 
 
 def muxed(folder: Path, *inputs: str) -> str:
-    """The key of a fleet file for a user's twist_mux with these inputs, each ``id: topic``."""
+    """Return the key of a fleet file for a user's twist_mux with these inputs, each ``id: topic``."""
     lines = [
         f"      {it.replace(': ', ': {topic: ')}, timeout: 0.5, priority: 1}}" for it in inputs
     ]
@@ -164,10 +166,10 @@ def muxed(folder: Path, *inputs: str) -> str:
     return "simulator: gazebo\nrelated_files: {params: mux.yaml}"
 
 
-def test_a_mux_without_an_input_for_a_planner_gets_the_stacks(tmp_path: Path) -> None:
+def test_a_mux_without_an_input_for_a_planner_gets_the_node_sets(tmp_path: Path) -> None:
     """Nav2 and the mux are both added: beside each other the drive would obey two. twist_mux.cpp lists
     the parameters below ``topics``, whichever file or argument has them."""
-    text = f"distro: jazzy\nstack: [nav2, teleop]\n{muxed(tmp_path, 'joy: joy_vel')}"
+    text = f"distro: jazzy\nnode_sets: [nav2, teleop]\n{muxed(tmp_path, 'joy: joy_vel')}"
     out = built(tmp_path, text)
     assert sent_on(out, "/robot1/cmd_vel") == ["twist_mux"]
     assert "collision_monitor" in sent_on(out, "/robot1/nav_vel")
@@ -192,7 +194,7 @@ def test_a_joystick_sends_to_an_input_of_the_users_mux(
     inputs: tuple[str, ...], stick: str, keys: str, layout: str, tmp_path: Path
 ) -> None:
     """An input that is called as what the drive obeys would be heard by the mux that sends it."""
-    own = f"distro: jazzy\nstack: teleop\n{muxed(tmp_path, *inputs)}"
+    own = f"distro: jazzy\nnode_sets: teleop\n{muxed(tmp_path, *inputs)}"
     fleet, out = tmp_path / "fleet.yaml", tmp_path / "out"
     fleet.write_text(f"layout: {layout}\ndescription: {ROVER}\n{own}\n{ROBOTS}\n")
     assert main(["build", str(fleet), "-o", str(out), "-q"]) == 0
@@ -215,7 +217,7 @@ def test_nav2_reaches_a_mux_whose_input_is_called_as_a_topic_of_nav2(
 ) -> None:
     """The mux is to hear the last of Nav2's nodes, and not what its smoother or monitor reads."""
     inputs = f"navigation: {topic}", "joystick: cmd_vel_joy"
-    out = built(tmp_path, f"distro: jazzy\nstack: [nav2, teleop]\n{muxed(tmp_path, *inputs)}")
+    out = built(tmp_path, f"distro: jazzy\nnode_sets: [nav2, teleop]\n{muxed(tmp_path, *inputs)}")
     assert not {"MG312", "MG315", "MG329"} & {*capfd.readouterr().err.split()}
     assert sent_on(out, "/robot1/cmd_vel") == ["twist_mux"]
     assert "collision_monitor" in sent_on(out, f"/robot1/{topic}_in")
@@ -231,7 +233,7 @@ def keyboard(out: Path) -> tuple[str, bool]:
 
 @pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
 @pytest.mark.parametrize(
-    ("stacks", "topic"),
+    ("node_sets", "topic"),
     [
         ("teleop", "key_vel"),
         ("nav2, teleop", "key_vel"),
@@ -241,11 +243,11 @@ def keyboard(out: Path) -> tuple[str, bool]:
     ],
 )
 def test_a_keyboard_does_not_go_past_what_limits_or_chooses(
-    stacks: str, topic: str, release: str, tmp_path: Path
+    node_sets: str, topic: str, release: str, tmp_path: Path
 ) -> None:
     """In all releases velocity_smoother reads cmd_vel_nav (nav2_bringup navigation_launch.py); what the
     plan has for a keyboard is what its command does."""
-    out = built(tmp_path, f"distro: {release}\nsimulator: gazebo\nstack: [{stacks}]")
+    out = built(tmp_path, f"distro: {release}\nsimulator: gazebo\nnode_sets: [{node_sets}]")
     found, stamped = keyboard(out)
     assert found == f"/robot1/{topic}"
     plan = read_plan((out / "plan.yaml").read_bytes(), "plan.yaml")
@@ -321,7 +323,7 @@ def test_a_filter_places_the_robot_where_the_bridge_has_no_tf(
 ) -> None:
     """One of the two sends odom to base_link on tf: never both, never none."""
     (tmp_path / "bridge.yaml").write_text("".join(TRANSFORMS.format(*it) for it in rows_))
-    text = "distro: jazzy\nsimulator: gazebo\nstack: robot_localization\n"
+    text = "distro: jazzy\nsimulator: gazebo\nnode_sets: robot_localization\n"
     text += "related_files: {bridge: bridge.yaml}"
     fleet, out = tmp_path / "fleet.yaml", tmp_path / "out"
     fleet.write_text(f"layout: {layout}\ndescription: {ROVER}\n{text}\n{ROBOTS}\n")

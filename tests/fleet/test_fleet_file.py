@@ -48,11 +48,12 @@ def robot(folder: Path, keys: str, above: str = "") -> RobotSpec:
 
 
 def test_keys_of_0_2_0(tmp_path: Path) -> None:
-    """Two keys have new names; fleet files that were written before are read as they were."""
+    """Three keys have new names; fleet files that were written before are read as they were."""
     old = "companions: {params: nosuch.yaml}"
     with pytest.raises(InputError, match=r"fleet\.yaml:2: .*nosuch\.yaml does not exist"):
         robot(tmp_path, old)
-    read(tmp_path, f"companions: {{}}\nvocabulary: []\n{ONE}")
+    made = read(tmp_path, f"companions: {{}}\nvocabulary: []\nstack: nav2\n{ONE}")
+    assert [it.node_sets for it in made.robots] == [("nav2",)]
 
 
 @pytest.mark.parametrize(
@@ -68,10 +69,14 @@ def test_keys_of_0_2_0(tmp_path: Path) -> None:
         pytest.param("colour: red", "", "colour", "red", id="colour"),
         pytest.param("colour: '#00ff7f'", "", "colour", "#00ff7f", id="hex"),
         pytest.param("colour: [1, 2, 3]", "", "colour", (1, 2, 3), id="rgb"),
-        pytest.param("stack: nav2", "", "stacks", ("nav2",), id="stack"),
-        pytest.param("", "stack: [nav2, moveit]\n", "stacks", ("nav2", "moveit"), id="stacks"),
-        pytest.param("stack: moveit", "stack: nav2\n", "stacks", ("moveit",), id="own-stack"),
-        pytest.param("stack: []", "stack: nav2\n", "stacks", (), id="no-stack"),
+        pytest.param("node_sets: nav2", "", "node_sets", ("nav2",), id="node_sets"),
+        pytest.param(
+            "", "node_sets: [nav2, moveit]\n", "node_sets", ("nav2", "moveit"), id="node_sets"
+        ),
+        pytest.param(
+            "node_sets: moveit", "node_sets: nav2\n", "node_sets", ("moveit",), id="own-node-set"
+        ),
+        pytest.param("node_sets: []", "node_sets: nav2\n", "node_sets", (), id="no-node-set"),
     ],
 )
 def test_keys_of_a_robot(tmp_path: Path, keys: str, above: str, field: str, value: object) -> None:
@@ -128,17 +133,13 @@ def test_paths_are_below_the_folder_of_their_file() -> None:
     ],
 )  # fmt: skip
 def test_a_file_that_is_not_there_is_told_with_its_line(
-    data: dict[str, Any],
-    place: tuple[str | int, ...],
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
+    data: dict[str, Any], place: tuple[str | int, ...], here: Path
 ) -> None:
-    monkeypatch.chdir(tmp_path)
     for what in ("does not exist", "is a folder, not a file"):
         with pytest.raises(InputError) as found:
             check_files(data, (), {place: ("f.yaml", 7)})
         assert str(found.value) == f"f.yaml:7: no.x {what}; correct the path"
-        (tmp_path / "no.x").mkdir(exist_ok=True)
+        (here / "no.x").mkdir(exist_ok=True)
 
 
 @pytest.mark.parametrize(
@@ -280,8 +281,11 @@ BAD: dict[str, tuple[str, ...]] = {
     "layout-none": (f"layout:\n{ONE}", "1: layout: the value is missing; write one, or remove the"),
     "affix": (f"affix: suffix\n{ONE}", "1: affix: 'suffix' is not known; did you mean 'postfix'?"),
     "distro": (f"distro: iron\n{ONE}", "1: distro: 'iron' is not known; known are humble, jazzy"),
-    "stack": (f"stack: nav3\n{ONE}", "1: stack 'nav3' is not known; did you mean 'nav2'?"),
-    "robots-stack": (with_keys("stack: nav3"), "2: stack 'nav3' is not known"),
+    "node_sets": (
+        f"node_sets: nav3\n{ONE}",
+        "1: node set 'nav3' is not known; did you mean 'nav2'?",
+    ),
+    "robots-node-set": (with_keys("node_sets: nav3"), "2: node set 'nav3' is not known"),
     "separator": (f"separators: {{link: '%'}}\n{ONE}", "1: separator link='%': use one of / _ __"),
     "separator-kind": (f"separators: {{lnk: /}}\n{ONE}", "1: separator kind 'lnk' is not known"),
     "world": (
@@ -447,6 +451,22 @@ def test_an_old_jsonschema_is_one_line(
     assert not (tmp_path / "out").exists()
 
 
+def test_what_is_valid_is_quickly_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Importing jsonschema takes longer than planning a fleet."""
+    pytest.importorskip("jsonschema_rs")
+    monkeypatch.setitem(sys.modules, "jsonschema", None)
+    fleets = [*(ROOT / "examples").rglob("fleet*.yaml")]
+    assert len(fleets) >= 8
+    for fleet in fleets:
+        assert read_fleet(str(fleet), "", {}).robots
+
+
+def test_what_another_validator_cannot_read_is_one_line(tmp_path: Path) -> None:
+    """A date is no value of JSON."""
+    with pytest.raises(InputError, match="layout: "):
+        read(tmp_path, f"{ONE}layout: 2026-01-01\n")
+
+
 @pytest.mark.parametrize("part", [(), ("$defs", "robot"), ("$defs", "related_files")])
 def test_every_key_of_the_schema_is_explained(part: tuple[str, ...]) -> None:
     found = schema()
@@ -483,7 +503,7 @@ def test_the_page_has_examples_and_the_line_for_editors() -> None:
 
 
 def fault(given: Any, validator: str, wanted: Any, **schema: Any) -> str:
-    """What is said of an error of jsonschema."""
+    """Return what is said of an error of jsonschema."""
     return _in_words(
         SimpleNamespace(
             instance=given, validator=validator, validator_value=wanted, schema=schema,

@@ -24,7 +24,7 @@ def fleet(folder: Path, nodl: str = "interfaces", document: str = DOCUMENT, more
     (folder / "interfaces" / "nav2_amcl__amcl.nodl.yaml").write_text(document)
     (folder / "fleet.yaml").write_text(
         f"description: {FIXTURES / 'robots' / 'rover.urdf'}\n"
-        f"layout: tf-per-robot\nstack: amcl\nnodl: {nodl}\n{more}"
+        f"layout: tf-per-robot\nnode_sets: amcl\nnodl: {nodl}\n{more}"
         "robots: [{name: robot1}, {name: robot2}]\n"
     )
     return str(folder / "fleet.yaml")
@@ -76,7 +76,7 @@ def test_a_node_that_a_parameter_file_alone_names_has_its_document(
     params = tmp_path / "params.yaml"
     params.write_text("amcl:\n  ros__parameters:\n    base_frame_id: base_link\n")
     file = Path(fleet(tmp_path, more="related_files: {params: params.yaml}\n"))
-    file.write_text(file.read_text().replace("stack: amcl\n", ""))
+    file.write_text(file.read_text().replace("node_sets: amcl\n", ""))
     assert main(["build", str(file), "-o", str(tmp_path / "out")]) == 0
     assert "amcl as in" in capsys.readouterr().err
 

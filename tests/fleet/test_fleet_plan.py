@@ -16,7 +16,7 @@ from lxml import etree
 from named_ends import named_ends
 from plans import own
 
-from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.checks.build import make_outputs
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.fleet.robots.robot_groups import split_per_robot
 from multibot_rewrite.system.json import from_yaml
@@ -44,7 +44,7 @@ def test_a_section_in_the_namespace_of_its_robot_is_for_that_robot(tmp_path: Pat
     robot = "{name: r1, description: base.urdf, related_files: {params: own.yaml}}"
     folder = fleet_folder(
         tmp_path,
-        f"layout: L1\nstack: ros2_control\nrobots: [{robot}]\n",
+        f"layout: L1\nnode_sets: ros2_control\nrobots: [{robot}]\n",
         base__urdf="<robot name='r'><link name='base_link'/></robot>",
         own__yaml=text,
     )
@@ -54,7 +54,7 @@ def test_a_section_in_the_namespace_of_its_robot_is_for_that_robot(tmp_path: Pat
 
 
 def spell(layout: str, name: str, word: str, separator: str = "/") -> str:
-    """What these tests expect, computed without the package."""
+    """Return what these tests expect, computed without the package."""
     if layout == "L1":
         return name
     return f"{word}{separator}{name}" if layout == "L2" else f"{name}{separator}{word}"

@@ -52,7 +52,7 @@ def own(text: str, layout: str = "L2", *links: str) -> list[dict[str, Any]]:
 
 
 def one(names: str, layout: str = "L2", *links: str) -> tuple[str, str]:
-    """The ROS and gz name that an entry has for a robot."""
+    """Return the ROS and gz name that an entry has for a robot."""
     rows = "".join(f"  {line}\n" for line in names.split("; "))
     found = own(f"-{rows[1:]}{TYPES}", layout, *links)[0]
     both = found.get("topic_name", "")
@@ -230,7 +230,7 @@ def test_bridge_corpus(bridges: list[Path], layout: str) -> None:
 
 
 def entry_problems(source: str, text: str, shared: str) -> Iterator[str]:
-    """What is wrong with a robot's file: but for names its entries and lines are the source's."""
+    """Yield what is wrong with a robot's file: but for names its entries and lines are the source's."""
     before = yaml.safe_load(source)
     after = [*(yaml.safe_load(text) or []), *(yaml.safe_load(shared) or [])]
     if len(before) != len(after):
@@ -267,14 +267,15 @@ DRIVE = (
 
 
 @pytest.fixture
-def fleet(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
-    monkeypatch.chdir(tmp_path)
+def fleet(here: Path) -> Any:
 
-    def make(layout: str, stack: str = "robot_state", body: str = "", more: str = "") -> FleetPlan:
-        (tmp_path / "rover.urdf").write_text(ROVER.format(body))
+    def make(
+        layout: str, node_set: str = "robot_state", body: str = "", more: str = ""
+    ) -> FleetPlan:
+        (here / "rover.urdf").write_text(ROVER.format(body))
         side = "postfix" if layout == "L4" else "prefix"
-        (tmp_path / "fleet.yaml").write_text(
-            f"layout: {layout}\naffix: {side}\nstack: {stack}\n{more}"
+        (here / "fleet.yaml").write_text(
+            f"layout: {layout}\naffix: {side}\nnode_sets: {node_set}\n{more}"
             "robots:\n"
             "  - {name: r1, description: rover.urdf,"
             " pose: {x: 1.0, y: -0.5, z: 0.25, roll: 0.1, pitch: 0.2, yaw: 1.57}}\n"
@@ -364,6 +365,27 @@ def test_what_is_in_a_comment_is_for_no_simulator(fleet: Any) -> None:
     assert [spawn.simulators(fleet("L2", body=it)) for it in bodies] == [["classic"], ["gz"]]
 
 
+@pytest.mark.parametrize(
+    ("hardware", "simulators"),
+    [
+        ("mock_components/GenericSystem", ["classic"]),
+        ("acme_driver/Arm", ["classic"]),
+        ("gz_ros2_control/GazeboSimSystem", ["classic", "gz"]),
+    ],
+)
+def test_hardware_of_no_simulator_is_in_that_of_the_others(
+    fleet: Any, tmp_path: Path, hardware: str, simulators: list[str]
+) -> None:
+    plugin = f"<hardware><plugin>{hardware}</plugin></hardware>"
+    body = f'<ros2_control name="c" type="system">{plugin}</ros2_control>'
+    (tmp_path / "arm.urdf").write_text(ROVER.format(body))
+    fleet("L2", body=classic(SPACE))
+    text = (tmp_path / "fleet.yaml").read_text()
+    row = "robots:\n  - {name: a, description: arm.urdf, simulator: gazebo}\n"
+    (tmp_path / "fleet.yaml").write_text(text.replace("robots:\n", row))
+    assert spawn.simulators(planned_fleet("fleet.yaml")) == simulators
+
+
 def test_no_namespace_where_nothing_needs_one(fleet: Any) -> None:
     for layout in LAYOUTS:
         made, _ = spawn.spawns(fleet(layout))
@@ -414,10 +436,11 @@ def test_a_listener_that_takes_no_stamp_decides(fleet: Any) -> None:
         "nodes:\n"
         "  base: {package: acme, subscribes: {cmd_vel: geometry_msgs/msg/Twist}}\n"
         "  log: {package: acme, subscribes: {cmd_vel: geometry_msgs/msg/TwistStamped}}\n"
-        "stacks:\n  own: {about: both, nodes: [base, log]}\n  half: {about: one, nodes: [log]}\n"
+        "node_sets:\n  own: {about: both, nodes: [base, log]}\n  half: {about: one, nodes: [log]}\n"
     )
     both, half = (
-        teleop.teleops(fleet("L2", stack, more="nodes: own.yaml\n"))[0] for stack in ("own", "half")
+        teleop.teleops(fleet("L2", node_set, more="nodes: own.yaml\n"))[0]
+        for node_set in ("own", "half")
     )
     assert (both.stamped, half.stamped) == (False, True)
 

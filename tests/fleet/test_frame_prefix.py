@@ -18,7 +18,7 @@ from plans import robot_named
 
 from multibot_rewrite import load_fleet
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.fleet.build import Outputs
+from multibot_rewrite.checks.build import Outputs
 from multibot_rewrite.planning.plan import read_plan
 from multibot_rewrite.system.records import Parameter
 
@@ -45,7 +45,7 @@ ekf_filter_node:
 """
 FLEET = """\
 layout: frame-prefix
-stack: [localization, robot_localization]
+node_sets: [localization, robot_localization]
 description: rover.urdf
 robots: [{name: robot1}, {name: robot2, namespace: graph2, prefix: frames2}]
 related_files: {params: params.yaml, rviz: one.rviz}
@@ -117,7 +117,7 @@ def test_rviz_puts_the_name_before_links_itself(tmp_path: Path) -> None:
 @pytest.mark.more
 def test_the_plan_has_the_frames_as_they_are_sent(tmp_path: Path) -> None:
     plan = read_plan(text(made(tmp_path), "plan.yaml").encode(), "plan.yaml")
-    own = robot_named(plan, "graph2")
+    own = robot_named(plan, "robot2")
     assert {"frames2/base_link", "frames2/lidar_link", "frames2/odom"} <= {*own.frames}
     assert not {"base_link", "lidar_link"} & {*own.frames, *own.other_frames}
     publisher = "/graph2/robot_state_publisher"

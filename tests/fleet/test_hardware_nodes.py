@@ -47,7 +47,7 @@ def fleet(
     file = folder / "fleet.yaml"
     file.write_text(
         "layout: frames-per-robot\naffix: prefix\ndistro: kilted\nsimulator: none\n"
-        "stack: ros2_control\n"
+        "node_sets: ros2_control\n"
         f"description: k.urdf.xacro\nrelated_files: {{params: c.yaml}}\nrobots: {robots}\n"
     )
     return str(file)

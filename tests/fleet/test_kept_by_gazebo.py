@@ -35,7 +35,7 @@ WHOLE = {"base": MASS, "wheel": MASS, "caster": "fixed", "seen": "base_link", "m
 
 
 def ended(folder: Path, simulator: str, *command: str, **given: str) -> int:
-    """The exit code of a command for two robots; without one of ``build``."""
+    """Return the exit code of a command for two robots; without one of ``build``."""
     (folder / "rover.urdf").write_text(ROBOT.format(**{**WHOLE, **given}))
     said = f"simulator: {simulator}\n" if simulator else ""
     robots = "".join(f"  - {{name: robot{at}, description: rover.urdf}}\n" for at in (1, 2))

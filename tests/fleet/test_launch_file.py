@@ -28,7 +28,7 @@ LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 
 
 def of_python(out: Path) -> list[tuple[Any, ...]]:
-    """The processes: program, namespace, name, rules, number of files and of own words."""
+    """Return the processes: program, namespace, name, rules, number of files and of own words."""
     (done,) = performed(str(out / "fleet.launch.py"), [Launching({})])
     assert not done.error
     return sorted(
@@ -125,7 +125,7 @@ def test_a_real_robot_needs_no_simulator(tmp_path: Path) -> None:
 
 
 def of_nav2(folder: Path, distro: str = "jazzy", **keys: str) -> str:
-    """The file for two robots with Nav2's parameters and these keys."""
+    """Return the file for two robots with Nav2's parameters and these keys."""
     for name in ("hexbase.urdf.xacro", "nav2_params.yaml"):
         shutil.copy(ROOT / "examples" / "namespace_and_prefix" / name, folder)
     more = "".join(f"{key}: {value}\n" for key, value in keys.items())
@@ -161,7 +161,7 @@ CLASSIC = """\
 def test_a_manager_in_a_plugin_is_not_started_besides(
     simulator: str, program: bool, tmp_path: Path
 ) -> None:
-    """Without a stack: gazebo_ros2_control_plugin.cpp makes the manager that the file sets."""
+    """Without `node_sets`: gazebo_ros2_control_plugin.cpp makes the manager that the file sets."""
     hardware = "gazebo_ros2_control/GazeboSystem" if not program else "acme/Arm"
     (tmp_path / "arm.urdf").write_text(
         CLASSIC.replace("gazebo_ros2_control/GazeboSystem", hardware)
@@ -194,7 +194,7 @@ def test_slam_toolbox_is_left_to_a_manager_that_lists_it(tmp_path: Path) -> None
     (tmp_path / "slam.yaml").write_text(both)
     (tmp_path / "fleet.yaml").write_text(
         "layout: tf-per-robot\ndistro: jazzy\ndescription: hexbase.urdf.xacro\n"
-        f"stack: nav2_slam\nrelated_files: {{params: slam.yaml}}\n{TWO}"
+        f"node_sets: nav2_slam\nrelated_files: {{params: slam.yaml}}\n{TWO}"
     )
     shutil.copy(ROOT / "examples" / "namespace_and_prefix" / "hexbase.urdf.xacro", tmp_path)
     assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out"), "-q"]) == 0
@@ -205,7 +205,7 @@ def test_slam_toolbox_is_left_to_a_manager_that_lists_it(tmp_path: Path) -> None
 
 @pytest.mark.slow
 def test_relays_of_tf_are_started(tmp_path: Path) -> None:
-    python = of_nav2(tmp_path, layout="both", affix="prefix", stack="nav2", relayed="true")
+    python = of_nav2(tmp_path, layout="both", affix="prefix", node_sets="nav2", relayed="true")
     told = "{'input_topic': f'/{name}/tf', 'output_topic': '/tf'}"
     assert told in python
     assert python.count("package='topic_tools'") == 2
@@ -214,7 +214,7 @@ def test_relays_of_tf_are_started(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_nodes_of_bringup_are_left_to_it(tmp_path: Path) -> None:
     """Its parameter files have no namespaces, so a node in one would get nothing of them."""
-    python = of_nav2(tmp_path, layout="tf-per-robot", stack="nav2", params_style="bringup")
+    python = of_nav2(tmp_path, layout="tf-per-robot", node_sets="nav2", params_style="bringup")
     assert "# Not started: amcl (parameter files are in the form of nav2_bringup" in python
     assert "package='nav2_amcl'" not in python
     assert "package='robot_state_publisher'" in python
@@ -226,13 +226,13 @@ def test_a_component_needs_its_class_and_no_program(tmp_path: Path) -> None:
         "nodes:\n"
         "  Camera: {package: acme, component: 'acme::Camera'}\n"
         "  lamp: {package: acme, programs: [lamp]}\n"
-        "stacks:\n"
+        "node_sets:\n"
         "  own: {container: nav2_container, nodes: [Camera, lamp]}\n"
     )
     shutil.copy(ROOT / "fixtures" / "robots" / "rover_gz.urdf", tmp_path)
     (tmp_path / "fleet.yaml").write_text(
         "distro: jazzy\nlayout: tf-per-robot\nsimulator: none\ndescription: rover_gz.urdf\n"
-        "nodes: nodes.yaml\nstack: [nav2_composed, own]\nrobots: [{name: r1}]\n"
+        "nodes: nodes.yaml\nnode_sets: [nav2_composed, own]\nrobots: [{name: r1}]\n"
     )
     out = tmp_path / "out"
     assert main(["build", str(tmp_path / "fleet.yaml"), "-o", str(out), "-q"]) == 0
@@ -249,7 +249,7 @@ REAL = pytest.mark.skipif(
 
 
 def programs(out: Path) -> dict[str, str]:
-    """The programs of the launch file with their packages."""
+    """Return the programs of the launch file with their packages."""
     text = (out / "fleet.launch.py").read_text()
     pairs = re.findall(r'package="(\w+)",\s+executable="([\w.]+)"', text)
     return {executable: package for package, executable in pairs}
@@ -303,7 +303,7 @@ def test_tf_is_bridged_where_the_bridge_is_installed(installed: bool, tmp_path: 
 
 
 def chosen(out: Path, text: str) -> list[str] | str:
-    """The robots that are started for ``robots:=`` with this text, or why none is."""
+    """Return the robots that are started for ``robots:=`` with this text, or why none is."""
     (done,) = performed(str(out / "fleet.launch.py"), [Launching({"robots": text})])
     spaces = (it.values.get("namespace", "/").strip("/") for it in done.actions)
     return done.error or [*dict.fromkeys(filter(None, spaces))]
@@ -336,7 +336,7 @@ def test_more_robots_than_the_file_has_are_built(tmp_path: Path) -> None:
 @pytest.mark.live
 def test_slam_toolbox_is_active_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("rclpy", reason="no rclpy: pip install '.[ros]'")
-    of_nav2(tmp_path, layout="tf-per-robot", stack="slam_toolbox")
+    of_nav2(tmp_path, layout="tf-per-robot", node_sets="slam_toolbox")
     for name, value in stage(None).items():
         monkeypatch.setenv(name, value)
     out, real = tmp_path / "out", {"sync_slam_toolbox_node": SUPPORT / "lifecycle_stand_in.py"}

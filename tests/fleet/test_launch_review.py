@@ -32,7 +32,7 @@ pytestmark = pytest.mark.slow
 
 @pytest.fixture(scope="module")
 def texts(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
-    """The launch file of each kind of fleet, and those of three examples."""
+    """Return the launch file of each kind of fleet, and those of three examples."""
     folders = {it: built(tmp_path_factory.mktemp(it), it, "both") for it in KINDS}
     for name in EXAMPLES:
         folders[name] = tmp_path_factory.mktemp(name) / "out"

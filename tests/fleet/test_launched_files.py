@@ -10,7 +10,7 @@ from fleet_folder import planned_fleet
 from rule_examples import DESCRIPTION
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.checks.build import make_outputs
 from multibot_rewrite.fleet.launch import launched_robot
 from multibot_rewrite.fleet.outputs.related_files import launched_values
 from multibot_rewrite.producers.launch.records import (

@@ -10,12 +10,12 @@ from fleet_folder import planned_fleet
 from rule_examples import DESCRIPTION
 
 from multibot_rewrite import InputError
+from multibot_rewrite.checks.judged_plan import plan_fleet
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.file.fleet_file import (
     read_fleet,
 )
 from multibot_rewrite.fleet.fleet import expected
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.system.records import RUNS
 
 MODEL = """\
@@ -114,7 +114,7 @@ def test_the_command_takes_a_launch_file_beside_robots(
 ) -> None:
     written(tmp_path)
     model, description = str(tmp_path / "system_model.yaml"), str(tmp_path / "robot.urdf")
-    words = ["plan", description, "robot1", "--layout", "L1", "--stack", "robot_localization"]
+    words = ["plan", description, "robot1", "--layout", "L1", "--node-set", "robot_localization"]
     assert main([*words, "--launch", f"{model} namespace:=x"]) == 0
     out, err = capsys.readouterr()
     assert "  - name: /robot1/amcl\n    place: system_model.yaml:3\n" in out

@@ -6,9 +6,9 @@ from __future__ import annotations
 import pytest
 from given_parameters import run_given
 
-from multibot_rewrite.fleet.robots.left_idle import left_idle
+from multibot_rewrite.checks.left_idle import left_idle
+from multibot_rewrite.knowledge.node_sets import load_nodes
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
-from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.planning.records import Given, Run
 from multibot_rewrite.system.records import CALLS, Place
 

@@ -23,12 +23,12 @@ wheels:
     right_wheel_names: [right_wheel_joint]
     enable_odom_tf: false
 """
-FLEET = "layout: both\naffix: prefix\nstack: gz_ros2_control\ndescription: rover_gz.urdf\n"
+FLEET = "layout: both\naffix: prefix\nnode_sets: gz_ros2_control\ndescription: rover_gz.urdf\n"
 ROBOTS_TWO = "robots: [{name: robot1}, {name: robot2, pose: {y: 2}}]\n"
 
 
 def package(folder: Path, path: str) -> Path:
-    """A package with a robot that loads ``path``; returns the folder of its description."""
+    """Return a package with a robot that loads ``path``; returns the folder of its description."""
     text = (ROBOTS / "rover_gz.urdf").read_text()
     assert text.count("config/controllers.yaml") == 1
     (folder / "config").mkdir(parents=True)

@@ -21,7 +21,7 @@ def build(folder: Path, *more: str) -> int:
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with what a build made whose second robot is called otherwise now."""
+    """Return a folder with what a build made whose second robot is called otherwise now."""
     folder = tmp_path_factory.mktemp("built")
     fleet = fleet_folder(folder)
     assert build(folder) == 0
@@ -37,7 +37,7 @@ def out(built: Path, tmp_path: Path) -> Path:
 
 
 def stale(out: Path, capsys: pytest.CaptureFixture[str]) -> set[str]:
-    """The paths of the second robot that ``--check`` lists."""
+    """Return the paths of the second robot that ``--check`` lists."""
     capsys.readouterr()
     assert build(out.parent, "--check") == 1
     return set(re.findall(r"robot2/\S+\.(?:urdf|yaml)", capsys.readouterr().out))

@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from paths import write_files
 
 from multibot_rewrite.cli.multibot import main
 
@@ -47,12 +48,12 @@ simulator: none
 description: rover.urdf
 related_files: {params: params.yaml}
 nodes: nodes.yaml
-stack: nav2_here
+node_sets: nav2_here
 robots: [{name: robot1}, {name: robot2}]
 """
 ODOMETRY = "controller_server: {odom: base_controller/odom}"
 DRIVEN = "base_controller/cmd_vel_unstamped"
-OWN = "stacks:\n  nav2_here:\n    include: [nav2]\n    remaps: {{{}}}\n"
+OWN = "node_sets:\n  nav2_here:\n    include: [nav2]\n    remaps: {{{}}}\n"
 MODEL = """\
 structure:
   nodes:
@@ -65,8 +66,7 @@ def build(folder: Path, rules: str, more: str = "", *words: str) -> int:
     files = {"rover.urdf": ROBOT, "params.yaml": PARAMS, "system_model.yaml": MODEL}
     files |= {"unknown.system_model.yaml": MODEL + UNKNOWN}
     files |= {"fleet.yaml": FLEET + more, "nodes.yaml": OWN.format(rules)}
-    for name, text in files.items():
-        (folder / name).write_text(text)
+    write_files(folder, files)
     return main(["build", str(folder / "fleet.yaml"), "-o", str(folder / "out"), *words])
 
 

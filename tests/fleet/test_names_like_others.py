@@ -15,6 +15,7 @@ import yaml
 from drawn_builds import run
 from drawn_fleets import BRIDGE, KINDS
 
+pytestmark = pytest.mark.usefixtures("here")
 ROVER = KINDS["gz rover"].text.replace("ROBOT", "rover")
 UNNAMED = ROVER.replace("<gz_frame_id>lidar_link</gz_frame_id>", "")
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
@@ -23,7 +24,7 @@ FRAMES = "{{ros_topic_name: {}, gz_topic_name: tf, ros_type_name: tf2_msgs/msg/T
 
 
 def built(data: dict[str, object], files: dict[str, str]) -> tuple[str, str]:
-    """What build and check-launch say; both find no error."""
+    """Return what build and check-launch say; both find no error."""
     for path, text in files.items():
         Path(path).write_text(text)
     Path("fleet.yaml").write_text(yaml.safe_dump({"distro": "jazzy", **data}))
@@ -33,11 +34,6 @@ def built(data: dict[str, object], files: dict[str, str]) -> tuple[str, str]:
     assert code in (0, 3), of_check
     assert " error: " not in of_check
     return of_build, of_check
-
-
-@pytest.fixture(autouse=True)
-def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
 
 
 @pytest.mark.sample(2)
@@ -84,7 +80,7 @@ def test_a_row_may_bring_the_frames_of_the_simulator_elsewhere(layout: str, name
 def test_robots_of_names_alike_do_not_mean_each_other(names: tuple[str, str], layout: str) -> None:
     """The one has no lidar and no odometry, the other nothing that drives it: that is no error, and
     neither is meant by the other's topics."""
-    cart = {"name": names[0], "description": "cart.urdf", "stack": ["nav2"]}
+    cart = {"name": names[0], "description": "cart.urdf", "node_sets": ["nav2"]}
     rover = {"name": names[1], "description": "rover.urdf", "pose": {"x": 3}}
     files = {"rover.urdf": ROVER, "cart.urdf": KINDS["plain cart"].text}
     built({"layout": layout, "robots": [cart, rover]}, files)
@@ -94,7 +90,7 @@ def test_robots_of_names_alike_do_not_mean_each_other(names: tuple[str, str], la
 def test_a_node_is_no_tool_because_its_robot_is_called_so(name: str) -> None:
     """amcl_bridge is the amcl of the robot that is called bridge, and counts as such."""
     robots = [{"name": name}, {"name": "b", "pose": {"x": 3}}]
-    data = {"layout": "postfix", "description": "rover.urdf", "stack": ["nav2"], "robots": robots}
+    data = {"layout": "postfix", "description": "rover.urdf", "node_sets": "nav2", "robots": robots}
     for said in built(data, {"rover.urdf": ROVER}):
         (counted,) = (it for it in said.splitlines() if " nodes each" in it)
         assert " to " not in counted.partition(" nodes each")[0]

@@ -16,9 +16,10 @@ from plans import own
 from multibot_rewrite import compare
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.checks.judged_plan import make_fleet
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.library import rewrite
-from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER, expected, facts_of, make_fleet
+from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER, expected, facts_of
 from multibot_rewrite.planning.plan import to_yaml
 from multibot_rewrite.system.json import from_json, from_yaml, to_json
 
@@ -29,7 +30,7 @@ NO_PLUGIN = "robots: [{name: a}, {name: b}]\ndescription: rover.urdf\nlayout: fr
 
 @pytest.fixture
 def rover(tmp_path: Path) -> str:
-    """A description that starts no node itself."""
+    """Return a description that starts no node itself."""
     path = tmp_path / "rover.urdf"
     path.write_text(ROVER)
     return str(path)
@@ -91,7 +92,7 @@ def test_it_cannot_be_asked_for_and_left_out() -> None:
 def test_one_such_robot_among_others_is_an_error_of_every_command(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    text = NO_PLUGIN.replace("{name: b}", f"{{name: b, stack: {NO_STATE_PUBLISHER}}}")
+    text = NO_PLUGIN.replace("{name: b}", f"{{name: b, node_sets: {NO_STATE_PUBLISHER}}}")
     file = str(fleet_folder(tmp_path, text))
     for words in (["plan", file], ["check", file], ["build", file, "-o", str(tmp_path / "out")]):
         more = ["--from", str(COLLISION)] if words[0] == "check" else []
@@ -102,7 +103,7 @@ def test_one_such_robot_among_others_is_an_error_of_every_command(
 
 
 def test_a_table_of_nothing_says_so(rover: str, capsys: pytest.CaptureFixture[str]) -> None:
-    words = ("plan", "--output-kind=table", rover, "robot1", "--stack", NO_STATE_PUBLISHER)
+    words = ("plan", "--output-kind=table", rover, "robot1", "--node-set", NO_STATE_PUBLISHER)
     code, _, err = run(capsys, *words)
     assert (code, err.count("\n")) == (0, 1)
     assert "no node of robot1 is known, so no rule is for it" in err
@@ -114,7 +115,7 @@ def test_a_table_of_nothing_says_so(rover: str, capsys: pytest.CaptureFixture[st
 
 @pytest.fixture
 def plan(rover: str) -> dict[str, Any]:
-    """A plan of two robots as plain values."""
+    """Return a plan of two robots as plain values."""
     made = expected(make_fleet(rover, ["robot1", "robot2"], [], {}, release=NEWEST_LTS))
     value: dict[str, Any] = yaml.safe_load(to_yaml(made))
     return value

@@ -11,13 +11,13 @@ from pathlib import Path
 
 import pytest
 from named_ends import named_ends
-from random_parameters import LAYOUTS, RELEASE, STACKS, is_plain, planned, random_file
+from random_parameters import LAYOUTS, NODE_SETS, RELEASE, is_plain, planned, random_file
 
 from multibot_rewrite.base.rosnames import bind, parse_remap, resolve_bound
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.knowledge.node_sets import built_in
 from multibot_rewrite.knowledge.parameters import built_in_nodes
-from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.planning.records import Run
 from multibot_rewrite.producers.evidence.filling import filled
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
@@ -26,7 +26,7 @@ from multibot_rewrite.system.records import Robot
 
 
 def written(files: dict[str, str], node: Run) -> Run | None:
-    """What the robot's file sets for a node under its full name."""
+    """Return what the robot's file sets for a node under its full name."""
     file = f"{node.robot}/p.yaml"
     known = built_in_nodes(RELEASE)
     own = f"{node.full_name}:\n  ros__parameters: {{}}\n"
@@ -74,5 +74,5 @@ def test_the_written_files_say_what_the_plan_says(seed: int, tmp_path: Path) -> 
     draw = random.Random(seed)
     layout, affix = LAYOUTS[seed % 4], draw.choice(("prefix", "postfix"))
     text = random_file(draw)
-    stack = draw.choice(STACKS)
-    assert [*differences(*planned(tmp_path, text, layout, affix, stack))] == [], (stack, text)
+    node_set = draw.choice(NODE_SETS)
+    assert [*differences(*planned(tmp_path, text, layout, affix, node_set))] == [], (node_set, text)

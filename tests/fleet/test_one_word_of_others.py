@@ -11,11 +11,11 @@ import pytest
 import yaml
 from fleet_folder import planned_fleet
 from graph_cases import as_planned
-from random_parameters import LAYOUTS, RELEASE, STACKS, planned, random_file
+from random_parameters import LAYOUTS, NODE_SETS, RELEASE, planned, random_file
 
 from multibot_rewrite import compare
-from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.checks.closed_plan import closed_plan
+from multibot_rewrite.checks.build import make_outputs
+from multibot_rewrite.checks.closed_plan import closed_plan
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.rules.settings import Settings
@@ -31,11 +31,13 @@ NAMES = ("MG101", "MG102", "MG310", "MG311", "MG320", "MG321", "MG301", "MG307",
 @pytest.mark.parametrize("seed", range(8))
 def test_a_graph_as_planned_has_no_finding(seed: int, tmp_path: Path) -> None:
     draw = random.Random(seed)
-    text, stack = random_file(draw), draw.choice(STACKS)
-    made, _ = planned(tmp_path, text, LAYOUTS[seed % 4], draw.choice(("prefix", "postfix")), stack)
+    text, node_set = random_file(draw), draw.choice(NODE_SETS)
+    made, _ = planned(
+        tmp_path, text, LAYOUTS[seed % 4], draw.choice(("prefix", "postfix")), node_set
+    )
     plan = expected(made.fleet)
     found = [it for it in compare(plan, as_planned(plan)) if it.code in NAMES]
-    assert found == [], (stack, text)
+    assert found == [], (node_set, text)
 
 
 SCAN = "sensor_msgs/msg/LaserScan"
@@ -59,7 +61,7 @@ robots: [{{name: robot1}}, {{name: robot2}}]
 
 
 def bridged(folder: Path, layout: str, affix: str, row: str, read: str) -> tuple[System, list[str]]:
-    """The plan of a fleet with a bridge and a node that reads, and the names in the written rows."""
+    """Return the plan of a fleet with a bridge and a reader, and the names in the written rows."""
     (folder / "robot.urdf").write_text(ROVER.format(row))
     (folder / "p.yaml").write_text(f"slam_toolbox:\n  ros__parameters: {{scan_topic: {read}}}\n")
     words = {"gz_topic_name": row, "ros_topic_name": row, "direction": "GZ_TO_ROS"}
@@ -93,7 +95,7 @@ JOINTS, INTERFACES = ("a", "b", "c"), ("position", "velocity", "effort")
 
 
 def random_arm(draw: random.Random) -> tuple[str, str]:
-    """A description with the hardware of some joints, and controllers of some."""
+    """Return a description with the hardware of some joints, and controllers of some."""
     links = '<link name="l0"/>'
     joints, hardware = "", ""
     for at, name in enumerate(JOINTS):

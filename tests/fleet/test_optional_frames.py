@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from fleet_folder import built_fleet, planned_fleet
 
-from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.checks.build import make_outputs
 
 DOG = """\
 <robot name="dog">
@@ -58,7 +58,7 @@ def test_all_that_read_a_frame_that_nothing_sends_are_told(tmp_path: Path) -> No
     (tmp_path / "dog.urdf").write_text(DOG.replace("base_link", "d0/base_link"))
     (tmp_path / "ekf.yaml").write_text(COSTMAP)
     text = FLEET.replace("LAYOUT", "tf-per-robot").replace(
-        "related_files", "stack: nav2\nrelated_files"
+        "related_files", "node_sets: nav2\nrelated_files"
     )
     (tmp_path / "fleet.yaml").write_text(text)
     found = built_fleet(tmp_path / "fleet.yaml").findings
@@ -67,7 +67,7 @@ def test_all_that_read_a_frame_that_nothing_sends_are_told(tmp_path: Path) -> No
         assert node in said.message
     for simulator, codes in (("none", set()), ("gazebo", {"note"})):
         (tmp_path / "ekf.yaml").write_text(COSTMAP.partition("\n")[2])
-        head = text.replace("stack: nav2", f"stack: navigation\nsimulator: {simulator}")
+        head = text.replace("node_sets: nav2", f"node_sets: navigation\nsimulator: {simulator}")
         (tmp_path / "fleet.yaml").write_text(head)
         plan = planned_fleet(tmp_path / "fleet.yaml")
         lines = [it for it in make_outputs(plan).findings if it.code == "MG413"]

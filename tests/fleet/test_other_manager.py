@@ -15,10 +15,10 @@ import pytest
 from fleet_folder import planned_fleet
 
 from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.checks.build import make_outputs
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.reports.xacro_arguments import find_arguments
 from multibot_rewrite.description.rewriters.tree import builtin_tree
-from multibot_rewrite.fleet.build import make_outputs
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 
 ROVER = """\
@@ -46,7 +46,12 @@ def xacro(folder: Path, argument: str, inside: str, plugin: str = OF_GZ) -> str:
 
 
 def planned(description: str, **keys: Any) -> FleetPlan:
-    data = {"layout": "both", "affix": "prefix", "simulator": "gazebo", "stack": "gz_ros2_control"}
+    data = {
+        "layout": "L3",
+        "affix": "prefix",
+        "simulator": "gazebo",
+        "node_sets": "gz_ros2_control",
+    }
     data |= {"description": description, "robots": [{"name": "robot1"}, {"name": "robot2"}]}
     return planned_fleet({**data, **keys}, "jazzy")
 
@@ -99,7 +104,7 @@ def test_a_report_names_the_first_robot(tmp_path: Path, capsys: pytest.CaptureFi
     robots = ", ".join(f"{{name: r{at}}}" for at in range(1, 7))
     fleet = tmp_path / "fleet.yaml"
     fleet.write_text(
-        "layout: both\naffix: prefix\ndistro: jazzy\nsimulator: gazebo\nstack: gz_ros2_control\n"
+        "layout: both\naffix: prefix\ndistro: jazzy\nsimulator: gazebo\nnode_sets: gz_ros2_control\n"
         f"description: rover.urdf.xacro\nrobots: [{robots}]\n"
     )
     assert main(["build", str(fleet), "-o", str(tmp_path / "out"), "-q"]) == 1
@@ -115,6 +120,6 @@ def test_the_plugin_of_classic_is_a_node_besides_its_manager(
 ) -> None:
     """gazebo_ros2_control_plugin.cpp: the node has the plugin's name, the manager its namespace."""
     path = xacro(tmp_path, "", namespace, OF_CLASSIC)
-    found = said(planned(path, stack="gazebo_ros2_control", distro="humble"))
+    found = said(planned(path, node_sets="gazebo_ros2_control", distro="humble"))
     wanted = {f"/robot{at}/stick/controller_manager" for at in (1, 2)} if wrong else set()
     assert {it.message.split()[3].rstrip(",") for it in found} == wanted

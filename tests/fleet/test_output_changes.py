@@ -6,7 +6,12 @@ from __future__ import annotations
 import pytest
 
 from multibot_rewrite import InputError
-from multibot_rewrite.fleet.build import OutputChanges, hash_of, output_changes, read_manifest
+from multibot_rewrite.fleet.outputs.manifest import (
+    OutputChanges,
+    hash_of,
+    output_changes,
+    read_manifest,
+)
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 
 NEW, OLD, MINE = hash_of(b"new"), hash_of(b"old"), hash_of(b"mine")

@@ -73,7 +73,7 @@ def fleet(folder: Path, text: str) -> Path:
 
 
 def worth_a_look(findings: Iterable[Finding]) -> list[str]:
-    """The codes of findings above notes: these robots have no drivers."""
+    """Return the codes of findings above notes: these robots have no drivers."""
     return [it.code for it in findings if it.level != NOTE]
 
 
@@ -308,7 +308,8 @@ def test_a_topic_that_an_argument_has_made_the_robots(
     given = f"arguments: {{own: '{value}'}}\n" if value else ""
     (tmp_path / "fleet.yaml").write_text(
         f"layout: {layout}\naffix: prefix\ndistro: jazzy\ndescription: bot.urdf.xacro\n{given}"
-        "stack: localization\nrelated_files: {params: nav2.yaml}\nrobots: [{name: r1}, {name: r2}]\n"
+        "node_sets: localization\nrelated_files: {params: nav2.yaml}\n"
+        "robots: [{name: r1}, {name: r2}]\n"
     )
     made = load_fleet(tmp_path / "fleet.yaml")
     rows = yaml.safe_load(made.text("r1/bridge.yaml"))

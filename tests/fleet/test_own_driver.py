@@ -33,14 +33,14 @@ nodes:
     with: [tf_broadcaster]
     frames: {odom_frame: odom, base_frame: base_link}
     SENDS
-stacks:
+node_sets:
   mine: {about: my robot, nodes: [my_driver]}
 """
-DESCRIBED = "nodes: nodes.yaml\nstack: mine"
+DESCRIBED = "nodes: nodes.yaml\nnode_sets: mine"
 
 
 def children(folder: Path, parameters: str, more: str = "", sends: str = "") -> list[str]:
-    """The frame that the start pose of robot1 places; empty if it is not published."""
+    """Return the frame that the start pose of robot1 places; empty if it is not published."""
     (folder / "bare.urdf").write_text(ROBOT)
     (folder / "nodes.yaml").write_text(NODES.replace("SENDS", sends))
     (folder / "params.yaml").write_text(f"my_driver:\n  ros__parameters: {parameters}\n")

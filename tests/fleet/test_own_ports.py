@@ -18,7 +18,7 @@ from lxml import etree
 from multibot_rewrite import rewrite, rewrite_all, strip
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.checks.build import make_outputs
 
 ARDUPILOT = '<plugin name="a" filename="ArduPilotPlugin"><fdm_port_in>9002</fdm_port_in></plugin>'
 MAVLINK = '<plugin name="m" filename="libgazebo_mavlink_interface.so">{}</plugin>'
@@ -28,7 +28,7 @@ MODEL = '<sdf version="1.6"><model name="drone"><link name="base"/>{}</model></s
 def _built(
     folder: Path, plugins: dict[str, str], distro: str = "jazzy"
 ) -> tuple[list[str], list[Finding]]:
-    """The texts of the robots' models, and what is said."""
+    """Return the texts of the robots' models, and what is said."""
     for name, plugin in plugins.items():
         (folder / f"{name}.sdf").write_text(MODEL.format(plugin))
     robots = "".join(f"  - {{name: {it}, description: {it}.sdf}}\n" for it in plugins)

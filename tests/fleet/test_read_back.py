@@ -17,10 +17,10 @@ from fleet_folder import planned_fleet
 from paths import ROOT
 
 from multibot_rewrite.base.findings.finding import ERROR
+from multibot_rewrite.checks.build import Outputs, make_outputs
+from multibot_rewrite.checks.read_back import read_back
 from multibot_rewrite.cli import build
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.build import Outputs, make_outputs
-from multibot_rewrite.fleet.checks.read_back import read_back
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 
 EXAMPLE = ROOT / "examples" / "namespace_and_prefix" / "nav2.yaml"
@@ -251,9 +251,9 @@ LATER = ["ax_max", "ax_min", "ay_max", "ay_min", "az_max"]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("stack", ["robot_localization, ", ""])
+@pytest.mark.parametrize("node_set", ["robot_localization, ", ""])
 def test_a_filter_whose_file_is_there_runs_or_its_lack_is_told(
-    stack: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    node_set: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """odom -> base_link is sent by the filter alone (robot_localization ros_filter.cpp); Humble's MPPI
     has none of the five limits of Jazzy's (nav2_mppi_controller optimizer.cpp)."""
@@ -269,7 +269,7 @@ def test_a_filter_whose_file_is_there_runs_or_its_lack_is_told(
     files = "".join(f"../config/{it}, " for it in ("ukf.yaml", "nav2.yaml"))
     fleet = tmp_path / "fleet" / "fleet.yaml"
     fleet.write_text(
-        f"distro: humble\nlayout: tf-per-robot\nsimulator: none\nstack: [{stack}navigation, "
+        f"distro: humble\nlayout: tf-per-robot\nsimulator: none\nnode_sets: [{node_set}navigation, "
         "slam_toolbox]\ndescription: ../config/rover.urdf\n"
         f"related_files: {{params: [{files}]}}\nrobots: [{{name: robot1}}, {{name: robot2}}]\n"
     )
@@ -277,7 +277,7 @@ def test_a_filter_whose_file_is_there_runs_or_its_lack_is_told(
     assert main(["build", str(fleet), "-o", str(out)]) == 0
     said = capsys.readouterr().err
     started = "executable='ukf_node'" in (out / "fleet.launch.py").read_text()
-    assert (started, "MG406" in said) == (bool(stack), not stack)
+    assert (started, "MG406" in said) == (bool(node_set), not node_set)
     assert f"{tmp_path}/config/nav2.yaml:" in said
     assert f"{tmp_path}/fleet/.." not in said
     assert "there are 2 more such notes in the file, at lines 9, 10 " in said
@@ -293,7 +293,7 @@ def test_what_a_check_says_of_the_folder_alone_is_an_error(
     amcl = f"amcl: {{ros__parameters: {{odom_frame_id: {frame}, base_frame_id: base_footprint}}}}\n"
     (tmp_path / "amcl.yaml").write_text(amcl)
     fleet.write_text(
-        "layout: tf-per-robot\ndistro: jazzy\nsimulator: none\nstack: [nav2]\n"
+        "layout: tf-per-robot\ndistro: jazzy\nsimulator: none\nnode_sets: [nav2]\n"
         f"description: {ROOT / 'fixtures' / 'robots' / 'rover.urdf'}\n"
         "related_files: {params: amcl.yaml}\nrobots: [{name: robot1}, {name: robot2, pose: {y: 3}}]\n"
     )

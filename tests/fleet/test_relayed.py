@@ -19,7 +19,7 @@ from multibot_rewrite import UsageError, compare, load_fleet
 from multibot_rewrite.base.findings.finding import NOTE
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.fleet import expected
-from multibot_rewrite.fleet.scripts import LoadedFleet
+from multibot_rewrite.library.loaded_fleet import LoadedFleet
 from multibot_rewrite.planning.bridged_topics import TF_TYPE
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, End, System
 
@@ -34,7 +34,7 @@ Displays:
 def fleet(folder: Path, layout: str) -> LoadedFleet:
     (folder / "one.rviz").write_text(RVIZ)
     text = (
-        f"layout: {layout}\nrelayed: true\nstack: robot_state_publisher\n"
+        f"layout: {layout}\nrelayed: true\nnode_sets: robot_state_publisher\n"
         "robots:\n"
         f"  - {{name: robot1, description: {ROBOTS / 'rover.urdf'}}}\n"
         f"  - {{name: robot2, description: {ROBOTS / 'rover.urdf'}}}\n"
@@ -45,7 +45,7 @@ def fleet(folder: Path, layout: str) -> LoadedFleet:
 
 
 def relayed(plan: System) -> System:
-    """The graph as planned, with what the relays send."""
+    """Return the graph as planned, with what the relays send."""
     graph = as_planned(plan)
     copies = (it._replace(topic="/tf_static" if it.static else "/tf") for it in graph.edges)
     return sent(graph._replace(edges=(*graph.edges, *copies)))

@@ -18,7 +18,7 @@ NAMESPACE = DRIVE.format("<ros><namespace>{}</namespace></ros>")
 
 
 def planned(folder: Path, robot: str, link: str, namespace: str) -> FleetPlan:
-    """The plan of a fleet of one robot, whose description has a link and a namespace."""
+    """Return the plan of a fleet of one robot, whose description has a link and a namespace."""
     text = ROBOT.format(link, NAMESPACE.format(namespace))
     return planned_fleet(fleet_folder(folder, FLEET.format(robot), rover__urdf=text))
 

@@ -11,7 +11,7 @@ from fleet_folder import SMALL, fleet_folder, mixed, planned_fleet
 from paths import CORPUS
 
 from multibot_rewrite.base.model import MultibotError
-from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.checks.build import make_outputs
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import (
     OutputFile,
@@ -174,7 +174,7 @@ def test_nothing_is_found_in_what_real_files_become(layout: str, tmp_path: Path)
         pytest.skip(f"no corpus of real files: looked in {CORPUS}")
     looked_at, told = 0, []
     for at, file in enumerate(params[:: len(params) // 12]):
-        text = f"layout: {layout}\naffix: prefix\nstack: nav2\ndescription: {urdfs[at * 80]}\n"
+        text = f"layout: {layout}\naffix: prefix\nnode_sets: nav2\ndescription: {urdfs[at * 80]}\n"
         text += f"related_files: {{params: {file}}}\nrobots: [{{name: rob_a}}, {{name: rob_b}}]\n"
         try:
             made = make_outputs(planned(tmp_path, text))

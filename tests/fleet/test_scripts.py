@@ -14,40 +14,21 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from paths import FIXTURES, SUPPORT
+from paths import FIXTURES, SUPPORT, fixture_text
 
 from multibot_rewrite import InputError, RewriteRefused, UsageError, load_fleet
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
-from multibot_rewrite.fleet.scripts import LoadedFleet
+from multibot_rewrite.library.loaded_fleet import LoadedFleet
 from multibot_rewrite.related_files.params.rcl_parameters import node_parameters
 from multibot_rewrite.related_files.yaml_text import read_yaml
 
 ROVER = FIXTURES / "robots" / "rover.urdf"
-PARAMS = """\
-/**:
-  ros__parameters: {use_sim_time: yes, alpha1: 0.1}
-amcl:
-  ros__parameters:
-    base_frame_id: "base_footprint"   # the foot
-    odom_frame_id: odom
-    scan_topic: scan
-    tolerance: 1e-9
-    flag: n
-    quoted: "n"
-    initial_pose: {x: 0.5}
-    marker.y: 1
-    names: ['1', '2']
-local_costmap:
-  local_costmap:
-    ros__parameters: {global_frame: odom, robot_base_frame: base_link}
-my_node:
-  ros__parameters: {frame: base_link}
-"""
+PARAMS = fixture_text("scripts_params.yaml")
 FLEET = """\
 layout: {layout}
 affix: {affix}
-stack: [nav2, robot_state]
+node_sets: [nav2, robot_state]
 robots:
   - {{name: robot1, description: rover.urdf, pose: {{x: 1.0, y: 0.5, yaw: 1.5}}}}
   - {{name: robot2, description: rover.urdf, model: second}}
@@ -59,7 +40,7 @@ CHILD = SUPPORT / "rcl_params_child.py"
 
 
 def fleet(folder: Path, layout: str = "L2", text: str = FLEET, params: str = PARAMS) -> LoadedFleet:
-    """The fleet file of a folder, loaded."""
+    """Return the fleet file of a folder, loaded."""
     (folder / "rover.urdf").write_bytes(ROVER.read_bytes())
     (folder / "params.yaml").write_text(params)
     affix = "postfix" if layout == "L4" else "prefix"
@@ -196,7 +177,7 @@ def test_a_robot_without_a_pose_has_no_start_parameters(tmp_path: Path) -> None:
 
 def test_arguments_of_programs(tmp_path: Path) -> None:
     text = FLEET.replace("[nav2, robot_state]", "robot_state")
-    # Without localisation: neither the stack nor the parameters have a node for it.
+    # Without localisation: neither the node set nor the parameters have a node for it.
     own = "my_node:\n  ros__parameters: {frame: odom}\n"
     first, second = fleet(tmp_path, "L2", text, own).robots
     assert first.spawn_arguments[:4] == ["-name", "robot1", "-topic", "/robot1/robot_description"]
@@ -215,7 +196,7 @@ def test_arguments_of_programs(tmp_path: Path) -> None:
     ("ask", "parts"),
     [
         (lambda it: it.table.for_node("amlc"), ("robot 'robot1'", "'amlc'", "did you mean 'amcl'")),
-        (lambda it: it.node("amlc"), ("did you mean 'amcl'", "stack: in the fleet file")),
+        (lambda it: it.node("amlc"), ("did you mean 'amcl'", "node_sets: in the fleet file")),
         (lambda it: it.params("params.yaml", "amlc"), ("params.yaml", "did you mean 'amcl'")),
         (lambda it: it.params("params.yaml", "my_nod"), ("did you mean 'my_node'",)),
         (lambda it: it.params("parms.yaml", "amcl"), ("did you mean 'robot1/params.yaml'",)),
@@ -261,10 +242,10 @@ def test_robots_that_would_meet_are_refused(tmp_path: Path) -> None:
     (tmp_path / "mine.yaml").write_text(
         "nodes:\n  talker:\n    package: mine\n"
         "    publishes: {x_left: std_msgs/msg/String, x: std_msgs/msg/String}\n"
-        "stacks:\n  mine: {about: x, nodes: [talker]}\n"
+        "node_sets:\n  mine: {about: x, nodes: [talker]}\n"
     )
     text = (
-        "layout: postfix\nstack: mine\nnodes: mine.yaml\nseparators: {{topic: _}}\nrobots:\n"
+        "layout: postfix\nnode_sets: mine\nnodes: mine.yaml\nseparators: {{topic: _}}\nrobots:\n"
         "  - {{name: b, description: rover.urdf}}\n  - {{name: left_b, description: rover.urdf}}\n"
     )
     with pytest.raises(RewriteRefused) as caught:
@@ -362,7 +343,7 @@ def scalar_cases() -> list[str]:
 
 
 def without_its_own(values: Mapping[str, Any]) -> dict[str, Any]:
-    """A node's parameters but those that every node declares."""
+    """Return a node's parameters but those that every node declares."""
     own = ("use_sim_time", "start_type_description_service")
     return {name: value for name, value in values.items() if name not in own}
 
@@ -456,10 +437,10 @@ def test_which_nodes_are_in_a_process(tmp_path: Path) -> None:
     assert whole.isdisjoint({"robot_state_publisher", "nav2_container"})
 
 
-STACK_ALONE = """\
+NODE_SET_ALONE = """\
 layout: {layout}
 affix: {affix}
-stack: [nav2, robot_state]
+node_sets: [nav2, robot_state]
 robots:
   - {{name: robot1, description: rover.urdf}}
   - {{name: robot2, description: rover.urdf}}
@@ -478,7 +459,7 @@ robots:
 def test_a_robot_without_parameter_files_gets_the_frames_of_its_nodes(
     layout: str, more: str, given: str, tmp_path: Path
 ) -> None:
-    loaded = fleet(tmp_path, layout, more + STACK_ALONE)
+    loaded = fleet(tmp_path, layout, more + NODE_SET_ALONE)
     robot, name = loaded.robot("robot2"), "robot2/params.yaml"
     assert robot.params_files == (("params.yaml",) if given else ())
     assert (name in loaded.files) is bool(given)

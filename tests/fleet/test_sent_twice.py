@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from fleet_folder import SMALL, fleet_folder, planned_fleet
 
-from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.checks.build import make_outputs
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 
 PARENTS = """\
@@ -29,7 +29,8 @@ def test_two_nodes_that_send_one_frame(tmp_path: Path) -> None:
         "amcl: {ros__parameters: {odom_frame_id: odom}}\n"
         "slam_toolbox:\n  ros__parameters: {odom_frame: odom, map_frame: map}\n"
     )
-    text = f"stack: [localization, nav2_slam]\nrelated_files: {{params: params.yaml}}\n{PARENTS}"
+    sets = "node_sets: [localization, nav2_slam]\n"
+    text = f"{sets}related_files: {{params: params.yaml}}\n{PARENTS}"
     plan = planned(tmp_path, text, params__yaml=params)
     found = [it for it in make_outputs(plan).findings if it.code == "MG408"]
     assert len(found) == 1
@@ -40,7 +41,7 @@ def test_two_nodes_that_send_one_frame(tmp_path: Path) -> None:
 
 @pytest.mark.more
 def test_two_robots_that_send_a_shared_frame_on_one_topic(tmp_path: Path) -> None:
-    text = f"stack: nav2\nshared_frames: [map, odom]\n{PARENTS}"
+    text = f"node_sets: nav2\nshared_frames: [map, odom]\n{PARENTS}"
     (found,) = [it for it in make_outputs(planned(tmp_path, text)).findings if it.code == "MG408"]
     assert (found.message, found.level) == ("several nodes send map -> odom on /tf", "error")
     assert "/r1/amcl, /r2/amcl" in found.hint

@@ -11,7 +11,7 @@ from nav2_graphs import ROVER
 from plans import own
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.checks.build import make_outputs
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.system.records import System
 
@@ -19,7 +19,7 @@ LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 FLEET = """\
 layout: {layout}
 description: {rover}
-stack: nav2
+node_sets: nav2
 distro: jazzy
 shared_topics: [/map, /clock, /rosout, /parameter_events, /diagnostics]
 shared_nodes: {shared}
@@ -70,12 +70,12 @@ def test_a_client_of_a_shared_node_calls_the_one_there_is(tmp_path: Path) -> Non
         "nodes:\n"
         "  atlas: {package: acme, serves: {~/load: std_srvs/srv/Trigger}}\n"
         "  reader: {package: acme, calls: {atlas/load: std_srvs/srv/Trigger}}\n"
-        "stacks: {acme: {nodes: [atlas, reader]}}\n"
+        "node_sets: {acme: {nodes: [atlas, reader]}}\n"
     )
     for layout in LAYOUTS:
         file = tmp_path / "fleet.yaml"
         text = FLEET.format(layout=layout, rover=ROVER, shared="atlas")
-        file.write_text(text.replace("stack: nav2", "stack: acme\nnodes: nodes.yaml"))
+        file.write_text(text.replace("node_sets: nav2", "node_sets: acme\nnodes: nodes.yaml"))
         plan = expected(planned_fleet(file).fleet)
         names = {it.name for it in plan.ends if "load" in it.name}
         assert names == {"/atlas/load"}, layout

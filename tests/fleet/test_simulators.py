@@ -12,8 +12,8 @@ from nav2_graphs import environment
 from paths import ROBOTS
 
 from multibot_rewrite import compare
+from multibot_rewrite.checks.closed_plan import closed_plan
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.checks.closed_plan import closed_plan
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.system.records import Node, System
@@ -140,7 +140,7 @@ REAL = "simulator: none\n"
         (PLUGIN.format("<rate>5</rate>") + KNOWN, "", ""),
         (PLUGIN.format("<left>turn</left>"), REAL, ""),
         (f"{SENSOR}<left>turn</left></plugin></sensor></gazebo>", "", ""),
-        (HARDWARE, f"{REAL}stack: ros2_control\n", "names the joint turn"),
+        (HARDWARE, f"{REAL}node_sets: ros2_control\n", "names the joint turn"),
         (HARDWARE, REAL, ""),
     ],
 )
@@ -160,7 +160,7 @@ def test_the_time_of_a_manager_in_the_simulator_is_that_of_its_robot(
     affix: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """A node is known by its name without its robot's, on either side."""
-    words = f"layout: postfix\naffix: {affix}\ndistro: jazzy\nstack: gz_ros2_control\n"
+    words = f"layout: postfix\naffix: {affix}\ndistro: jazzy\nnode_sets: gz_ros2_control\n"
     robot = ROBOTS / "rover_gz.urdf"
     file = tmp_path / "fleet.yaml"
     file.write_text(
@@ -180,10 +180,10 @@ SENSING = """<robot name="bot"><link name="base_link"><inertial><mass value="1"/
 @pytest.mark.parametrize(
     ("keys", "is_told"),
     [
-        ("simulator: gazebo\nuse_sim_time: false\nstack: [robot_localization]", True),
-        ("simulator: gazebo\nuse_sim_time: true\nstack: [robot_localization]", False),
-        ("simulator: gazebo\nstack: [robot_localization]", False),
-        ("simulator: none\nuse_sim_time: false\nstack: [robot_localization]", False),
+        ("simulator: gazebo\nuse_sim_time: false\nnode_sets: [robot_localization]", True),
+        ("simulator: gazebo\nuse_sim_time: true\nnode_sets: [robot_localization]", False),
+        ("simulator: gazebo\nnode_sets: [robot_localization]", False),
+        ("simulator: none\nuse_sim_time: false\nnode_sets: [robot_localization]", False),
     ],
 )
 def test_nodes_on_the_time_of_the_machine_beside_sensors_of_a_simulator(

@@ -34,7 +34,7 @@ def healthy() -> System:
 @pytest.mark.more
 def test_a_plan_as_json_too(tmp_path: Path) -> None:
     file = tmp_path / "plan.json"
-    words = ["plan", str(ROVER), *ROBOTS, "--stack", "nav2", "--layout", "both", "-o", str(file)]
+    words = ["plan", str(ROVER), *ROBOTS, "--node-set", "nav2", "--layout", "both", "-o", str(file)]
     assert main(words) == 0
     assert system_of_files(file).layout == "both"
 
@@ -78,7 +78,7 @@ def test_what_cannot_be_read_is_said(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_a_built_folder_runs_as_its_plan_says(tmp_path: Path) -> None:
     robots = "".join(f"  - {{name: {it}, description: {ROVER}}}\n" for it in ROBOTS)
-    text = f"layout: frames-per-robot\nstack: [robot_localization]\nrobots:\n{robots}"
+    text = f"layout: frames-per-robot\nnode_sets: [robot_localization]\nrobots:\n{robots}"
     text += "related_files: {params: ekf.yaml}\n"
     (tmp_path / "fleet.yaml").write_text(text)
     # The plugin of the drive sends it.

@@ -14,7 +14,7 @@ from fleet_folder import built_fleet, planned_fleet
 from plans import robot_named
 
 from multibot_rewrite import load_fleet
-from multibot_rewrite.fleet.build import Outputs
+from multibot_rewrite.checks.build import Outputs
 
 URDF = """\
 <robot name="rover">
@@ -192,7 +192,7 @@ def test_two_robots_of_one_model_and_of_none(tmp_path: Path) -> None:
             {
                 "description": "rover.sdf.xacro",
                 "simulated": "",
-                "stack": ["no_robot_state_publisher", "slam_toolbox"],
+                "node_sets": ["no_robot_state_publisher", "slam_toolbox"],
             },
             [],
         ),

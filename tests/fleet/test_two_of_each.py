@@ -16,9 +16,9 @@ import pytest
 from built_faults import BUILT, FLEET, LAUNCH, OUT, Edit, edited, fleet, in_file
 from fleet_folder import planned_fleet
 
-from multibot_rewrite.fleet.build import Outputs, make_outputs
-from multibot_rewrite.fleet.checks.read_back import read_back
-from multibot_rewrite.fleet.checks.two_of_each import two_of_each
+from multibot_rewrite.checks.build import Outputs, make_outputs
+from multibot_rewrite.checks.read_back import read_back
+from multibot_rewrite.checks.two_of_each import two_of_each
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.system.records import PUBLISHES, Topic
 
@@ -39,7 +39,7 @@ def five(*names: str) -> tuple[FleetPlan, Outputs]:
 
 
 def left(edit: Edit | None = None, names: tuple[str, ...] = NAMES) -> frozenset[str]:
-    """The robots that are not read."""
+    """Return the robots that are not read."""
     plan, made = five(*names)
     made = edited(made, edit) if edit else made
     return two_of_each(made, [it.spec for it in plan.robots]).left

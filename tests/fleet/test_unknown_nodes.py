@@ -43,7 +43,7 @@ def generate_launch_description():
 def started(
     folder: Path, body: str, more: str = "", layout: str = "both", **files: str
 ) -> dict[str, dict[str, Any]]:
-    """What the launch file of a build gives each program or class of the last robot, and of all."""
+    """Return what a build's launch file gives each program or class of the last robot, and of all."""
     (folder / "robot.urdf").write_text(DESCRIPTION)
     (folder / "up.launch.py").write_text(LAUNCH.replace("BODY", body))
     (folder / "fleet.yaml").write_text(FLEET.format(more=more, layout=layout))
@@ -60,7 +60,7 @@ def started(
 
 
 def values(it: dict[str, Any]) -> dict[str, Any]:
-    """The parameters that are in no file."""
+    """Return the parameters that are in no file."""
     return {
         key: one for row in it["parameters"] if isinstance(row, dict) for key, one in row.items()
     }

@@ -167,7 +167,7 @@ def build(sources: Path, tmp_path: Path) -> Build:
             "srdf": str(sources / arm.srdf),
             "arguments": {**arm.arguments, **(arm.prefix if way == OWN else {})},
             "fill_arguments": way == FILLED,
-            "stack": ["ros2_control", "moveit"],
+            "node_sets": ["ros2_control", "moveit"],
             "simulator": "none",
             "related_files": {
                 "params": [str(sources / it) for it in arm.params],
@@ -184,7 +184,7 @@ def build(sources: Path, tmp_path: Path) -> Build:
 
 
 def vendors(arm: Arm, sources: Path, robot: str, path: str) -> etree._Element:
-    """What the vendor's xacro makes with its own prefix argument."""
+    """Return what the vendor's xacro makes with its own prefix argument."""
     prefix = {name: text.format(robot=robot) for name, text in arm.prefix.items()}
     arguments = {**arm.arguments, **prefix} if path.endswith(".xacro") else {}
     return etree.fromstring(read_whole(str(sources / path), arguments, False).data)
@@ -196,7 +196,7 @@ def ours(files: Mapping[str, bytes], robot: str, path: str) -> etree._Element:
 
 
 def differences(one: etree._Element, other: etree._Element) -> Iterator[tuple[str, str, str, str]]:
-    """What differs, element by element; a text is the attribute ``text``."""
+    """Yield what differs, element by element; a text is the attribute ``text``."""
     elements = [[it for it in root.iter() if isinstance(it.tag, str)] for root in (one, other)]
     assert len(elements[0]) == len(elements[1])
     for before, after in zip(*elements, strict=True):

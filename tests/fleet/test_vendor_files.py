@@ -10,7 +10,7 @@ from fleet_folder import planned_fleet
 from named_ends import named_ends
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.checks.build import make_outputs
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 
 SENSOR = """\
@@ -70,7 +70,7 @@ def said(made: FleetPlan, code: str) -> list[Finding]:
 def test_a_sensor_that_a_launched_bridge_carries_needs_no_topic(
     arguments: tuple[str, ...], told: bool, tmp_path: Path
 ) -> None:
-    made = plan(tmp_path, SENSOR, "stack: bridge_per_robot\n")
+    made = plan(tmp_path, SENSOR, "node_sets: bridge_per_robot\n")
     evidence = {key: it._replace(arguments=arguments) for key, it in made.evidence.items()}
     assert bool(said(made._replace(evidence=evidence), "MF509")) is told
 
@@ -80,7 +80,7 @@ def test_a_sensor_that_a_launched_bridge_carries_needs_no_topic(
 def test_an_interface_is_found_whose_name_has_a_slash(
     sensor: str, open_: bool, tmp_path: Path
 ) -> None:
-    more = "arguments: {namespace: '{robot}'}\nstack: ros2_control\n"
+    more = "arguments: {namespace: '{robot}'}\nnode_sets: ros2_control\n"
     made = plan(tmp_path, HARDWARE, more, IMU.replace("SENSOR", sensor))
     found = [it for it in said(made, "MB229") if "of robot1 " in it.message]
     assert bool(found) is open_
@@ -105,7 +105,7 @@ def test_parameters_decide_whether_commands_are_stamped(
     """twist_mux.cpp, use_stamped; the plan and a rehearsal have the one type."""
     values = f"{{use_stamped: {stamped}, topics.joy.topic: joy/cmd_vel}}"
     params = f"twist_mux:\n  ros__parameters: {values}\n"
-    made = plan(tmp_path, SENSOR, "stack: twist_mux\n", params)
+    made = plan(tmp_path, SENSOR, "node_sets: twist_mux\n", params)
     types = {it.endpoint.name: it.endpoint.type for it in named_ends(made.fleet.table)}
     assert types["cmd_vel_out"] == f"geometry_msgs/msg/{type_}"
     assert types["joy/cmd_vel"] == f"geometry_msgs/msg/{type_}"
@@ -152,7 +152,7 @@ def test_rules_of_a_plugin_reach_its_controllers(
 ) -> None:
     (tmp_path / "system_model.yaml").write_text(OWN_MANAGER)
     more = "launch: system_model.yaml\n" if started else ""
-    plan(tmp_path, DRIVE, f"distro: {release}\nstack: gz_ros2_control\n{more}", LOADED)
+    plan(tmp_path, DRIVE, f"distro: {release}\nnode_sets: gz_ros2_control\n{more}", LOADED)
     made = planned_fleet(tmp_path / "fleet.yaml")
     names = {
         it.endpoint.name: it.name for it in named_ends(made.fleet.table) if it.robot == "robot1"

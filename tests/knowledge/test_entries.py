@@ -20,6 +20,7 @@ from multibot_rewrite.knowledge.node_library import (
     NodeLibrary,
     extend,
 )
+from multibot_rewrite.knowledge.node_sets import in_release
 from multibot_rewrite.knowledge.parameters import (
     _anywhere,
     _node,
@@ -42,13 +43,12 @@ from multibot_rewrite.knowledge.records import (
     Param,
     SentTransform,
 )
-from multibot_rewrite.knowledge.stacks import in_release
 from multibot_rewrite.knowledge.worlds import DEFAULTS, SENT_BY, SENT_BY_ANY, SYSTEMS
 
 EMPTY = NodeLibrary({}, {}, {})
 FILE = fixture_text("entries_file.yaml")
 PLAIN = "  plain: {publishes: {out: a/msg/B}}\n  box: {package: rclcpp_components}\n"
-LIBRARY = extend(EMPTY, FILE.replace("stacks:\n", f"{PLAIN}stacks:\n"), "f.yaml")
+LIBRARY = extend(EMPTY, FILE.replace("node_sets:\n", f"{PLAIN}node_sets:\n"), "f.yaml")
 TF = Endpoint("topic", "subscribes", "/tf", "tf2_msgs/msg/TFMessage")
 
 
@@ -243,9 +243,12 @@ nodes:
         ("nodes: {a: {params: {<jont>.y: frame}}}", "segment 'jont' is not known"),
         ("nodes: {a: {params: {x: [frame, link]}}}", "parameter 'x' is there twice in"),
         ("guesses: {fame: [x]}", "kind 'fame' is not known"),
-        ("stacks: {a: {node: [x]}}", "key 'node' is not known"),
+        ("node_sets: {a: {node: [x]}}", "key 'node' is not known"),
         ("parts: {a: {publish: {}}}", "key 'publish' is not known"),
-        ("nodes: {b: {}}\nstacks: {a: {nodes: [{node: b, parameters: {x: []}}]}}", "x is no word"),
+        (
+            "nodes: {b: {}}\nnode_sets: {a: {nodes: [{node: b, parameters: {x: []}}]}}",
+            "x is no word",
+        ),
     ],
 )
 def test_what_is_wrong_in_an_entry(text: str, message: str) -> None:

@@ -21,7 +21,7 @@ from multibot_rewrite.knowledge.conditions import (
     parse_condition,
 )
 from multibot_rewrite.knowledge.node_library import NodeLibrary
-from multibot_rewrite.knowledge.stacks import every_release
+from multibot_rewrite.knowledge.node_sets import every_release
 
 PROSE = {"endpoint": 3, "node": 1, "parameter": 4, "file": 0, "port": 0, "condition": 9}
 TOPIC = re.compile(r"(?:^|[\s(])[~/]?[a-z_<>]*/[\w<>/*]+")
@@ -54,7 +54,7 @@ def of_parts() -> frozenset[object]:
 
 
 def named(text: str, own: str) -> Iterator[str]:
-    """What a text names."""
+    """Yield what a text names."""
     words = set(re.findall(r"[\w<>.]+", text))
     known = library()
     nodes = {it.rpartition("/")[2] for it in (*known.nodes, *known.parameters)} - {own}
@@ -75,7 +75,10 @@ def test_prose_that_names_something_only_gets_less() -> None:
 
 def conditions() -> Iterator[str]:
     known = library()
-    nodes = (*known.nodes.values(), *(it for stack in known.stacks.values() for it in stack.nodes))
+    nodes = (
+        *known.nodes.values(),
+        *(it for a_set in known.node_sets.values() for it in a_set.nodes),
+    )
     for node in nodes:
         yield from (node.when, *(it.when for it in node.endpoints))
         yield from (it.condition for it in (*node.endpoints, *node.sends, *node.claims))

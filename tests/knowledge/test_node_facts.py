@@ -14,8 +14,8 @@ import pytest
 from paths import FIXTURES
 
 from multibot_rewrite.base.rosnames import expand
+from multibot_rewrite.knowledge.node_sets import built_in
 from multibot_rewrite.knowledge.records import Endpoint
-from multibot_rewrite.knowledge.stacks import built_in
 
 LEAST_FACTS = 600
 LEAST_NODES = 94
@@ -37,7 +37,7 @@ class Fact(NamedTuple):
 
 
 def rows(file: str) -> list[list[str]]:
-    """The lines of a table."""
+    """Return the lines of a table."""
     return [line.split("\t") for line in (FIXTURES / file).read_text().splitlines()]
 
 
@@ -48,7 +48,7 @@ EXCEPTIONS = {
 
 
 def endpoints(node: str) -> tuple[Endpoint, ...]:
-    """What a node or a part has, nothing where it is not known."""
+    """Return what a node or a part has, nothing where it is not known."""
     library = built_in("jazzy")
     if node in library.nodes:
         return library.nodes[node].endpoints
@@ -56,7 +56,7 @@ def endpoints(node: str) -> tuple[Endpoint, ...]:
 
 
 def full(name: str, node: str) -> str:
-    """A name as it is without a namespace: ``map_server/map`` and ``~/map`` are the same."""
+    """Return a name as it is without a namespace: ``map_server/map`` and ``~/map`` are the same."""
     return expand(name, "/", node) if name.startswith("~") else "/" + name.lstrip("/")
 
 
@@ -66,7 +66,7 @@ def same_form(one: str, other: str) -> bool:
 
 
 def trouble(fact: Fact) -> str:
-    """What is wrong with the data, measured by this fact; empty where nothing is."""
+    """Return what is wrong with the data, measured by this fact; empty where nothing is."""
     wanted = full(fact.name, fact.node)
     found = [
         e

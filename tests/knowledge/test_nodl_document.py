@@ -118,7 +118,7 @@ def test_what_is_wrong_is_one_line_with_file_and_line(text: str) -> None:
 
 
 def damaged(value: Any) -> Iterator[Any]:
-    """The document with one value after the other replaced, or left out."""
+    """Yield the document with one value after the other replaced, or left out."""
     for path in list(_paths(value)):
         for new in (None, 7, "x", [], {}, "2", "a b", ...):
             result = copy.deepcopy(value)
@@ -161,6 +161,6 @@ def test_what_the_schema_allows_is_read_and_what_it_forbids_is_refused() -> None
 
 
 def _is_laxer(path: tuple[Any, ...]) -> bool:
-    """A text is a number to us, and what is not used is not checked: values in parameters."""
+    """Return whether we accept more there: texts as numbers, and values that are not used."""
     free = ("description", "depth", "deadline_ns", "lifespan_ns", "liveliness_lease_duration_ns")
     return path[0] in ("parameters", "codegen", "nodl_version") or path[-1] in free

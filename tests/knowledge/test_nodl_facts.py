@@ -9,6 +9,7 @@ import pytest
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.knowledge.node_sets import built_in, user_library
 from multibot_rewrite.knowledge.nodl.document import Parameter
 from multibot_rewrite.knowledge.nodl.lookup import (
     INDEX,
@@ -21,7 +22,6 @@ from multibot_rewrite.knowledge.nodl.lookup import (
     nodes_of,
 )
 from multibot_rewrite.knowledge.records import Endpoint, FrameParameter, NodeFacts, SentTransform
-from multibot_rewrite.knowledge.stacks import built_in, user_stack
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 
 QOS = "qos: {history: KEEP_ALL, reliability: RELIABLE}"
@@ -45,8 +45,8 @@ def installed(prefix: Path, key: str, text: str) -> str:
     return written(prefix / INDEX, key, text)
 
 
-def node_of(stack: str, *paths: str) -> NodeFacts:
-    (node,) = nodes_of(NodeKnowledge(built_in(NEWEST_LTS), find_interfaces(paths)), stack)
+def node_of(node_set: str, *paths: str) -> NodeFacts:
+    (node,) = nodes_of(NodeKnowledge(built_in(NEWEST_LTS), find_interfaces(paths)), node_set)
     return node
 
 
@@ -254,7 +254,7 @@ def test_frames_are_the_defaults_of_parameters(tmp_path: Path) -> None:
     ]
 
 
-def test_a_node_of_a_stack_keeps_the_stacks_changes(tmp_path: Path) -> None:
+def test_a_node_of_a_node_set_keeps_the_node_sets_changes(tmp_path: Path) -> None:
     text = document("/cmd_vel", "local_plan").replace("std_msgs/msg/String", "acme/msg/Velocity")
     path = written(tmp_path, "nav2_controller__controller_server.nodl.yaml", text)
     found = {
@@ -267,7 +267,7 @@ def test_a_node_of_a_stack_keeps_the_stacks_changes(tmp_path: Path) -> None:
     assert (velocity.remapped, velocity.type) == ("cmd_vel_nav", "acme/msg/Velocity")
 
 
-def test_a_document_is_found_by_the_usual_name_of_a_node_that_a_stack_renames(
+def test_a_document_is_found_by_the_usual_name_of_a_node_that_a_node_set_renames(
     tmp_path: Path,
 ) -> None:
     path = written(
@@ -295,7 +295,7 @@ def test_a_node_of_the_users_own_file_stays_and_names_its_document_otherwise(
 ) -> None:
     mine = "nodes:\n  amcl: {package: nav2_amcl, publishes: {mine: std_msgs/msg/String}}\n"
     nodes = written(tmp_path, "mine.yaml", mine)
-    library = user_stack(nodes, NEWEST_LTS)
+    library = user_library(nodes, NEWEST_LTS)
     path = written(tmp_path, "nav2_amcl__amcl.nodl.yaml", document("theirs"))
     interfaces = find_interfaces([path])
     (own,) = nodes_of(NodeKnowledge(library, interfaces, frozenset({"amcl"})), "amcl")
@@ -303,14 +303,14 @@ def test_a_node_of_the_users_own_file_stays_and_names_its_document_otherwise(
     assert (list(ends(own)), list(ends(theirs))) == (["mine"], ["theirs", "mine"])
 
 
-def test_a_document_alone_is_a_stack_by_its_name(tmp_path: Path) -> None:
+def test_a_document_alone_is_a_node_set_by_its_name(tmp_path: Path) -> None:
     written(tmp_path, "acme__gripper.nodl.yaml", document("grip"))
     assert node_of("gripper", str(tmp_path)).package == "acme"
     written(tmp_path, "other__gripper.nodl.yaml", document("grip"))
     with pytest.raises(UsageError, match="acme/gripper or other/gripper"):
         node_of("gripper", str(tmp_path))
     assert node_of("other/gripper", str(tmp_path)).package == "other"
-    with pytest.raises(UsageError, match="stack 'griper' is not known"):
+    with pytest.raises(UsageError, match="node set 'griper' is not known"):
         node_of("griper", str(tmp_path))
 
 

@@ -17,8 +17,8 @@ from multibot_rewrite.base.releases import CAME, RELEASES
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.cli.urdf_lint import main as main_lint
 from multibot_rewrite.knowledge.conditions import chosen_type
+from multibot_rewrite.knowledge.node_sets import built_in, every_release, older_node
 from multibot_rewrite.knowledge.packages import by_version, number, older, packages, versions_of
-from multibot_rewrite.knowledge.stacks import built_in, every_release, older_node
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC, End, Node, System
 

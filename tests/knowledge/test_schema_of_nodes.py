@@ -15,12 +15,12 @@ from paths import ROOT
 from multibot_rewrite.base import editors
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.knowledge.node_library import extend
-from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.knowledge.node_sets import built_in
 from tools.schemas.nodes import schema
 
 PACKAGE = files("multibot_rewrite.knowledge")
 OURS = sorted(Path(str(PACKAGE)).joinpath("nodes").glob("*.yaml"))
-PAGE = (ROOT / "docs" / "stacks.md").read_text().partition("```yaml\n")[2].partition("```")[0]
+PAGE = (ROOT / "docs" / "node-sets.md").read_text().partition("```yaml\n")[2].partition("```")[0]
 
 
 def wrong(text: str) -> list[str]:
@@ -52,8 +52,8 @@ def test_the_example_of_the_page_follows_it() -> None:
         "nodes: {a: {package: p, publish: {}}}",
         "nodes: {a: {package: p, publishes: {scan: {typ: sensor_msgs/msg/LaserScan}}}}",
         "nodes: {a: {package: p, params: {f: frames}}}",
-        "stacks: {s: {about: x, node: []}}",
-        "stacks: {s: {nodes: [{node: amcl, known: x}]}}",
+        "node_sets: {s: {about: x, node: []}}",
+        "node_sets: {s: {nodes: [{node: amcl, known: x}]}}",
     ],
 )
 def test_what_the_reader_rejects_is_marked(text: str) -> None:

@@ -12,9 +12,9 @@ import pytest
 from multibot_rewrite.base.releases import RELEASES, has_release
 from multibot_rewrite.knowledge.conditions import ALSO
 from multibot_rewrite.knowledge.declared import declared_by
+from multibot_rewrite.knowledge.node_sets import built_in
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.records import Branch, NodeFacts, NodeParameters, Param
-from multibot_rewrite.knowledge.stacks import built_in
 
 # Without a section in parameter files: a Lua file, a file of its own, no parameters but actions.
 NO_PARAMETERS = {"cartographer_node", "rviz2", "ros_gz_bridge", "trajectory_until_node"}

@@ -36,7 +36,7 @@ in_launch = pytest.mark.skipif(not REAL, reason=NO_LAUNCH)
 FLEET = """\
 layout: frames-per-robot
 affix: prefix
-stack: [nav2, robot_state]
+node_sets: [nav2, robot_state]
 robots:
   - {name: robot1, description: rover.urdf, pose: {x: 1.0, y: 0.5, yaw: 1.5}}
   - {name: robot2, description: rover.urdf, model: second}
@@ -98,7 +98,7 @@ SIGNATURES = json.loads((FIXTURES / "launch_signatures.json").read_text())
 
 
 def refusing(name: str) -> Any:
-    """A class that refuses the options that the one of launch_ros refuses."""
+    """Return a class that refuses the options that the one of launch_ros refuses."""
 
     def made(self: Started, **options: Any) -> None:
         unknown = sorted(set(options) - {*SIGNATURES[name]})
@@ -124,7 +124,7 @@ def stand_ins(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def frontend(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
-    """What XML can say, in launch or in the stand-in."""
+    """Yield what XML can say, in launch or in the stand-in."""
     stand_ins(monkeypatch)
     made_once = (launch_context.substitution_class, later._action, later._component)
     for it in made_once:
@@ -141,7 +141,7 @@ def context(frontend: Any) -> Any:
 
 @pytest.fixture
 def fleet(tmp_path: Path) -> str:
-    """The path of a fleet file."""
+    """Return the path of a fleet file."""
     (tmp_path / "rover.urdf").write_bytes((FIXTURES / "robots" / "rover.urdf").read_bytes())
     (tmp_path / "params.yaml").write_text(PARAMS)
     (tmp_path / "one.rviz").write_bytes(RVIZ.read_bytes())
@@ -150,14 +150,14 @@ def fleet(tmp_path: Path) -> str:
 
 
 def run(context: Any, action: Any) -> list[Started]:
-    """What an action starts, and what those start that it makes."""
+    """Return what an action starts, and what those start that it makes."""
     made = [it for one in action.visit(context) or () for it in run(context, one)]
     own = isinstance(action, Started) and not isinstance(action, Set) and action.ran
     return [action, *made] if own else made
 
 
 def read(text: str) -> list[Any]:
-    """The actions of an XML launch file."""
+    """Return the actions of an XML launch file."""
     whole = f"<launch>{text}</launch>"
     if not REAL:
         parser: Any = launch_stand_in.Parser()
@@ -170,7 +170,7 @@ def read(text: str) -> list[Any]:
 
 
 def of(name: str) -> Any:
-    """A launch configuration, known when the launch file runs."""
+    """Return a launch configuration, known when the launch file runs."""
     return importlib.import_module("launch.substitutions").LaunchConfiguration(name)
 
 
@@ -289,7 +289,7 @@ class Handler:
 
 
 def later_on(context: Any, handler: Any, event: str) -> Any:
-    """What a handler says when its event comes, as a launch asks it (launch_service.py)."""
+    """Return what a handler says when its event comes, as a launch asks it (launch_service.py)."""
     context._push_locals()
     try:
         return handler.handle(event, context)
@@ -363,7 +363,7 @@ def test_a_group_in_a_group_ends_with_the_robot_around_it(fleet: str, context: A
         launch.robot_of(context, launch.RobotRef(fleet=fleet))
 
 
-def test_the_program_of_a_node_is_that_of_its_stack(fleet: str, context: Any) -> None:
+def test_the_program_of_a_node_is_that_of_its_node_set(fleet: str, context: Any) -> None:
     where = {"robot": "robot1", "fleet": Path(fleet)}
 
     def program(action: Any) -> tuple[Any, Any]:
@@ -382,7 +382,7 @@ def test_the_program_of_a_node_is_that_of_its_stack(fleet: str, context: Any) ->
         run(context, launch.node("amlc", **where))
 
 
-def test_the_class_of_a_component_is_that_of_its_stack(fleet: str, context: Any) -> None:
+def test_the_class_of_a_component_is_that_of_its_node_set(fleet: str, context: Any) -> None:
     Path(fleet).write_text(
         "distro: lyrical\n" + FLEET.replace("[nav2, robot_state]", "nav2_composed")
     )
@@ -398,9 +398,9 @@ def test_the_class_of_a_component_is_that_of_its_stack(fleet: str, context: Any)
     assert box.options["arguments"] == ["--isolated", "--executor-type", "single-threaded", "-x"]
 
 
-def test_a_program_that_no_stack_has_is_asked_for(fleet: str, context: Any) -> None:
+def test_a_program_that_no_node_set_has_is_asked_for(fleet: str, context: Any) -> None:
     Path(fleet).with_name("nodes.yaml").write_text(
-        "stacks:\n  own: {about: one node, nodes: [driver]}\n"
+        "node_sets:\n  own: {about: one node, nodes: [driver]}\n"
         "nodes:\n  driver: {publishes: {scan: sensor_msgs/msg/LaserScan}}\n"
     )
     Path(fleet).write_text(f"nodes: nodes.yaml\n{FLEET.replace('[nav2, ', '[own, nav2, ')}")
@@ -793,7 +793,7 @@ def test_xml_for_a_container_with_components(frontend: Any, context: Any) -> Non
     assert made is launch.container and given.pop("describe") is False
     inside = given.pop("composable_node_descriptions")
     assert performed(context, given) == {
-        "package": "rclcpp_components", "executable": "isolated", "of_stack": "box",
+        "package": "rclcpp_components", "executable": "isolated", "name_in_set": "box",
         "files": "a.yaml", "robot": "r",
     }  # fmt: skip
     first, second = (it.options for it in inside)
@@ -817,11 +817,11 @@ def test_xml_for_a_component(frontend: Any, context: Any) -> None:
     made, given = frontend.composable_node(entity(text), parser)
     assert made is launch.node and given.pop("describe") is False
     assert performed(context, given) == {
-        "package": "p", "plugin": "p::One", "of_stack": "one", "use_sim_time": "true",
+        "package": "p", "plugin": "p::One", "name_in_set": "one", "use_sim_time": "true",
     }  # fmt: skip
     with pytest.raises(AttributeError, match="node"):
         frontend.composable_node(entity(text.replace('node="one"', "")), parser)
-    # Its program is that of the stack.
+    # Its program is that of the node set.
     bare = text.replace('pkg="p" plugin="p::One"', "")
     assert not {"package", "plugin"} & {*frontend.composable_node(entity(bare), parser)[1]}
     # What is not known of a component in a container is not passed over.
@@ -835,10 +835,10 @@ def test_xml_for_a_component(frontend: Any, context: Any) -> None:
 @pytest.mark.parametrize(
     ("text", "made", "known"),
     [
-        ('<n node="a" exec="x" describe="true"/>', "node", {"executable": "x", "of_stack": "a"}),
+        ('<n node="a" exec="x" describe="true"/>', "node", {"executable": "x", "name_in_set": "a"}),
         (
             '<n node="a" use_sim_time="false"/>', "lifecycle_node",
-            {"of_stack": "a", "use_sim_time": "false"},
+            {"name_in_set": "a", "use_sim_time": "false"},
         ),
         (
             '<n simulator="gz" robot="r" output="screen"/>', "spawn",

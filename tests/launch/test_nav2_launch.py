@@ -26,8 +26,8 @@ from vendor_sources import VARIABLE, sources_folder
 
 from multibot_rewrite import launch
 from multibot_rewrite.base.releases import RELEASES
+from multibot_rewrite.knowledge.node_sets import load_nodes
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, NAV2, known_program
-from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.live.rehearsal import stage
 
 REASON = f"not tried in the real launch, which is not here: {launch.missing()}"
@@ -46,7 +46,7 @@ def run(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
 
 
 def started(folder: Path, *words: str) -> dict[str, dict[str, Any]]:
-    """What is started, by full name; windows of RViz by their config."""
+    """Return what is started, by full name; windows of RViz by their config."""
     done = run(folder, *words)
     assert done.returncode == 0 and "Caught" not in done.stderr, done.stderr
     rows: Rows = json.loads("[" + f"\n{done.stdout}".rpartition("\n[")[2])
@@ -54,13 +54,13 @@ def started(folder: Path, *words: str) -> dict[str, dict[str, Any]]:
 
 
 def full(row: dict[str, Any]) -> str:
-    """The full name of a node; that of its file for RViz."""
+    """Return the full name of a node; that of its file for RViz."""
     name = row["name"] or "/".join(row["own"][-1:])
     return f"/{row['namespace'].strip('/')}/{name}".replace("//", "/")
 
 
 def values(row: dict[str, Any], node: str) -> dict[str, Any]:
-    """The parameters that files of a process have for a node by its full name."""
+    """Return the parameters that files of a process have for a node by its full name."""
     found: dict[str, Any] = {}
     for text in row["params"].values():
         # What launch_ros makes of lists; rcl does not look at it.
@@ -72,7 +72,7 @@ def values(row: dict[str, Any], node: str) -> dict[str, Any]:
 
 @in_launch
 def test_components_in_a_layout_without_namespaces(tmp_path: Path) -> None:
-    folder = written(tmp_path, stack="nav2_slam_composed", more="relayed: true")
+    folder = written(tmp_path, node_set="nav2_slam_composed", more="relayed: true")
     found = started(folder, "rviz:=one", "robot_state_publisher:=true", "use_sim_time:=true")
     box = found["/nav2_container_robot2"]
     assert box["executable"] == "component_container_isolated"
@@ -113,7 +113,7 @@ def test_processes_in_namespaces_with_a_map_for_all(tmp_path: Path) -> None:
 
 @in_launch
 @pytest.mark.parametrize(
-    ("words", "stack", "said"),
+    ("words", "node_set", "said"),
     [
         (("rviz:=one",), "nav2", "these robots need 2 windows; say relayed: true"),
         (("rviz:=all",), "nav2", "rviz:=all: way 'all' is not known"),
@@ -123,8 +123,10 @@ def test_processes_in_namespaces_with_a_map_for_all(tmp_path: Path) -> None:
     ],
 )
 @pytest.mark.slow
-def test_bad_words_are_said(tmp_path: Path, words: tuple[str, ...], stack: str, said: str) -> None:
-    done = run(written(tmp_path, stack=stack), *words)
+def test_bad_words_are_said(
+    tmp_path: Path, words: tuple[str, ...], node_set: str, said: str
+) -> None:
+    done = run(written(tmp_path, node_set=node_set), *words)
     assert said in done.stderr + done.stdout
 
 
@@ -136,7 +138,7 @@ def test_slam_toolbox_is_configured_and_activated_once(
 ) -> None:
     """It has a life cycle from Jazzy on (slam_toolbox_common.hpp), and nobody else knows it: with
     ``use_lifecycle_manager`` false, its default, it makes no bond (slam_toolbox_common.cpp)."""
-    fleet = written(tmp_path, stack="nav2_slam", layout="tf-per-robot") / "fleet.yaml"
+    fleet = written(tmp_path, node_set="nav2_slam", layout="tf-per-robot") / "fleet.yaml"
     fleet.write_text(fleet.read_text().replace("  - {name: robot2", "#"))
     for name, value in stage(None).items():
         monkeypatch.setenv(name, value)

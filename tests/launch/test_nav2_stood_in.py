@@ -42,7 +42,7 @@ SHARED = "shared_nodes: [map_server]\nshared_topics: [/map, /clock, /rosout, /pa
 
 
 def read(folder: Path, *words: tuple[str, str], **fleet: str) -> LaunchGraph:
-    """What is started for a fleet, with these launch arguments."""
+    """Return what is started for a fleet, with these launch arguments."""
     file = written(folder, **fleet) / "fleet.yaml"
     with pytest.MonkeyPatch.context() as kept:
         read_here(kept, folder)
@@ -74,12 +74,12 @@ def nodes(each: LaunchGraph) -> dict[str, LaunchedNode]:
 @pytest.fixture(scope="module")
 def composed(tmp_path_factory: pytest.TempPathFactory) -> LaunchGraph:
     """Namespaces: in a container of each robot, with a map server for all and tf on one topic."""
-    fleet = {"layout": "both", "stack": "nav2_composed", "more": f"relayed: true\n{SHARED}"}
+    fleet = {"layout": "both", "node_set": "nav2_composed", "more": f"relayed: true\n{SHARED}"}
     return read(tmp_path_factory.mktemp("fleet"), ("rviz", "one"), **fleet)
 
 
 def own(node: LaunchedNode) -> dict[str, object]:
-    """What the launch file itself sets, but the clock."""
+    """Return what the launch file itself sets, but the clock."""
     name = f"{node.namespace.rstrip('/')}/{node.name}"
     (*_, told) = ({}, *(yaml.safe_load(it.text) for it in node.parameters))
     if not {*told} <= {"/**", name}:
@@ -88,7 +88,7 @@ def own(node: LaunchedNode) -> dict[str, object]:
 
 
 def clocks(node: LaunchedNode) -> set[object]:
-    """The values of use_sim_time that a node is told."""
+    """Return the values of use_sim_time that a node is told."""
     found = re.findall(r"use_sim_time: (\S+)", "".join(it.text for it in node.parameters))
     return {yaml.safe_load(it) for it in found}
 
@@ -164,7 +164,7 @@ def test_each_process_has_the_level_of_the_log_and_shows_it(
         ),
     )
     read(tmp_path, ("robot_state_publisher", "true"))
-    read(tmp_path, layout="both", stack="nav2_composed", more="relayed: true")
+    read(tmp_path, layout="both", node_set="nav2_composed", more="relayed: true")
     assert {"amcl_robot1", "nav2_container", "robot_state_publisher_robot2", "tf_relay"} <= {*given}
     assert {it["output"] for it in given.values()} == {"screen"}
     for it in given.values():
@@ -235,7 +235,7 @@ def test_tf_of_each_robot_is_relayed(composed: LaunchGraph, nodes: dict[str, Any
     [
         ({"rviz": "one"}, {}, "these robots need 2 windows; say relayed: true"),
         ({"rviz": "all"}, {}, "rviz:=all: way 'all' is not known"),
-        ({}, {"stack": "robot_localization"}, "robot 'robot1' has no node of Nav2; add nav2, "),
+        ({}, {"node_set": "robot_localization"}, "robot 'robot1' has no node of Nav2; add nav2, "),
     ],
 )
 def test_what_cannot_be_started_is_said(
@@ -260,7 +260,7 @@ def test_a_window_needs_a_config(tmp_path: Path) -> None:
 def test_what_windows_are_started_with(clock: bool | None, monkeypatch: pytest.MonkeyPatch) -> None:
     """The options of launch_ros's Node, whole."""
     fleet = SimpleNamespace(robots=["first", "second"])
-    monkeypatch.setattr(nav2, "_said", lambda word: word)
+    monkeypatch.setattr(nav2, "_configuration", lambda word: word)
     monkeypatch.setattr(nav2, "fleet_of", lambda _, said: {"fleet": fleet}[said])
     monkeypatch.setattr(
         nav2, "sim_time", lambda _, robot, told: {("first", None): clock}[robot, told]

@@ -363,7 +363,7 @@ def found(text: str, folder: Path, name: str = "") -> list[str]:
 
 
 def linted(case: tuple[str, str], folder: Path) -> set[str]:
-    """What all rules find in a text, given with the name of its file."""
+    """Return what all rules find in a text, given with the name of its file."""
     return {it.partition(":")[0] for it in found(case[0], folder, case[1])}
 
 

@@ -86,7 +86,7 @@ WITH_WORKERS = ("test_nothing_is_linted_twice", "test_two_runs_at_once_do_not_di
 
 @pytest.fixture
 def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest) -> Path:
-    """The robot in a working directory, with a cache of its own."""
+    """Return the robot in a working directory, with a cache of its own."""
     if request.node.name not in WITH_WORKERS:
         lint_in_this_process(monkeypatch)
     for name, text in FILES.items():
@@ -104,7 +104,7 @@ def write(path: Path, text: str) -> None:
 
 
 def forget() -> None:
-    """A new process has looked at nothing yet."""
+    """Forget all that was read, as a new process has read nothing yet."""
     for it in (packages.entries.__wrapped__, packages._candidates, packages._own_package):
         it.cache_clear()
     packages.packages_below.cache_clear()
@@ -427,7 +427,7 @@ OWN = (
 
 @pytest.fixture
 def unnoted(here: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
-    """What the lint of the robot asks the disk outside of functions that are noted."""
+    """Yield what the lint of the robot asks the disk outside of functions that are noted."""
     found: list[str] = []
 
     def told(name: str, path: object) -> None:
@@ -477,7 +477,7 @@ PACKAGE_DATA = ("files(", "(_FOLDER, file)")
 
 
 def unmarked(path: Path) -> list[str]:
-    """The lines of functions that are not marked ``outside`` and ask the disk or the environment."""
+    """Return the lines of functions without ``outside`` that ask the disk or the environment."""
     tree = ast.parse(path.read_text())
     marked: set[int] = set()
     for node in ast.walk(tree):

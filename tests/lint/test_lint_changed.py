@@ -48,7 +48,7 @@ def including(*names: str) -> str:
 
 @pytest.fixture
 def repo(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A repository with two files, committed, on the branch main, which is the working directory."""
+    """Return a repository with two committed files on the branch main, the working directory."""
     for name in [it for it in os.environ if it.startswith("GIT_")]:
         monkeypatch.delenv(name)
     monkeypatch.setenv("GIT_CONFIG_GLOBAL", os.devnull)
@@ -63,7 +63,7 @@ def repo(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def every(folder: Path) -> list[str]:
-    """The descriptions in a folder, as the command finds them."""
+    """Return the descriptions in a folder, as the command finds them."""
     found = (it for it in folder.rglob("*") if it.suffix in (".urdf", ".xacro", ".srdf"))
     return sorted(os.path.relpath(it) for it in found)
 

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
-from paths import FIXTURES
+from paths import FIXTURES, write_files
 
 from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.base.findings.formats import FORMATS
@@ -37,7 +37,7 @@ LINE = re.compile(
 
 @pytest.fixture
 def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder with a file of each kind, which is the working directory."""
+    """Return a folder with a file of each kind, which is the working directory."""
     files = {
         "good.urdf": HARMLESS,
         "two_roots.urdf": TWO_ROOTS,
@@ -48,9 +48,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         ".hidden/bad.urdf": BROKEN,
         "empty/readme.md": "",
     }
-    for name, text in files.items():
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_text(text)
+    write_files(tmp_path, files)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
@@ -306,7 +304,7 @@ def test_a_reader_that_goes_away() -> None:
 
 
 def on_a_terminal(words: Sequence[str], **environment: str) -> str:
-    """What the command prints on a terminal."""
+    """Return what the command prints on a terminal."""
     parent, child = pty.openpty()
     known = {**os.environ, "TERM": "xterm", **environment}
     lint = subprocess.Popen([*COMMAND, *words], stdout=child, stderr=child, env=known)

@@ -45,7 +45,7 @@ setup(name="by_python", version="1.0.0", packages=[], tests_require=["pytest"], 
 
 
 def environ() -> dict[str, str]:
-    """That of an active environment in which multibot_rewrite is installed, and ament."""
+    """Return the variables of an active environment with multibot_rewrite and ament installed."""
     path = os.pathsep.join([str(Path(sys.prefix, "bin")), os.environ["PATH"]])
     return {
         **os.environ, "PATH": path, "AMENT_PREFIX_PATH": sys.prefix, "CMAKE_PREFIX_PATH": sys.prefix,
@@ -70,7 +70,7 @@ def ament() -> list[str]:
 
 
 def by_cmake(folder: Path, document: str, lines: str = IN_CMAKE) -> Path:
-    """A package with one description, which CMake builds."""
+    """Return a package with one description, which CMake builds."""
     package = folder / "by_cmake"
     (package / "urdf").mkdir(parents=True)
     (package / "urdf" / "r.urdf").write_text(document)
@@ -81,7 +81,7 @@ def by_cmake(folder: Path, document: str, lines: str = IN_CMAKE) -> Path:
 
 
 def outcome(package: Path, ament: list[str], folder: Path) -> tuple[int, JUnitXml]:
-    """The exit code of ctest, and the result that it leaves."""
+    """Return the exit code of ctest, and the result that it leaves."""
     build = folder / "build" / "by_cmake"
     done = run(["cmake", "-S", package, "-B", build, *ament], folder)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -91,7 +91,7 @@ def outcome(package: Path, ament: list[str], folder: Path) -> tuple[int, JUnitXm
 
 
 def failures(result: JUnitXml) -> list[str]:
-    """The codes of what was found."""
+    """Return the codes of what was found."""
     cases = (case for suite in result for case in suite if case.is_failure)
     return [str(case.name).split()[0] for case in cases]
 

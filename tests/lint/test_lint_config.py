@@ -32,7 +32,7 @@ SECTION = "[plugin mine]\nmy_frame uses link frame\n"
 
 @pytest.fixture
 def project(tmp_path: Path) -> Path:
-    """What a configuration may name is there."""
+    """Return what a configuration may name is there."""
     for folder in ("robots/deep", "vendor/acme", "data", "external"):
         (tmp_path / folder).mkdir(parents=True)
     (tmp_path / "data" / "mine.vocab").write_text(SECTION)

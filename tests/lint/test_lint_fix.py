@@ -30,7 +30,7 @@ FIXED = (
 
 
 def spliced(data: bytes, edits: set[Edit]) -> bytes:
-    """The text with the edits made, the last first; a plain reading of what an edit is."""
+    """Return the text with the edits made, the last first; a plain reading of what an edit is."""
     reached = len(data) + 1
     for it in sorted(edits, key=lambda it: it.start, reverse=True):
         assert it.end <= reached, "edits of one round do not overlap"
@@ -74,7 +74,7 @@ def test_files_of_the_corpus(corpus: dict[str, Path]) -> None:
 
 
 def with_edits(monkeypatch: pytest.MonkeyPatch, *edits: Edit) -> None:
-    """The lint proposes these edits, whatever it finds."""
+    """Make the lint propose these edits, whatever it finds."""
 
     def lint(path: str, data: bytes, _: Settings) -> list[Finding]:
         return [Finding("MB142", "note", "m", "", path, 1, 1, edits=edits)]

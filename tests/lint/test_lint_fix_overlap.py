@@ -26,14 +26,14 @@ Fix = Callable[..., bytes]
 
 
 def edit(first: int, last: int, text: bytes) -> Edit:
-    """The letters ``first`` to ``last`` of the link's name become others."""
+    """Return the edit that replaces the letters ``first`` to ``last`` of the link's name."""
     return Edit(AT + first, AT + last, text, None)
 
 
 @pytest.fixture
 def fixed(monkeypatch: pytest.MonkeyPatch) -> Fix:
-    """The link's name after edits of rules that do not exist: what overlaps is found in the input
-    alone, so that nothing of it is made in a later round."""
+    """Return the link's name after edits of rules that do not exist: what overlaps is found in
+    the input alone, so that nothing of it is made in a later round."""
 
     def run(*edits: Edit) -> bytes:
         def lint(path: str, data: bytes, _: Settings) -> list[Finding]:
@@ -141,7 +141,7 @@ def test_what_fails_a_lint_is_asked_of_the_configurations_level(tmp_path: Path) 
 def lines(
     folder: Path, capsys: pytest.CaptureFixture[str], code: str, body: str, *options: str
 ) -> list[int]:
-    """The lines of a robot in which a rule finds something."""
+    """Return the lines of a robot in which a rule finds something."""
     file = folder / "r.urdf"
     file.write_text(f'<robot name="r">\n{body}</robot>\n')
     capsys.readouterr()
@@ -152,7 +152,7 @@ def lines(
 
 
 def inertia(ixx: float, iyy: float, izz: float) -> str:
-    """A link of 1 kg."""
+    """Return a link of 1 kg."""
     moments = f'ixx="{ixx}" iyy="{iyy}" izz="{izz}"'
     inside = f'<mass value="1"/>\n<inertia {moments} ixy="0" ixz="0" iyz="0"/>'
     return f'<link name="a">\n<inertial>{inside}</inertial></link>\n'
@@ -171,7 +171,7 @@ def test_each_axis_of_an_inertia_is_looked_at(
 
 
 def joint(name: str, inside: str = "", limit: str = 'lower="-1" upper="1"') -> str:
-    """A revolute joint on one line, without strength."""
+    """Return a revolute joint on one line, without strength."""
     ends = '<parent link="a"/><child link="b"/><axis xyz="0 0 1"/>'
     zero = f'<limit {limit} effort="0" velocity="0"/>'
     return f'<joint name="{name}" type="revolute">{ends}{zero}{inside}</joint>\n'

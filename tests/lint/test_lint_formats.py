@@ -58,7 +58,7 @@ SETTINGS = Settings(select=("MB101", "MB501"), levels={"MB101": WARNING})
 def rendered(
     name: str, findings: Sequence[Finding], files: Sequence[str], *, colour: bool = False
 ) -> str:
-    """The report of urdf-lint."""
+    """Return the report of urdf-lint."""
     report = Report("urdf-lint", files, RULES)
     return formats.rendered(name, findings, report, colour=colour)
 
@@ -71,15 +71,9 @@ class Linted(NamedTuple):
 
 
 def pieces(*names: str) -> str:
-    """A robot with a base and links without a joint: each of them is a finding."""
+    """Return a robot with a base and links without a joint: each of them is a finding."""
     links = [f'<link name="{name.translate(SPECIAL)}"/>' for name in names]
     return "\n  ".join(['<robot name="r">', f'<link name="base"/>{HAND}', *links, "</robot>"])
-
-
-@pytest.fixture
-def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
 
 
 @pytest.fixture
@@ -268,7 +262,7 @@ def test_a_call_is_read_from_its_end() -> None:
 
 @pytest.fixture(scope="session")
 def sarif_schema(pytestconfig: pytest.Config) -> dict[str, Any]:
-    """The official schema, out of the source distribution of cfn-lint, which has it for its tests."""
+    """Return the official schema, which the source distribution of cfn-lint has for its tests."""
     kept = pytestconfig.cache.mkdir("sarif") / "schema-2.1.0.json"
     if not kept.exists():
         command = [
@@ -351,7 +345,7 @@ def test_sarif_has_every_rule_with_its_words(nasty: Linted) -> None:
 
 
 def replaced(lines: list[str], region: dict[str, int], text: str) -> str:
-    """The text with the characters of a region replaced, as SARIF counts them."""
+    """Return the text with the characters of a region replaced, as SARIF counts them."""
     offsets = [
         sum(len(line) for line in lines[: region[f"{end}Line"] - 1]) + region[f"{end}Column"] - 1
         for end in ("start", "end")
@@ -440,7 +434,7 @@ def unescaped(text: str, marks: str) -> str:
 
 
 def parsed(line: str) -> tuple[str, dict[str, str], str]:
-    """A workflow command as the runner reads it: name, properties, message."""
+    """Return a workflow command as the runner reads it: name, properties, message."""
     line = line.lstrip()
     assert line.startswith("::")
     head, _, message = line[2:].partition("::")
@@ -508,7 +502,7 @@ def test_junit_holds_characters_that_xml_does_not(code: int) -> None:
 
 
 def cells(markdown: str) -> list[list[str]]:
-    """The rows of all tables as a reader sees them, headings of tables left out."""
+    """Return the rows of all tables as a reader sees them, headings of tables left out."""
     tokens = MarkdownIt("commonmark").enable("table").parse(markdown)
     rows: list[list[str]] = []
     for at, token in enumerate(tokens):

@@ -95,7 +95,7 @@ def mimics(inside: str) -> list[Change]:
 
 
 def mast(joint: str) -> list[Change]:
-    """A weight on a joint of the arm's wrist."""
+    """Return a weight on a joint of the arm's wrist."""
     inertia = '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
     link = f'<link name="tool"><inertial><mass value="3"/>{inertia}</inertial></link>'
     return [Change("</robot>", f'{link}<joint name="t" {joint}</joint></robot>')]
@@ -276,7 +276,7 @@ def codes(robot: str) -> set[str]:
 
 
 def linted(robot: str, _folder: Path) -> set[str]:
-    """What all rules find in it."""
+    """Return what all rules find in it."""
     return {it.code for it in lint_data("robot.urdf", robot.encode(), Settings())}
 
 

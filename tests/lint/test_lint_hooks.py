@@ -41,7 +41,7 @@ FOUND = "MB501"
 
 
 def example(language: str, has: str) -> str:
-    """The example of the page in that language that holds a text."""
+    """Return the example of the page in that language that holds a text."""
     (found,) = (it for it in re.findall(rf"```{language}\n(.*?)```", PAGE, re.DOTALL) if has in it)
     assert isinstance(found, str)
     return found
@@ -71,7 +71,7 @@ def git(folder: Path, *words: str) -> str:
 
 
 def repository(folder: Path, document: str) -> Path:
-    """A repository with one description, committed."""
+    """Return a repository with one description, committed."""
     (folder / "urdf").mkdir(parents=True)
     (folder / "urdf" / "rover.urdf").write_text(document)
     git(folder, "init", "-q")
@@ -134,7 +134,7 @@ def test_the_hook_runs_where_a_description_was_touched(path: str, runs: bool) ->
 
 
 def shown_commands() -> list[str]:
-    """What follows every call of the lint on the page, up to where the shell takes over."""
+    """Return what follows every call of the lint on the page, up to where the shell takes over."""
     found = re.findall(r"\burdf-lint\"? ((?:\.|\$PATHS) .*)$", PAGE, re.MULTILINE)
     return [re.split(r"\|\||>>|'", it)[0].replace("$PATHS", ".").strip() for it in found]
 
@@ -187,7 +187,7 @@ def test_only_what_a_branch_changed_is_linted(
 
 @pytest.fixture(scope="session")
 def clone(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The working tree, committed as the revision of the page."""
+    """Return the working tree, committed as the revision of the page."""
     folder = tmp_path_factory.mktemp("clone")
     listed = git(ROOT, "ls-files", "-z", "--cached", "--others", "--exclude-standard")
     for name in listed.split("\0"):
@@ -205,7 +205,7 @@ def clone(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def venv(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The Python of a CI job."""
+    """Return the Python of a CI job."""
     folder = tmp_path_factory.mktemp("venv")
     subprocess.run([sys.executable, "-m", "venv", str(folder)], check=True)
     return folder
@@ -263,7 +263,7 @@ PASSIVE_ACTIONS = {"actions/download-artifact", "github/codeql-action/upload-sar
 
 
 def run_workflow(folder: Path, env: Mapping[str, str]) -> Ran:
-    """The steps of the workflow, with nothing in the place of actions."""
+    """Return the steps of the workflow, with nothing in the place of actions."""
     job = yaml.safe_load(WORKFLOW)["jobs"]["urdf-lint"]
     given = {name: EXPRESSIONS.get(value, value) for name, value in job["env"].items()}
     failed: list[str] = []
@@ -283,7 +283,7 @@ def run_workflow(folder: Path, env: Mapping[str, str]) -> Ran:
 
 
 def job_env(clone: Path, venv: Path, **more: str) -> dict[str, str]:
-    """The environment in which the page's requirement is the clone, and pip the job's."""
+    """Return the environment in which the page's requirement is the clone, and pip the job's."""
     path = f"{venv / 'bin'}{os.pathsep}{os.environ['PATH']}"
     return {"URDF_LINT": f"git+file://{clone}@{REVISION}", "PATH": path, "PYTHONPATH": "", **more}
 
@@ -326,7 +326,8 @@ def test_the_action_installs_what_the_package_needs_in_one_version() -> None:
     # The action's Python is newer than the one that needs this.
     assert names(needed) - {"tomli"} <= names(pins)
     # The hook's environment: nothing heavy may come in unseen.
-    assert names(needed) == {"jsonschema", "lxml", "pyyaml", "rich", "tomli", "xacro"}
+    validators = {"jsonschema", "jsonschema-rs"}
+    assert names(needed) == {*validators, "lxml", "pyyaml", "rich", "tomli", "xacro"}
 
 
 @pytest.mark.deep

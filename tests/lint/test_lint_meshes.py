@@ -25,8 +25,8 @@ def manifest(folder: Path, name: str) -> Path:
 
 @pytest.fixture
 def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A package ``arm`` with the description, one called otherwise than its folder, and a folder
-    without a manifest."""
+    """Return a package ``arm`` with the description, one called otherwise than its folder, and a
+    folder without a manifest."""
     monkeypatch.delenv("ROS_PACKAGE_PATH", raising=False)
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
     for folder in (

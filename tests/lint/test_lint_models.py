@@ -42,7 +42,7 @@ def control(plugin: str, low: str = "-1", high: str = "1") -> str:
 
 
 def lidar(type_: str) -> str:
-    """A model with a lidar, in a world of gz-sim."""
+    """Return a model with a lidar, in a world of gz-sim."""
     plugin = '<plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>'
     sensor = f'<sensor name="s" type="{type_}"><topic>scan</topic></sensor>'
     return world(f'{plugin}<model name="m"><link name="a">{sensor}</link></model>')

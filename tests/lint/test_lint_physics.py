@@ -33,14 +33,14 @@ GOOD = weighs(1)
 
 
 def reaching(shape: str, size: str, radius: float | None, xyz: str = "0 0 0") -> str:
-    """A shape, and an inertia of this radius of gyration."""
+    """Return a shape, and an inertia of this radius of gyration."""
     own = "" if radius is None else weighs(1, *[radius**2] * 3)
     what = f'<origin xyz="{xyz}"/><geometry><{shape} {size}/></geometry>'
     return f"{own}<collision>{what}</collision>"
 
 
 def robot(*parts: str, name: str = "a") -> str:
-    """A chain from its root on: insides of links, between them the types of the joints.
+    """Return a chain from its root on: insides of links, between them the types of the joints.
 
     A link's line is its place, with the root on line 1; names go on from ``name``.
     """

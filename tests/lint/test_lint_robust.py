@@ -131,7 +131,7 @@ LINKS = {"dead.urdf": "nowhere", "circle.urdf": "circle.urdf", "no_text.urdf": "
 
 @pytest.fixture(scope="module")
 def bad(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder of bad files, pipes and links, and a file with a finding behind them all."""
+    """Return a folder of bad files, pipes and links, and a file with a finding behind them all."""
     home = tmp_path_factory.mktemp("bad")
     for name, (data, _) in BAD.items():
         (home / name).write_bytes(data)
@@ -147,7 +147,7 @@ def bad(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def codes(found: list[Finding]) -> dict[str, set[str]]:
-    """The codes of each file, by the path below its folder."""
+    """Return the codes of each file, by the path below its folder."""
     result: dict[str, set[str]] = {}
     for it in found:
         result.setdefault(Path(it.file).name, set()).add(it.code)
@@ -310,7 +310,7 @@ def endless(folder: Path, count: int = 8) -> Path:
 
 
 def started(folder: Path) -> subprocess.Popen[str]:
-    """A lint in a session of its own, with its workers at work."""
+    """Return a lint in a session of its own, with its workers at work."""
     streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
     lint = subprocess.Popen([*COMMAND, "."], cwd=folder, start_new_session=True, **streams)
     wait_until(lambda: len(members(lint.pid)) >= 2)
@@ -319,7 +319,7 @@ def started(folder: Path) -> subprocess.Popen[str]:
 
 
 def members(group: int) -> list[int]:
-    """The processes of a group that have not ended."""
+    """Return the processes of a group that have not ended."""
     found = []
     for stat in Path("/proc").glob("[0-9]*/stat"):
         try:

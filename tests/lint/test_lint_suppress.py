@@ -60,7 +60,7 @@ def reported(found: list[Finding]) -> list[str]:
 
 
 def robot(body: str) -> str:
-    """The body starts on line 2."""
+    """Return a robot whose body starts on line 2."""
     return f'<robot name="r"><link name="base"/>\n{body}\n</robot>\n'
 
 

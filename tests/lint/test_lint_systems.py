@@ -66,7 +66,7 @@ def codes(inside: str, tmp_path: Path, controllers: str = "") -> list[str]:
 
 
 def linted(inside: str, folder: Path) -> set[str]:
-    """What all rules find in it."""
+    """Return what all rules find in it."""
     codes(inside, folder)
     return {it.code for it in lint_file(str(folder / "r.urdf"), Settings(distro="jazzy"))}
 

@@ -122,10 +122,7 @@ def test_the_shape_of_a_capsule_is_a_matter_of_gazebo_alone() -> None:
     importlib.util.find_spec("mujoco") is None, reason="mujoco is missing: pip install mujoco"
 )
 @pytest.mark.parametrize("quaternion", ["0 0 0.6 0.8", "0.5 -0.5 0.5 -0.5", "0 0 0.6 -80"])
-def test_mujoco_reads_the_rotation_after_the_fix_alone(
-    quaternion: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)  # where it writes its warnings
+def test_mujoco_reads_the_rotation_after_the_fix_alone(quaternion: str, here: Path) -> None:
     import mujoco  # takes half a second
 
     def turn(text: str) -> np.ndarray:
@@ -180,7 +177,7 @@ def rotation(at: random.Random) -> str:
 
 
 def random_robot(seed: int, version: str) -> str:
-    """A chain of links with turned joints, inertials and capsules."""
+    """Return a chain of links with turned joints, inertials and capsules."""
     at = random.Random(seed)
     parts = []
     for number in range(6):
@@ -218,7 +215,7 @@ def placements(text: str) -> tuple[dict[str, np.ndarray], list[np.ndarray]]:
 
 
 def points(text: str) -> dict[tuple[str, str], list[tuple[Any, ...]]]:
-    """The shapes of every link as pinocchio has them, a capsule as its three parts."""
+    """Return the shapes of every link as pinocchio has them, a capsule as its three parts."""
     import pinocchio as pin
 
     model = pin.buildModelFromXML(text)

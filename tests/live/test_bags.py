@@ -141,7 +141,7 @@ FAULTS: dict[str, tuple[Callable[[Topics], None], set[str], str]] = {
 
 
 def placed(layout: str, topic: Callable[[Edge], str]) -> tuple[System, System]:
-    """A plan and a recording of its transforms, each on the topic that is told."""
+    """Return a plan and a recording of its transforms, each on the topic that is told."""
     wanted = small_fleet.plan(layout)
     sent = [it._replace(topic=topic(it), publishers=()) for it in small_fleet.healthy(layout).edges]
     topics = tuple(RecordedTopic(it, TF, 9) for it in dict.fromkeys(it.topic for it in sent))
@@ -229,7 +229,7 @@ def test_what_the_plan_does_not_have_is_no_fault(tmp_path: Path) -> None:
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with a plan, a healthy bag, a bag with a bare topic, and one in sqlite3."""
+    """Return a folder with a plan, a healthy bag, a bag with a bare topic, and one in sqlite3."""
     folder = tmp_path_factory.mktemp("bags")
     (folder / "plan.yaml").write_text(to_yaml(plan()))
     write(folder / "healthy", healthy().values())

@@ -45,7 +45,7 @@ ROBOTS = [
 
 
 def held(*lines: str, change: Callable[[System], System] = lambda it: it) -> list[Finding]:
-    """What is found of these lines besides the robots, held against them."""
+    """Return what is found of these lines besides the robots, held against them."""
     text = "\n".join((*(f"as before: {it}" for it in ROBOTS), *lines))
     before, after = read_looks(text)
     return check(seen_plan(diagnose(before)), change(after), before=before)
@@ -72,6 +72,17 @@ def test_a_tool_that_commands_a_robot_is_a_new_sender(line: str, node: str) -> N
     assert it.level == ERROR and node in f"{it.node}: {it.message}"
 
 
+def test_what_a_tool_sends_to_a_robot_is_new() -> None:
+    """Not what choosers read, which is for one of several senders, nor what other tools read."""
+    sent = f"running: /rosbridge_websocket publishes /robot1/e_stop {STOP}"
+    for reader, found in (
+        ("/robot1/driver", [("MG130", WARNING, "/rosbridge_websocket")]),
+        ("/robot1/twist_mux", []),
+        ("/domain_bridge", []),
+    ):
+        assert codes(held(sent, f"as before: {reader} subscribes /robot1/e_stop {STOP}")) == found
+
+
 @pytest.mark.parametrize(
     "line",
     [
@@ -96,6 +107,49 @@ def test_the_plumbing_of_tools_and_nodes_is_no_change(line: str) -> None:
 )
 def test_a_new_end_or_transform(line: str, node: str) -> None:
     assert codes(held(line)) == [("MG130", WARNING, node)]
+
+
+IMU = "sensor_msgs/msg/Imu"
+BRIDGE = [
+    f"{{}}: /ros_gz_bridge publishes /robot1/imu {IMU}",
+    f"{{}}: /ros_gz_bridge publishes /robot1/depth {SCAN}",
+    "{}: /ros_gz_bridge serves /robot1/reset std_srvs/srv/Empty",
+    f"{{}}: /ros_gz_bridge publishes /robot1/goal_pose {GOAL}",
+    "as before: /robot1/pilot calls /robot1/reset std_srvs/srv/Empty",
+]
+
+
+@pytest.mark.parametrize(
+    ("read", "lost"),
+    [
+        (f"as before: /robot1/pilot subscribes /robot1/imu {IMU}", ("/robot1/imu", "/robot1/reset")),
+        (f"as before: /rviz2 subscribes /robot1/imu {IMU}", ("/robot1/reset",)),
+        (f"as before: /robot1/mux subscribes /robot1/imu {IMU}", ("/robot1/reset",)),
+        (f"as before: /robot1/pilot subscribes /robot1/depth {SCAN}",
+         ("/robot1/depth", "/robot1/reset")),
+    ],
+)  # fmt: skip
+def test_a_bridge_that_is_gone_is_missed_by_those_who_use_what_it_gave(
+    read: str, lost: tuple[str, ...]
+) -> None:
+    """Not what a person may send, whatever reads it, nor what displays and choosers read."""
+    gone = [it.format("earlier") for it in BRIDGE]
+    told = [it for it in held(*gone, read) if it.node == "/ros_gz_bridge"]
+    assert [(it.code, it.level, tuple(sorted(it.names))) for it in told] == [("MG130", ERROR, lost)]
+    assert held(*(it.format("as before") for it in BRIDGE), read) == []
+    other = f"running: /gz_bridge publishes /robot1/imu {IMU}"
+    reset = "running: /gz_bridge serves /robot1/reset std_srvs/srv/Empty"
+    for more in ((other,), (other, reset)):
+        given = {line.split()[3] for line in more}
+        rest = [it for it in (tuple(it for it in lost if it not in given),) if it]
+        found = [it for it in held(*gone, read, *more) if it.node == "/ros_gz_bridge"]
+        assert [tuple(sorted(it.names)) for it in found] == rest
+
+
+def test_a_node_of_a_robot_that_is_gone_is_one_finding() -> None:
+    used = f"as before: /robot1/pilot subscribes /robot1/imu {IMU}"
+    found = held(f"earlier: /robot1/imu_driver publishes /robot1/imu {IMU}", used)
+    assert codes(found) == [("MG101", ERROR, "/robot1/imu_driver")]
 
 
 def test_a_root_that_all_share_is_missed() -> None:

@@ -92,7 +92,7 @@ def test_names_to_which_nobody_listens_are_no_robot() -> None:
 
 
 def second_lidar(graph: System) -> System:
-    """A second lidar with another QoS: the reader gets the scans of one."""
+    """Return a second lidar with another QoS: the reader gets the scans of one."""
     graph = added("/robot1/rear_lidar", (PUBLISHES, "/robot1/scan", SCAN))(graph)
     weak, strong = qos(reliability="BEST_EFFORT"), qos(reliability="RELIABLE")
     ends = (

@@ -140,7 +140,7 @@ def test_a_finding_speaks_of_what_runs_in_its_domain() -> None:
 
 
 def as_planned() -> dict[int, System]:
-    """What is seen of each domain where all runs."""
+    """Return what is seen of each domain where all runs."""
     found = {}
     for number, part in by_domain(plan()).items():
         nodes = tuple(Node(it.name, f"p{at}") for at, it in enumerate(part.nodes))
@@ -210,7 +210,7 @@ SCAN, TWIST = "sensor_msgs/msg/LaserScan", "geometry_msgs/msg/Twist"
 
 
 def running(number: int, space: str = "", left_out: str = "") -> System:
-    """A whole robot, without plan: in its namespace, or without one."""
+    """Return a whole robot, without plan: in its namespace, or without one."""
     ends = [
         End(TOPIC, role, f"{space}/{name}", type_, "", f"{space}/{node}", None, node)
         for node, role, name, type_ in (

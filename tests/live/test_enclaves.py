@@ -67,7 +67,7 @@ def allowed(topic: str, patterns: frozenset[str]) -> bool:
 def fleet(layout: str) -> tuple[System, dict[str, Patterns], str]:
     folder = Path(os.environ["PYTEST_FOLDER"])
     plan, policy = folder / f"{layout}.yaml", folder / f"{layout}.xml"
-    words = [ROVER, "robot1", "robot2", "--stack", "nav2", "--layout", layout]
+    words = [ROVER, "robot1", "robot2", "--node-set", "nav2", "--layout", layout]
     assert main(["plan", *words, "-o", str(plan)]) == 0
     assert main(["plan", *words, "--output-kind", "sros2", "-o", str(policy)]) == 0
     text = policy.read_text()
@@ -142,9 +142,9 @@ def test_an_endpoint_by_parameter_is_allowed_although_it_only_may_be_there(tmp_p
     nodes.write_text(
         "nodes:\n  driver:\n    package: own\n    publishes:\n      odom: nav_msgs/msg/Odometry\n"
         "      debug: {type: std_msgs/msg/String, when: debug}\n"
-        "stacks:\n  own: {about: x, nodes: [{node: driver}]}\n"
+        "node_sets:\n  own: {about: x, nodes: [{node: driver}]}\n"
     )
-    words = [ROVER, "robot1", "--nodes", str(nodes), "--stack", "own", "--layout", "both"]
+    words = [ROVER, "robot1", "--nodes", str(nodes), "--node-set", "own", "--layout", "both"]
     assert main(["plan", *words, "-o", str(plan)]) == 0
     assert main(["plan", *words, "--output-kind", "sros2", "-o", str(policy)]) == 0
     planned = {it.name for it in surely(read_plan(plan.read_bytes(), "plan")).ends}

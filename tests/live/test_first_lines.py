@@ -24,6 +24,8 @@ def test_robots_that_only_frames_name() -> None:
         for child, parent in (("base_link", "odom"), ("laser", "base_link"))
     ]
     graph = System((Node("/state"),), (sends("/state"),), tuple(edges))
+    # Its node is of none of them.
+    assert [(it.robot, it.nodes) for it in diagnose(graph).coverage.robots] == [("", 1)]
     assert said(graph) == [
         "2 robots by what their frames have: robot1, robot2",
         "layout: frames have the robot's name, topics and nodes have not",

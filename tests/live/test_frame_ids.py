@@ -48,7 +48,7 @@ running: /robot1/planner publishes /robot1/goal geometry_msgs/msg/PoseStamped
 def serialized(
     frame: str, mark: bytes = b"\x00\x01", rest: bytes = b"\x00" * 9, stamp: float = 7.000000008
 ) -> bytes:
-    """A message as DDS has it: encapsulation, stamp, text with its length and a zero, the rest."""
+    """Return a message as in DDS: encapsulation, stamp, text with its length and a zero, the rest."""
     order = "<" if mark == b"\x00\x01" else ">"
     text = frame.encode() + b"\x00"
     return mark + b"\x00\x00" + struct.pack(f"{order}iII", *_parts(stamp), len(text)) + text + rest
@@ -257,7 +257,7 @@ def test_a_message_has_the_age_of_its_stamp(
 
 
 def sampled(stamp: float, latched: bool = False) -> tuple[Heard, ...]:
-    """What is kept of one message."""
+    """Return what is kept of one message."""
     calls: list[Callable[[bytes], None]] = []
     samples = HeaderSamples(lambda *it: calls.append(it[3]) or (lambda: None))
     durability = "TRANSIENT_LOCAL" if latched else "VOLATILE"

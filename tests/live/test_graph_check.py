@@ -193,7 +193,7 @@ COSTMAP = "/robot1/local_costmap/local_costmap"
 
 
 def with_costmap(*names: str, published: str = "/robot1/scan") -> tuple[System, System]:
-    """A planned costmap that hears these, and somebody who publishes."""
+    """Return a planned costmap that hears these, and somebody who publishes."""
     wanted = more(plan(), "robot1", COSTMAP)
     graph = with_node(healthy(), COSTMAP, *((SUBSCRIBES, name, SCAN) for name in names))
     end = End(TOPIC, PUBLISHES, published, SCAN, "", "/robot1/driver", None, "")

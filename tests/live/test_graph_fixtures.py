@@ -45,7 +45,7 @@ def test_nothing_else_is_in_the_folders() -> None:
 
 
 def same(path: str, graph: System) -> None:
-    """The file is this graph: if not, tests/support/graph_cases.py writes it anew."""
+    """Assert that the file is this graph: if not, tests/support/graph_cases.py writes it anew."""
     data = (ROOT / path).read_bytes()
     assert data == to_json(graph)
     assert from_json(data, path) == graph

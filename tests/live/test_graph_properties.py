@@ -87,7 +87,7 @@ def fleets(draw: st.DrawFn) -> Fleet:
 
 
 def beside(plan: System, graph: System, naming: Naming) -> System:
-    """What every node brings, a topic of its own that nobody planned, and people's tools."""
+    """Return what every node brings, a topic of its own that nobody planned, and people's tools."""
     robot_of = {it.name: it.robot for it in plan.nodes if it.robot}
     more = [
         End(kind, role, name, type_, "", node.name, None, "")
@@ -114,7 +114,7 @@ def beside(plan: System, graph: System, naming: Naming) -> System:
 
 
 def own(topic: str, robot: str, naming: Naming) -> str:
-    """A topic as a robot has it."""
+    """Return a topic as a robot has it."""
     there = affix(naming, "topic", topic)
     return there.spell(topic, robot) if there else f"/{robot}{topic}"
 
@@ -209,7 +209,7 @@ types = st.sampled_from(("", "a/msg/A", "a/msg/B"))
 
 @st.composite
 def anything(draw: st.DrawFn) -> Fleet:
-    """A plan that nobody would make and a graph that has little to do with it."""
+    """Return a plan that nobody would make and a graph that has little to do with it."""
     names = draw(
         st.lists(st.sampled_from(("robot1", "arm", "arm_left", "")), max_size=3, unique=True)
     )

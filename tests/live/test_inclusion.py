@@ -24,7 +24,7 @@ IN_PIECES, COMPARED = "MG406", "MG328"
 
 
 def hidden(plan: System, graph: System) -> list[str]:
-    """What is found of a graph without its plan, and not with it."""
+    """Return what is found of a graph without its plan, and not with it."""
     found = check(plan, graph)
     unsaid = (it for it in diagnose(graph).findings if not any(_says(one, it) for one in found))
     lines = "\n".join(map(str, found))
@@ -50,7 +50,7 @@ def _says(one: Finding, other: Finding) -> bool:
 
 
 def _missing(plan: System, graph: System) -> Iterator[tuple[str, str]]:
-    """The names that planned nodes lack, each with the node."""
+    """Yield the names that planned nodes lack, each with the node."""
     there = {(it.node, it.kind, it.role, it.name) for it in graph.ends}
     for it in plan.ends:
         if (it.node, it.kind, it.role, it.name) not in there:

@@ -19,9 +19,9 @@ from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.base.rosnames import bind, expand, resolve_bound
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.fleet import NO_STATE_PUBLISHER
-from multibot_rewrite.knowledge.node_library import NodeLibrary, stack_of
+from multibot_rewrite.knowledge.node_library import NodeLibrary, nodes_of_set
+from multibot_rewrite.knowledge.node_sets import built_in, user_library
 from multibot_rewrite.knowledge.records import MANAGER, TRANSPORTS, Endpoint, NodeFacts
-from multibot_rewrite.knowledge.stacks import built_in, user_stack
 from multibot_rewrite.live.learning.choosing import choose_nodes
 from multibot_rewrite.live.learning.learn import LearnedNode, learn
 from multibot_rewrite.live.learning.nodes_file import to_yaml
@@ -67,7 +67,7 @@ def environment(*caveats: Caveat) -> Environment:
 
 
 def graph(*nodes: NodeFacts, base: str = "", process: str = "") -> System:
-    """What is seen of nodes that run without any rule below ``base``, in one process or in several."""
+    """Return the view of nodes without any rule below ``base``, in one process or in several."""
     found = [(node, *placed(node, base)) for node in nodes]
     seen = [Node(f"{space.rstrip('/')}/{own}", process or node.name) for node, space, own in found]
     ends = [end for one in found for end in shown(*one)]
@@ -88,7 +88,7 @@ def shown(node: NodeFacts, space: str, own: str) -> Iterator[End]:
 
 
 def parts_of(end: Endpoint) -> Iterator[tuple[str, str, str, str]]:
-    """An endpoint as the middleware has it, and the record of the action."""
+    """Yield an endpoint as the middleware has it, and the record of the action."""
     yield end.kind, end.role, end.name, end.type
     topic = PUBLISHES if end.role in (SERVES, PUBLISHES) else SUBSCRIBES
     if end.kind == ACTION:
@@ -107,7 +107,7 @@ def parts_of(end: Endpoint) -> Iterator[tuple[str, str, str, str]]:
 def learned(
     seen: System, *names: str, base: str = "/", library: NodeLibrary = UNKNOWN
 ) -> tuple[LearnedNode, ...]:
-    """What is learned, verified to survive the file."""
+    """Return what is learned, verified to survive the file."""
     found = learn(seen, choose_nodes(seen, names, base), base, library)
     assert to_yaml(found, "mine", library)
     return found
@@ -144,7 +144,7 @@ def with_end(seen: System, *ends: tuple[str, str, str, str, str]) -> System:
 
 
 def bare(node: NodeFacts) -> NodeFacts:
-    """The node as its code is: without what a launch file makes of it, each graph name said once."""
+    """Return the node as its code is: without what a launch file changes, each graph name once."""
     # That a node itself asks above its namespace, or beside an image, is seen in no graph.
     plain = [end for end in node.endpoints if "<" not in end.name]
     ends = [end._replace(remapped="", fixed="", above="", beside="") for end in plain]
@@ -190,11 +190,11 @@ BOTH_TREES = "tf_namespace_bridge"
 
 
 @cache
-def stacks() -> dict[str, list[NodeFacts]]:
-    """Every stack and node that is known, as its code is; one stack only leaves a node out."""
+def node_sets() -> dict[str, list[NodeFacts]]:
+    """Every node set and node that is known, as its code is; one node set only leaves a node out."""
     library = built_in(NEWEST_LTS)
-    names = sorted({*library.stacks, *library.nodes} - {NO_STATE_PUBLISHER, BOTH_TREES})
-    return {name: [*map(bare, _with_managers(stack_of(library, name)))] for name in names}
+    names = sorted({*library.node_sets, *library.nodes} - {NO_STATE_PUBLISHER, BOTH_TREES})
+    return {name: [*map(bare, _with_managers(nodes_of_set(library, name)))] for name in names}
 
 
 def _with_managers(nodes: Sequence[NodeFacts]) -> Iterator[NodeFacts]:
@@ -210,11 +210,11 @@ def _with_managers(nodes: Sequence[NodeFacts]) -> Iterator[NodeFacts]:
 @pytest.mark.parametrize("affix", ["postfix", "prefix"])
 @pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize("base", ["", pytest.param("/old", marks=pytest.mark.deep)])
-def test_every_known_stack_is_learned_as_it_is_described(
+def test_every_known_node_set_is_learned_as_it_is_described(
     base: str, layout: str, affix: str
 ) -> None:
     naming = make_naming(layout, affix)
-    for nodes in stacks().values():
+    for nodes in node_sets().values():
         assert_served(nodes, base, built_in(NEWEST_LTS), naming)
 
 
@@ -226,8 +226,8 @@ LITERAL = {"nav2_slam", "nav2_slam_composed", "slam_toolbox"}
 @pytest.mark.slow
 @pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize("base", ["", pytest.param("/old", marks=pytest.mark.deep)])
-def test_every_stack_is_learned_where_nothing_is_known(base: str, layout: str) -> None:
-    for name, nodes in stacks().items():
+def test_every_node_set_is_learned_where_nothing_is_known(base: str, layout: str) -> None:
+    for name, nodes in node_sets().items():
         if name not in LITERAL or layout != "L4":
             # Nor can it be seen that the code of a node places it.
             seen = [node._replace(apart=False) for node in nodes]
@@ -424,7 +424,7 @@ def test_a_file_that_reads_otherwise_is_not_written() -> None:
 
 @pytest.fixture
 def shot(tmp_path: Path) -> Path:
-    """A snapshot of two nodes nobody described, and of a tool."""
+    """Return a snapshot of two nodes nobody described, and of a tool."""
     driver = node(
         publishes("odom"), subscribes("/cmd_vel"), Endpoint(ACTION, SERVES, "dock", FETCH)
     )
@@ -447,7 +447,7 @@ def test_what_is_learned_gives_the_whole_table(
                 "nodes",
                 "--from",
                 str(shot),
-                "--stack",
+                "--node-set",
                 "mine",
                 "-o",
                 mine,
@@ -458,10 +458,10 @@ def test_what_is_learned_gives_the_whole_table(
     note = "left out as tools: /rviz2; to learn one give its name to --node"
     said = f"multibot: note: {note}\nmultibot: 2 nodes learned as node set mine (ROS 2 lyrical)\n"
     assert capsys.readouterr() == ("", said)
-    names = [node.name for node in stack_of(user_stack(mine, NEWEST_LTS), "mine")]
+    names = [node.name for node in nodes_of_set(user_library(mine, NEWEST_LTS), "mine")]
     assert names == ["driver", "eye"]
     rover = str(FIXTURES / "robots" / "rover.urdf")
-    fleet = [rover, "robot1", "robot2", "--nodes", mine, "--stack", "mine", "--layout"]
+    fleet = [rover, "robot1", "robot2", "--nodes", mine, "--node-set", "mine", "--layout"]
     assert main(["plan", "--output-kind=table", *fleet, "frames-per-robot"]) == 0
     out, err = capsys.readouterr()
     assert err == ""
@@ -497,8 +497,8 @@ def test_helpers_without_a_node_are_reported(
         (["--namespace", "old"], "'old' is not a full name"),
         (["--namespace", "/a-b"], "namespace '/a-b': character 3, '-', is not a letter"),
         (["--namespace", "/none"], "there is no node to learn below /none"),
-        (["--stack", ""], "'' is not a name of a node set, give one word"),
-        (["--stack", "a\nb"], "is not a name of a node set, give one word"),
+        (["--node-set", ""], "'' is not a name of a node set, give one word"),
+        (["--node-set", "a\nb"], "is not a name of a node set, give one word"),
         (["--timeout", "5"], "--timeout is for the live graph, leave out --from"),
         (["--domain", "5"], "--domain is for the live graph, leave out --from"),
         (["--node"], "argument --node: expected one argument"),
@@ -563,7 +563,7 @@ nodes:
   other:
     note: seen as /other
 
-stacks:
+node_sets:
   mine:
     about: Learned from a running graph
     nodes:

@@ -69,7 +69,7 @@ class Outcome(NamedTuple):
 
 @pytest.fixture(scope="module")
 def needed(tf2: Mapping[str, str]) -> Mapping[str, str]:
-    """What makes rclpy's children know tf2_msgs; a loud skip where one of the two is missing."""
+    """Return what makes rclpy's children know tf2_msgs; a loud skip where one of the two is missing."""
     pytest.importorskip("rclpy", reason="no rclpy: pip install '.[ros]'", exc_type=ImportError)
     if not tf2 and not find_spec("tf2_msgs"):
         pytest.skip(f"tf2_msgs is not there and not built: {tf2_build.missing()}")
@@ -77,7 +77,7 @@ def needed(tf2: Mapping[str, str]) -> Mapping[str, str]:
 
 
 def looked_at(at: int, graph: System, more: Mapping[str, str]) -> Outcome:
-    """What the command says while nodes play the graph."""
+    """Return what the command says while nodes play the graph."""
     domain = live_commands.domain(at)
     env = {**live_fleet.environ(domain), **more}
     with live_fleet.running(domain, *live_graphs.processes(graph), **more):
@@ -88,7 +88,7 @@ def looked_at(at: int, graph: System, more: Mapping[str, str]) -> Outcome:
 
 
 def small(graph: System, healthy: System) -> System:
-    """The graph with the nodes that are played, and those that the healthy system has not."""
+    """Return the graph with the nodes that are played, and those that the healthy system has not."""
     known = {it.name for it in healthy.nodes}
     left_out = {it for it in known if it.rpartition("/")[2] not in PLAYED}
     return sent(
@@ -152,8 +152,8 @@ def test_what_nodes_send_and_answer(needed: Mapping[str, str], tmp_path: Path) -
     heard = {("/robot1/scan", "laser"), ("/robot2/image", "robot1/laser"), ("/map", "map")}
 
     def look() -> System | None:
-        """What is seen once all was heard and announced: a look waits for a message 1.5 s, a busy
-        machine longer."""
+        """Return what is seen once all was heard and announced: a look waits for a message 1.5
+        s, a busy machine longer."""
         live_commands.multibot("snapshot", "--state", "-o", file, "--timeout", "40", env=env)
         seen = read_snapshot(file)
         served = ("/robot1/hangs", GET_PARAMETERS) in {(it.node, it.type) for it in seen.ends}

@@ -24,7 +24,7 @@ ALL, FIRST, SECOND = (live_commands.domain(60 + at) for at in range(3))
 FLEET = f"""\
 layout: tf-per-robot
 description: {ROBOTS / "rover.urdf"}
-stack: robot_state
+node_sets: robot_state
 simulator: none
 domains: {{robot1: 11, robot2: 12}}
 crossing: robot_description
@@ -53,7 +53,7 @@ def node(name: str, space: str = "/", **ends: list[list[str]]) -> dict[str, Any]
 
 
 def robot(name: str, number: int) -> list[dict[str, Any]]:
-    """A robot with its end of the bridge, and a tool that both domains have."""
+    """Return a robot with its end of the bridge, and a tool that both domains have."""
     bridge = f"{name}_bridge"
     odom = [f"/{name}/odom", "String"]
     return [

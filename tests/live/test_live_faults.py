@@ -52,7 +52,7 @@ def plan_of(layout: str) -> Path:
 
 
 def fleet_of(layout: str) -> Fleet:
-    """The fleet exactly as planned, its tf as the rewritten descriptions say."""
+    """Return the fleet exactly as planned, its tf as the rewritten descriptions say."""
     path = plan_of(layout)
     plan = from_yaml(path.read_bytes(), str(path))
     nodes: dict[str, dict[str, Any]] = {}
@@ -85,7 +85,7 @@ def _lists() -> dict[str, list[Any]]:
 
 
 def edges(robot: str, layout: str) -> tuple[list[list[str]], list[list[str]]]:
-    """Transforms of the rewritten rover, moving ones and fixed ones; the last moving is odometry."""
+    """Return the rewritten rover's transforms, moving and fixed; the last moving one is odometry."""
     text = rewrite(ROVER, robot, layout=layout).text
     inventory = collect(read_document(text.encode(), ROVER), builtin_tree((), NEWEST_LTS))
     found = list(edges_in(inventory.document.root))
@@ -131,7 +131,7 @@ def other_type(fleet: Fleet) -> None:
 
 
 def once_silent(fleet: Fleet) -> None:
-    """What was "as planned" for long: the description of the other robot, and lidars in two ways."""
+    """Silence what was "as planned" for long: the other robot's description, lidars in two ways."""
     state = fleet["robot2"]["/robot2/robot_state_publisher"]
     moving, fixed = edges("robot1", L2)
     state["frames"] = [["/tf", False, *moving[:-1]], ["/tf_static", True, *fixed]]
@@ -201,7 +201,7 @@ class Outcome(NamedTuple):
 
 
 def check(at: int, scenario: Scenario, more: Mapping[str, str], looks: int) -> list[Outcome]:
-    """What the command finds while the scenario's processes run, once or several at the same time."""
+    """Return what the command finds while the scenario's processes run, one or several at once."""
     domain = live_commands.domain(at)
     fleet = fleet_of(scenario.layout)
     scenario.fault(fleet)
@@ -224,7 +224,7 @@ def _found(lines: str) -> Iterator[tuple[str, str]]:
 
 @pytest.fixture(scope="module")
 def needed(tf2: Mapping[str, str]) -> Mapping[str, str]:
-    """What makes tf2_msgs importable in children; a loud skip where it cannot be had."""
+    """Return what makes tf2_msgs importable in children; a loud skip where it cannot be had."""
     if not tf2 and not find_spec("tf2_msgs"):
         pytest.skip(f"tf2_msgs is not there and not built: {tf2_build.missing()}")
     return tf2

@@ -119,7 +119,7 @@ def test_how_many_participants_are_seen(ros: None, count: int, tmp_path: Path) -
 
 
 def seen(*machines: tuple[str, int], **environ: str) -> list[str]:
-    """The caveats where so many Fast DDS participants of these machines are seen."""
+    """Return the caveats where so many Fast DDS participants of these machines are seen."""
     names = [f"010f{machine}{at:016x}" for machine, count in machines for at in range(count)]
     nodes = [Node(f"/{name}", name) for name in names]
     ends = [end(f"/{name}", name) for name in names]
@@ -158,7 +158,7 @@ def test_peers_that_are_not_read_are_a_caveat() -> None:
 
 @contextmanager
 def watching(plan: Path, offset: int) -> Iterator[IO[str]]:
-    """The lines of ``check --watch`` as they come."""
+    """Yield the lines of ``check --watch`` as they come."""
     env = {**live_fleet.environ(domain(offset)), "PYTHONUNBUFFERED": "1"}
     command = [*COMMAND, "check", str(plan), "--watch", "--timeout", "90"]
     with subprocess.Popen(command, env=env, stdout=subprocess.PIPE, text=True) as watch:
@@ -170,7 +170,7 @@ def watching(plan: Path, offset: int) -> Iterator[IO[str]]:
 
 
 def wait_for(lines: IO[str], *words: str) -> str:
-    """The next line with all these words; the watch itself ends after a while."""
+    """Return the next line with all these words; the watch itself ends after a while."""
     for line in lines:
         if all(word in line for word in words):
             return line
@@ -179,7 +179,7 @@ def wait_for(lines: IO[str], *words: str) -> str:
 
 @contextmanager
 def one_robot_killed(plan: Path, offset: int) -> Iterator[IO[str]]:
-    """What a watch tells after a robot was killed before its eyes and started again."""
+    """Yield what a watch tells after a robot was killed before its eyes and started again."""
     own = domain(offset)
     with live_fleet.running(own, [node("robot1")], [node("robot2")]) as (one, _), ExitStack() as up:
         lines = up.enter_context(watching(plan, offset))
@@ -229,7 +229,7 @@ def test_a_node_killed_while_it_is_observed_is_not_there_twice(ros: None, plan: 
 
 
 def child_of(pid: int) -> int:
-    """The one child of a process, waited for."""
+    """Return the one child of a process, waited for."""
     children = Path(f"/proc/{pid}/task/{pid}/children")
     while not children.read_text():
         time.sleep(0.01)

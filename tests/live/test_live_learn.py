@@ -16,8 +16,8 @@ from live_commands import PATIENTLY
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.knowledge.node_library import stack_of
-from multibot_rewrite.knowledge.stacks import user_stack
+from multibot_rewrite.knowledge.node_library import nodes_of_set
+from multibot_rewrite.knowledge.node_sets import user_library
 from multibot_rewrite.planning.records import Run, Table
 from multibot_rewrite.planning.table import build_table
 from multibot_rewrite.planning.ways import arguments, started
@@ -51,7 +51,7 @@ TF = {
 
 
 def domain(offset: int) -> int:
-    """A domain of this test's own."""
+    """Return a domain of this test's own."""
     return live_commands.domain(25 + offset)
 
 
@@ -62,7 +62,7 @@ def multibot(offset: int, *words: str, **more: str) -> subprocess.CompletedProce
 
 @pytest.fixture(scope="module")
 def code(tf2: Build) -> list[dict[str, Any]]:
-    """The nodes as they are written."""
+    """Return the nodes as they are written."""
     return [{**DRIVER, **TF} if tf2 or find_spec("tf2_msgs") else DRIVER, PILOT]
 
 
@@ -70,11 +70,11 @@ def code(tf2: Build) -> list[dict[str, Any]]:
 def files(
     code: list[dict[str, Any]], tf2: Build, tmp_path_factory: pytest.TempPathFactory
 ) -> Iterator[dict[str, Path]]:
-    """What is learned of the nodes in the root, live, and of the same in a namespace, by a snapshot."""
+    """Yield what is learned of nodes in the root, live, and in a namespace, by a snapshot."""
     folder = tmp_path_factory.mktemp("learned")
     below = [{**node, "namespace": "old"} for node in code]
     found = {name: folder / f"{name}.yaml" for name in ("root", "below")}
-    shot, stack = str(folder / "graph.json"), ["--stack", "mine", "-o"]
+    shot, node_set = str(folder / "graph.json"), ["--node-set", "mine", "-o"]
     with live_fleet.running(domain(0), code, below, **tf2):
         words = (
             "snapshot",
@@ -82,7 +82,7 @@ def files(
             "nodes",
             "--node",
             "/driver,/pilot",
-            *stack,
+            *node_set,
             str(found["root"]),
             *PATIENTLY,
         )
@@ -96,7 +96,7 @@ def files(
         shot,
         "--namespace",
         "/old",
-        *stack,
+        *node_set,
         str(found["below"]),
     )
     later = multibot(0, *words)
@@ -106,10 +106,10 @@ def files(
 
 
 def table(file: Path, layout: str) -> Table:
-    """The table of two robots that run what was learned."""
+    """Return the table of two robots that run what was learned."""
     found = build_table(
         ROBOTS,
-        stack_of(user_stack(str(file), NEWEST_LTS), "mine"),
+        nodes_of_set(user_library(str(file), NEWEST_LTS), "mine"),
         make_naming(layout),
         release=NEWEST_LTS,
     )

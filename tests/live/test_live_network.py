@@ -37,7 +37,7 @@ def plan(tmp_path: Path) -> Path:
 
 @contextmanager
 def fleet(*places: tuple[Host, list[dict[str, Any]]], **settings: str) -> Iterator[None]:
-    """A process on each of these hosts."""
+    """Yield a process on each of these hosts."""
     with ExitStack() as stack:
         for host, nodes in places:
             stack.enter_context(live_fleet.running(DOMAIN, nodes, inside=host.inside, **settings))

@@ -27,11 +27,11 @@ pytest.importorskip("rclpy", reason="no rclpy: pip install '.[ros]'", exc_type=I
 COMMAND = [sys.executable, "-m", "multibot_rewrite.cli.multibot", "rehearse"]
 ROVER = str(ROBOTS / "rover.urdf")
 PAIR = (ROVER, "robot1", "robot2")
-STATE = (*PAIR, "--stack", "robot_state", "--layout")
+STATE = (*PAIR, "--node-set", "robot_state", "--layout")
 
 
 def domain(offset: int) -> int:
-    """A domain of this test's own."""
+    """Return a domain of this test's own."""
     return live_commands.domain(80 + offset)
 
 
@@ -42,9 +42,9 @@ def rehearse(offset: int, *arguments: str, **more: str) -> subprocess.CompletedP
 
 
 def words_for(layout: str, folder: Path) -> tuple[str, ...]:
-    """A rehearsal of a layout, with what it writes."""
+    """Return a rehearsal of a layout, with what it writes."""
     written = ("--save-snapshot", str(folder / layout), "--report", str(folder / f"{layout}.html"))
-    return (*PAIR, "--stack", "nav2", "--layout", layout, "--distro", "lyrical", *written)
+    return (*PAIR, "--node-set", "nav2", "--layout", layout, "--distro", "lyrical", *written)
 
 
 @pytest.mark.deep
@@ -89,7 +89,7 @@ def test_without_rules_it_leaks_and_is_reported() -> None:
 
 
 @pytest.mark.deep
-def test_a_stack_that_leaks_is_shown_leaking(tmp_path: Path) -> None:
+def test_a_node_set_that_leaks_is_shown_leaking(tmp_path: Path) -> None:
     own = tmp_path / "own.yaml"
     own.write_text(
         "nodes:\n"
@@ -97,10 +97,10 @@ def test_a_stack_that_leaks_is_shown_leaking(tmp_path: Path) -> None:
         "    package: siren\n"
         "    publishes:\n"
         "      /alarm: {type: std_msgs/msg/String, fixed: it is written in its code}\n"
-        "stacks:\n"
+        "node_sets:\n"
         "  mine: {nodes: [siren]}\n"
     )
-    done = rehearse(5, *PAIR, "--nodes", str(own), "--stack", "mine", "--layout", "L2", "-v")
+    done = rehearse(5, *PAIR, "--nodes", str(own), "--node-set", "mine", "--layout", "L2", "-v")
     assert done.returncode == 1
     several = "uses /alarm, which the plan has for several robots: robot1, robot2"
     assert f"/robot1/siren: error: MG320 {several}" in done.stdout
@@ -110,9 +110,9 @@ def test_a_stack_that_leaks_is_shown_leaking(tmp_path: Path) -> None:
 @pytest.mark.deep
 def test_many_robots_share_processes() -> None:
     names = [f"robot{at}" for at in range(1, 13)]
-    done = rehearse(6, ROVER, *names, "--stack", "robot_state", "--layout", "L2")
+    done = rehearse(6, ROVER, *names, "--node-set", "robot_state", "--layout", "L2")
     assert (done.returncode, done.stdout) == (0, ""), done.stderr
-    # Two of the stack and five plugins.
+    # Two of the node set and five plugins.
     assert "12 robots, 7 nodes each: all known, all seen; 0 findings: as planned" in done.stderr
 
 
@@ -134,7 +134,7 @@ def test_a_missing_rclpy_is_one_line(tmp_path: Path) -> None:
 
 
 def children(pid: int) -> Iterator[int]:
-    """The processes that ``pid`` started."""
+    """Yield the processes that ``pid`` started."""
     for stat in Path("/proc").glob("[0-9]*/stat"):
         try:
             fields = stat.read_text().rpartition(")")[2].split()

@@ -89,7 +89,7 @@ def fleet(tf2: Build, has_tf: bool) -> Iterator[Build]:
 
 @pytest.fixture(scope="module")
 def seen(fleet: Build, tmp_path_factory: pytest.TempPathFactory) -> System:
-    """The whole graph as the command writes it."""
+    """Return the whole graph as the command writes it."""
     file = tmp_path_factory.mktemp("graph") / "graph.json"
     result = multibot(0, "-o", str(file), *PATIENTLY, **fleet)
     assert result.returncode == 0, result.stderr
@@ -285,7 +285,7 @@ def test_a_domain_that_ends_rcl_without_a_word_has_a_message() -> None:
 
 
 def children(pid: int) -> list[int]:
-    """The processes that ``pid`` started."""
+    """Return the processes that ``pid`` started."""
     found = []
     for stat in Path("/proc").glob("[0-9]*/stat"):
         try:

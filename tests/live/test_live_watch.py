@@ -45,7 +45,7 @@ class Watch:
             self._coming.put(line)
 
     def until(self, text: str, seconds: float = 20) -> str:
-        """The first line with ``text`` from now on."""
+        """Return the first line with ``text`` from now on."""
         wait_until(lambda: self._comes(text), seconds)
         return self.lines[-1]
 
@@ -82,12 +82,12 @@ def watching(plan: Path, own: int, *more: str) -> Iterator[Watch]:
 
 
 def rated(robot: str, rate: int) -> list[dict[str, object]]:
-    """A node that is asked for a parameter."""
+    """Return a node that is asked for a parameter."""
     return [node(robot, parameters={"rate": rate}, changed={"rate": 2})]
 
 
 def with_rates(plan: Path) -> Path:
-    """The plan, in which each node has the rate 2."""
+    """Return the plan, in which each node has the rate 2."""
     rates = "".join(f"- {{node: /robot{at}/drive, name: rate, value: '2'}}\n" for at in (1, 2))
     plan.write_text(f"{plan.read_text()}parameters:\n{rates}")
     return plan
@@ -173,7 +173,7 @@ def test_a_terminal_has_a_screen(plan: Path) -> None:
 
 
 def _read(leader: int) -> Iterator[bytes]:
-    """What comes on the terminal until the other side closes it."""
+    """Yield what comes on the terminal until the other side closes it."""
     while True:
         try:
             data = os.read(leader, 4096)

@@ -18,9 +18,10 @@ from live_commands import PATIENTLY
 from paths import ROBOTS
 
 from multibot_rewrite.base.releases import RELEASES
-from multibot_rewrite.fleet.fleet import Fleet, expected, make_fleet
+from multibot_rewrite.checks.judged_plan import make_fleet
+from multibot_rewrite.fleet.fleet import Fleet, expected
+from multibot_rewrite.knowledge.node_sets import built_in
 from multibot_rewrite.knowledge.records import Endpoint
-from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.live.rehearsal import stub_nodes
 from multibot_rewrite.planning.records import Run
 from multibot_rewrite.planning.ways import ros_arguments
@@ -33,13 +34,13 @@ pytest.importorskip("rclpy", reason="no rclpy: pip install '.[ros]'", exc_type=I
 FLEET = """\
 layout: tf-per-robot
 distro: {release}
-stack: {stack}
+node_sets: {node_set}
 robots:
   - {{name: robot1, description: {robot}}}
   - {{name: robot2, description: {robot}}}
 """
 CONTROLLERS, NONE = "gz_ros2_control", "robot_state"
-# Of a rehearsal: release, stack, what is left out.
+# Of a rehearsal: release, node set, what is left out.
 AT_SPAWNER = ("lyrical", CONTROLLERS, "")
 TAG_ALONE = ("lyrical", CONTROLLERS, "spawner")
 UNKNOWN = ("lyrical", NONE, "")
@@ -62,7 +63,7 @@ def rows(cases: Iterable[Case]) -> list[Any]:
 def done(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> dict[Case, CompletedProcess[str]]:
-    """The rehearsals that are asked for, side by side: most of it is waiting."""
+    """Return the rehearsals that are asked for, side by side: most of it is waiting."""
     folder = tmp_path_factory.mktemp("ways")
     asked = [it.callspec.params.get("case") for it in request.session.items if _is_here(it)]
 
@@ -79,10 +80,10 @@ def _is_here(item: pytest.Item) -> bool:
 
 
 def _rehearsed(folder: Path, at: int, case: Case) -> CompletedProcess[str]:
-    release, stack, left_out = case
+    release, node_set, left_out = case
     file = folder / f"fleet{at}.yaml"
     robot = ROBOTS / "rover_gz.urdf"
-    file.write_text(FLEET.format(release=release, stack=stack, robot=robot))
+    file.write_text(FLEET.format(release=release, node_set=node_set, robot=robot))
     domain = live_commands.domain(90 + at)
     words = ["rehearse", str(file), "--domain", domain, "--ignore", "MB425", *PATIENTLY]
     words += ["--without-rules", left_out] if left_out else []
@@ -131,24 +132,24 @@ def test_rcl_calls_every_end_of_every_node_set_as_planned(
     wrong, seen = [], 0
     with ros.opened() as session:
         node = cache(partial(_node, session))
-        for stack in built_in(release).stacks:
+        for node_set in built_in(release).node_sets:
             # The manager of these gets its rules at the plugin.
-            robot = ROBOTS / ("rover_gz.urdf" if stack in OF_SIMULATORS else "rover.urdf")
+            robot = ROBOTS / ("rover_gz.urdf" if node_set in OF_SIMULATORS else "rover.urdf")
             pair, policy = ["robot1", "robot2"], {"layout": layout}
-            fleet = make_fleet(str(robot), pair, [stack], policy, release=release)
+            fleet = make_fleet(str(robot), pair, [node_set], policy, release=release)
             not_taken = [str(it) for it in fleet.table.problems if it.code == "MR105"]
             for run, end, name, own in _by_rcl(fleet, node):
                 seen += 1
                 said = any(f"{run.robot}: {run.node}:" in it for it in not_taken)
                 if own != name and not said:
-                    wrong.append((stack, run.full_name, end.name, name, own))
+                    wrong.append((node_set, run.full_name, end.name, name, own))
             planned = {(it.node, it.kind, it.role, it.name) for it in expected(fleet).ends}
             ends = {
                 (f"{run.full_name}{end.by}", end.kind, end.role, name)
                 for run, end, name in fleet.table.ends
                 if end.role and (end.by or not end.helper) and name not in OF_RCL
             }
-            assert ends == planned, stack
+            assert ends == planned, node_set
     assert not wrong
     assert seen > 5_000
 

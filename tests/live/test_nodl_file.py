@@ -15,8 +15,8 @@ from paths import FIXTURES
 
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.knowledge.node_sets import built_in
 from multibot_rewrite.knowledge.nodl.writing import NodlFile
-from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.live.learning.learn import learn
 from multibot_rewrite.live.learning.nodes_file import to_nodl
 from multibot_rewrite.system.json import to_json
@@ -127,8 +127,8 @@ def test_a_folder_has_a_file_for_each_node_and_a_plan_of_them_fits_the_graph(
     learned = ("--from", HEALTHY, "--namespace", "/robot1", "--output-kind", "nodl")
     assert main(["snapshot", *learned, "-o", folder]) == 0
     assert (tmp_path / "nodl/local_costmap/local_costmap.nodl.yaml").is_file()
-    stacks = "pilot,local_costmap/local_costmap"
-    made = ("--layout", "frames-per-robot", "--nodes", folder, "--stack", stacks, "-o", plan)
+    node_sets = "pilot,local_costmap/local_costmap"
+    made = ("--layout", "frames-per-robot", "--nodes", folder, "--node-set", node_sets, "-o", plan)
     rover = str(FIXTURES / "robots" / "rover.urdf")
     assert main(["plan", rover, "robot1", "robot2", *made]) == 0
     assert f"pilot as in {folder}/pilot.nodl.yaml (NoDL)" in capsys.readouterr().err
@@ -145,7 +145,7 @@ def test_nav2_from_its_own_graph_is_as_planned_and_a_leak_is_found(
     Path(seen).write_bytes(to_json(graph))
     given = ("--from", seen, "--namespace", "/robot1", "--output-kind", "nodl", "-o", folder)
     assert main(["snapshot", *given]) == 0
-    robots = ("robot1", "robot2", "--layout", "L1", "--stack", "nav2", "--distro", NEWEST_LTS)
+    robots = ("robot1", "robot2", "--layout", "L1", "--node-set", "nav2", "--distro", NEWEST_LTS)
     assert main(["plan", str(ROVER), *robots, "--nodes", folder, "-o", plan]) == 0
     capsys.readouterr()
     assert main(["check", plan, "--from", seen]) == 0, capsys.readouterr().out

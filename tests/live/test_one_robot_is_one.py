@@ -45,7 +45,7 @@ def joined(file: Path) -> list[tuple[str, str]]:
 
 
 def running(joints: list[tuple[str, str]]) -> System:
-    """The nodes of one robot without a name, with a filter above the root of its description."""
+    """Return the nodes of one robot without a name, with a filter above the root of its description."""
     empty = System((), (), (), as_planned(plan(("nav2",))).environment)
     graph = with_node(
         empty, "/robot_state_publisher", (SUBSCRIBES, "/joint_states", JOINTS),

@@ -53,7 +53,7 @@ def page(scene: Scene) -> html.HtmlElement:
 
 
 def pick(tree: html.HtmlElement, tag: str | None = None, look: str = "") -> list[html.HtmlElement]:
-    """The elements of a tag that have these classes."""
+    """Return the elements of a tag that have these classes."""
     wanted = set(look.split())
     return [it for it in tree.iter(tag) if wanted <= set((it.get("class") or "").split())]
 
@@ -91,7 +91,7 @@ def with_frames(plan: System, *more: Edge) -> Scene:
 
 
 @pytest.mark.slow
-def test_a_ring_and_a_chain_deeper_than_pythons_stack_end() -> None:
+def test_a_ring_and_a_chain_deeper_than_pythons_node_set_end() -> None:
     ring = [Edge(f"r{(at + 1) % 3}", f"r{at}", "/tf", False, ()) for at in range(3)]
     chain = [Edge(f"c{at + 1}", f"c{at}", "/tf", False, ()) for at in range(1500)]
     scene = with_frames(nav2_graphs.nav2(), *ring, *chain)
@@ -155,7 +155,7 @@ def test_every_finding_is_listed_and_links_to_what_it_is_about() -> None:
 
 
 def unfolded(tree: html.HtmlElement) -> list[str]:
-    """The ids of the groups that are open."""
+    """Return the ids of the groups that are open."""
     there = section(tree, "graph").iter("details")
     return [one.get("id") for one in there if one.get("open") is not None]
 
@@ -273,7 +273,7 @@ def test_a_clipped_text_fits_and_keeps_its_ends(text: str, room: int) -> None:
 
 @pytest.fixture
 def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder with a plan and a spoiled graph, which the command runs in."""
+    """Return a folder with a plan and a spoiled graph, which the command runs in."""
     plan = nav2_graphs.nav2()
     (tmp_path / "plan.yaml").write_text(to_yaml(plan))
     (tmp_path / "graph.json").write_bytes(to_json(nav2_graphs.spoiled(plan)))

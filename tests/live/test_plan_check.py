@@ -19,14 +19,14 @@ from multibot_rewrite.system.records import Caveat, System
 
 ROVER = str(FIXTURES / "robots" / "rover.urdf")
 FLEET = (
-    *(ROVER, "robot1", "robot2", "--stack", "nav2,robot_state", "--layout", "both"),
+    *(ROVER, "robot1", "robot2", "--node-set", "nav2,robot_state", "--layout", "both"),
     *("--distro", "lyrical"),
 )
 
 
 @pytest.fixture(scope="module")
 def nav2_plan(tmp_path_factory: pytest.TempPathFactory) -> bytes:
-    """The plan of two rovers with Nav2."""
+    """Return the plan of two rovers with Nav2."""
     path = tmp_path_factory.mktemp("plan") / "plan.yaml"
     assert main(["plan", *FLEET, "-o", str(path)]) == 0
     return path.read_bytes()
@@ -34,14 +34,14 @@ def nav2_plan(tmp_path_factory: pytest.TempPathFactory) -> bytes:
 
 @pytest.fixture
 def plan(tmp_path: Path, nav2_plan: bytes) -> Path:
-    """The same as a file that a test may edit."""
+    """Return the same as a file that a test may edit."""
     path = tmp_path / "plan.yaml"
     path.write_bytes(nav2_plan)
     return path
 
 
 def as_planned(plan: Path) -> System:
-    """A graph that is the plan; of tf nothing was heard."""
+    """Return a graph that is the plan; of tf nothing was heard."""
     return planned_graph(from_yaml(plan.read_bytes(), "plan"))._replace(edges=())
 
 
@@ -193,9 +193,9 @@ def test_a_node_that_another_one_makes_is_optional_with_it(when: str, tmp_path: 
     nodes.write_text(
         "nodes:\n  planner:\n    package: own\n"
         "    subscribes: {scene: {type: std_msgs/msg/String, by: _private_*}}\n"
-        f"stacks:\n  own: {{about: x, nodes: [{{node: planner, when: {when!r}}}]}}\n"
+        f"node_sets:\n  own: {{about: x, nodes: [{{node: planner, when: {when!r}}}]}}\n"
     )
-    words = ["--nodes", str(nodes), "--stack", "own", "--layout", "frames-per-robot"]
+    words = ["--nodes", str(nodes), "--node-set", "own", "--layout", "frames-per-robot"]
     assert main(["plan", str(ROVER), "robot1", "robot2", *words, "-o", str(plan)]) == 0
     may_miss = optional(from_yaml(plan.read_bytes(), "plan"), "robot1")
     made = ("/robot1/planner", "/robot1/planner_private_*")

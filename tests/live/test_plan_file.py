@@ -129,8 +129,17 @@ def test_who_may_send() -> None:
     ],
 )
 def test_one_of_several_nodes(running: tuple[str, ...], code: str) -> None:
-    found = codes(graph(*RUNNING, more=("/rviz2", *running)))
-    assert [it for it, _ in found] == ([code] if code else [])
+    found = check(read_plan(plan(), "p"), graph(*RUNNING, more=("/rviz2", *running)))
+    assert [(it.code, it.robot) for it in found] == ([(code, "robot1")] if code else [])
+
+
+@pytest.mark.parametrize(("node", "is_missed"), [("rviz2", False), ("camera", True)])
+def test_an_optional_node_that_runs_outside_its_robot(node: str, is_missed: bool) -> None:
+    """A window for all robots is not that of one of them without its namespace."""
+    more = f"  - {{name: /robot1/{node}, sure: may}}\ntopics:"
+    text = PLAN.replace("- name: /rviz2\n", "").replace("\ntopics:", f"\n{more}")
+    found = check(read_plan(plan(text), "p"), graph(*RUNNING, more=(f"/{node}", "/robot1/amcl")))
+    assert ["MG101"] * is_missed == [it.code for it in found]
 
 
 def test_a_map_that_is_not_latched() -> None:

@@ -16,7 +16,7 @@ from multibot_rewrite.system.records import End, System
 
 
 def seen(*robots: tuple[str, str], **around: Any) -> System:
-    """These robots as planned, each in its process."""
+    """Return these robots as planned, each in its process."""
     ends = tuple(
         End(it.kind, it.role, it.name, it.type, "", f"/{robot}/drive", None, process)
         for robot, process in robots

@@ -44,7 +44,7 @@ def stamp(seconds: float) -> bytes:
 
 
 def text(value: str, before: int) -> bytes:
-    """A string of CDR behind so many bytes: its length is at a multiple of four."""
+    """Return a string of CDR behind so many bytes: its length is at a multiple of four."""
     data = value.encode() + b"\0"
     return b"\0" * (-before % 4) + struct.pack("<I", len(data)) + data
 
@@ -71,7 +71,7 @@ def transform(parent: str, child: str, seconds: float) -> bytes:
 
 
 def posed(*texts: str, x: float = 1.0, w: float = 1.0) -> bytes:
-    """A pose behind these texts; more follows in odometry."""
+    """Return a pose behind these texts; more follows in odometry."""
     body = stamp(1.0)
     for it in texts:
         body += text(it, len(body))
@@ -135,12 +135,12 @@ def paced(*rates: float) -> list[Finding]:
 
 
 def fresh(seen: Index, **more: Any) -> Index:
-    """The index of a system that is changed: what it remembers is of the other."""
+    """Return the index of a system that is changed: what it remembers is of the other."""
     return seen._replace(system=seen.system._replace(**more), memo={})
 
 
 def aged(*ages: float, clock: bool = False, senders: tuple[str, ...] = ()) -> list[Finding]:
-    """What is said of the first transforms when they are so old."""
+    """Return what is said of the first transforms when they are so old."""
     lines = MOVING + "running: /sim publishes /clock rosgraph_msgs/msg/Clock\n" * clock
     seen = read_system(lines)
     ages += (0.0,) * (len(seen.system.edges) - len(ages))

@@ -13,17 +13,17 @@ from paths import FIXTURES, ROBOTS
 
 from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.checks.closed_plan import bridged_by
+from multibot_rewrite.checks.judged_plan import make_fleet
 from multibot_rewrite.description.library import rewrite
 from multibot_rewrite.description.readback.reading import read
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.steps.collect import Inventory, collect
 from multibot_rewrite.description.steps.document import read_document
-from multibot_rewrite.fleet.checks.closed_plan import bridged_by
-from multibot_rewrite.fleet.fleet import make_fleet
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
-from multibot_rewrite.knowledge.node_library import stack_of
+from multibot_rewrite.knowledge.node_library import nodes_of_set
+from multibot_rewrite.knowledge.node_sets import built_in
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
-from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.live import rehearsal
 from multibot_rewrite.live.rehearsal import (
     PROCESSES,
@@ -131,7 +131,7 @@ def test_endpoints_of_a_helper_are_marked() -> None:
     assert [part.name for part in ends(drive()) if part.helper] == ["/tf"]
 
 
-def test_a_node_of_the_plugins_and_of_the_stack_is_one_with_the_rules_of_its_tag() -> None:
+def test_a_node_of_the_plugins_and_of_the_node_set_is_one_with_the_rules_of_its_tag() -> None:
     one = Run("r", "manager", "/r", "manager", (("a", "b"),))
     rules = (("c", "d"),)
     two = one._replace(
@@ -254,9 +254,9 @@ def rewritten(layout: str) -> tuple[Inventory, Naming]:
     ), make_naming(layout)
 
 
-def sent(layout: str, *stacks: str) -> dict[str, list[Edge]]:
+def sent(layout: str, *node_sets: str) -> dict[str, list[Edge]]:
     inventory, naming = rewritten(layout)
-    nodes = [node for stack in stacks for node in stack_of(built_in(NEWEST_LTS), stack)]
+    nodes = [node for name in node_sets for node in nodes_of_set(built_in(NEWEST_LTS), name)]
     reading = read(
         inventory.document.source, "rover.urdf", builtin_tree((), NEWEST_LTS).definitions
     )

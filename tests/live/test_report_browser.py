@@ -67,7 +67,7 @@ def chromium(tmp_path_factory: pytest.TempPathFactory) -> Iterator[webdriver.Chr
 
 @pytest.fixture
 def show(chromium: webdriver.Chrome, tmp_path: Path) -> Iterator[Open]:
-    """Opens a page; afterwards nothing may have been fetched or complained about."""
+    """Yield a function that opens a page; nothing may have been fetched or complained about."""
     file = tmp_path / "report.html"
 
     def open_(data: bytes) -> webdriver.Chrome:
@@ -120,7 +120,7 @@ def row(driver: webdriver.Chrome, code: str) -> Any:
 
 
 def labels(driver: webdriver.Chrome, css: str) -> set[str]:
-    """What stands in parts of a drawing, in front of what is told on a hover."""
+    """Return what stands in parts of a drawing, in front of what is told on a hover."""
     script = "return arguments[0].querySelector('text').textContent"
     return {driver.execute_script(script, part) for part in every(driver, css)}
 
@@ -356,7 +356,7 @@ UNREADABLE = """return [...document.querySelectorAll(
 
 
 def painted(driver: webdriver.Chrome, css: str) -> tuple[int, int, int]:
-    """The colour of a background."""
+    """Return the colour of a background."""
     colour = every(driver, css)[0].value_of_css_property("background-color")
     red, green, blue = (int(part) for part in colour[colour.index("(") + 1 : -1].split(",")[:3])
     return red, green, blue

@@ -41,13 +41,13 @@ def page(scene: Scene) -> html.HtmlElement:
 
 
 def head(scene: Scene) -> tuple[str, str]:
-    """The colour of the head, and what it says."""
+    """Return the colour of the head, and what it says."""
     tree = page(scene)
     return tree.find(".//header").get("class"), tree.find(".//h1").text
 
 
 def cards(scene: Scene) -> dict[str, str]:
-    """The first robot of each card, and the card's look."""
+    """Return the first robot of each card, and the card's look."""
     found = page(scene).find_class("card")
     return {it.find(".//h3/a").text: it.get("class").partition(" ")[2] for it in found}
 
@@ -143,7 +143,7 @@ def test_the_action_of_a_stand_in_is_as_planned() -> None:
 
 
 def drawn(tmp_path: Path, *given: str) -> tuple[int, html.HtmlElement]:
-    """The exit code and the page of a command."""
+    """Return the exit code and the page of a command."""
     file = tmp_path / "page.html"
     code = multibot.main([*given, "--report", str(file)])
     return code, html.document_fromstring(file.read_text())
@@ -198,7 +198,7 @@ def test_snippets_are_short_and_of_files_that_are_there(tmp_path: Path) -> None:
     (tmp_path / "secret").write_text("a\nb\n")
     os.mkfifo(tmp_path / "pipe.urdf")
     others = (f"{tmp_path}/{it}:2" for it in ("gone.urdf", "binary.urdf", "secret", "pipe.urdf"))
-    found = snippets([f"{file}:1", f"{file}:5", f"{file}:99", *others, "stack nav2", ""])
+    found = snippets([f"{file}:1", f"{file}:5", f"{file}:99", *others, "node set nav2", ""])
     assert set(found) == {f"{file}:1", f"{file}:5"}
     assert [line.split()[0] for line in found[f"{file}:1"]] == ["1", "2", "3"]
     assert [line.split()[0] for line in found[f"{file}:5"]] == ["3", "4", "5", "6", "7"]

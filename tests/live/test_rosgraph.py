@@ -174,7 +174,7 @@ WHOLE = json.dumps(yaml.load(MESSAGE.removesuffix("---\n"), yaml.CSafeLoader))
 
 
 def changed(key: str, new: object) -> str:
-    """The message with one field of its first topic set."""
+    """Return the message with one field of its first topic set."""
     value: Any = json.loads(WHOLE)
     place = value["nodes"][0]["publishers"][0]
     *above, last = key.split(".")

@@ -29,7 +29,7 @@ CUT_OFF = environment(Caveat("participants", True, "the view may be cut off"))
 
 
 def fleet(tf: str, **frames: Sequence[str]) -> System:
-    """A plan: each robot with one node, which publishes its tf topics, and its frames.
+    """Return a plan: each robot with one node, which publishes its tf topics, and its frames.
 
     ``ROBOT`` in ``tf`` stands for the robot.
     """

@@ -29,7 +29,7 @@ NAMED = ("frames-per-robot", "both", "postfix")
 
 
 def named(layout: str, name: str) -> str:
-    """A topic or node of robot2 in a layout."""
+    """Return a topic or node of robot2 in a layout."""
     if layout != "postfix":
         return f"/robot2/{name}"
     return (
@@ -68,7 +68,7 @@ def test_the_description_of_robot1_is_recognized_by_its_frames(layout: str) -> N
 
 
 def torn(layout: str, change: Callable[[Edge], Edge | None]) -> list[Finding]:
-    """Findings where robot2 has a pose in the world, so that its odom is in the tree."""
+    """Return findings where robot2 has a pose in the world, so that its odom is in the tree."""
     plan = read_plan(layout)
     odom = next(it for it in plan.robots[1].frames if "odom" in it)
     tf = plan.robots[1].tf_topic.replace("tf", "tf_static", 1)
@@ -167,7 +167,7 @@ running: transform robot1_arm -> robot1_hand on /tf
 
 
 def said(lines: str) -> dict[str, str]:
-    """The hint of each code."""
+    """Return the hint of each code."""
     return {it.code: it.hint for it in check(*read_example(lines))}
 
 

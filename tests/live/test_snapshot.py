@@ -114,7 +114,7 @@ def test_any_snapshot_survives_the_file(node: Node, qos: Qos, frame: Edge, cavea
 
 
 def changed(*path: str | int, to: Any = ...) -> bytes:
-    """The snapshot's JSON with the value at ``path`` replaced, or taken out."""
+    """Return the snapshot's JSON with the value at ``path`` replaced, or taken out."""
     value = json.loads(to_json(SNAPSHOT))
     inner = value
     for key in path[:-1]:
@@ -345,7 +345,7 @@ def test_a_transform_has_the_numbers_that_came_last() -> None:
 
 
 def stamped(parent: str, child: str, x: float) -> SimpleNamespace:
-    """A transform as a message has it."""
+    """Return a transform as a message has it."""
     at = SimpleNamespace(x=x, y=0.0, z=0.0)
     turn = SimpleNamespace(x=0.0, y=0.0, z=0.0, w=1.0)
     return SimpleNamespace(
@@ -395,7 +395,7 @@ def test_a_wrong_domain_of_the_environment_is_one_line(
 
 
 def late_by(*seconds: float) -> ObservationClock:
-    """The clock after polls of a tenth of a second that came so much later than planned."""
+    """Return the clock after polls of a tenth of a second that came so much later than planned."""
     clock = ObservationClock()
     for late in seconds:
         clock = clock.after(clock.last + 0.1 + late, 0.1)

@@ -92,7 +92,7 @@ class Ros:
 
 
 def rows(monkeypatch: pytest.MonkeyPatch, ros: Ros, *stubs: Stub, turns: int = 0) -> list[Row]:
-    """What is done until so many turns of the loop are over; first of all what is told back."""
+    """Return what is done until so many turns of the loop are over; first of all what is told back."""
     monkeypatch.setattr(stub_nodes, "ros", ros)
     monkeypatch.setattr(stub_nodes, "own_ends", ros.own_ends)
     usual = stub_nodes._CREATORS

@@ -10,7 +10,7 @@ import pytest
 import small_fleet
 from graph_calls import GuessedRobot, diagnose
 
-from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.knowledge.node_sets import built_in
 from multibot_rewrite.live.suggestion import suggestion
 from multibot_rewrite.system.records import System
 

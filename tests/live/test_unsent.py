@@ -32,7 +32,7 @@ def told(*ends: End) -> list[Finding]:
 
 
 def meant(*ends: End) -> list[str]:
-    """The names that are meant by what is open, empty where none is known."""
+    """Return the names that are meant by what is open, empty where none is known."""
     return [it.names[1] if it.code == "MG303" else "" for it in told(*ends)]
 
 

@@ -8,15 +8,16 @@ from graph_calls import from_yaml, index, to_yaml, whose_by_plan
 from paths import ROBOTS
 from plans import planned_end
 
-from multibot_rewrite.fleet.fleet import expected, make_fleet
+from multibot_rewrite.checks.judged_plan import make_fleet
+from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.rules.system.causes import how_to_remap, why_other_name
 from multibot_rewrite.system.records import System
 
 GZ = str(ROBOTS / "rover_gz.urdf")
 
 
-def plan(release: str, stack: str) -> System:
-    fleet = make_fleet(GZ, ["robot1"], [stack], {"layout": "tf-per-robot"}, release=release)
+def plan(release: str, node_set: str) -> System:
+    fleet = make_fleet(GZ, ["robot1"], [node_set], {"layout": "tf-per-robot"}, release=release)
     return from_yaml(to_yaml(expected(fleet)).encode(), "plan.yaml")
 
 
@@ -51,7 +52,7 @@ COSTMAP = "local_costmap/local_costmap"
 
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
-    ("release", "stack", "words"),
+    ("release", "node_set", "words"),
     [
         ("jazzy", "nav2", "to /robot1/controller_server, whose process it is in: --ros-args -r "),
         ("jazzy", "nav2_composed", "to /robot1/nav2_container, whose process it is in: --ros-args"),
@@ -59,16 +60,16 @@ COSTMAP = "local_costmap/local_costmap"
     ],
 )
 def test_a_hosted_nodes_rule_is_for_what_its_host_is_started_with(
-    release: str, stack: str, words: str
+    release: str, node_set: str, words: str
 ) -> None:
-    text = hint(plan(release, stack), COSTMAP)
+    text = hint(plan(release, node_set), COSTMAP)
     assert words in text
     assert "local_costmap:/tf" in text
 
 
 @pytest.mark.sample(1)
 @pytest.mark.parametrize(
-    ("stack", "node", "words"),
+    ("node_set", "node", "words"),
     [
         ("nav2", "amcl", "--ros-args -r __ns:=/robot1"),
         ("nav2_composed", "amcl", "namespace='/robot1' of its ComposableNode"),
@@ -76,8 +77,8 @@ def test_a_hosted_nodes_rule_is_for_what_its_host_is_started_with(
     ],
 )
 def test_a_node_under_another_name_is_told_where_its_name_is_given(
-    stack: str, node: str, words: str
+    node_set: str, node: str, words: str
 ) -> None:
-    of = plan("lyrical", stack)
+    of = plan("lyrical", node_set)
     it = index(of, whose_by_plan(of))
     assert words in why_other_name(it, f"/robot1/{node}", f"/{node}").hint

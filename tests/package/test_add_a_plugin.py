@@ -56,7 +56,7 @@ def test_the_page_works_as_written(tmp_path: Path, environment: dict[str, str]) 
 
 
 def without_site(environment: dict[str, str]) -> dict[str, str]:
-    """The environment of a clone, where nothing else is installed."""
+    """Return the environment of a clone, where nothing else is installed."""
     return {**environment, "PYTHONPATH": os.environ.get("PYTHONPATH", "")}
 
 

@@ -22,9 +22,9 @@ from multibot_rewrite.base.model import InputError, MultibotError
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.rewriters.plugin_definitions import load_definitions
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.fleet.build import read_manifest
+from multibot_rewrite.fleet.outputs.manifest import read_manifest
+from multibot_rewrite.knowledge.node_sets import user_library
 from multibot_rewrite.knowledge.parameters import load_known_nodes
-from multibot_rewrite.knowledge.stacks import user_stack
 from multibot_rewrite.knowledge.yaml_with_lines import read_yaml_with_lines
 from multibot_rewrite.lint.config.baseline import read_baseline
 from multibot_rewrite.related_files.yaml_text import read_yaml
@@ -36,7 +36,7 @@ Reader = Callable[[str], object]
 
 
 def bomb(levels: int, width: int = 10) -> str:
-    """Lists of aliases of lists: ``width`` to the power of ``levels`` words in the end."""
+    """Return lists of aliases of lists: ``width`` to the power of ``levels`` words in the end."""
     lines = [f"a0: &a0 [{', '.join('x' * width)}]"]
     for at in range(1, levels):
         lines.append(f"a{at}: &a{at} [{', '.join([f'*a{at - 1}'] * width)}]")
@@ -220,10 +220,7 @@ JSON_READERS: dict[str, Reader] = {
 
 @pytest.mark.parametrize("fault", JSON_FAULTS)
 @pytest.mark.parametrize("reader", JSON_READERS)
-def test_every_json_reader_has_the_bounds(
-    reader: str, fault: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_every_json_reader_has_the_bounds(reader: str, fault: str, here: Path) -> None:
     text, message = JSON_FAULTS[fault]
     with pytest.raises(MultibotError) as caught:
         JSON_READERS[reader](text)
@@ -241,7 +238,7 @@ def test_json_within_the_bounds_is_read_as_before(text: str) -> None:
 
 READ_TEXT: dict[str, Reader] = {
     "description": read_file,
-    "nodes": lambda path: user_stack(path, NEWEST_LTS),
+    "nodes": lambda path: user_library(path, NEWEST_LTS),
     "parameters": lambda path: load_known_nodes(path, NEWEST_LTS),
     "definitions": lambda path: load_definitions((path,), NEWEST_LTS),
     "baseline": read_baseline,

@@ -74,7 +74,7 @@ def colcon(pytestconfig: pytest.Config) -> Path:
 
 
 def copied(folder: Path) -> Path:
-    """The sources as a workspace has them."""
+    """Return the sources as a workspace has them."""
     ours = folder / "src" / "multibot_rewrite"
     ours.mkdir(parents=True)
     no_caches = shutil.ignore_patterns("__pycache__", "*.egg-info")
@@ -100,7 +100,7 @@ BUILDS = [pytest.param(it, marks=pytest.mark.deep) for it in ("installed", "syml
 def workspace(
     request: pytest.FixtureRequest, colcon: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> Path:
-    """A workspace where both packages are built."""
+    """Return a workspace where both packages are built."""
     folder = tmp_path_factory.mktemp(request.param)
     source = copied(folder)
     before = files(source)
@@ -116,7 +116,7 @@ def workspace(
 
 
 def sourced(workspace: Path, command: str) -> subprocess.CompletedProcess[str]:
-    """A command in a shell that has sourced the workspace; what Python needs is the tests' own."""
+    """Return the result of a command in a shell that has sourced the workspace, with our Python."""
     script = f'. install/setup.sh && export PYTHONPATH="$PYTHONPATH:$MORE" && {command}'
     return run(
         ["sh", "-c", script], workspace, {**os.environ, "MORE": sysconfig.get_path("purelib")}
@@ -143,7 +143,7 @@ def test_ros2_run_finds_the_programs(workspace: Path) -> None:
 
 
 def python(workspace: Path, code: str, *words: str) -> str:
-    """What a Python of this workspace prints."""
+    """Return what a Python of this workspace prints."""
     done = sourced(workspace, shlex.join([sys.executable, "-c", code, *words]))
     assert done.returncode == 0, done.stderr
     return done.stdout

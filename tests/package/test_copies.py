@@ -99,7 +99,7 @@ def test_errors_can_be_copied(
 
 
 def seen(fleet: LoadedFleet) -> list[object]:
-    """What a launch script reads of a fleet."""
+    """Return what a launch script reads of a fleet."""
     return [fleet.file, fleet.findings, *(of_robot for it in fleet.robots for of_robot in (
         it.name, it.model, it.namespace, it.tag, it.pose, it.description, it.srdf,
         it.frame("base_link"), it.topic("scan"), it.tf_remappings, it.spawn_arguments,

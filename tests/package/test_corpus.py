@@ -70,7 +70,7 @@ def problems(data: bytes, output: bytes, options: Mapping[str, object]) -> Itera
 
 
 def survey(files: Mapping[str, Path], options: Mapping[str, object]) -> dict[str, str]:
-    """The refused files with the reason; fails where a result is wrong."""
+    """Return the refused files with the reason; fails where a result is wrong."""
     outcomes = {name: outcome(path.read_bytes(), options) for name, path in files.items()}
     wrong = [f"{name}: {found.problem}" for name, found in outcomes.items() if found.problem]
     assert not wrong, f"{len(wrong)} of {len(files)} files:\n" + "\n".join(wrong[:20])
@@ -78,7 +78,7 @@ def survey(files: Mapping[str, Path], options: Mapping[str, object]) -> dict[str
 
 
 def on_record(part: str, files: Mapping[str, Path]) -> dict[str, str]:
-    """The committed refusals of the files that are here."""
+    """Return the committed refusals of the files that are here."""
     table: dict[str, dict[str, str]] = json.loads(REFUSALS.read_text())
     return {name: why for name, why in table[part].items() if name in files}
 

@@ -51,7 +51,7 @@ def contents(folder: Path) -> dict[str, bytes]:
 def wrong(
     place: Place, words: tuple[str, ...], here: Path, whole: Path, chosen: Iterable[object]
 ) -> list[str]:
-    """What is wrong with how the command ends for the damages of these names."""
+    """Return what is wrong with how the command ends for the damages of these names."""
     found = []
     for name, damage in damages(place, MANY):
         if name not in chosen:

@@ -25,12 +25,14 @@ PROJECT = TOML["project"]
 MANIFEST = ET.parse(ROOT / "package.xml").getroot()
 # The Python of Ubuntu 26.04 (Lyrical).
 LAST = (3, 14)
-# Name on PyPI -> in package.xml. tomli has no key of rosdep: that of Ubuntu 22.04 is another.
+# Name on PyPI -> in package.xml. tomli has no key of rosdep: that of Ubuntu 22.04 is another. Nor has
+# jsonschema-rs: jsonschema alone does its work there.
 KEYS = {
     "lxml": "python3-lxml",
     "PyYAML": "python3-yaml",
     "rich": "python3-rich",
     "jsonschema": "python3-jsonschema",
+    "jsonschema-rs": None,
     "xacro": "xacro",
     "tomli": None,
 }
@@ -43,7 +45,7 @@ MODULES = {
 }
 # Modules that the package goes without, or that no key of rosdep is for.
 UNASKED = {
-    *("tomli", "tomllib", "tree_sitter", "tree_sitter_cpp", "zenoh", "rosbags"),
+    *("tomli", "tomllib", "tree_sitter", "tree_sitter_cpp", "zenoh", "rosbags", "jsonschema_rs"),
     *("yourdfpy", "trimesh", "numpy"),  # the extra view
 }
 # What the tests import before anything else.

@@ -30,7 +30,7 @@ TRANSCRIPTS = page_commands.sections(README + REMAP)
 
 
 def readers_folder(folder: Path, **more: str) -> page_commands.Reader:
-    """A clone of the repository."""
+    """Return a clone of the repository."""
     return page_commands.reader(folder, live_commands.domain(90), **more)
 
 

@@ -46,7 +46,7 @@ USUAL = {
 
 @pytest.fixture(scope="module")
 def tried(tmp_path_factory: pytest.TempPathFactory, tf2: dict[str, str]) -> page_commands.Tried:
-    """What the commands of every part of the pages do."""
+    """Return what the commands of every part of the pages do."""
     return page_commands.tried(USUAL, tmp_path_factory.mktemp("pages"), 20, tf2)
 
 
@@ -86,7 +86,7 @@ def test_every_fleet_is_shown_and_rehearsed() -> None:
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
-    """The fleets of two robots that have all their files, built; by the names of the file."""
+    """Return the fleets of two robots that have all their files, built; by the names of the file."""
     folder = tmp_path_factory.mktemp("built")
     there = page_commands.reader(folder)
     fleets = [it for it in FLEETS if it.parent.name in OURS]

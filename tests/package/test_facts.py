@@ -99,12 +99,12 @@ def test_every_exception_is_needed_and_says_why() -> None:
 
 
 def trouble(fact: Fact) -> str:
-    """What is wrong with the plugin definitions, measured by this fact; empty where nothing is."""
+    """Return what is wrong with the plugin definitions by this fact; empty where nothing is."""
     return element_trouble(fact) if fact.type == "element" else host_trouble(fact)
 
 
 def host_trouble(fact: Fact) -> str:
-    """The same for a plugin or a hardware class, under each of its names."""
+    """Return the same for a plugin or a hardware class, under each of its names."""
     for name in fact.names:
         found = load_definitions((), NEWEST_LTS).find(fact.type, name)
         flavours = [
@@ -120,14 +120,14 @@ def host_trouble(fact: Fact) -> str:
 
 
 def host_site(section: PluginDefinition, path: str) -> SiteRow | None:
-    """The row of a plugin or hardware class for a path, its own or one that holds for all."""
+    """Return the row of a plugin or hardware class for a path, its own or one that holds for all."""
     common = {"plugin": "plugin", "hardware": "ros2_control"}[section.type]
     (shared,) = load_definitions((), NEWEST_LTS).find("element", common)
     return {site.path: site for site in shared.sites + section.sites}.get(path)
 
 
 def element_trouble(fact: Fact) -> str:
-    """The same for a place in a document."""
+    """Return the same for a place in a document."""
     steps, attribute = split_path(fact.path[1:])
     tree = builtin_tree((), NEWEST_LTS)
     node: TreeNode | None = tree.formats.get(steps[0])

@@ -21,14 +21,14 @@ EXAMPLE = ROOT / "examples" / "namespace_and_prefix"
 
 @pytest.fixture(scope="module")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The two robots of the example, whose namespaces, prefixes and models all differ."""
+    """Return the two robots of the example, whose namespaces, prefixes and models all differ."""
     out = tmp_path_factory.mktemp("built")
     assert main(["build", str(EXAMPLE / "fleet.yaml"), "-o", str(out), "-q"]) == 0
     return out
 
 
 def running(built: Path) -> System:
-    """The graph that the plan of a build describes."""
+    """Return the graph that the plan of a build describes."""
     return sent(as_planned(read_plan((built / "plan.yaml").read_bytes(), "plan.yaml")))
 
 

@@ -45,7 +45,7 @@ def outcome(data: bytes, options: Mapping[str, str]) -> str:
 
 
 def hunt(sources: list[bytes], seeds: range) -> Counter[str]:
-    """What becomes of each mutant; fails with every seed that went wrong and why."""
+    """Return what becomes of each mutant; fails with every seed that went wrong and why."""
     found: Counter[str] = Counter()
     wrong = []
     for seed in seeds:

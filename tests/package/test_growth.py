@@ -52,7 +52,7 @@ SLACK = 1.15
 MANY = """
 layout: tf-per-robot
 distro: jazzy
-stack: nav2
+node_sets: nav2
 description: {}
 robots: [{}]
 """
@@ -66,7 +66,7 @@ robots: [{name: robot1}, {name: robot2}]
 
 
 def forget() -> None:
-    """What a look before has remembered would make the small one cheaper alone."""
+    """Clear the caches: what was remembered before would make the small one cheaper alone."""
     re.purge()
     for remembered in REMEMBERED:
         remembered.cache_clear()
@@ -224,7 +224,7 @@ def test_a_fleet_costs_what_its_robots_do(tmp_path: Path) -> None:
     def prepared(count: int) -> Callable[[], object]:
         path = tmp_path / f"{count}.yaml"
         robots = (f"  - {{name: robot{at}, description: rover.urdf}}\n" for at in range(count))
-        path.write_text(f"stack: nav2\nrobots:\n{''.join(robots)}")
+        path.write_text(f"node_sets: nav2\nrobots:\n{''.join(robots)}")
         return lambda: load_fleet(str(path))
 
     assert growth(prepared, 10, 40) < SLACK
@@ -291,7 +291,7 @@ def test_a_place_is_found_from_the_block_it_is_in(
 
 
 def done(words: list[str]) -> None:
-    """A command that reads what it is given, whatever it finds."""
+    """Run a command that reads what it is given, whatever it finds."""
     assert main(words) in (0, 1, 3)
 
 

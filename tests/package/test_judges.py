@@ -15,12 +15,12 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS, ROS_2
+from multibot_rewrite.checks.build import make_outputs
+from multibot_rewrite.checks.judged_plan import make_fleet
 from multibot_rewrite.description.readback.meeting import SHARED_CODES
 from multibot_rewrite.description.readback.reading import read
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.release_said import release_said
-from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.fleet import make_fleet
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.rules.settings import Settings
 
@@ -36,14 +36,14 @@ _NAME = re.compile(r"'([^']+)'")
 
 
 def named(findings: Iterable[Finding]) -> set[str]:
-    """The names that these findings say are shared."""
+    """Return the names that these findings say are shared."""
     found = [it for it in findings if it.code in CODES]
     quoted = {text for it in found if not it.names for text in _NAME.findall(it.message)[:1]}
     return quoted | {name for it in found for name in it.names}
 
 
 def verdicts(path: Path, layout: str, folder: Path) -> dict[str, set[str]]:
-    """What each of the five says; empty where the description is refused."""
+    """Return what each of the five says; empty where the description is refused."""
     # A fleet is one of ROS 2: where nobody says so, the others may take plugins for those of ROS 1.
     release = release_said("", path.read_bytes(), str(path)).release
     try:

@@ -33,6 +33,9 @@ FLOORS = (
     ("rules",),
     ("lint", "live"),
     ("fleet",),
+    ("checks",),
+    ("library",),
+    ("proposal",),
     ("refactor",),
     ("__init__", "launch", "pages"),
     ("cli",),
@@ -56,7 +59,7 @@ LATE = (*HEAVY, "yaml", "rich", "numpy", "difflib")
 
 @cache
 def imports_of(file: str) -> tuple[str, ...]:
-    """What a module of the package imports."""
+    """Return what a module of the package imports."""
     return tuple(imports(sources()[file]))
 
 
@@ -71,7 +74,7 @@ def imports(tree: ast.AST) -> Iterator[str]:
 
 
 def room(file: str) -> str:
-    """The module or folder right below the package that a file belongs to."""
+    """Return the module or folder right below the package that a file belongs to."""
     return file.partition("/")[0].removesuffix(".py")
 
 
@@ -83,7 +86,7 @@ def floor(room_: str) -> int:
 
 @cache
 def inner(file: str) -> set[str]:
-    """The files of the package that a file imports."""
+    """Return the files of the package that a file imports."""
     found = set()
     for name in imports_of(file):
         parts = name.split(".")
@@ -103,6 +106,18 @@ def test_imports_run_one_way() -> None:
 
 
 @pytest.mark.slow
+def test_a_fleet_is_made_without_asking_a_rule() -> None:
+    """What judges it stands above: checks, and the commands."""
+    asking = [
+        (file, other)
+        for file in sources()
+        for other in inner(file)
+        if room(file) == "fleet" and room(other) in ("rules", "lint", "live")
+    ]
+    assert asking == []
+
+
+@pytest.mark.slow
 def test_no_module_imports_itself_by_a_detour() -> None:
     TopologicalSorter({file: inner(file) for file in sources()}).prepare()
 
@@ -117,9 +132,9 @@ def test_the_check_sees_the_imports_there_are() -> None:
     assert inner("__init__.py") == {
         "base/findings/finding.py",
         "fleet/robots/loaded_robot.py",
-        "fleet/one_file.py",
-        "fleet/scripts.py",
-        "fleet/file/system_sources.py",
+        "library/one_file.py",
+        "library/loaded_fleet.py",
+        "library/systems.py",
         "refactor/adopt.py",
         "related_files/join.py",
         "refactor/rename.py",
@@ -141,7 +156,7 @@ def test_heavy_packages_have_one_door_each() -> None:
 
 
 def loaded(code: str) -> set[str]:
-    """The modules a fresh interpreter has after running ``code``, beyond those of a bare start."""
+    """Return the modules that ``code`` loads in a fresh interpreter, beyond those of a bare start."""
     end = "; import sys; print(*sys.modules)"
     run = [sys.executable, "-c"]
     after = subprocess.run([*run, code + end], capture_output=True, text=True, check=True)

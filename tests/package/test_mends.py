@@ -103,7 +103,7 @@ ROWS = (
         "multibot build", "delete it here", (("nav2.rviz", PANEL, ""),)),
     Row("MF802", tuple(f"{ARMS}/{it.name}" for it in (ROOT / ARMS).iterdir()),
         (("controllers.yaml", HAND % KNOWN, HAND % OWN),), "multibot build",
-        "describe it in a file of nodes (docs/stacks.md)",
+        "describe it in a file of nodes (docs/node-sets.md)",
         (("nodes.yaml", "", NODES), ("fleet.yaml", "layout:", "nodes: nodes.yaml\nlayout:"))),
     Row("MG320", (f"{GRAPHS}/MG320.json", f"{GRAPHS}/plan.yaml"), (), f"{CHECK} MG320.json",
         "it publishes /status instead", (("MG320.json", '"/status"', '"/robot2/status"'),)),
@@ -137,7 +137,7 @@ def edit(folder: Path, edits: Sequence[Edit]) -> None:
 
 
 def found(row: Row, command: str, capsys: pytest.CaptureFixture[str]) -> list[str]:
-    """What the command says with the code of the row."""
+    """Return what the command says with the code of the row."""
     program, *words = command.split()
     capsys.readouterr()
     MAINS[program](words)
@@ -149,13 +149,12 @@ def found(row: Row, command: str, capsys: pytest.CaptureFixture[str]) -> list[st
 @pytest.mark.sample(2)
 @pytest.mark.parametrize("row", ROWS, ids=lambda it: it.code)
 def test_a_finding_is_gone_where_its_sentence_is_followed(
-    row: Row, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    row: Row, here: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.chdir(tmp_path)
     for it in row.files:
-        shutil.copy(ROOT / it, tmp_path)
-    edit(tmp_path, row.wrong)
+        shutil.copy(ROOT / it, here)
+    edit(here, row.wrong)
     said = found(row, row.command, capsys)
     assert any(row.says in it for it in said), said
-    edit(tmp_path, row.mend)
+    edit(here, row.mend)
     assert found(row, row.then or row.command, capsys) == []

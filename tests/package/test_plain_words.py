@@ -56,7 +56,7 @@ def terms(file: Path = TERMS) -> list[Term]:
 
 
 def found_in(text: str, file: Path = TERMS) -> Iterator[str]:
-    """The terms in a text, each with what to write instead."""
+    """Yield the terms in a text, each with what to write instead."""
     for it in terms(file):
         left = text
         for phrase in it.plain:

@@ -54,7 +54,7 @@ options = st.fixed_dictionaries(
 
 
 def attempt(robot: Robot, words: Options, name: str = ROBOT) -> Rewrite | None:
-    """The rewrite, or None where it was refused for a reason that is true.
+    """Return the rewrite, or None where it was refused for a reason that is true.
 
     Random names carry the robot's name as often as not: they are to be rewritten all the same.
     """
@@ -67,7 +67,7 @@ def attempt(robot: Robot, words: Options, name: str = ROBOT) -> Rewrite | None:
 
 
 def true_reasons(robot: Robot, words: Options, name: str) -> set[str]:
-    """The codes with which this robot may be refused."""
+    """Return the codes with which this robot may be refused."""
     root = etree.fromstring(robot.text)
     table = new_names(root, words, name)
     reasons = {"MB104"} if robot.style.escapes or b"&" in robot.text else set()
@@ -96,7 +96,7 @@ def test_the_laws_of_a_rewrite(robot: Robot, words: Options, name: str) -> None:
 
 
 def assert_told(result: Rewrite, found: list[tuple[Slot, str]]) -> None:
-    """The changes are the difference."""
+    """Assert that the reported changes are the difference."""
     listed = [c for c in result.changes if c.rule != "inserted"]
     wanted = Counter((" ".join(c.old.split()), " ".join(c.new.split())) for c in listed)
     assert Counter((old.value, new) for old, new in found) == wanted
@@ -122,7 +122,7 @@ def test_two_robots_share_no_renamed_name(robot: Robot, words: Options, two: lis
 
 
 def renamed(source: bytes, result: Rewrite, kind: str) -> set[str]:
-    """The names of one kind that are the robot's own."""
+    """Return the names of one kind that are the robot's own."""
     before = [item.get("name", "") for item in etree.fromstring(source).iterchildren(kind)]
     after = [item.get("name", "") for item in bare(result.data, result.robot).iterchildren(kind)]
     return {new for old, new in zip(before, after, strict=True) if old != new}
@@ -161,7 +161,7 @@ odd_names = st.sampled_from(
 
 
 def verdict(robot: Robot, fleet: Sequence[str], words: Options) -> object:
-    """What a call comes to, wherever in it each robot is: their texts, or what is wrong."""
+    """Return what a call comes to, wherever in it each robot is: their texts, or what is wrong."""
     try:
         return {it.robot: it.data for it in rewrite_all(robot.text, fleet, **words)}  # type: ignore[arg-type]
     except RewriteRefused as error:

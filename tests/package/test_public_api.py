@@ -29,6 +29,7 @@ from multibot_rewrite import (
     rewrite_all,
     strip,
 )
+from multibot_rewrite.base import naming
 from multibot_rewrite.base.arguments import checked
 from multibot_rewrite.base.naming import Policy, make_naming
 from multibot_rewrite.fleet.robots.node_names import NodeNames
@@ -54,7 +55,12 @@ def test_the_naming_options_are_the_same_everywhere(call: Callable[..., object])
     assert tuple(wanted) == tuple(Policy.__annotations__)
     for name, parameter in wanted.items():
         own = found[name]
-        assert (own.annotation, own.default) == (parameter.annotation, parameter.default)
+        types = [
+            eval(it, vars(naming)) if isinstance(it, str) else it
+            for it in (own.annotation, parameter.annotation)
+        ]
+        assert types[0] == types[1]
+        assert own.default == parameter.default
         assert own.kind is inspect.Parameter.KEYWORD_ONLY
 
 

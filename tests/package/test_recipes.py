@@ -28,7 +28,7 @@ THREAD = re.compile(r"([\w.-]+)(?: PR)?#(\d+)")
 
 @pytest.fixture(scope="module")
 def tried(tmp_path_factory: pytest.TempPathFactory, tf2: dict[str, str]) -> page_commands.Tried:
-    """What the commands of a third of the recipes do, side by side."""
+    """Return what the commands of a third of the recipes do, side by side."""
     usual = {it: RECIPES[it] for it in USUAL}
     return page_commands.tried(usual, tmp_path_factory.mktemp("recipes"), 60, tf2)
 

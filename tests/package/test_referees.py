@@ -23,7 +23,8 @@ from real_robots import corpus_files, spread, wheel_files
 
 from multibot_rewrite import MultibotError, rewrite, rewrite_all, strip
 
-pytestmark = pytest.mark.slow
+# MuJoCo writes its warnings into a file of the working folder.
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("here")]
 
 SIBLINGS = FIXTURES / "robots" / "siblings.urdf"
 HAS_PIN = importlib.util.find_spec("pinocchio") is not None
@@ -39,12 +40,6 @@ needs_mujoco = pytest.mark.skipif(not HAS_MUJOCO, reason="mujoco is missing: pip
 needs_check = pytest.mark.skipif(
     CHECK_URDF is None, reason="check_urdf is missing: apt install liburdfdom-tools"
 )
-
-
-@pytest.fixture(autouse=True)
-def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """MuJoCo writes its warnings into a file of the working folder."""
-    monkeypatch.chdir(tmp_path)
 
 
 class Key(NamedTuple):
@@ -67,7 +62,7 @@ Referee = Callable[[bytes, Angles], Report]
 
 
 def angles_of(joints: Iterable[str]) -> Angles:
-    """A value for each joint by its position, so that it is the same before and after."""
+    """Return a value for each joint by its position, so that it is the same before and after."""
     return {name: math.sin(1.0 + 0.37 * at) / 2 for at, name in enumerate(joints)}
 
 
@@ -93,7 +88,7 @@ def with_yourdfpy(data: bytes, angles: Angles) -> Report:
 
 
 def joint_row(joint: Any) -> tuple[Key, ...]:
-    """A joint of yourdfpy with what it joins and mimics."""
+    """Return a joint of yourdfpy with what it joins and mimics."""
     mimic = [Key("joint", joint.mimic.joint)] if joint.mimic else []
     ends = links((joint.parent, joint.child))
     return (Key("joint", joint.name), Key("type", joint.type), *ends, *mimic)
@@ -115,7 +110,7 @@ def with_pinocchio(data: bytes, angles: Angles) -> Report:
 
 
 def frame_key(frame: Any) -> Key:
-    """A frame of pinocchio: that of a link (a BODY), or of a joint, fixed or not."""
+    """Return a frame of pinocchio: that of a link (a BODY), or of a joint, fixed or not."""
     return Key("link" if str(frame.type) == "BODY" else "joint", frame.name)
 
 
@@ -160,7 +155,7 @@ COMPILER = {
 
 
 def without_meshes(data: bytes) -> str:
-    """The text as MuJoCo takes it: no meshes, no bad inertials, its compiler told to be lenient."""
+    """Return the text as MuJoCo takes it: no meshes, no bad inertials, a lenient compiler."""
     root = etree.fromstring(data)
     for part in list(root.iter("visual", "collision", "inertial", "mujoco")):
         parent = part.getparent()
@@ -190,7 +185,7 @@ def positive(inertial: etree._Element) -> bool:
 
 
 def with_check_urdf(data: bytes, angles: Angles) -> Report:
-    """The tree that check_urdf prints, as paths from the root; siblings may change their order."""
+    """Return the tree that check_urdf prints, as paths from the root; siblings have no order."""
     assert CHECK_URDF
     done = subprocess.run([CHECK_URDF, "/dev/stdin"], input=data, capture_output=True, check=False)
     output = done.stdout.decode()
@@ -249,7 +244,7 @@ def differences(before: Report, after: Report, names: dict[str, dict[str, str]])
 def number_differences(
     what: str, old: Mapping[Key, Any], new: Mapping[Key, Any], names: dict[str, dict[str, str]]
 ) -> list[str]:
-    """The same for one table of numbers."""
+    """Return the same for one table of numbers."""
     wanted = {renamed(key, names): value for key, value in old.items()}
     if wanted.keys() != new.keys():
         return [f"{what}: {sorted(wanted.keys() ^ new.keys())[:4]}"]
@@ -259,7 +254,7 @@ def number_differences(
 
 
 def renamed(key: Key, names: dict[str, dict[str, str]]) -> Key:
-    """The key under its new name."""
+    """Return the key under its new name."""
     return key._replace(name=names.get(key.kind, {}).get(key.name, key.name))
 
 
@@ -299,7 +294,7 @@ def is_xml(path: Path) -> bool:
 
 
 def sample() -> dict[str, Path]:
-    """The fixtures and some of the rest."""
+    """Return the fixtures and some of the rest."""
     files = all_files()
     inside = {name: path for name, path in files.items() if FIXTURES in path.parents}
     return {**inside, **spread(files, FEW)}
@@ -328,7 +323,7 @@ def test_same_robot_for_many(
 
 
 def seen(referee: Referee, old: bytes, new: bytes) -> list[str]:
-    """What a referee says about the siblings with one thing changed."""
+    """Return what a referee says about the siblings with one thing changed."""
     data = SIBLINGS.read_bytes()
     assert old in data
     angles = angles_of(("joint_1", "joint_10", "joint_1_b"))
@@ -351,7 +346,7 @@ def test_a_referee_sees_another_number(referee: Referee) -> None:
 
 
 def codes(options: dict[str, str]) -> list[str]:
-    """What a rewrite of the siblings warns about."""
+    """Return what a rewrite of the siblings warns about."""
     findings = rewrite(SIBLINGS, ROBOT, **options).findings
     return [finding.code for finding in findings]
 
@@ -363,7 +358,7 @@ def test_a_new_order_of_siblings_is_warned_about() -> None:
 
 
 def joint_order(data: bytes) -> list[str]:
-    """The names in the order of pinocchio's q."""
+    """Return the names in the order of pinocchio's q."""
     import pinocchio as pin
 
     return list(pin.buildModelFromXML(data.decode()).names)[1:]

@@ -55,7 +55,7 @@ def run(words: Sequence[str | Path], folder: Path) -> subprocess.CompletedProces
 
 
 def copied(folder: Path) -> Path:
-    """A part of the repository, with what must not be published."""
+    """Return a part of the repository, with what must not be published."""
     folder.mkdir()
     for path in ROOT.iterdir():
         if path.is_file() and path.suffix in (".toml", ".cfg", ".py", ".xml", ".rst", ".md", ".in"):
@@ -70,7 +70,7 @@ def copied(folder: Path) -> Path:
 
 @pytest.fixture(scope="module")
 def archives(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with the source archive and the wheel."""
+    """Return a folder with the source archive and the wheel."""
     pytest.importorskip(
         "setuptools", minversion="77", reason="pyproject.toml asks for setuptools 77"
     )
@@ -82,7 +82,7 @@ def archives(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def ours(folder: Path) -> set[str]:
-    """The files of a folder of the repository, by their path in it."""
+    """Return the files of a folder of the repository, by their path in it."""
     found = (it for it in (ROOT / folder).rglob("*") if it.is_file())
     return {str(it.relative_to(ROOT)) for it in found if not any(word in str(it) for word in MADE)}
 
@@ -231,7 +231,7 @@ def test_the_tests_that_are_run_are_those_of_the_readme() -> None:
 
 @pytest.fixture
 def repository(tmp_path: Path) -> Path:
-    """What says the version, in a folder of its own, and a change that is not released."""
+    """Return what says the version, in a folder of its own, and a change that is not released."""
     for name in (*TOOL["PLACES"], "CHANGELOG.rst"):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / name, tmp_path / name)

@@ -11,8 +11,8 @@ from multibot_rewrite.base.releases import (
     chosen_release,
     has_release,
     is_release_words,
+    release_for_description,
     since_version,
-    told_release,
     unusual_release,
 )
 from multibot_rewrite.description.sources.release_said import release_said
@@ -104,8 +104,10 @@ def test_the_release_of_a_description(
     environment: dict[str, str], text: bytes, release: str
 ) -> None:
     """A library of Gazebo Classic or with a name of Ignition is in no later release."""
-    assert release_said(told_release("", environment), text, "").release == release
-    assert release_said(told_release("kilted", environment), text, "").release == "kilted"
+    assert release_said(release_for_description("", environment), text, "").release == release
+    assert (
+        release_said(release_for_description("kilted", environment), text, "").release == "kilted"
+    )
 
 
 def test_a_release_that_has_ended_or_is_not_known_is_doubted() -> None:

@@ -14,9 +14,9 @@ WORDS = ("release", "distro", "environment")
 # The public calls, which ask ROS_DISTRO.
 PUBLIC = (
     "description/library.py",
-    "fleet/one_file.py",
-    "fleet/file/system_sources.py",
-    "fleet/scripts.py",
+    "library/one_file.py",
+    "library/systems.py",
+    "library/loaded_fleet.py",
     "refactor/adopt.py",
     "related_files/join.py",
     "refactor/rename.py",
@@ -27,7 +27,7 @@ NEWEST = {
     "base/releases.py",
     "cli/declared/commands.py",
     "description/sources/release_said.py",
-    "fleet/proposal/propose.py",
+    "proposal/propose.py",
     "rules/settings.py",
 }
 
@@ -39,7 +39,7 @@ def functions(tree: ast.AST) -> Iterator[Function]:
 
 
 def optional(function: Function) -> Iterator[str]:
-    """The parameters that a caller may leave out."""
+    """Yield the parameters that a caller may leave out."""
     given = function.args
     named = [*given.posonlyargs, *given.args]
     yield from (it.arg for it in named[len(named) - len(given.defaults) :])
@@ -51,7 +51,7 @@ def optional(function: Function) -> Iterator[str]:
 
 
 def place(function: Function) -> tuple[str, int] | None:
-    """The word for the release and how many positional arguments reach it."""
+    """Return the word for the release and how many positional arguments reach it."""
     names = [it.arg for it in (*function.args.posonlyargs, *function.args.args)]
     for word in WORDS[:2]:
         if word in names:

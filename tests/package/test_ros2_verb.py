@@ -16,7 +16,7 @@ from multibot_rewrite.version import __version__
 
 
 def ros2(*words: str) -> int:
-    """What ``ros2 multibot words...`` ends with."""
+    """Return what ``ros2 multibot words...`` ends with."""
     parser = argparse.ArgumentParser(prog="ros2")
     below = parser.add_subparsers(dest="command_of_ros2")
     command = below.add_parser("multibot", formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -32,7 +32,7 @@ def ros2(*words: str) -> int:
 @pytest.mark.more
 def test_words_reach_the_command(capsys: pytest.CaptureFixture[str]) -> None:
     rover = str(FIXTURES / "robots" / "rover.urdf")
-    words = ["plan", rover, "robot1", "--stack", "nav2", "--output-kind", "ros-args"]
+    words = ["plan", rover, "robot1", "--node-set", "nav2", "--output-kind", "ros-args"]
     assert ros2(*words) == main(words) == 0
     first, second = capsys.readouterr().out.split("# robot1: map_server", 1)
     assert second.count("# robot1: map_server") == 1
@@ -57,7 +57,7 @@ def test_help_of_a_command_is_its_own(capsys: pytest.CaptureFixture[str]) -> Non
     with pytest.raises(SystemExit) as caught:
         ros2("plan", "--help")
     assert caught.value.code == 0
-    assert "--stack" in capsys.readouterr().out
+    assert "--node-set" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(("word", "code"), [("--version", 0), ("chek", 2)])

@@ -29,7 +29,7 @@ STARTS = re.compile(r"^(https?|mailto):")
 
 
 def listed() -> list[Path]:
-    """The pages that a clone has."""
+    """Return the pages that a clone has."""
     command = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "*.md"]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     names = done.stdout.split() or ["README.md"]
@@ -46,7 +46,8 @@ MADE = ("measurements.md", "robots.md", "vendors.md", "strangers.md", "launch-id
 
 @cache
 def anchors(page: Path) -> frozenset[str]:
-    """The anchors that GitHub makes of headings: lower case, no punctuation, a dash for a space.
+    """Return the anchors that GitHub makes of headings: lower case, no punctuation, a dash for a
+    space.
 
     The algorithm is that of github-slugger; a second heading of the same words ends with -1.
     """
@@ -151,7 +152,7 @@ class Html(HTMLParser):
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The site, made as for readers; a warning is an error, but for one that ``-q`` would hide."""
+    """Return the site as for readers; a warning is an error, but for one that ``-q`` would hide."""
     pytest.importorskip("mkdocstrings", reason="no mkdocs: pip install '.[docs]'")
     folder = tmp_path_factory.mktemp("site")
     words = ["build", "--strict", "-f", str(SITE / "mkdocs.yml"), "-d", str(folder)]
@@ -217,7 +218,7 @@ class Quiet(SimpleHTTPRequestHandler):
 
 @pytest.fixture
 def address(site: Path) -> Iterator[str]:
-    """The site as a reader opens it: its search asks a server."""
+    """Yield the site as a reader opens it: its search asks a server."""
     server = ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=str(site)))
     threading.Thread(target=server.serve_forever, daemon=True).start()
     yield f"http://127.0.0.1:{server.server_port}"

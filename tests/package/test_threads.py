@@ -31,7 +31,7 @@ def jobs() -> tuple[Job, ...]:
 
 
 def check(run: int) -> None:
-    """A fresh process and a thread each for some of them."""
+    """Run a fresh process with a thread for each of some calls, and compare the results."""
     chosen = random.Random(run).sample(jobs(), THREADS)
     made = subprocess.run(
         [sys.executable, str(CHILD)],

@@ -71,7 +71,7 @@ def test_commands_of_ros_fit_the_files_that_were_written(
 
 
 def fits(line: str, folder: Path) -> bool:
-    """A launch file with these arguments, a line of commands.md, or a plan that is there."""
+    """Return whether a line is a launch file with arguments, a line of commands.md, or a plan."""
     words = shlex.split(line)
     if words[:2] == ["ros2", "launch"]:
         given = {it.partition(":=")[0] for it in words[3:]}

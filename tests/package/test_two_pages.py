@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The pages about a check without a plan and about changes to a package print what they show."""
+"""The pages about a check without a plan, Nav2 and changes to a package print what they show."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ pytestmark = pytest.mark.slow
 
 PAGES = {
     it: page_commands.sections((ROOT / "docs" / f"{it}.md").read_text())
-    for it in ("check", "package")
+    for it in ("check", "nav2", "package")
 }
 
 

@@ -35,7 +35,7 @@ from multibot_rewrite.system.records import PUBLISHES, TOPIC, Environment
 
 
 def group(robot: str, node: str, *names: str, state: str = OK, common: str = "") -> DrawnGroup:
-    """A node with its topics; one is what every node has."""
+    """Return a node with its topics; one is what every node has."""
     known = (*names, *filter(None, [common]))
     return DrawnGroup(
         robot, (DrawnNode(node, robot, state),),

@@ -274,9 +274,9 @@ def test_alternatives_are_kept() -> None:
 @pytest.mark.parametrize(
     ("node", "place"),
     [
-        (Node("/r1/a", robot="r1", plugin=Place("r.urdf", 7), stack="nav2"), "r.urdf:7"),
-        (Node("/r1/a", robot="r1", place=Place("f.yaml", 3), stack="nav2"), "f.yaml:3"),
-        (Node("/r1/a", robot="r1", stack="nav2"), "node set nav2"),
+        (Node("/r1/a", robot="r1", plugin=Place("r.urdf", 7), node_set="nav2"), "r.urdf:7"),
+        (Node("/r1/a", robot="r1", place=Place("f.yaml", 3), node_set="nav2"), "f.yaml:3"),
+        (Node("/r1/a", robot="r1", node_set="nav2"), "node set nav2"),
         (Node("/r1/a", robot="r1"), ""),
     ],
 )

@@ -12,7 +12,7 @@ import pytest
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import RELEASES
-from multibot_rewrite.knowledge.stacks import load_stack
+from multibot_rewrite.knowledge.node_sets import load_node_set
 from multibot_rewrite.live.rehearsal import stub_nodes
 from multibot_rewrite.planning.records import Run, Table
 from multibot_rewrite.planning.table import build_table
@@ -20,8 +20,8 @@ from multibot_rewrite.planning.table import build_table
 ROBOTS = ("robot1", "robot2")
 
 
-def made(release: str, stack: str = "nav2") -> Table:
-    return build_table(ROBOTS, load_stack(stack, release), make_naming("L4"), release=release)
+def made(release: str, node_set: str = "nav2") -> Table:
+    return build_table(ROBOTS, load_node_set(node_set, release), make_naming("L4"), release=release)
 
 
 def found(table: Table, node: str) -> Run:

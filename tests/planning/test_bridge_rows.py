@@ -162,7 +162,7 @@ def description(systems: list[tuple[str, str, str, Topics]]) -> str:
 
 
 def build(folder: Path, text: str, layout: str, release: str) -> Path:
-    """The folder of robot1, whose model is spawned as hull1."""
+    """Return the folder of robot1, whose model is spawned as hull1."""
     (folder / "thing.urdf").write_text(text)
     side = "postfix" if layout == "postfix" else "prefix"
     (folder / "fleet.yaml").write_text(

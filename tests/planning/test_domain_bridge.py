@@ -67,7 +67,7 @@ def test_a_bridge_has_a_node_in_each_domain_and_a_file() -> None:
             *sent("/a/odom", "/a/n", "/all"), *sent("/y", "/c/n", "/all", ("", "")),
         )
     )  # fmt: skip
-    assert [(it.name, it.robot, it.stack) for it in made.nodes[4:]] == [
+    assert [(it.name, it.robot, it.node_set) for it in made.nodes[4:]] == [
         ("/a_b_bridge", "a/b", "domain_bridge"), ("/a_b_bridge_5", "a/b", "domain_bridge"),
         ("/a_b_bridge_4", "", "domain_bridge"),
     ]  # fmt: skip

@@ -29,7 +29,7 @@ from multibot_rewrite.system.records import (
 ROVERS = """\
 layout: {layout}
 affix: prefix
-stack: nav2
+node_sets: nav2
 description: {description}
 robots: [{{name: robot1}}, {{name: robot2, pose: {{y: 2.0}}}}]
 """
@@ -45,7 +45,7 @@ def built(folder: Path, layout: str) -> dict[str, Any]:
 
 
 def leaves(layout: Any) -> list[str]:
-    """The panels of a mosaic, as react-mosaic has it: a name, or two parts."""
+    """Return the panels of a mosaic, as react-mosaic has it: a name, or two parts."""
     if isinstance(layout, str):
         return [layout]
     assert layout["direction"] in ("row", "column")
@@ -101,10 +101,13 @@ PLAN = System(
         sends("/maps", "/a/go", TWIST),
         End(SERVICE, PUBLISHES, "/a/none", "sensor_msgs/msg/LaserScan", "", "/maps", None, ""),
     ),
-    robots=(Robot("a", ("a/odom", "a/base_link"), "/tf"), Robot("b", ("x/odom",), "/tf", (), "x")),
+    robots=(
+        Robot("a", ("a/odom", "a/base_link"), "/tf"),
+        Robot("b", ("x/odom",), "/tf", (), "x", "g/b"),
+    ),
     topics=(
-        Topic("/depth/x", bridge=(PUBLISHES,), type="sensor_msgs/msg/PointCloud2"),
-        Topic("/b/cmd", bridge=(SUBSCRIBES,), type=TWIST),
+        Topic("/g/b/depth", bridge=(PUBLISHES,), type="sensor_msgs/msg/PointCloud2"),
+        Topic("/g/b/cmd", bridge=(SUBSCRIBES,), type=TWIST),
         Topic("/all", bridge=(PUBLISHES,), type="sensor_msgs/msg/PointCloud2"),
     ),
     layout="frame-prefix",
@@ -127,27 +130,27 @@ def scene(frame: str, topics: list[str], layers: dict[str, object], goal: str) -
     }
 
 
-def model(robot: str, prefix: str) -> dict[str, object]:
+def model(robot: str, prefix: str, space: str) -> dict[str, object]:
     return {
         "layerId": "foxglove.Urdf",
         "instanceId": robot,
         "label": robot,
         "visible": True,
         "sourceType": "topic",
-        "topic": f"/{robot}/robot_description",
+        "topic": f"/{space}/robot_description",
         "framePrefix": prefix,
     }
 
 
 def test_the_whole_layout_of_a_small_plan() -> None:
-    a, b = model("a", "a/"), model("b", "x/")
+    a, b = model("a", "a/", "a"), model("b", "x/", "g/b")
     side = {"direction": "column", "first": "Image!a_0", "second": "Teleop!a"}
     own = {"direction": "row", "first": "3D!a", "second": side, "splitPercentage": 70}
     other = {"direction": "row", "first": "3D!b", "second": "Teleop!b", "splitPercentage": 70}
     assert json.loads(to_layout(PLAN)) == {
         "configById": {
             "3D!all": scene(
-                "map", ["/a/scan", "/depth/x", "/map"], {"a": a, "b": b}, "/a/goal_pose"
+                "map", ["/a/scan", "/g/b/depth", "/map"], {"a": a, "b": b}, "/a/goal_pose"
             ),
             "3D!a": scene("a/base_link", ["/a/scan", "/map"], {"a": a}, "/a/goal_pose"),
             "Image!a_0": {
@@ -157,8 +160,8 @@ def test_the_whole_layout_of_a_small_plan() -> None:
                 }
             },
             "Teleop!a": {"topic": "/a/cmd_vel", "publishRate": 10},
-            "3D!b": scene("x/odom", ["/depth/x", "/map"], {"b": b}, "/goal_pose"),
-            "Teleop!b": {"topic": "/b/cmd", "publishRate": 10},
+            "3D!b": scene("x/odom", ["/g/b/depth", "/map"], {"b": b}, "/goal_pose"),
+            "Teleop!b": {"topic": "/g/b/cmd", "publishRate": 10},
             "Tab!robots": {
                 "activeTabIdx": 0,
                 "tabs": [

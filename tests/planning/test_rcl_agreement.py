@@ -15,6 +15,7 @@ from multibot_rewrite import UsageError
 from multibot_rewrite.base.rosnames import (
     NameFault,
     RemapRule,
+    bind,
     check_full_name,
     check_namespace,
     check_node_name,
@@ -22,7 +23,7 @@ from multibot_rewrite.base.rosnames import (
     expand,
     parse_remap,
     remapped_node,
-    resolve_name,
+    resolve_bound,
 )
 
 pytestmark = [
@@ -89,7 +90,7 @@ def share(answers: Sequence[object]) -> float:
 def differing(
     cases: Sequence[dict[str, Any]], ours: Sequence[object], theirs: Sequence[object]
 ) -> list[tuple[dict[str, Any], object, object]]:
-    """The cases in which the module and rcl say different things."""
+    """Return the cases in which the module and rcl say different things."""
     rows = zip(cases, ours, theirs, strict=True)
     return [(case, mine, yours) for case, mine, yours in rows if mine != yours]
 
@@ -155,7 +156,7 @@ def test_the_same_rules_are_read() -> None:
 
 
 def drawn_rule(dice: random.Random) -> str:
-    """A rule that rcl takes, for one node or for all."""
+    """Return a rule that rcl takes, for one node or for all."""
     prefix = dice.choice(("", "", "", "n:", "n:", "m:", "rostopic:"))
     if dice.random() < 0.12:
         return f"{prefix}__ns:={dice.choice(NAMESPACE_TARGETS)}"
@@ -184,7 +185,7 @@ def test_nodes_under_rules_lead_to_the_same_names() -> None:
 
 
 def drawn_node(dice: random.Random) -> dict[str, Any]:
-    """A node with rules of its own and of its process; one rule in fifty is dented."""
+    """Return a node with rules of its own and of its process; one rule in fifty is dented."""
     own, process = (
         [
             dented(dice, rule) if dice.random() < 0.02 else rule
@@ -204,7 +205,7 @@ def drawn_node(dice: random.Random) -> dict[str, Any]:
 
 
 def placed(case: dict[str, Any]) -> list[str | None] | None:
-    """What the module says to a case of ``drawn_node``."""
+    """Return what the module says to a case of ``drawn_node``."""
     own = [parse_remap(rule) for rule in case["node_rules"]]
     process = [parse_remap(rule) for rule in case["process_rules"]]
     if None in own or None in process:
@@ -221,6 +222,6 @@ def placed(case: dict[str, Any]) -> list[str | None] | None:
 
 def led_to(name: str, kind: str, where: tuple[str, str, list[RemapRule]]) -> str | None:
     try:
-        return resolve_name(name, kind, *where)
+        return resolve_bound(name, kind, bind(*where))
     except UsageError:
         return None

@@ -13,9 +13,9 @@ from paths import FIXTURES
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.checks.meeting import robots_meet
 from multibot_rewrite.description.readback.reading import Reading, read
 from multibot_rewrite.description.rewriters.tree import builtin_tree
-from multibot_rewrite.fleet.checks.meeting import robots_meet
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.planning.records import Run, Table
 from multibot_rewrite.planning.table import build_table, plugin_nodes
@@ -83,7 +83,7 @@ def rules(found: Table, robot: str, node: str) -> dict[str, str]:
 
 
 def plugin(*given: tuple[str, str]) -> dict[str, list[Run]]:
-    """A plugin with /scan in each robot's description, with these rules."""
+    """Return a plugin with /scan in each robot's description, with these rules."""
     facts = NodeFacts("lidar", "lidar", (Endpoint(TOPIC, PUBLISHES, "/scan"),))
     return {
         robot: [

@@ -13,8 +13,8 @@ from rcl_names import INSTALL, ask
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
+from multibot_rewrite.knowledge.node_sets import load_node_set
 from multibot_rewrite.knowledge.records import Endpoint
-from multibot_rewrite.knowledge.stacks import load_stack
 from multibot_rewrite.planning.records import Run, Table
 from multibot_rewrite.planning.table import build_table
 from multibot_rewrite.planning.table_formats import ros_args
@@ -28,7 +28,7 @@ pytestmark = [
     ),
 ]
 ROBOTS = ("robot1", "robot2")
-STACKS = ("nav2", "slam_toolbox", "robot_state", "teleop")
+NODE_SETS = ("nav2", "slam_toolbox", "robot_state", "teleop")
 POLICIES = [
     ("L1", "postfix"),
     ("L2", "prefix"),
@@ -41,13 +41,13 @@ POLICIES = [
 @pytest.fixture(scope="module", params=POLICIES, ids="-".join)
 def table(request: pytest.FixtureRequest) -> Table:
     layout, affix = request.param
-    nodes = dict.fromkeys(node for stack in STACKS for node in load_stack(stack, NEWEST_LTS))
+    nodes = dict.fromkeys(node for name in NODE_SETS for node in load_node_set(name, NEWEST_LTS))
     return build_table(ROBOTS, list(nodes), make_naming(layout, affix), release=NEWEST_LTS)
 
 
 def rules_of(lines: list[str], node: Run) -> list[str]:
-    """What follows each ``-r`` in the line of the ros-args form of the node, or of its host, whose
-    namespace and name are not its own."""
+    """Return what follows each ``-r`` in the line of the ros-args form of the node, or of its
+    host, whose namespace and name are not its own."""
     own = f"# {node.robot}: {node.node}"
     if own not in lines:
         name = f"__node:={node.name}", f"__ns:={node.namespace}"
@@ -87,7 +87,7 @@ def test_every_name_leads_where_the_table_says(table: Table) -> None:
 
 
 def in_code(end: Endpoint, namespace: str) -> str:
-    """What the node asks for: a costmap's filter joins its topic with the namespace above
+    """Return what the node asks for: a costmap's filter joins its topic with the namespace above
     (nav2_costmap_2d lyrical layer.cpp joinWithParentNamespace)."""
     above = namespace.rpartition("/")[0]
     return f"{above}/{end.name.lstrip('/')}" if end.above else end.name

@@ -9,7 +9,7 @@ import pytest
 
 from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.fleet.checks.meeting import robots_meet
+from multibot_rewrite.checks.meeting import robots_meet
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.planning.records import Run, Table
 from multibot_rewrite.planning.table import build_table
@@ -99,7 +99,7 @@ def test_a_name_made_at_run_time_gets_no_postfix(name: str) -> None:
 
 
 def alike(*pairs: tuple[str, Sequence[Endpoint]]) -> Table:
-    """What two robots' descriptions start: each a node that asks for names which no rule moves."""
+    """Return the table of two robots' plugins, whose nodes ask for names which no rule moves."""
     plugins = {
         robot: [Run(robot, "p", "/", f"{robot}_plugin", (), node(f"{robot}_plugin", *ends))]
         for robot, ends in pairs

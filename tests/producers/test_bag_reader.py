@@ -199,7 +199,7 @@ class Opened:
 def read_here(
     monkeypatch: pytest.MonkeyPatch, path: Path, fault: Exception | None = None
 ) -> Recording | str:
-    """What is read of a bag in this process, or why it is not."""
+    """Return what is read of a bag in this process, or why it is not."""
     limits: list[int] = []
     monkeypatch.setattr(read, "limit_files", limits.append)
     monkeypatch.setattr(tempfile, "tempdir", None)

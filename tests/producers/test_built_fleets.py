@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -66,7 +67,7 @@ controller_manager:
 @pytest.mark.sample(1)
 # gazebo_ros2_control_plugin.cpp has a node of the plugin's name beside it.
 @pytest.mark.parametrize(
-    ("release", "stack"),
+    ("release", "node_set"),
     [
         ("humble", "gz_ros2_control"),
         ("jazzy", "gz_ros2_control"),
@@ -75,16 +76,16 @@ controller_manager:
     ],
 )
 def test_controllers_in_gazebo_start_as_planned(
-    release: str, stack: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    release: str, node_set: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     of_classic = CONTROLLED
     for theirs, classic in CLASSICS.items():
         of_classic = of_classic.replace(theirs, classic)
-    (tmp_path / "arm.urdf").write_text(CONTROLLED if stack.startswith("gz") else of_classic)
+    (tmp_path / "arm.urdf").write_text(CONTROLLED if node_set.startswith("gz") else of_classic)
     (tmp_path / "control.yaml").write_text(CONTROL)
     fleet, out = tmp_path / "fleet.yaml", tmp_path / "out"
     fleet.write_text(
-        f"distro: {release}\nlayout: tf-per-robot\nsimulator: gazebo\nstack: {stack}\n"
+        f"distro: {release}\nlayout: tf-per-robot\nsimulator: gazebo\nnode_sets: {node_set}\n"
         f"description: arm.urdf\nrelated_files: {{params: control.yaml}}\n{ROBOTS}\n"
     )
     assert main(["build", str(fleet), "-o", str(out), "-q"]) == 0
@@ -105,8 +106,8 @@ def rovers(folder: Path, text: str) -> list[str]:
 @pytest.mark.parametrize("simulator", ["gazebo", "none"])
 def test_what_sends_the_description_may_be_elsewhere(simulator: str, tmp_path: Path) -> None:
     """A simulated robot is spawned from its file: nothing may send the topic."""
-    stack = "distro: humble\nstack: no_robot_state_publisher"
-    assert main(rovers(tmp_path, f"{stack}\nsimulator: {simulator}")) == 0
+    node_set = "distro: humble\nnode_sets: no_robot_state_publisher"
+    assert main(rovers(tmp_path, f"{node_set}\nsimulator: {simulator}")) == 0
     out = tmp_path / "out"
     (launch,) = out.glob("*.launch.py")
     for file in (out / "commands.md", launch):
@@ -124,8 +125,8 @@ def test_what_sends_the_description_may_be_elsewhere(simulator: str, tmp_path: P
 @pytest.mark.parametrize("simulator", ["gazebo", "none"])
 def test_what_a_robot_has_not_is_not_planned(robot: str, simulator: str, tmp_path: Path) -> None:
     """The node of a plugin that it does not load, a bridge with nothing to bridge; RViz is optional."""
-    stacks = "distro: jazzy\nstack: [gz_ros2_control, bridge_per_robot, rviz_nav2]"
-    command = rovers(tmp_path, f"{stacks}\nsimulator: {simulator}")
+    node_sets = "distro: jazzy\nnode_sets: [gz_ros2_control, bridge_per_robot, rviz_nav2]"
+    command = rovers(tmp_path, f"{node_sets}\nsimulator: {simulator}")
     fleet = tmp_path / "fleet.yaml"
     fleet.write_text(fleet.read_text().replace("rover.urdf", robot))
     # The spawner waits for the manager of a plugin that the description does not load.
@@ -157,3 +158,57 @@ def test_what_a_vendors_launch_files_start_is_left_to_them(
     launched = ["check-launch", str(out / "fleet.launch.py"), "--plan", str(out / "plan.yaml")]
     assert main(launched) == 3
     assert "error: MG101" not in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("affix", ["prefix", "postfix"])
+def test_a_built_folder_says_whose_each_name_is(
+    affix: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The plan beside the launch file knows the robots that no namespace shows."""
+    (tmp_path / "arm.urdf").write_text('<robot name="arm"><link name="base_link"/></robot>')
+    fleet = tmp_path / "fleet.yaml"
+    head = f"layout: postfix\naffix: {affix}\ndistro: jazzy\ndescription: {tmp_path}/arm.urdf\n"
+    fleet.write_text(f"{head}robots: [{{name: left}}, {{name: right}}]\n")
+    assert main(["build", str(fleet), "-o", str(tmp_path / "out"), "-q"]) == 0
+    assert main(["check-launch", str(tmp_path / "out/fleet.launch.py")]) == 0
+    told = capsys.readouterr().err
+    assert "2 robots by the plan in its folder: left, right; layout: postfix" in told
+    assert "2 robots, 1 node each: all known" in told
+
+
+BASE = """<link name="base_link">
+<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+</link>"""
+WHEEL = """<link name="{0}_link">
+<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+<joint name="{0}" type="continuous">
+<parent link="base_link"/><child link="{0}_link"/><axis xyz="0 1 0"/></joint>"""
+LOST_ODOMETRY = f"""<robot name="rover">
+{BASE}
+{WHEEL.format("l")}{WHEEL.format("r")}
+<gazebo><plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">
+<left_joint>l</left_joint><right_joint>r</right_joint><topic>cmd_vel</topic>
+<frame_id>odom</frame_id><child_frame_id>other_base</child_frame_id></plugin></gazebo></robot>"""
+
+
+@pytest.mark.parametrize(("stack", "level"), [("", "warning"), ("slam_toolbox", "error")])
+def test_a_tree_in_pieces_is_one_line_of_one_level(
+    stack: str, level: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A drive whose frame the description lacks: an error only where something localizes the robot."""
+    (tmp_path / "rover.urdf").write_text(LOST_ODOMETRY)
+    fleet, out = tmp_path / "fleet.yaml", tmp_path / "out"
+    robot = f"name: one, namespace: x/y, pose: {{x: 1.0}}, stack: [{stack}]"
+    fleet.write_text(
+        f"distro: jazzy\ndescription: rover.urdf\nlayout: both\nrobots: [{{{robot}}}]\n"
+    )
+    launched = ["check-launch", str(out / "fleet.launch.py")]
+    for command in (
+        ["build", str(fleet), "-o", str(out)], launched, [*launched, "--plan", str(out / "plan.yaml")]
+    ):  # fmt: skip
+        ended = main([*command, "--format", "json"])
+        found = json.loads(capsys.readouterr().out)["findings"]
+        told = [(it["level"], it["robot"]) for it in found if it["code"] == "MG406"]
+        assert (ended, told) == (int(level == "error"), [(level, "one")])
+        if level == "error":
+            return

@@ -15,8 +15,8 @@ import yaml
 from launched_nodes import AT
 
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.knowledge.node_sets import built_in
 from multibot_rewrite.knowledge.parameters import load_known_nodes
-from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.producers.launch import child
 from multibot_rewrite.producers.launch.records import (
@@ -52,7 +52,7 @@ def run(known: Knowledge) -> Graph:
 def node(
     program: str, name: str, space: str = "/robot1", rules: object = (), **more: object
 ) -> LaunchedNode:
-    """A launched node; ``container``, ``arguments`` and values of parameters by name."""
+    """Return a launched node; ``container``, ``arguments`` and values of parameters by name."""
     package, executable = program.split("/")
     container, arguments = more.pop("container", ""), more.pop("arguments", ())
     own = yaml.safe_dump({"/**": {"ros__parameters": more}})
@@ -161,8 +161,8 @@ def test_the_command_reports_and_compares(
     capsys.readouterr()
     assert code("check-launch", str(file), "as:=wrong", "--plan", str(plan)) == 1
     assert "should publish topic /robot1/tf" in capsys.readouterr().out
-    assert code("plan", str(file), "as:=right", "--stack", "nav2") == 2
-    assert "--stack" in capsys.readouterr().err
+    assert code("plan", str(file), "as:=right", "--node-set", "nav2") == 2
+    assert "--node-set" in capsys.readouterr().err
     assert not any(it.trusted for it in orders)  # type: ignore[attr-defined]
     assert code("check-launch", str(file), "as:=right", "--trust") == 0
     assert orders[-1].trusted  # type: ignore[attr-defined]
@@ -186,7 +186,7 @@ def test_bad_words_are_one_line(
 
 
 def simulated(space: str) -> str:
-    """A description with gz_ros2_control in a namespace."""
+    """Return a description with gz_ros2_control in a namespace."""
     rules = "<remapping>~/odom:=odom</remapping><remapping>/tf:=tf</remapping>"
     home = f"<ros><namespace>{space}</namespace>{rules}</ros>"
     plugin = f'<plugin filename="gz_ros2_control-system" name="gz_ros2_control::\

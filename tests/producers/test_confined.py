@@ -10,8 +10,9 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
-from paths import FIXTURES, ROOT
+from paths import FIXTURES, ROOT, fixture_text
 
+from multibot_rewrite.base.model import InputError
 from multibot_rewrite.description.sources.child import fences
 from multibot_rewrite.producers.launch.child import read_launch_files
 from multibot_rewrite.producers.launch.records import LaunchGraph, LaunchOrder
@@ -44,31 +45,12 @@ REFUSED = (
     "os.environ['A_SECRET']", "os.environ.get('A_SECRET')", "os.getenv('A_SECRET')",
     "ctypes.CDLL(None, use_errno=True).chmod(OUT.encode(), 0o700) and raised(ctypes.get_errno())",
 )  # fmt: skip
-FILE = """\
-import ctypes, os, shutil, tempfile
-from launch import LaunchDescription
-from launch_ros.actions import Node
-HERE, OUT = os.path.dirname(__file__), 'OUT_OF_IT'
-
-def raised(number):
-    raise PermissionError(number, "")
-
-def generate_launch_description():
-    nodes = [Node(package="p", executable="begun")]
-    for at, line in enumerate(LINES):
-        try:
-            eval(line)
-        except PermissionError:
-            nodes.append(Node(package="refused", executable=str(at)))
-        except BaseException as error:
-            nodes.append(Node(package=repr(error), executable=str(at)))
-    return LaunchDescription(nodes)
-"""
+FILE = fixture_text("confined_file.txt")
 
 
 @pytest.fixture
 def kept(tmp_path: Path) -> Path:
-    """A folder with a package, in which a launch file will be, and one that is none of its."""
+    """Return a folder with a package, in which a launch file will be, and one that is none of its."""
     (tmp_path / "own").mkdir()
     (tmp_path / "own/package.xml").write_text("<package><name>own</name></package>")
     (tmp_path / "other").mkdir(mode=0o755)
@@ -145,6 +127,17 @@ def test_a_launch_file_waits_for_nothing(kept: Path) -> None:
     assert [it.executable for it in read(file).nodes] == ["None"]
     (found,) = read_launch_files([LaunchOrder(str(file), (), (), True)], 2.0)
     assert "took more than 2 s" in str(found)
+
+
+def test_a_launch_file_that_is_a_link_to_nothing_stops_no_other(kept: Path) -> None:
+    """An installed package whose sources have gone has such links."""
+    other, gone = kept / "own/a.launch.py", kept / "own/gone.launch.py"
+    other.write_text(ASKS.replace("LINE", "1"))
+    gone.symlink_to("nosuch.py")
+    orders = [LaunchOrder(str(it), every=True) for it in (gone, other)]
+    error, graph = read_launch_files(orders, 60.0)
+    assert str(error).endswith("the launch file cannot be read: No such file or directory")
+    assert not isinstance(graph, InputError) and [it.executable for it in graph.nodes] == ["1"]
 
 
 def test_a_launch_file_reads_what_python_has_compiled(
@@ -292,30 +285,7 @@ def test_without_fences_nothing_of_it_runs(kept: Path) -> None:
     assert second.startswith("LaunchGraph") and (kept / "made").exists()
 
 
-WITHOUT_TOOLS = """\
-import os, yaml
-import acme_tools
-class Tools(acme_tools.Tools):
-    def __init__(self, name):
-        super().__init__(name, more=1)
-        self.name = name
-class Kept(acme_tools.Tools):
-    def __init__(self):
-        self.made = self.make()
-from launch import LaunchDescription
-from launch.actions import IncludeLaunchDescription
-from launch.launch_description_sources import PythonLaunchDescriptionSource
-from launch_ros.actions import Node
-def generate_launch_description():
-    made = [acme_tools.make(), Tools("a").make(Kept().made), Tools("a"), Kept()]
-    texts = [dump({"a": it}) for dump in (yaml.safe_dump, yaml.dump) for it in made]
-    kinds = [type(yaml.safe_load(it)["a"]).__name__ for it in texts]
-    inner = PythonLaunchDescriptionSource(os.path.join(os.path.dirname(__file__), "b.launch.py"))
-    return LaunchDescription([
-        Node(package="p", executable=f"{Tools('b').name} {set(kinds)}"),
-        IncludeLaunchDescription(inner, launch_arguments=acme_tools.Given().items()),
-    ])
-"""
+WITHOUT_TOOLS = fixture_text("confined_without_tools.txt")
 INNER = """\
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument

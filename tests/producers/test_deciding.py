@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 import yaml
 
+from multibot_rewrite.knowledge.node_sets import built_in
 from multibot_rewrite.knowledge.parameters import load_known_nodes
-from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, ParameterText
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import launched
@@ -37,12 +37,12 @@ def node(
 
 
 def read(known: Knowledge, *nodes: LaunchedNode, role: str = "subscribes") -> set[str]:
-    """What the first node surely reads, or has in another role."""
+    """Return what the first node surely reads, or has in another role."""
     return {it.name for it in _ends(known, *nodes) if it.role == role and it.sure == RUNS}
 
 
 def _ends(known: Knowledge, *nodes: LaunchedNode) -> list[End]:
-    """The ends of the first node."""
+    """Return the ends of the first node."""
     made = launched(LaunchGraph(nodes), known).system
     return [it for it in made.ends if it.node == made.nodes[0].name]
 

@@ -51,7 +51,7 @@ def lasting(nanoseconds: int) -> Any:
 
 
 def info(owner: str, process: int, type_: str = STRING, version: int = 1, deadline: int = 0) -> Any:
-    """An endpoint of a node by its full name, in a process by its number."""
+    """Return an endpoint of a node by its full name, in a process by its number."""
     space, _, name = owner.rpartition("/")
     profile = SimpleNamespace(
         history=WORDS["KEEP_LAST"], depth=10, reliability=WORDS["RELIABLE"],

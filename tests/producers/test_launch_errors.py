@@ -78,7 +78,7 @@ def test_a_file_that_is_lost_is_to_be_put_there() -> None:
 
 
 def raised(text: str, file: str) -> BaseException:
-    """What a program of that name raises."""
+    """Return what a program of that name raises."""
     try:
         exec(compile(text, file, "exec"), {})
     except Exception as error:

@@ -35,7 +35,7 @@ class Fault(NamedTuple):
 
 
 def for_two(old: str, new: str) -> tuple[str, str]:
-    """A text of the function, for robot2 another one."""
+    """Return a text of the function, for robot2 another one."""
     return old, f"{new} if name == 'robot2' else {old}"
 
 

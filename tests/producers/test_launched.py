@@ -22,11 +22,11 @@ from multibot_rewrite.system.records import Place
 PUBLISHER = "robot_state_publisher"
 
 
-def test_what_a_stack_has_and_nothing_launches_is_left_out_with_a_note() -> None:
-    found = launched(AMCL, stacks=("robot_localization",))
+def test_what_a_node_set_has_and_nothing_launches_is_left_out_with_a_note() -> None:
+    found = launched(AMCL, node_sets=("robot_localization",))
     assert [(it.code, it.line) for it in found.findings] == [("MF821", 1)]
     assert "ekf_filter_node" in found.findings[0].message
-    # Every robot runs robot_state_publisher, though no stack is named for it.
+    # Every robot runs robot_state_publisher, though no node set is named for it.
     assert set(runs(found)) == {"amcl", PUBLISHER}
     other = started(PUBLISHER, PUBLISHER, "rsp")
     assert set(runs(launched(AMCL, other))) == {"amcl", "rsp"}

@@ -79,7 +79,6 @@ def test_when_the_graph_is_settled_the_names_that_came_last_are_known(
         observe, "overview", lambda _: (["/lidar"], [SCAN]) if clock.now > 1 else ([], [])
     )
     monkeypatch.setattr(observe, "view", lambda *_: (["/lidar"], [SCAN]))
-    monkeypatch.setattr(observe, "lost_here", lambda _: 0)
     monkeypatch.setattr(observe, "_enough", lambda *_: observe.assemble.QUIET_SECONDS)
     updates: list[Any] = []
     heard: Any = SimpleNamespace(update=updates.append)
@@ -119,7 +118,6 @@ def test_two_participants_see_whether_the_network_loses_packets(
     monkeypatch.setattr(look, "overview", overview)
     monkeypatch.setattr(observe, "overview", overview)
     monkeypatch.setattr(observe, "view", lambda *_: (["/lidar"], [SCAN]))
-    monkeypatch.setattr(observe, "lost_here", lambda _: 0)
     monkeypatch.setattr(observe, "_enough", lambda *_: observe.assemble.QUIET_SECONDS)
     second = look.SecondParticipant(made, None)  # type: ignore[arg-type]
     second._second = other
@@ -196,22 +194,21 @@ def test_a_program_that_has_announced_itself_without_nodes_is_not_seen(
 
 
 @pytest.mark.parametrize(
-    ("around", "announced", "here", "lost", "enough"),
+    ("around", "announced", "here", "enough"),
     [
-        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}, 2, 2, -1e9, "short"),
-        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}, 2, 3, -1e9, "long"),
-        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}, 0, 0, -1e9, "long"),
-        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}, 2, 2, 1e9, "long"),
-        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}, 2, 2, -1e9, "long"),
-        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "ROS_STATIC_PEERS": "a"}, 2, 2, -1e9, "long"),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}, 2, 2, "short"),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}, 2, 3, "long"),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}, 0, 0, "long"),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}, 2, 2, "long"),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "ROS_STATIC_PEERS": "a"}, 2, 2, "long"),
         (
-            {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "ROS_DISCOVERY_SERVER": "a:1"}, 2, 2, -1e9,
+            {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "ROS_DISCOVERY_SERVER": "a:1"}, 2, 2,
             "long",
         ),
     ],
 )  # fmt: skip
 def test_a_shorter_look_is_enough_where_all_of_this_machine_are_known(
-    around: dict[str, str], announced: int, here: int, lost: float, enough: str, clock: Clock,
+    around: dict[str, str], announced: int, here: int, enough: str, clock: Clock,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
     for it in ("ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_STATIC_PEERS", "ROS_DISCOVERY_SERVER"):
@@ -224,18 +221,7 @@ def test_a_shorter_look_is_enough_where_all_of_this_machine_are_known(
     wanted = {
         "short": observe.assemble.ALL_KNOWN_SECONDS, "long": observe.assemble.QUIET_SECONDS,
     }  # fmt: skip
-    assert observe._enough(session(clock), 1.0, lost) == wanted[enough]
-
-
-def test_a_lost_datagram_is_of_the_moment_when_it_was_counted(
-    clock: Clock, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    counts = iter([0, 0, 2, 2, 1])
-    monkeypatch.setattr(observe, "lost_here", lambda domain: {7: next(counts)}[domain])
-    losses = observe._Losses(session(clock))
-    assert [losses.last(it) for it in (1.0, 2.0, 3.0, 4.0, 5.0)] == [
-        float("-inf"), float("-inf"), 3.0, 3.0, 5.0,
-    ]  # fmt: skip
+    assert observe._enough(session(clock)) == wanted[enough]
 
 
 def test_what_is_subscribed_to(clock: Clock, monkeypatch: pytest.MonkeyPatch) -> None:

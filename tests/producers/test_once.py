@@ -80,7 +80,7 @@ def test_what_runs_once_for_all_robots(program: str, word: str) -> None:
 
 
 def started(folder: Path, more: str = "", second: int = 1) -> list[str]:
-    """The programs and namespaces that a build starts."""
+    """Return the programs and namespaces that a build starts."""
     (folder / "robot.urdf").write_text(DESCRIPTION)
     for number in (1, 2):
         (folder / f"up{number}.launch.py").write_text(LAUNCH.replace("MAP", f"m{number}.yaml"))

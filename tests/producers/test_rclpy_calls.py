@@ -42,7 +42,7 @@ Install = Callable[..., ModuleType]
 
 @pytest.fixture
 def install(monkeypatch: pytest.MonkeyPatch) -> Install:
-    """Puts a module where ``import`` finds it."""
+    """Return a function that puts a module where ``import`` finds it."""
 
     def installed(name: str, **members: Any) -> ModuleType:
         module = ModuleType(name)

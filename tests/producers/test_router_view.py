@@ -71,7 +71,7 @@ class Session:
 
 @pytest.fixture
 def opens(monkeypatch: pytest.MonkeyPatch) -> Callable[[Session], RouterSession]:
-    """The session that is opened next; nothing is waited for."""
+    """Yield the session that is opened next; nothing is waited for."""
 
     def given(session: Session) -> RouterSession:
         own = RouterSession(ZENOH, session, deque(), [])
@@ -245,7 +245,7 @@ class Opened(Session):
 
 
 def with_zenoh(monkeypatch: pytest.MonkeyPatch, fault: str = "") -> tuple[list[Config], Opened]:
-    """A module in the place of zenoh: what it was opened with, and the session."""
+    """Return a module in the place of zenoh: what it was opened with, and the session."""
     configs: list[Config] = []
     session = Opened([DRIVER])
 

@@ -176,7 +176,7 @@ def test_what_a_known_class_opens_is_that_of_the_definitions(
     plugin: str, params: dict[str, str], found: list[tuple[str, str, str]]
 ) -> None:
     """default_serial_factory.cpp of robotiq_driver, ec_master.hpp of ethercat_driver_ros2,
-    hardware_interface.cpp:700 of ur_robot_driver, system_interface.cpp:393 of lbr_fri_ros2_stack."""
+    hardware_interface.cpp:700 of ur_robot_driver, system_interface.cpp:393 of lbr_fri_ros2_node_set."""
     inside = "".join(f'<param name="{name}">{it}</param>' for name, it in params.items())
     root = etree.fromstring(HARDWARE.format(plugin, inside))
     made = of_hardware(root, "/m", AT, load_definitions((), "jazzy"))
@@ -215,7 +215,7 @@ def test_what_a_launch_does_not_say_is_told_once() -> None:
         Caveat(
             "node-not-known", True,
             "2 nodes not known, with all topics and frames: /r/n (acme/arm), /r/m (acme/arm);"
-            " describe them in a file of nodes (--nodes, docs/stacks.md)",
+            " describe them in a file of nodes (--nodes, docs/node-sets.md)",
         ),
         Caveat(
             "description-not-known", True,
@@ -422,15 +422,15 @@ def test_a_launched_program_is_a_known_node(
     assert (node.name if node else "") == found
 
 
-def test_a_node_of_a_stack_comes_first_with_the_ends_of_its_program() -> None:
+def test_a_node_of_a_node_set_comes_first_with_the_ends_of_its_program() -> None:
     ends = (
         Endpoint(TOPIC, PUBLISHES, "a", when="-s set"),
         Endpoint(TOPIC, PUBLISHES, "b", when="program: driver|other"),
         Endpoint(SERVICE, SERVES, "c", when="program: else"),
     )
-    own = NodeFacts("driver", "acme", ends, note="of the stack")
+    own = NodeFacts("driver", "acme", ends, note="of the node set")
     with_word = known_node(launched("acme", "driver", "driver", ("-s",)), (own,), KNOWN)
-    assert with_word is not None and with_word.note == "of the stack"
+    assert with_word is not None and with_word.note == "of the node set"
     assert [(it.name, it.when) for it in with_word.endpoints] == [("a", ""), ("b", "")]
     without = known_node(launched("acme", "driver", "driver"), (own,), KNOWN)
     assert without is not None

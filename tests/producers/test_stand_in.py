@@ -425,7 +425,7 @@ COMPONENT = f"{PARTS} !pkg=package !plugin !name namespace <extra_arg>=extra_arg
 
 
 def read_of(form: frontend.Form) -> set[str]:
-    """What a form reads, as in ELEMENTS."""
+    """Return what a form reads, as in ELEMENTS."""
     values = {f"{'!' * (it in form.needs)}{it}={key}" for it, (key, _) in form.values.items()}
     below = {f"<{it}>={key}" for it, (key, _) in form.below.items()}
     return values | below | ({f"<*>={form.actions}"} if form.actions else set())
@@ -460,7 +460,7 @@ def test_attributes_that_are_true_or_a_command_line() -> None:
     assert truths == {
         "shell", "emulate_tty", "prepend", "scoped", "forwarding"
     }  # fmt: skip
-    lines = {word for word, read in readers if read is frontend._words}
+    lines = {word for word, read in readers if read is frontend._command_words}
     assert lines == {"args", "ros_args", "cmd"}
     texts = ("true", "1", "on", "yes", "TRUE", True, "false", "0", "", False)
     assert [frontend._truth(it) for it in texts] == [*[True] * 6, *[False] * 4]
@@ -469,9 +469,9 @@ def test_attributes_that_are_true_or_a_command_line() -> None:
 def test_elements_of_ros_1_are_refused_and_those_of_others_are_told() -> None:
     for tag in ("env", "machine", "param", "remap", "rosparam", "test"):
         with pytest.raises(RuntimeError, match=f"Unrecognized entity of the type: {tag}"):
-            frontend._made(Entity(tag, 1, {}, []))
+            frontend._action_of(Entity(tag, 1, {}, []))
     with standing_in():
-        other = frontend._made(Entity("so_they_say", 1, {}, []))
+        other = frontend._action_of(Entity("so_they_say", 1, {}, []))
     with pytest.raises(NotImplementedError, match=r"^<so_they_say> is not read: it needs launch"):
         other.execute(LaunchContext())
 
@@ -565,12 +565,12 @@ def test_only_the_blanks_of_a_command_line_separate(line: str, words: list[list[
     """launch execute_process.py, _parse_cmdline."""
     context = LaunchContext()
     context.launch_configurations.update({"x": "x", "y": "y"})
-    found = frontend._words(line)
+    found = frontend._command_words(line)
     assert [[it.perform(context) for it in word] for word in found] == words
 
 
 def visited(actions: list[Any], context: LaunchContext) -> list[str]:
-    """What the nodes of these actions are called, each with its namespace."""
+    """Return what the nodes of these actions are called, each with its namespace."""
     seen = []
     for it in actions:
         below = it.visit(context)

@@ -46,7 +46,7 @@ def theirs() -> tuple[Any, Any]:
 
 @pytest.fixture(params=[ours, theirs])
 def made(request: pytest.FixtureRequest) -> tuple[Any, Any]:
-    """The module, and a context for it."""
+    """Return the module, and a context for it."""
     found: tuple[Any, Any] = request.param()
     return found
 

@@ -75,7 +75,7 @@ XARM = "xArm-Developer+xarm_ros2/xarm_description__urdf__"
 
 
 def elements(data: bytes) -> dict[tuple[str, str], bytes]:
-    """The elements of a description by tag and name; materials without the prefix of an arm."""
+    """Return the elements of a description by tag and name; materials without the prefix of an arm."""
     root = joined_pairs.plain(data)
     for it in root.iter("material"):
         it.set("name", it.get("name", "").removeprefix("L_").removeprefix("R_"))
@@ -106,7 +106,7 @@ def test_two_xarms_on_the_ground_are_what_their_vendor_writes() -> None:
 
 
 def semantics(data: bytes) -> set[tuple[object, ...]]:
-    """The elements of an SRDF; which of two links is named first means nothing."""
+    """Return the elements of an SRDF; which of two links is named first means nothing."""
     pairs: set[tuple[object, ...]] = set()
     for it in joined_pairs.plain(data).iterchildren():
         links = sorted(it.get(key, "") for key in ("link1", "link2") if it.get(key))

@@ -43,7 +43,7 @@ def two(second: str = ONE, one_system: bool = True, first: str = ONE) -> Joined:
 
 
 def driven(made: Joined) -> dict[str, list[tuple[str, str]]]:
-    """What each system drives."""
+    """Return what each system drives."""
     found = etree.fromstring(made.data).iterchildren("ros2_control")
     return {
         it.get("name", ""): [(str(one.tag), one.get("name", "")) for one in it.iterchildren("*")][

@@ -11,8 +11,13 @@ import pytest
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.access import BOUNDED
-from multibot_rewrite.refactor.declaring import NAMES, SPACES, free_name
-from multibot_rewrite.refactor.namespaces import namespaced, space_verified
+from multibot_rewrite.refactor.namespaces import (
+    NAMES,
+    SPACES,
+    free_name,
+    namespaced,
+    space_verified,
+)
 from multibot_rewrite.refactor.package import Expanding, read_package, texts_of
 from multibot_rewrite.refactor.source_edits import edited
 
@@ -25,8 +30,8 @@ Tamper = Callable[[bytes], bytes]
 
 
 def verified(folder: Path, tamper: Tamper, more: str = "") -> tuple[tuple[str, ...], list[str]]:
-    """The names of files that are verified with the edits, which somebody tampered with, and why others
-    are not."""
+    """Return the names of files that are verified with the edits, which somebody tampered with,
+    and why others are not."""
     (folder / "r.urdf.xacro").write_text(ROBOT.format(more))
     tree, how = builtin_tree((), NEWEST_LTS), Expanding(BOUNDED, {})
     found = read_package(str(folder), tree, how).descriptions

@@ -242,7 +242,7 @@ def test_a_name_that_a_file_of_the_folder_uses_is_taken(
     ],
 )
 def test_why_no_edit_makes_a_change(touched: list[Piece], why: str) -> None:
-    assert source_edits._why(touched) == why
+    assert source_edits._why_not_edited(touched) == why
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ from related_file_calls import (
     fill_template,
     make_context,
     make_naming,
-    stack_of,
+    nodes_of_set,
 )
 
 from multibot_rewrite.base.findings.finding import Finding
@@ -24,7 +24,7 @@ from multibot_rewrite.related_files.behavior_tree.rewrite import rewrite_behavio
 
 LAYOUTS = ("L1", "L2", "L3", "L4")
 DECLARED = {"link": {"base_link": None, "tool": None}, "joint": {"wheel": None}}
-FACTS = stack_of(built_in(NEWEST_LTS), "nav2")
+FACTS = nodes_of_set(built_in(NEWEST_LTS), "nav2")
 
 
 def context(layout: str = "L2", distro: str = "jazzy", **more: str) -> Context:
@@ -42,7 +42,7 @@ def tree(body: str, form: str = ' BTCPP_format="4"') -> str:
 
 
 def one(body: str, layout: str = "L2", form: str = ' BTCPP_format="4"') -> str:
-    """What a node becomes."""
+    """Return what a node becomes."""
     before, behind = tree("|", form).split("|")
     new = run(tree(body, form), context(layout))[0]
     assert new.startswith(before) and new.endswith(behind)

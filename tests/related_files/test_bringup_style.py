@@ -32,7 +32,7 @@ FLEET = fixture_text("bringup_style_fleet.yaml")
 def built(
     folder: Path, layout: str = "both", namespace: str = "robot1", more: str = "", text: str = ""
 ) -> str:
-    """The parameter file of robot1."""
+    """Return the parameter file of robot1."""
     (folder / "rover.urdf").write_bytes(ROVER.read_bytes())
     (folder / "params.yaml").write_text(text or PARAMS)
     written = FLEET.format(layout=layout, namespace=namespace, more=more)

@@ -12,8 +12,8 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.knowledge.node_library import stack_of
-from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.knowledge.node_library import nodes_of_set
+from multibot_rewrite.knowledge.node_sets import built_in
 from multibot_rewrite.related_files.context import Context, fill_template, make_context
 from multibot_rewrite.related_files.moveit.file_kind import (
     file_kind,
@@ -35,7 +35,7 @@ LAYOUTS = ("L1", "L2", "L3", "L4")
 def context(layout: str = "L2", affix: str = "", srdf: bool = True, **more: str) -> Context:
     declared = {"link": dict.fromkeys(LINKS), "joint": dict.fromkeys(JOINTS)}
     affix = affix or ("postfix" if layout == "L4" else "prefix")
-    facts = stack_of(built_in(NEWEST_LTS), "moveit")
+    facts = nodes_of_set(built_in(NEWEST_LTS), "moveit")
     naming = make_naming(layout, affix, **more)
     known = with_srdf(declared, SRDF) if srdf else declared  # type: ignore[arg-type]
     return make_context(known, naming, facts, distro=NEWEST_LTS)  # type: ignore[arg-type]

@@ -44,7 +44,7 @@ needs_corpus = pytest.mark.skipif(not FILES, reason=f"no corpus of MoveIt files:
 
 @cache
 def description(folder: str) -> Names:
-    """What the folder's URDFs and SRDFs declare; what its files name where there is no URDF."""
+    """Return what the folder's URDFs and SRDFs declare; what its files name where there is no URDF."""
     found: dict[str, dict[str, None]] = {it: {} for it in ("joint", "link", "frame", "group")}
     tree = builtin_tree((), NEWEST_LTS)
     for kind in ("urdf", "srdf"):
@@ -147,7 +147,7 @@ def prove(path: Path, layout: str, counted: Counter[str]) -> None:
 
 
 def structure(node: yaml.Node) -> object:
-    """Maps, lists and scalars without their text."""
+    """Return maps, lists and scalars without their text."""
     if isinstance(node, yaml.ScalarNode):
         return ""
     if isinstance(node, yaml.SequenceNode):

@@ -15,9 +15,9 @@ import yaml
 from paths import fixture_text
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
-from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.checks.build import make_outputs
+from multibot_rewrite.checks.judged_plan import plan_fleet
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
 URDF = '<robot name="rover"><link name="base_link"/></robot>'
 PARAMS = fixture_text("own_values_params.yaml")

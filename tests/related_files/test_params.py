@@ -22,9 +22,9 @@ from related_file_calls import (
     load_known_nodes,
     make_context,
     make_naming,
+    nodes_of_set,
     read_yaml,
     rewrite_params,
-    stack_of,
 )
 
 from multibot_rewrite.base.model import InputError, UsageError
@@ -35,7 +35,7 @@ INTERFACES = ("command_interfaces", "state_interfaces", "interfaces")
 
 
 def value(node: str, line: str, policy: tuple[str, str] = L2, distro: str = "jazzy") -> str:
-    """What becomes of one line of a node's section; the last line is never an inserted one."""
+    """Return what becomes of one line of a node's section; the last line is never an inserted one."""
     text, _ = made(section(node, line), policy, distro)
     return text.splitlines()[-1].strip()
 
@@ -92,10 +92,10 @@ def test_the_namespace_of_the_robot_that_a_file_is_for_is_no_name_of_a_node(key:
 
 def test_a_node_for_all_robots_keeps_its_section() -> None:
     library = extend(
-        built_in(NEWEST_LTS), "stacks: {s: {nodes: [{node: map_server, shared: true}]}}", "n"
+        built_in(NEWEST_LTS), "node_sets: {s: {nodes: [{node: map_server, shared: true}]}}", "n"
     )
     context = make_context(
-        DECLARED, make_naming(layout="L2"), stack_of(library, "s"), distro=NEWEST_LTS
+        DECLARED, make_naming(layout="L2"), nodes_of_set(library, "s"), distro=NEWEST_LTS
     )  # type: ignore[arg-type]
     source = section("map_server", "topic_name: /map", "frame_id: base_link")
     related_file = rewrite_params(read_yaml((source * 2).encode(), "p"), context)
@@ -453,8 +453,8 @@ def test_mistakes_in_names_are_reported(node: str, line: str, code: str, words: 
 
 
 def test_one_key_cannot_be_two() -> None:
-    text = "stacks: {s: {nodes: [{node: local_costmap/local_costmap, shared: true}]}}"
-    nodes = stack_of(extend(built_in(NEWEST_LTS), text, "n"), "s")
+    text = "node_sets: {s: {nodes: [{node: local_costmap/local_costmap, shared: true}]}}"
+    nodes = nodes_of_set(extend(built_in(NEWEST_LTS), text, "n"), "s")
     context = make_context(DECLARED, make_naming(layout="L2"), nodes, distro=NEWEST_LTS)  # type: ignore[arg-type]
     inner = "    ros__parameters: {use_sim_time: true}\n"
     source = f"local_costmap:\n  local_costmap:\n{inner}  local_costmap_client:\n{inner}"
@@ -464,8 +464,8 @@ def test_one_key_cannot_be_two() -> None:
 
 def test_a_topic_with_a_wrong_target_by_a_rule_is_reported() -> None:
     """At the root ``/scan:=front`` takes the relative ``scan`` too, in a namespace it does not."""
-    text = "stacks: {s: {nodes: [{node: slam_toolbox, remaps: {/scan: front}}]}}"
-    nodes = stack_of(extend(built_in(NEWEST_LTS), text, "n"), "s")
+    text = "node_sets: {s: {nodes: [{node: slam_toolbox, remaps: {/scan: front}}]}}"
+    nodes = nodes_of_set(extend(built_in(NEWEST_LTS), text, "n"), "s")
     context = make_context(DECLARED, make_naming(layout="L2"), nodes, distro=NEWEST_LTS)  # type: ignore[arg-type]
     document = read_yaml(section("slam_toolbox", "scan_topic: scan").encode(), "p")
     found = rewrite_params(document, context, facts=nodes).findings

@@ -16,12 +16,12 @@ DRIVES = ("diff_drive_controller", "mecanum_drive_controller", "omni_wheel_drive
 
 
 def lines(node: str, *given: str, release: str) -> list[str]:
-    """The section's lines for robot1."""
+    """Return the section's lines for robot1."""
     return [it.strip() for it in made(section(node, *given), distro=release)[0].splitlines()]
 
 
 def prefix_of(written: list[str], release: str, namespace: str = "/robot1") -> str:
-    """What the controllers' code puts before frames, as it is in the release's sources."""
+    """Return what the controllers' code puts before frames, as it is in the release's sources."""
     given = dict(it.split(": ", 1) for it in written if ": " in it and not it.startswith("#"))
     prefix = given.get("tf_frame_prefix", "").strip('"')
     if given.get("tf_frame_prefix_enable", "true") == "false":

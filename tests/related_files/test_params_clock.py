@@ -26,7 +26,8 @@ rviz2:
 def text(folder: Path, told: str, robot: str = "robot1") -> str:
     (folder / "params.yaml").write_text(PARAMS)
     (folder / "fleet.yaml").write_text(
-        f"layout: both\nstack: [nav2, rviz]\n{told}\nrelated_files: {{params: params.yaml}}\nrobots:\n"
+        f"layout: both\nnode_sets: [nav2, rviz]\n{told}\n"
+        "related_files: {params: params.yaml}\nrobots:\n"
         f"  - {{name: robot1, description: {ROBOTS / 'rover.urdf'}}}\n"
         f"  - {{name: robot2, description: {ROBOTS / 'rover.urdf'}, use_sim_time: false}}\n"
     )

@@ -92,7 +92,7 @@ def cases(sources: dict[str, bytes], policies: Sequence[tuple[str, str]]) -> Ite
 
 
 def asked(folder: Path, found: Sequence[Case]) -> list[list[Any]]:
-    """What rcl makes of both texts of each case."""
+    """Return what rcl makes of both texts of each case."""
     lines = []
     for at, case in enumerate(found):
         for kind, text, nodes in (("old", case.source, case.old), ("new", case.text, case.new)):
@@ -113,7 +113,7 @@ def asked(folder: Path, found: Sequence[Case]) -> list[list[Any]]:
 
 
 def wrong(found: Sequence[Case], folder: Path) -> tuple[list[str], int]:
-    """What differs beyond names, and how many nodes were compared."""
+    """Return what differs beyond names, and how many nodes were compared."""
     told, count = [], 0
     for case, (old, new) in zip(found, asked(folder, found), strict=True):
         if old is None:

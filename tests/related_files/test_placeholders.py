@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 import yaml
 
-from multibot_rewrite.fleet.build import Outputs, make_outputs
+from multibot_rewrite.checks.build import Outputs, make_outputs
+from multibot_rewrite.checks.judged_plan import plan_fleet
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.related_files.names.placeholders import without_robot
 
 FORMS = (
@@ -57,7 +57,7 @@ FLEET = """\
 layout: LAYOUT
 affix: prefix
 description: rover.urdf
-stack: [localization, navigation]
+node_sets: [localization, navigation]
 robots: [{name: robot1}, {name: robot2}]
 related_files: {params: p.yaml, bridge: b.yaml, rviz: r.rviz, behavior_trees: t.xml}
 """
@@ -139,7 +139,7 @@ def test_a_prefix_alone_is_none_where_frames_have_it(
     )
     fleet = tmp_path / "fleet.yaml"
     fleet.write_text(
-        f"layout: {layout}\naffix: prefix\ndescription: rover.urdf\nstack: robot_localization\n"
+        f"layout: {layout}\naffix: prefix\ndescription: rover.urdf\nnode_sets: robot_localization\n"
         "robots: [{name: robot1}, {name: robot2}]\nrelated_files: {params: p.yaml}\n"
     )
     outputs = make_outputs(plan_fleet(read_fleet(str(fleet), "", {})))

@@ -254,7 +254,7 @@ RELAY = (
 
 
 def alone(line: str, title: str, hint: str) -> tuple[str, ...]:
-    """What is said of an item that works for one process."""
+    """Return what is said of an item that works for one process."""
     why = "it works only for the robot whose namespace rviz2 runs in"
     return line, "MF202", f"{title} is left out: {why}", hint
 

@@ -64,7 +64,7 @@ def test_corpus(configs: list[Path], layout: str) -> None:
 
 
 def survey(configs: list[Path], layout: str) -> Counter[str]:
-    """The refusals by reason; fails where a result is wrong or a reason is not true."""
+    """Return the refusals by reason; fails where a result is wrong or a reason is not true."""
     refused: Counter[str] = Counter()
     for path in configs:
         document = read(path)
@@ -99,7 +99,7 @@ def check(document: YamlText, layout: str) -> None:
 
 
 def without(config: Any, flags: list[str]) -> Any:
-    """The config without what serves one process."""
+    """Return the config without what serves one process."""
     if isinstance(config, dict):
         return {key: without(value, flags) for key, value in config.items()}
     if not isinstance(config, list):
@@ -220,7 +220,7 @@ def same(old: dict[str, Any], new: dict[str, Any], robot: str, layout: str) -> b
 
 
 def unpainted(one: dict[str, Any]) -> dict[str, Any]:
-    """A display without the colour that may be the robot's."""
+    """Return a display without the colour that may be the robot's."""
     shape = (
         {k: v for k, v in (one.get("Shape") or {}).items() if k != "Color"}
         if isinstance(one.get("Shape"), dict)

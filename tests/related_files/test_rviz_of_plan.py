@@ -20,7 +20,7 @@ from multibot_rewrite.system.records import PUBLISHES
 
 FLEET = """\
 layout: {layout}
-stack: nav2
+node_sets: nav2
 description: {description}
 robots: [{{name: robot1}}, {{name: robot2, pose: {{y: 2.0}}}}]
 """

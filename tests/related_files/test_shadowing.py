@@ -33,7 +33,7 @@ AMCL, OTHER, ALL = section("amcl", alpha1=0.1), section("node", beta=1), section
 
 
 def shadowed(folder: Path, capsys: pytest.CaptureFixture[str], *sections: str) -> list[int]:
-    """The lines of parameters that take the place of earlier ones."""
+    """Return the lines of parameters that take the place of earlier ones."""
     assert build(folder, params__yaml="".join(sections)) == 0
     err = capsys.readouterr().err
     return [int(line) for line in re.findall(r"params\.yaml:(\d+):\d+: \w+: MB867\b", err)]

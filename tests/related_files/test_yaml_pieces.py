@@ -203,7 +203,7 @@ def test_xml_is_beside_a_description_where_it_is_a_tree(tmp_path: Path) -> None:
     tree.write_text(TREE)
     other.write_text('<robot name="r"/>')
     gone = str(tmp_path / "gone.xml")
-    assert [named_file.is_beside(it) for it in (str(tree), str(other), gone)] == [
+    assert [named_file.is_related_file(it) for it in (str(tree), str(other), gone)] == [
         True,
         False,
         False,
@@ -214,7 +214,7 @@ def test_xml_is_beside_a_description_where_it_is_a_tree(tmp_path: Path) -> None:
         False,
     ]
     texts = (TREE.encode(), b"\xef\xbb\xbf \n" + TREE.encode(), b"<robot/>", b"a: 1", b"")
-    assert [named_file.is_beside(it) for it in texts] == [True, True, False, True, True]
+    assert [named_file.is_related_file(it) for it in texts] == [True, True, False, True, True]
 
 
 @pytest.mark.parametrize("end", ["\r", "\r\n", "\x85", "\u2028"])

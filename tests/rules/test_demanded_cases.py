@@ -25,7 +25,7 @@ JTC = "joint_trajectory_controller {type: joint_trajectory_controller/JointTraje
 def said(
     code: str, text: str, folder: Path, distro: str = "jazzy", hints: bool = False
 ) -> list[str]:
-    """What is said of a file with a node in each line, its parameters in braces."""
+    """Return what is said of a file with a node in each line, its parameters in braces."""
     lines = [line.partition(" ") for line in text.splitlines()]
     file = folder / "a.yaml"
     file.write_text("".join(f"{node}:\n  ros__parameters: {its}\n" for node, _, its in lines))

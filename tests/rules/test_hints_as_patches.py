@@ -31,9 +31,9 @@ def about(found: Iterable[Finding]) -> set[tuple[str, str, str]]:
 
 
 def news(after: Iterable[Finding], before: Iterable[Finding]) -> list[str]:
-    """What is found that was not found before. What robots held against each other show is left to any
-    other finding: it was there, and the mended robot may be made otherwise than the others. What came
-    of another finding was found with that one."""
+    """Return what is found that was not found before. What robots held against each other show
+    is left to any other finding: it was there, and the mended robot may be made otherwise than
+    the others. What came of another finding was found with that one."""
     known, below = (
         about(before),
         {(it.robot, code) for it in before for code in CODE.findall(it.hint)},
@@ -137,7 +137,7 @@ def test_rules_of_a_hint_by_the_plan_mend_the_fault(
 
 # Of rules that stand in the plan, which is no part of the system.
 OF_THE_PLAN = {
-    "MG108": "a node that the plan lacks: --stack and --nodes are options that write one"
+    "MG108": "a node that the plan lacks: --node-set and --nodes are options that write one"
 }
 NAMES = re.compile(
     r":=|(?<![\w-])--[a-z][\w-]*|(?<!\w)-r /|\.ya?ml\b|\bROS_[A-Z_]+|</?[a-z_]+>|[a-z]+(?:_[a-z0-9]+)+"
@@ -156,7 +156,7 @@ RELEASES = ("humble", "jazzy", "kilted", "lyrical", "rolling")
 
 
 def named_in(finding: Finding) -> list[str]:
-    """What the hint names of a rule, switch, file or parameter, besides what is in the graph."""
+    """Return what the hint names of a rule, switch, file or parameter, besides what is in the graph."""
     hint = finding.hint
     for it in sorted({finding.node, finding.robot, *finding.names} - {""}, key=len, reverse=True):
         hint = hint.replace(it, "")

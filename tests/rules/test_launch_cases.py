@@ -17,8 +17,9 @@ from launched_nodes import AT, started
 from lxml import etree
 
 from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.description.sources.world_systems import needed_systems
+from multibot_rewrite.knowledge.node_sets import built_in
 from multibot_rewrite.knowledge.parameters import load_known_nodes
-from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.lint.launched import named_findings
 from multibot_rewrite.producers.launch.launched import Launched
 from multibot_rewrite.producers.launch.records import (
@@ -29,7 +30,6 @@ from multibot_rewrite.producers.launch.records import (
 )
 from multibot_rewrite.producers.launch.running import Knowledge
 from multibot_rewrite.producers.launch.snapshot import launched
-from multibot_rewrite.rules.facts.simulators import needed_systems
 from multibot_rewrite.rules.launch.judge import as_one_of_several, as_sure, judge_launch
 from multibot_rewrite.rules.system.planned_nodes import missing_node, unplanned_node
 from multibot_rewrite.rules.system.states import (
@@ -333,10 +333,10 @@ LEFT = "no node of its node set or file is started here: name the launch file th
         (("/r2/map",), {"amcl": "inconclusive", "map": "error", "own": "error"}),
     ],
 )
-def test_a_stack_may_be_in_another_launch_file(
+def test_a_node_set_may_be_in_another_launch_file(
     running: tuple[str, ...], levels: dict[str, str]
 ) -> None:
-    origins = {"amcl": {"stack": "nav2"}, "map": {"place": Place("nav2.yaml", 3)}, "own": {}}
+    origins = {"amcl": {"node_set": "nav2"}, "map": {"place": Place("nav2.yaml", 3)}, "own": {}}
     plan = System(
         tuple(Node(f"/{at}/{it}", **of) for it, of in origins.items() for at in ("r1", "r2"))  # type: ignore[arg-type]
     )
@@ -352,12 +352,12 @@ def test_a_stack_may_be_in_another_launch_file(
 
 @pytest.mark.parametrize(("started", "level"), [("", "inconclusive"), ("/r2/arm", "error")])
 def test_what_a_node_makes_for_itself_is_left_with_it(started: str, level: str) -> None:
-    """The plan has no stack for it; of two makers the one with the longer name is meant."""
+    """The plan has no node set for it; of two makers the one with the longer name is meant."""
     nodes = (
-        Node("/r1/arm", stack="moveit"),
-        Node("/r2/arm", stack="moveit"),
+        Node("/r1/arm", node_set="moveit"),
+        Node("/r2/arm", node_set="moveit"),
         Node("/r1/arm_private_*"),
-        Node("/r1/a", stack="nav2"),
+        Node("/r1/a", node_set="nav2"),
     )
     seen = System(tuple(map(Node, ("/r1/a", started))))
     found = missing_node.finding("x", "y", node="/r1/arm_private_*")
@@ -546,6 +546,7 @@ def test_a_system_of_the_world_is_loaded_again_with_a_second_model(known: Knowle
 
 SENT = "running: transform {} on /tf by /a\n"
 LOOSE, BODY = SENT.format("map -> odom"), SENT.format("base_link -> laser")
+POSED = LOOSE.replace("/a", "/start_pose") + "running: /start_pose publishes /x\n"
 MISSPELLED = SENT.format("odom -> base_lnk") + SENT.format("base_link -> front")
 WHOLE = SENT.format("odom -> base_link")
 MOVED = f"<robot name='r'>{LINK}{{}}</robot>"
@@ -567,6 +568,9 @@ ODD_PLUGIN = "<gazebo><plugin name='p' filename='p'/></gazebo>"
         (LOOSE + BODY, "<robot", "warning"),
         (LOOSE + BODY, MOVED.format(GZ_DRIVE.format("")), "error"),
         (LOOSE + BODY, MOVED.format(CLASSIC_DRIVE), "error"),
+        # A build that places the robot starts nothing that localizes it.
+        (POSED + BODY, MOVED.format(CLASSIC_DRIVE), "warning"),
+        (POSED.replace("start", "other") + BODY, MOVED.format(CLASSIC_DRIVE), "error"),
         # A sensor or what tells the joints moves nothing, and what is not known may send the odometry.
         (LOOSE + BODY, MOVED.format(JOINTS), "warning"),
         (LOOSE + BODY, MOVED.format(ODD_PLUGIN), "warning"),

@@ -32,7 +32,7 @@ PLACE = "arm.urdf:12"
 
 
 def plan_of(lines: str, **changes: Any) -> Index:
-    """The plan of an example, with what is changed in the node of its first line."""
+    """Return the plan of an example, with what is changed in the node of its first line."""
     plan, _ = read_example("\n".join(f"planned: {it}" for it in lines.splitlines()))
     name = lines.partition(" ")[0]
     nodes = tuple(it._replace(**changes) if it.name == name else it for it in plan.nodes)
@@ -98,7 +98,7 @@ def test_a_prefix_in_front_of_planned_frames(
 
 @pytest.mark.parametrize(
     ("place", "file", "line"),
-    [("a.urdf:12", "a.urdf", 12), ("stack nav2", "", 0), ("c:a.urdf:3", "c:a.urdf", 3)],
+    [("a.urdf:12", "a.urdf", 12), ("node set nav2", "", 0), ("c:a.urdf:3", "c:a.urdf", 3)],
 )
 def test_a_cause_has_its_place(place: str, file: str, line: int) -> None:
     assert caused("why", place)[:3] == ("why", file, line)

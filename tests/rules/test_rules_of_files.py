@@ -11,15 +11,15 @@ from pathlib import Path
 
 import pytest
 import yaml
-from paths import fixture_text
+from paths import fixture_text, write_files
 from rule_examples import BUILT, RELATED_FILES
 
 from multibot_rewrite.base.findings.finding import Finding, Rule
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.checks.build import make_outputs
+from multibot_rewrite.checks.judged_plan import plan_fleet
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.rules.declaration import rules_in
 from multibot_rewrite.rules.files.judge import SHARED
@@ -135,11 +135,9 @@ def by_both(
     beside: Mapping[str, str] = ROVER,
     distro: str = NEWEST_LTS,
 ) -> tuple[list[str], list[str]]:
-    """What the lint says of a file in a package (of the rover, where it has none), and what a build."""
+    """Return what the lint and a build say of a file in a package (the rover's, if it has none)."""
     file, key = RELATED_FILES[kind]
-    for name, content in {**ROVER, **beside, file: text}.items():
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / name).write_text(content)
+    write_files(folder, {**ROVER, **beside, file: text})
     linted = lint_file(
         str(folder / file), Settings(robots=ROBOTS, naming=make_naming("both"), distro=distro)
     )

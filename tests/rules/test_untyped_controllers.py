@@ -42,6 +42,9 @@ def _codes(folder: Path, capsys: pytest.CaptureFixture[str], *words: str) -> lis
         ("cm", "", f'{{"jsb2.type": "{TYPE}"}}', "", "", ["MG728"]),
         ("cm", "", FILE, f"/**: {{ros__parameters: {{jsb: {{type: {TYPE}}}}}}}", "", []),
         ("cm", "/r", FILE, f"/r/cm: {{ros__parameters: {{jsb: {{type: {TYPE}}}}}}}", "", []),
+        # rclcpp parameter_map.cpp: ** stands for any number of namespaces, * for one.
+        ("cm", "/r", FILE, f"/**/cm: {{ros__parameters: {{jsb: {{type: {TYPE}}}}}}}", "", []),
+        ("cm", "", FILE, f"/*/cm: {{ros__parameters: {{jsb: {{type: {TYPE}}}}}}}", "", ["MG728"]),
         # Of another robot's manager: rcl hands on nothing of it.
         ("cm", "/r", FILE, f"/q/cm: {{ros__parameters: {{jsb: {{type: {TYPE}}}}}}}", "", ["MG728"]),
         (

@@ -14,7 +14,7 @@ MANAGERS = "/robot1/controller_manager", "/robot1/gz/controller_manager"
 
 
 def heard(topic: str, frame: str) -> Change:
-    """A message on the topic names the frame."""
+    """Return the change by which a message on the topic names the frame."""
     return lambda graph: graph._replace(heard=(*graph.heard, Heard(topic, frame)))
 
 
@@ -85,7 +85,7 @@ def state_rows() -> tuple[Fault, ...]:
 
 
 def file_rows() -> tuple[Fault, ...]:
-    """What only files of the robots say."""
+    """Return what only files of the robots say."""
     arms = tuple(
         Address(DEVICE, "robot_ip", "10.0.0.2", f"/{it}/robot_state_publisher")
         for it in ("robot1", "robot2")

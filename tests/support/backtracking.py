@@ -35,7 +35,7 @@ class Program(NamedTuple):
 
 
 def program_of(pattern: str | bytes, flags: int = 0) -> Program:
-    """The program of a pattern."""
+    """Return the program of a pattern."""
     tree = sre_parse.parse(pattern, flags)  # type: ignore[arg-type]
     maker = _Maker(tree.state.flags, isinstance(pattern, bytes))
     maker.sequence(tree)
@@ -201,7 +201,7 @@ class Matcher:
         self.program, self.steps, self.limit = program, 0, limit
 
     def every(self, text: str) -> Iterator[tuple[int, int]]:
-        """The matches, as ``finditer`` finds them."""
+        """Yield the matches, as ``finditer`` finds them."""
         at = 0
         while at <= len(text):
             end = self.match(text, at)
@@ -214,12 +214,12 @@ class Matcher:
             at = end
 
     def match(self, text: str, at: int = 0, whole: bool = False) -> int | None:
-        """The end of a match that begins here; None without one."""
+        """Return the end of a match that begins here; None without one."""
         found = self._run(self.program, text, (0, at, {}), whole)
         return found[1] if found else None
 
     def _run(self, program: Program, text: str, here: _Here, whole: bool = False) -> _Here | None:
-        """The end of the first way through the program; what is left to try is a stack."""
+        """Return the end of the first way through the program; what is left to try is a stack."""
         left, code, size = [here], program.code, len(text)
         while left:
             line, at, places = left.pop()
@@ -305,7 +305,8 @@ class _Examples:
         self.characters: dict[str, None] = {}
 
     def texts(self, nodes: Any) -> list[str]:
-        """A few texts for a sequence: each alternative of each node with the first of all others."""
+        """Return some texts for a sequence: each alternative of each node with the first of all
+        others."""
         each = [self.node(op.name, value) for op, value in nodes]
         first = "".join(it[0] for it in each)
         made = {first: None}
@@ -401,7 +402,7 @@ class Attack(NamedTuple):
 
 
 def attacks(pattern: str | bytes, flags: int = 0) -> list[Attack]:
-    """The texts on which a pattern may take long: what it repeats, what leads there, its characters."""
+    """Return texts on which a pattern may take long: its repeats, what leads there, its characters."""
     tree = sre_parse.parse(pattern, flags)  # type: ignore[arg-type]
     make = _Examples(tree.state.flags)
     whole = make.texts(tree)

@@ -15,8 +15,8 @@ from fleet_folder import planned_fleet
 from paths import ROOT
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.fleet.build import Outputs, make_outputs
-from multibot_rewrite.fleet.checks.read_back import read_back
+from multibot_rewrite.checks.build import Outputs, make_outputs
+from multibot_rewrite.checks.read_back import read_back
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 
 LAUNCH, OUT = "fleet.launch.py", "/anywhere/out"
@@ -25,7 +25,7 @@ FLEET = f"""\
 layout: tf-per-robot
 distro: jazzy
 description: {EXAMPLE}/hexbase.urdf.xacro
-stack: [nav2]
+node_sets: [nav2]
 robots: [{{name: robot1, pose: {{x: 1}}}}, {{name: robot2, pose: {{x: 2}}}}]
 related_files: {{params: {EXAMPLE}/nav2_params.yaml, bridge: {EXAMPLE}/bridge.yaml}}
 """
@@ -44,13 +44,13 @@ def fleet() -> tuple[FleetPlan, Outputs]:
 
 
 def read(edit: Edit) -> list[Finding]:
-    """What is found of the files with a fault in them."""
+    """Return what is found of the files with a fault in them."""
     plan, made = fleet()
     return read_back(plan, edited(made, edit), OUT)
 
 
 def edited(made: Outputs, edit: Edit) -> Outputs:
-    """The outputs of a build with other texts in their files."""
+    """Return the outputs of a build with other texts in their files."""
     own = {it.path: it.data.decode() for it in made.files}
     own[LAUNCH] = unrolled(own[LAUNCH])
     texts = {path: edit(path, text) for path, text in own.items()}
@@ -64,7 +64,7 @@ _TEXT = re.compile(r'"""[\s\S]*?"""|(f?)\'([^\'\n]*)\'|"[^"\n]*"')
 
 
 def unrolled(text: str) -> str:
-    """The launch file with a function for each robot, so that a fault can be put into one alone."""
+    """Return the launch file with a function for each robot: a fault can be put into one alone."""
     calls = [it.groups() for it in _CALL.finditer(text)]
     for title in {it[1] for it in calls}:
         function = re.search(rf"(?ms)^def {title}\(.*?^    \]\n", text)
@@ -82,7 +82,7 @@ def _double_quoted(it: re.Match[str]) -> str:
 
 
 def _for_one(function: str, robot: str, given: str) -> str:
-    """The function of one robot, with its values."""
+    """Return the function of one robot, with its values."""
     body = function.partition("\n")[2].replace("{name}", robot)
     body = re.sub(r"\bname(?=[,)])", f"'{robot}'", body)
     for key, value in re.findall(r", (\w+)=([^,]+)", given):
@@ -93,7 +93,7 @@ def _for_one(function: str, robot: str, given: str) -> str:
 
 @cache
 def in_a_build(fault: Fault) -> tuple[str, ...]:
-    """The codes that the build has for a fault."""
+    """Return the codes that the build has for a fault."""
     return tuple(sorted({it.code for it in read(BUILT[fault.name])}))
 
 
@@ -123,7 +123,7 @@ def node(robot: str, name: str, change: Callable[[str], str]) -> Edit:
 
 
 def rules(*pairs: tuple[str, str]) -> Callable[[str], str]:
-    """A node with these rules before its own."""
+    """Return a node with these rules before its own."""
     lines = "".join(f'                ("{old}", "{new}"),\n' for old, new in pairs)
 
     def change(text: str) -> str:
@@ -137,7 +137,7 @@ def rules(*pairs: tuple[str, str]) -> Callable[[str], str]:
 
 
 def without(pattern: str) -> Callable[[str], str]:
-    """A text without the rules of which a name is like this."""
+    """Return a text without the rules of which a name is like this."""
     return lambda text: re.sub(rf' *\("{pattern}", "[^"]*"\),\n', "", text)
 
 

@@ -22,10 +22,10 @@ wheels:
 """
 FLEETS = {
     "classic": f"description: rover.urdf\n{TWO}",
-    "gz": "description: rover_gz.urdf\nstack: gz_ros2_control\nrelated_files: {params: c.yaml}\n"
+    "gz": "description: rover_gz.urdf\nnode_sets: gz_ros2_control\nrelated_files: {params: c.yaml}\n"
     + TWO,
     "sdf": f"description: rover.sdf\n{TWO}",
-    "real": f"description: two_finger_arm.urdf\nsimulator: none\nstack: robot_state\n{TWO}",
+    "real": f"description: two_finger_arm.urdf\nsimulator: none\nnode_sets: robot_state\n{TWO}",
     "kinds": (
         "robots:\n  - {name: robot1, description: rover.urdf, pose: {x: 1.0}}\n"
         "  - {name: arm, description: two_finger_arm.urdf, pose: {x: 3.0}}\n"
@@ -35,7 +35,7 @@ FLEETS = {
 
 
 def built(folder: Path, kind: str, layout: str) -> Path:
-    """The folder of a fleet that was built."""
+    """Return the folder of a fleet that was built."""
     for name in ("rover.urdf", "rover_gz.urdf", "rover.sdf", "two_finger_arm.urdf"):
         shutil.copy(ROBOTS / name, folder)
     (folder / "c.yaml").write_text(CONTROLLERS)

@@ -191,12 +191,12 @@ def _sent_by(graph: System, name: str, node: str, type_: str) -> System:
 
 
 def _read_below(name: str, node: str) -> Change:
-    """This node reads the topic below its own name, as diff_drive_controller does, and nobody else."""
+    """Return the change by which this node reads the topic below its own name, and nobody else."""
     return renamed(name, f"{node}/{name.rpartition('/')[2]}", node)
 
 
 def _two_versions(graph: System) -> System:
-    """The lidar's computer has other messages than that of its robot."""
+    """Return a system in which the lidar's computer has other messages than its robot's."""
     hashes = {PUBLISHES: "ab", SUBSCRIBES: "cd"}
     ends = (
         it._replace(type_hash=f"RIHS01_{hashes[it.role] * 32}") if it.name == "/robot2/scan" else it

@@ -18,7 +18,7 @@ _NOT_SHIPPED = {"test", "tests"}
 
 
 def registered(folder: Path) -> Iterator[str]:
-    """The types in the plugin files below a folder, those of tests left out; a type may come twice."""
+    """Yield the types in plugin files below a folder, but of tests; a type may come twice."""
     for file in sorted(folder.rglob("*.xml")):
         if _NOT_SHIPPED & set(file.relative_to(folder).parts[:-1]):
             continue

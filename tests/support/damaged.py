@@ -142,7 +142,7 @@ PLACES = (
                 "robot2",
                 "--nodes",
                 "nodes.yaml",
-                "--stack",
+                "--node-set",
                 "small",
                 "-o",
                 "out",
@@ -156,7 +156,7 @@ PLACES = (
 
 
 def whole_folder(folder: Path) -> Path:
-    """A folder in which each of the commands works."""
+    """Return a folder in which each of the commands works."""
     fleet = mixed().replace(
         "related_files: {rviz: one_robot.rviz}",
         "related_files: {rviz: one_robot.rviz, lua: slam.lua, behavior_trees: [tree.xml]}",
@@ -347,7 +347,7 @@ OTHER_VALUES: tuple[Any, ...] = (
 
 
 def paths_in(value: Any, way: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
-    """The way to each value."""
+    """Yield the way to each value."""
     yield way
     inner = (
         value.items()
@@ -361,7 +361,7 @@ def paths_in(value: Any, way: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]
 
 
 def with_value(value: Any, way: tuple[Any, ...], new: Any) -> Any:
-    """The same with another value at the end of a way."""
+    """Return the same with another value at the end of a way."""
     if not way:
         return new
     key, *rest = way
@@ -371,7 +371,7 @@ def with_value(value: Any, way: tuple[Any, ...], new: Any) -> Any:
 
 
 def another_type(chance: random.Random, data: bytes) -> bytes:
-    """A YAML or JSON text with a value of another kind somewhere."""
+    """Return a YAML or JSON text with a value of another kind somewhere."""
     value = yaml.load(data, Loader=yaml.CSafeLoader)
     way = chance.choice(list(paths_in(value)))
     new = with_value(value, way, chance.choice(OTHER_VALUES))
@@ -466,7 +466,7 @@ CODES = {0, 1, 2, 3}
 
 
 def faults(done: Run, words: tuple[str, ...], file: str, folder: Path) -> list[str]:
-    """What is wrong with how a command ended."""
+    """Return what is wrong with how a command ended."""
     found = []
     if done.code not in CODES:
         found.append(f"exit code {done.code}")
@@ -481,8 +481,8 @@ def faults(done: Run, words: tuple[str, ...], file: str, folder: Path) -> list[s
             found.append("left its output")
         if done.out:
             found.append("printed something")
-        # Without its section the stack that was asked for is what is wrong.
-        if file not in text and not (file == "nodes.yaml" and "stack 'small'" in text):
+        # Without its section the node set that was asked for is what is wrong.
+        if file not in text and not (file == "nodes.yaml" and "node set 'small'" in text):
             found.append(f"does not name {file}")
         if lines and len(lines[0]) > 1100:
             found.append(f"a line of {len(lines[0])} characters")

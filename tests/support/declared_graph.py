@@ -66,7 +66,7 @@ def facts(release: str) -> dict[str, list[Fact]]:
 
 
 def names(fact: Fact, node: NodeFacts) -> list[str]:
-    """The names of an endpoint, with the values that the stack gives parameters."""
+    """Return the names of an endpoint, with the values that the node set gives parameters."""
     if "<" not in fact.name and not fact.parameter:
         return [fact.name]
     alike = [it for it in node.endpoints if is_same(fact._replace(name="<any>"), it)]
@@ -81,7 +81,7 @@ REGISTRY = {"full": "Statistics", "names": "StatisticsNames", "values": "Statist
 
 
 def endpoints(kind: str, node: NodeFacts, placed: Run, release: str) -> Iterator[End]:
-    """What a node has by its sources."""
+    """Yield what a node has by its sources."""
     bound = bind(placed.name, placed.namespace, parsed(placed.rules))
     full = f"{placed.namespace.rstrip('/')}/{placed.name}"
     lifecycle = any(it.name == "~/get_state" for it in node.endpoints)

@@ -20,20 +20,21 @@ import yaml
 from drawn_fleets import Data, DrawnFleet, causes_of, drawn, simulated
 from drawn_spellings import FILE, SITE
 from hypothesis import HealthCheck, Phase, given, seed, settings, strategies as st
+from paths import write_files
 
 from multibot_rewrite import load_fleet
 from multibot_rewrite.base.naming import make_naming
+from multibot_rewrite.checks import read_back
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.sources.release_said import MANIFEST
-from multibot_rewrite.fleet.checks import read_back
 from multibot_rewrite.fleet.file.fleet_data import DICT
 from multibot_rewrite.fleet.file.fleet_file import FleetFile, read_fleet
 from multibot_rewrite.producers.launch import child
 from multibot_rewrite.producers.launch.read import read_own
 from multibot_rewrite.producers.launch.records import LaunchGraph
 
-# What tells of a fault of the build itself.
-FAULT = "MF823"
+# What tells of a fault of the build itself. As a note it says that a stand-in read a launch file.
+FAULT = "error: MF823"
 # Of so many fleets one is built a second time, as a whole.
 WHOLE = 8
 # In memory where there is such a folder: a build waits until its files are on the disk.
@@ -47,9 +48,7 @@ GAPS = b"gaps:"
 def write(fleet: DrawnFleet, folder: Path) -> None:
     """Write a fleet file, those that it includes, and the files that they name."""
     texts = {path: _yaml(data) for path, data in (fleet.written or {FILE: fleet.data}).items()}
-    for path, text in {**fleet.files, **texts}.items():
-        (folder / path).parent.mkdir(parents=True, exist_ok=True)
-        (folder / path).write_text(text)
+    write_files(folder, {**fleet.files, **texts})
 
 
 def _yaml(data: Data) -> str:
@@ -103,7 +102,7 @@ def _judge(fleet: DrawnFleet, whole: bool) -> None:
 
 @contextlib.contextmanager
 def _seen_by_build() -> Iterator[dict[str, LaunchGraph]]:
-    """What the build reads back, by the text of each launch file without its folder."""
+    """Yield what the build reads back, by the text of each launch file without its folder."""
     found: dict[str, LaunchGraph] = {}
 
     def reading(file: str, folder: str) -> LaunchGraph:
@@ -121,12 +120,12 @@ def _in(folder: Path, text: str) -> str:
 
 
 def trusted(fleet: DrawnFleet) -> list[str]:
-    """What lets launch files run that a fleet file names."""
+    """Return what lets launch files run that a fleet file names."""
     return ["--trust"] * any("launch" in row for row in fleet.data["robots"])
 
 
 def run(*words: str) -> tuple[int, str]:
-    """The exit code of a command, and all that it says."""
+    """Return the exit code of a command, and all that it says."""
     said = io.TextIOWrapper(io.BytesIO(), encoding="utf-8")
     with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
         code = main(list(words))
@@ -135,13 +134,14 @@ def run(*words: str) -> tuple[int, str]:
 
 
 def _assert_meant(fleet: DrawnFleet) -> None:
-    """The fleet file, however it is written, means what a dict with all keys at the robots means."""
+    """Assert that the fleet file, however written, means the same as a dict with all keys at the
+    robots."""
     read, given = (read_fleet(it, "", {}) for it in (FILE, fleet.data))
     assert _meaning(read) == _meaning(given)
 
 
 def _meaning(it: FleetFile) -> dict[str, object]:
-    """A fleet file without the places of what it says."""
+    """Return a fleet file without the places of what it says."""
     robots = [
         row._replace(
             file="", line=0,
@@ -165,7 +165,8 @@ def _meaning(it: FleetFile) -> dict[str, object]:
 
 
 def _assert_same_by_library(fleet: DrawnFleet, out: Path) -> None:
-    """A library call with a dict gives the files of the command, but for names of the fleet file."""
+    """Assert that a library call with a dict gives the command's files, but for the fleet file's
+    name."""
     written = {
         it.relative_to(out).as_posix(): _without_paths(it.read_bytes())
         for it in out.rglob("*")
@@ -180,8 +181,8 @@ def _assert_same_by_library(fleet: DrawnFleet, out: Path) -> None:
 
 
 def _without_paths(data: bytes) -> bytes:
-    """A file without comments, and without lines that name its folder, the fleet file or a place in it:
-    a library call has none."""
+    """Return a file without comments, and without lines that name its folder, the fleet file or
+    a place in it: a library call has none."""
     named = (b"<parameters>", FILE.encode(), SITE.encode(), DICT.encode())
     lines = (it for it in data.splitlines() if not it.lstrip().startswith((b"#", *PLACE)))
     kept = [it for it in lines if not any(one in it for one in named)]
@@ -204,7 +205,7 @@ def _assert_as_checked(fleet: DrawnFleet, graph: LaunchGraph, out: Path) -> None
 
 
 def _assert_started(fleet: DrawnFleet, graph: LaunchGraph) -> None:
-    """The launch file starts and spawns each robot under its names."""
+    """Assert that the launch file starts and spawns each robot under its names."""
     found = [it for it in graph.nodes if it.executable == "robot_state_publisher"]
     where = {f"{it.namespace.rstrip('/')}/{it.name}" for it in found}
     assert where == {*map(_publisher(fleet), fleet.data["robots"])}
@@ -226,7 +227,7 @@ def _publisher(fleet: DrawnFleet) -> Callable[[Data], str]:
 
 
 def _spawned(graph: LaunchGraph) -> Iterator[str]:
-    """The models that the launch file spawns, by their names."""
+    """Yield the models that the launch file spawns, by their names."""
     for it in graph.nodes:
         for flag, word in zip(it.arguments, it.arguments[1:], strict=False):
             if flag in ("-name", "-entity"):
@@ -235,7 +236,7 @@ def _spawned(graph: LaunchGraph) -> Iterator[str]:
 
 @contextlib.contextmanager
 def _read_here(graph: LaunchGraph) -> Iterator[None]:
-    """A command that reads a launch file gets what was read here, and starts no process."""
+    """Let commands that read a launch file get what was read here, and start no process."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(child, "launch_graph", lambda order: graph)
         yield

@@ -136,7 +136,7 @@ def _model(*parts: str) -> str:
 
 
 def _with_argument(text: str) -> str:
-    """A rover whose mast is chosen by an argument, and whose links an argument prefixes."""
+    """Return a rover whose mast is chosen by an argument, and whose links an argument prefixes."""
     head, _, body = text.partition("\n")
     for it in ("base_link", "left_wheel", "right_wheel", "lidar_link", "lidar_joint"):
         body = body.replace(f'"{it}"', f'"${{p}}{it}"').replace(f">{it}<", f">${{p}}{it}<")
@@ -153,7 +153,7 @@ def _with_argument(text: str) -> str:
 
 
 def _joined(text: str, *parts: str) -> str:
-    """A robot with another one on it, whose names begin with up_."""
+    """Return a robot with another one on it, whose names begin with up_."""
     other = re.sub(r'(?:name|link)="(?=\w)', r"\g<0>up_", "".join(parts))
     return text.replace("</robot>", f"{other}</robot>")
 
@@ -293,7 +293,7 @@ NAMES = (
 RELAYED = ("both", "postfix", "tf-per-robot")
 STEMS = ("robot", "r", "arm", "robot_", "scan", "base_link")
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix", "frame-prefix")
-STACKS = {
+NODE_SETS = {
     MOBILE: (
         *([], ["nav2"], ["localization"], ["slam_toolbox"], ["nav2_slam"], ["robot_localization"]),
         *(["teleop"], ["nav2_composed"], ["navigation"], ["localization", "teleop"]),
@@ -318,7 +318,7 @@ class DrawnFleet(NamedTuple):
 
 @st.composite
 def fleets(draw: st.DrawFn) -> DrawnFleet:
-    """A fleet that its pages allow, but for what chance brings together."""
+    """Return a fleet that its pages allow, but for what chance brings together."""
     is_cell = maybe(draw, 1)
     release = draw(st.sampled_from(RELEASES))
     layout = "frames-per-robot" if is_cell else draw(st.sampled_from(LAYOUTS))
@@ -373,7 +373,7 @@ def _make_cell(making: _Making) -> None:
     data |= {"cell": {"name": "workcell"} if maybe(draw) else {}}
     groups = []
     for row in data["robots"]:
-        row["stack"] = draw(st.sampled_from((["moveit"], ["ros2_control", "moveit"])))
+        row["node_sets"] = draw(st.sampled_from((["moveit"], ["ros2_control", "moveit"])))
         row["srdf"] = _written(making, "arm", ".srdf", SRDF.replace("ROBOT", "arm"), row["name"])
         tag = row.get(data["affix"], row["name"])
         groups.append(f"{tag}_arm" if data["affix"] == "prefix" else f"arm_{tag}")
@@ -400,7 +400,7 @@ class _Making(NamedTuple):
 
 
 def _kinds(draw: st.DrawFn, release: str, simulator: str) -> list[str]:
-    """The kinds of one simulator; a simulator's hardware is on no real robot."""
+    """Return the kinds of one simulator; a simulator's hardware is on no real robot."""
     left = GZ if maybe(draw, 2) else CLASSIC
     known = [
         it for it, kind in KINDS.items() if kind.simulator != left and release in kind.releases
@@ -409,7 +409,7 @@ def _kinds(draw: st.DrawFn, release: str, simulator: str) -> list[str]:
 
 
 def _own_words(draw: st.DrawFn, key: str, names: list[str], layout: str) -> list[str]:
-    """A word for each robot: of its own, with its name in it, or another robot's name."""
+    """Return a word for each robot: of its own, with its name in it, or another robot's name."""
     if maybe(draw, 2):
         return [*names[1:], names[0]]
     forms = ["{}_x", "x_{}", "w{at}", "{}{at}"]
@@ -434,23 +434,23 @@ def _robot_row(making: _Making, name: str, kind: str, words: Mapping[str, str]) 
         row["colour"] = draw(st.sampled_from(("red", "#00ff00", [0, 170, 255])))
     if maybe(draw, 1) and kind != "gz arm":
         row["simulator"] = draw(st.sampled_from(("none", "gazebo")))
-    stacks = [
-        it for it in STACKS[its.what] if data["layout"] != "frame-prefix" or "moveit" not in it
+    node_sets = [
+        it for it in NODE_SETS[its.what] if data["layout"] != "frame-prefix" or "moveit" not in it
     ]
     for key, made in (
-        ("stack", lambda: draw(st.sampled_from(stacks))),
+        ("node_sets", lambda: draw(st.sampled_from(node_sets))),
         ("related_files", lambda: _related_files(making, kind, name)),
     ):
         value = made() if (key, kind) not in shared or maybe(draw, 2) else shared[key, kind]
         shared.setdefault((key, kind), value)
         row |= {key: value} if value else {}
-    if "moveit" in row.get("stack", ()):
+    if "moveit" in row.get("node_sets", ()):
         row["srdf"] = _written(making, "arm", ".srdf", SRDF.replace("ROBOT", "arm"), name)
     return row
 
 
 def _described(making: _Making, kind: str, name: str) -> Data:
-    """What a robot is described by: a file, or the parts that it is joined of."""
+    """Return what a robot is described by: a file, or the parts that it is joined of."""
     if kind not in JOINED:
         return {"description": _description(making, kind, name)}
     base, other = (_description(making, it, name) for it in JOINED[kind])
@@ -459,7 +459,7 @@ def _described(making: _Making, kind: str, name: str) -> Data:
 
 
 def _description(making: _Making, kind: str, name: str) -> str:
-    """The path of a description: called by its kind, like its robot, or like all others."""
+    """Return the path of a description: called by its kind, like its robot, or like all others."""
     draw, its, stem = making.draw, KINDS[kind], kind.replace(" ", "_")
     path = draw(st.sampled_from((stem, stem, name, f"{name}_description/robot", f"urdf/{stem}")))
     title = draw(st.sampled_from((stem, name, "robot"))).replace("world", "rover")
@@ -521,7 +521,7 @@ def rows(fleet: DrawnFleet) -> Iterator[tuple[Data, str, str]]:
 
 
 def simulated(fleet: DrawnFleet) -> list[tuple[Data, str]]:
-    """The robots that are put into a simulator: hardware of ros2_control alone is a real robot's."""
+    """Return the robots that are simulated: hardware of ros2_control alone is a real robot's."""
     return [(row, kind) for row, kind, it in rows(fleet) if it != "none" and (kind != "arm" or it)]
 
 
@@ -537,7 +537,7 @@ def _share_a_word(fleet: DrawnFleet) -> bool:
 
 
 def _stand_in_each_other(fleet: DrawnFleet) -> bool:
-    """The boxes reach a quarter of a metre; robots that are all at the origin are placed by others."""
+    """Return whether robots overlap: boxes of half a metre; robots all at the origin do not count."""
     poses = [row.get("pose", {}) for row, _ in simulated(fleet)]
     places = [tuple(it.get(axis, 0) for axis in "xyz") for it in poses]
     moved = any(any(it) for it in places)
@@ -549,13 +549,13 @@ def _missing(fleet: DrawnFleet) -> bool:
 
 
 def described_by(row: Data) -> list[str]:
-    """The files that a robot is described by."""
+    """Return the files that a robot is described by."""
     own = [row["description"]] if "description" in row else []
     return [*own, *(it["description"] for it in row.get("join", ()))]
 
 
 def _links(fleet: DrawnFleet) -> list[set[str]]:
-    """The links of each robot, as they are called in the whole fleet."""
+    """Return the links of each robot, as they are called in the whole fleet."""
     data, found = fleet.data, []
     between = data.get("separators", {}).get("link", "/")
     for row, kind, _ in rows(fleet):
@@ -589,7 +589,7 @@ def _with(key: str, value: object) -> Callable[[Data, DrawnFleet], object]:
 
 
 def _same(key: str) -> Callable[[Data, DrawnFleet], object]:
-    """The first two robots get one value."""
+    """Return the cause by which the first two robots get one value."""
 
     def put(data: Data, fleet: DrawnFleet) -> None:
         name = data["affix"] if key == "tag" else key
@@ -619,7 +619,7 @@ def _keep_groups(data: Data) -> None:
         row |= {
             "description": "arm.urdf",
             "srdf": "arm.srdf",
-            "stack": ["moveit"],
+            "node_sets": ["moveit"],
             "pose": {"x": at},
         }
 
@@ -635,7 +635,7 @@ FLEET_CAUSES: dict[str, tuple[Callable[[Data], object], Callable[[Data], bool]]]
         lambda data: (
             data.update(layout="both", params_style="bringup", shared_nodes=["map_server"]),
             data.pop("shape", None),
-            _first(data).update(stack=["nav2"]),
+            _first(data).update(node_sets=["nav2"]),
         ),
         started_for_each,
     ),
@@ -653,7 +653,7 @@ FLEET_CAUSES: dict[str, tuple[Callable[[Data], object], Callable[[Data], bool]]]
     "an adapter that finds no robot": (
         lambda data: (
             data.update(free_fleet={"router": "tcp/10.0.0.1:7447", "map": "L1"}),
-            _first(data).pop("stack", None),
+            _first(data).pop("node_sets", None),
         ),
         has_no_adapter,
     ),
@@ -732,9 +732,9 @@ CAUSES = {
     "an unknown key": Cause(
         _with("nmae", "x"), lambda fleet: any("nmae" in it for it in fleet.data["robots"])
     ),
-    "an unknown stack": Cause(
-        _with("stack", ["nav3"]),
-        lambda fleet: any("nav3" in it.get("stack", ()) for it in fleet.data["robots"]),
+    "an unknown node set": Cause(
+        _with("node_sets", ["nav3"]),
+        lambda fleet: any("nav3" in it.get("node_sets", ()) for it in fleet.data["robots"]),
     ),
     "arguments without a xacro": Cause(
         _with("arguments", {"mast": "low"}),
@@ -781,19 +781,19 @@ CAUSES = {
             data.update(layout="frame-prefix", affix="prefix"),
             data.pop("separators", None),
             [row.pop("postfix", None) for row in data["robots"]],
-            _first(data).update(stack=["moveit"], description="arm.urdf", srdf="arm.srdf"),
+            _first(data).update(node_sets=["moveit"], description="arm.urdf", srdf="arm.srdf"),
         ),
         lambda fleet: (
             fleet.data["layout"] == "frame-prefix"
-            and any("moveit" in row.get("stack", ()) for row in fleet.data["robots"])
+            and any("moveit" in row.get("node_sets", ()) for row in fleet.data["robots"])
         ),
     ),
     "hardware of a simulator on a real robot": Cause(
         lambda data, _: _first(data).update(
-            description="gz_arm.urdf", simulator="none", stack=["ros2_control"]
+            description="gz_arm.urdf", simulator="none", node_sets=["ros2_control"]
         ),
         lambda fleet: any(
-            (kind, it) == ("gz arm", "none") and "ros2_control" in row.get("stack", ())
+            (kind, it) == ("gz arm", "none") and "ros2_control" in row.get("node_sets", ())
             for row, kind, it in rows(fleet)
         ),
     ),
@@ -829,7 +829,7 @@ CAUSES = {
         lambda fleet: any(
             "pose" in row
             and "start_pose.yaml" in row.get("related_files", {}).get("params", ())
-            and {"slam_toolbox", "nav2_slam"}.isdisjoint(row.get("stack", ()))
+            and {"slam_toolbox", "nav2_slam"}.isdisjoint(row.get("node_sets", ()))
             and not is_bringup(fleet.data)
             for row in fleet.data["robots"]
         ),
@@ -867,7 +867,7 @@ CAUSES = {
 
 @st.composite
 def faulty(draw: st.DrawFn, cause: str) -> DrawnFleet:
-    """A fleet with a cause put into it."""
+    """Return a fleet with a cause put into it."""
     fleet = draw(fleets())
     data: Data = {**fleet.data, "robots": [dict(row) for row in fleet.data["robots"]]}
     CAUSES[cause].put(data, fleet)
@@ -876,7 +876,7 @@ def faulty(draw: st.DrawFn, cause: str) -> DrawnFleet:
 
 
 def with_kinds(fleet: DrawnFleet, data: Data) -> DrawnFleet:
-    """The fleet with the files that a cause has named, and the kinds that robots then are of."""
+    """Return the fleet with the files that a cause has named, and the kinds that robots then are of."""
     named = {f"{kind.replace(' ', '_')}{it.ending}": kind for kind, it in KINDS.items()}
     named["world.urdf"] = "gz rover"
     files, kinds = {**fleet.files}, []
@@ -897,7 +897,7 @@ def with_kinds(fleet: DrawnFleet, data: Data) -> DrawnFleet:
 
 
 def causes_of(fleet: DrawnFleet) -> list[str]:
-    """The causes that a fleet has."""
+    """Return the causes that a fleet has."""
     return [name for name, it in CAUSES.items() if it.holds(fleet)]
 
 

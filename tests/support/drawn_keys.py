@@ -74,15 +74,15 @@ def add_keys(draw: st.DrawFn, data: Data, files: dict[str, str]) -> None:
             add(draw, data, files)
 
 
-def stacks_of(data: Data) -> Iterator[tuple[Data, list[str]]]:
-    """Each robot with its stacks."""
+def sets_of(data: Data) -> Iterator[tuple[Data, list[str]]]:
+    """Each robot with its node sets."""
     for row in data["robots"]:
-        yield row, row.get("stack", [])
+        yield row, row.get("node_sets", [])
 
 
 def _shared(draw: st.DrawFn, data: Data, _: dict[str, str]) -> None:
     """Frames, topics and nodes that all robots share, and the frame that places are in."""
-    every = {it for _, own in stacks_of(data) for it in own}
+    every = {it for _, own in sets_of(data) for it in own}
     # Who maps sends a map as well, and there would be two of them.
     with_map = not every.isdisjoint(WITH_MAP) and every.isdisjoint(MAPPING)
     if maybe(draw, 4):
@@ -136,11 +136,11 @@ def _known(draw: st.DrawFn, data: Data, files: dict[str, str]) -> None:
         data["nodes"] = "config/our_nodes.yaml"
         for row in data["robots"]:
             if draw(st.booleans()):
-                row["stack"] = [*row.get("stack", ()), "our_gripper"]
+                row["node_sets"] = [*row.get("node_sets", ()), "our_gripper"]
     if maybe(draw, 4):
         files["worlds/lake.sdf"] = WORLD
         data["simulator_world"] = "worlds/lake.sdf"
-    for row, own in stacks_of(data):
+    for row, own in sets_of(data):
         if not own and "cell" not in data and maybe(draw, 3):
             files["launch/bringup.launch.xml"] = LAUNCH
             row["launch"] = ["launch/bringup.launch.xml"]
@@ -158,12 +158,12 @@ def _beside(draw: st.DrawFn, data: Data, files: dict[str, str]) -> None:
         own |= {"own_routers": True} if maybe(draw, 4) else {}
         own |= {"domain": 5} if maybe(draw, 3) and "domains" not in data else {}
         data["zenoh"] = own
-    all_navigate = all({*NAVIGATING} & {*own} for _, own in stacks_of(data))
+    all_navigate = all({*NAVIGATING} & {*own} for _, own in sets_of(data))
     if all_navigate and data["layout"] in BRINGUP and data.get("domains") and maybe(draw, 8):
         data["free_fleet"] = {"router": "tcp/10.0.0.1:7447", "map": "L1"}
         if draw(st.booleans()):
             data["free_fleet"]["charger"] = "{robot}_dock"
-    for row, own in stacks_of(data):
+    for row, own in sets_of(data):
         related_files = row.get("related_files", {})
         if {"nav2", "navigation"} & {*own} and maybe(draw, 4):
             files["trees/main.xml"] = TREE
@@ -183,7 +183,7 @@ def _beside(draw: st.DrawFn, data: Data, files: dict[str, str]) -> None:
 
 
 def parts(base: str, other: str, at: str, draw: st.DrawFn) -> list[Data]:
-    """A list of parts: a robot, and another one behind a prefix that is fixed to it."""
+    """Return a list of parts: a robot, and another one behind a prefix that is fixed to it."""
     fixed: Data = {"parent": at}
     if draw(st.booleans()):
         fixed["pose"] = draw(st.sampled_from(({"x": -0.6}, {"z": 0.2, "yaw": 1.57})))
@@ -203,7 +203,7 @@ def in_other_layout(data: Data) -> bool:
 
 
 def in_other_style(data: Data) -> bool:
-    """Does a fleet want another style than its shape?"""
+    """Return whether a fleet wants another style than its shape."""
     return "shape" in data and data.get("params_style", style(data)) != style(data)
 
 
@@ -214,12 +214,12 @@ def has_no_such_world(data: Data) -> bool:
 def shares_no_such_node(data: Data) -> bool:
     """Is a node shared that no robot runs?"""
     names = {it for it in data.get("shared_nodes", ()) if it != "map_server"}
-    with_map = any({*WITH_MAP} & {*own} for _, own in stacks_of(data))
+    with_map = any({*WITH_MAP} & {*own} for _, own in sets_of(data))
     return bool(names) or ("map_server" in data.get("shared_nodes", ()) and not with_map)
 
 
 def started_for_each(data: Data) -> bool:
-    """Does nav2_bringup start a node for each robot that all should share?"""
+    """Return whether nav2_bringup starts a node for each robot that all should share."""
     return is_bringup(data) and "map_server" in data.get("shared_nodes", ())
 
 
@@ -231,7 +231,7 @@ def is_bringup(data: Data) -> bool:
 def has_no_adapter(data: Data) -> bool:
     """Has the adapter of Open-RMF nothing to ask? It reads each robot's own tf and sends goals, by a
     bridge in the domain of each."""
-    navigate = all({*NAVIGATING} & {*own} for _, own in stacks_of(data))
+    navigate = all({*NAVIGATING} & {*own} for _, own in sets_of(data))
     served = navigate and data["layout"] in BRINGUP and "domains" in data
     return "free_fleet" in data and not served
 

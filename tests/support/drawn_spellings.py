@@ -23,7 +23,7 @@ SHORT = {
     "postfix": "L4",
     "frame-prefix": "L5",
 }
-OF_ALL = ("description", "join", "srdf", "arguments", "stack", "simulator")
+OF_ALL = ("description", "join", "srdf", "arguments", "node_sets", "simulator")
 PATHS = (
     *(
         "description",
@@ -39,7 +39,7 @@ FILES = ("params", "rviz", "moveit", "bridge", "behavior_trees", "lua")
 
 
 def spelled(draw: st.DrawFn, data: Data) -> dict[str, Data]:
-    """The fleet files, by path, in which somebody may have written what ``data`` says."""
+    """Return the fleet files, by path, in which somebody may have written what ``data`` says."""
     written = {**data, "robots": [_copy(row) for row in data["robots"]]}
     for way in (_layout, _numbered, _at_the_top, _words):
         if draw(st.booleans()):
@@ -52,7 +52,7 @@ def _copy(row: Mapping[str, Any]) -> Data:
 
 
 def _layout(data: Data) -> None:
-    """The short name, no side where it is the usual one, and topics as the layout has them."""
+    """Write the layout's short name, no side if it is the usual one, and topics as the layout's."""
     layout = data["layout"]
     usual = "prefix" if layout == "frame-prefix" else "postfix"
     if data["affix"] == usual:
@@ -74,7 +74,7 @@ def _numbered(data: Data) -> None:
 
 
 def _of_pattern(rows: list[Data]) -> Callable[[tuple[int, Data]], bool]:
-    """Does a row go on with the pattern that the first row begins?"""
+    """Return a function that says whether a row goes on with the pattern that the first row begins."""
     stem, wanted = rows[0]["name"][:-1], _kept(rows[0])
     own = {"namespace", "prefix", "postfix", "model"} & rows[0].keys()
 
@@ -104,12 +104,12 @@ def _pattern(rows: list[Data]) -> Data | None:
 
 
 def _at_the_top(data: Data) -> None:
-    """What most robots have, for all of them: another one has its own."""
+    """Move what most robots have to the top, for all of them: another one has its own."""
     rows = data["robots"]
     # Of one for all and another one at a robot that of the robot counts: both at one robot are a fault.
     has_both = any({"description", "join"} <= row.keys() for row in rows)
     for key in (it for it in OF_ALL if not (has_both and it in ("description", "join"))):
-        _raise(data, rows, key, nothing=[] if key == "stack" else None)
+        _raise(data, rows, key, nothing=[] if key == "node_sets" else None)
     top: Data = {}
     for kind in FILES:
         own = [row.get("related_files", {}) for row in rows]
@@ -134,17 +134,17 @@ def _raise(top: Data, rows: Sequence[Data], key: str, nothing: object) -> None:
 
 
 def _words(data: Data) -> None:
-    """A list of one word is a word."""
+    """Write a list of one word as a word."""
     for row in (data, *data["robots"]):
         for own in (row, row.get("related_files", {})):
-            for key in ("stack", *FILES):
+            for key in ("node_sets", *FILES):
                 value = own.get(key)
                 if isinstance(value, list) and len(value) == 1 and isinstance(value[0], str):
                     own[key] = value[0]
 
 
 def _in_two_files(draw: st.DrawFn, data: Data) -> dict[str, Data]:
-    """Some keys in a file of another folder, which the fleet file includes and overrides."""
+    """Return some keys in a file of another folder, which the fleet file includes and overrides."""
     keys = [it for it in data if it != "robots"]
     moved = draw(st.lists(st.sampled_from(keys), min_size=1, max_size=4, unique=True))
     site = {key: _from(os.path.dirname(SITE), key, data[key]) for key in moved}
@@ -156,7 +156,7 @@ def _in_two_files(draw: st.DrawFn, data: Data) -> dict[str, Data]:
 
 
 def _from(folder: str, key: str, value: Any) -> Any:
-    """A value with its paths as they are from a folder."""
+    """Return a value with its paths as they are from a folder."""
     if key in PATHS and isinstance(value, str):
         return os.path.relpath(value, folder)
     if key in PATHS:

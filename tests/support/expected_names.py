@@ -38,7 +38,7 @@ LOOSE = {"NS_ERR_UNDEFINED_NAMESPACE", "ERR_HYPHEN_IN_COMMENT", "ERR_RESERVED_XM
 
 
 def parsed(data: bytes) -> etree._Element:
-    """The root; libxml2 goes on after faults that are none to TinyXML-2."""
+    """Return the root; libxml2 goes on after faults that are none to TinyXML-2."""
     try:
         return etree.fromstring(data)
     except etree.XMLSyntaxError:
@@ -49,7 +49,7 @@ def parsed(data: bytes) -> etree._Element:
 
 
 def spelled(name: str, separator: str, options: Options, robot: str) -> str:
-    """A declared link's or joint's name as the options ask for."""
+    """Return a declared link's or joint's name as the options ask for."""
     if options.get("layout") in BARE_LAYOUTS:
         return name
     if options.get("affix", "postfix") == "postfix":
@@ -59,7 +59,7 @@ def spelled(name: str, separator: str, options: Options, robot: str) -> str:
 
 
 def frame_spelled(name: str, options: Options, robot: str) -> str:
-    """A frame's or link's name; shared ones stay, with or without slashes around."""
+    """Return a frame's or link's name; shared ones stay, with or without slashes around."""
     shared = options.get("shared_frames", ("world", "map"))
     if name.strip("/") in {str(frame).strip("/") for frame in shared}:  # type: ignore[attr-defined]
         return name
@@ -72,7 +72,7 @@ def _separator(options: Options, kind: str, default: str) -> str:
 
 
 def new_names(root: etree._Element, options: Options, robot: str) -> Names:
-    """What the links and joints of a description are called for a robot."""
+    """Return what the links and joints of a description are called for a robot."""
     underscore = _separator(options, "joint", "_")
     return Names(
         {name: frame_spelled(name, options, robot) for name in _named(root, "link")},
@@ -81,7 +81,7 @@ def new_names(root: etree._Element, options: Options, robot: str) -> Names:
 
 
 def _named(root: etree._Element, tag: str) -> list[str]:
-    """The names of the elements that have one."""
+    """Return the names of the elements that have one."""
     found = [element.get("name", "").strip() for element in root.iterchildren(tag)]
     return [name for name in found if name]
 
@@ -124,7 +124,7 @@ def graph_problems(source: bytes, output: bytes, options: Options, robot: str = 
 
 
 def _same_target(kinds: tuple[str, ...], old: str, new: str, names: Names, now: Names) -> bool:
-    """A reference that resolved leads to the renamed thing; any other still leads nowhere."""
+    """Return whether a resolved reference leads to the renamed thing, and any other one nowhere."""
     for kind in kinds:
         if old in getattr(names, kind):
             return bool(new == getattr(names, kind)[old])
@@ -132,7 +132,7 @@ def _same_target(kinds: tuple[str, ...], old: str, new: str, names: Names, now: 
 
 
 def bare(output: bytes, robot: str) -> etree._Element:
-    """The output's tree without what its markers say was inserted."""
+    """Return the output's tree without what its markers say was inserted."""
     root = parsed(output)
     for comment in list(root.iter(etree.Comment)):
         words = (comment.text or "").partition(":")[0].split()

@@ -47,7 +47,7 @@ def simulation() -> System:
 
 
 def added(node: str, *ends: tuple[str, str, str]) -> Change:
-    """A node more, or more of a node that is there."""
+    """Return a node more, or more of a node that is there."""
 
     def change(graph: System) -> System:
         there = any(it.name == node for it in graph.nodes)
@@ -57,7 +57,7 @@ def added(node: str, *ends: tuple[str, str, str]) -> Change:
 
 
 def renamed(old: str, new: str, *nodes: str) -> Change:
-    """A name under another one, of these nodes or of all."""
+    """Return a name under another one, of these nodes or of all."""
 
     def change(graph: System) -> System:
         for node in nodes or ("",):
@@ -112,7 +112,7 @@ def twice(graph: System) -> System:
 
 
 def bare_odometry(graph: System) -> System:
-    """The controllers of both robots send the frames of their defaults."""
+    """Return the controllers of both robots send the frames of their defaults."""
     more = Edge("base_footprint", "odom", "/tf", False, ())
     return reframed(lambda it: None if it.child.startswith("base_footprint/") else it, more)(graph)
 

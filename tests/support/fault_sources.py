@@ -178,7 +178,7 @@ def from_bag(graph: System) -> System:
 
 
 def recording(graph: System) -> Recording:
-    """What a bag holds in which every topic was recorded, for a minute."""
+    """Return what a bag holds in which every topic was recorded, for a minute."""
     sent: dict[str, list[End]] = defaultdict(list)
     for it in graph.ends:
         if (it.kind, it.role) == (TOPIC, PUBLISHES):
@@ -201,7 +201,7 @@ def recording(graph: System) -> Recording:
 
 
 def written(path: Path, graph: System) -> Path:
-    """The same as a bag of rosbag2; types of which its writer knows no text are left out."""
+    """Return the same as a bag of rosbag2; types of which its writer knows no text are left out."""
     from made_bags import STORE, Made, write
 
     found = recording(graph)
@@ -224,7 +224,7 @@ def written(path: Path, graph: System) -> Path:
 
 
 def _headers(graph: System, name: str, type_: str) -> tuple[str, ...]:
-    """What was heard there, else a frame of the robot whose topic it is."""
+    """Return what was heard there, else a frame of the robot whose topic it is."""
     heard = tuple(it.frame for it in graph.heard if it.topic == name)
     return heard or ((_frame(graph, name),) if type_ in HEADED else ())
 
@@ -250,8 +250,8 @@ def _parameters() -> object:
 
 
 def launched(graph: System) -> tuple[tuple[LaunchedNode, ...], Mapping[str, NodeFacts]]:
-    """The nodes of a launch file that starts the system, and what is known of their programs: names
-    in the code are plain, rules lead them where they are."""
+    """Return the nodes of a launch file that starts the system, and what is known of their
+    programs: names in the code are plain, rules lead them where they are."""
     ends: dict[str, list[End]] = defaultdict(list)
     for it in graph.ends:
         ends[it.node].append(it)
@@ -279,8 +279,8 @@ def _launched(
     asked: Mapping[str, str],
     held: Mapping[str, str],
 ) -> LaunchedNode:
-    """A node, with the frames that it is ``asked`` for, and what the hardware of its description
-    ``held``."""
+    """Return a node, with the frames that it is ``asked`` for, and what the hardware of its
+    description ``held``."""
     space, _, last = name.rpartition("/")
     # No rule leads an action elsewhere (rcl_action action_client.c): its name is in the code.
     outside = [it for it in ends if it.kind != ACTION and _is_led(it, space)]

@@ -7,13 +7,14 @@ import textwrap
 from collections.abc import Mapping
 from pathlib import Path
 
-from paths import fixture_text
+from paths import fixture_text, write_files
 
-from multibot_rewrite.fleet.build import Outputs, make_outputs
+from multibot_rewrite.checks.build import Outputs, make_outputs
+from multibot_rewrite.checks.judged_plan import plan_fleet
 from multibot_rewrite.fleet.file.fleet_data import FleetSource
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
 from multibot_rewrite.fleet.file.robot_choice import ALL, Choice
-from multibot_rewrite.fleet.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleet.fleet_plan import FleetPlan
 
 MASS = (
     '<inertial><mass value="1"/>'
@@ -63,8 +64,7 @@ FILES = {
 
 def fleet_folder(folder: Path, fleet: str = SMALL, **files: str) -> Path:
     """Write the files and the fleet file; gives the path of the latter."""
-    for name, text in FILES.items():
-        (folder / name).write_text(text)
+    write_files(folder, FILES)
     for name, text in files.items():
         (folder / name.replace("__", ".")).write_text(textwrap.dedent(text))
     path = folder / "fleet.yaml"

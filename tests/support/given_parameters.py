@@ -21,12 +21,12 @@ def run_given(
     place: Place,
     manager: str = "",
 ) -> Run:
-    """What the files set for a node; of a controller its type and manager, too."""
+    """Return what the files set for a node; of a controller its type and manager, too."""
     fact = UNKNOWN._replace(known=known)
     own = Run("", name, "", name.rpartition("/")[2], (), fact, host_name=manager)
     return own._replace(values=values, program=type_, place=place)
 
 
 def given_in(text: str, release: str = "jazzy", file: str = "params.yaml") -> list[Run]:
-    """The sections of the text, each with the values that it has."""
+    """Return the sections of the text, each with the values that it has."""
     return given_nodes([read_yaml(text.encode(), file)], built_in_nodes(release))

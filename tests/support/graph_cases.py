@@ -35,7 +35,7 @@ from multibot_rewrite.system.records import (
 
 # As a user names them: messages hold the paths.
 GRAPHS, ROVER = "fixtures/graphs", "fixtures/robots/rover.urdf"
-_NODES = ("--nodes", f"{GRAPHS}/nodes.yaml", "--stack", "small", "--distro", "jazzy")
+_NODES = ("--nodes", f"{GRAPHS}/nodes.yaml", "--node-set", "small", "--distro", "jazzy")
 FLEET = (ROVER, "robot1", "robot2", *_NODES)
 # Layout -> folder of its plan and graphs.
 FOLDERS = {
@@ -73,7 +73,7 @@ class Case(NamedTuple):
 
 @cache
 def read_plan(layout: str) -> System:
-    """The plan of a folder."""
+    """Return the plan of a folder."""
     path = f"{FOLDERS[layout]}/plan.yaml"
     return from_yaml((ROOT / path).read_bytes(), path)
 
@@ -86,7 +86,7 @@ def environment(*caveats: Caveat) -> Environment:
 
 
 def as_planned(plan: System) -> System:
-    """The graph that a plan is of; a type that is not known is that of the other end."""
+    """Return the graph that a plan is of; a type that is not known is that of the other end."""
     types: dict[tuple[str, str], str] = {}
     planned = surely(plan).ends
     for wanted in planned:
@@ -106,7 +106,7 @@ def as_planned(plan: System) -> System:
 
 
 def bridge(plan: System) -> Iterable[End]:
-    """The ends of a bridge that carries what the plan has for it."""
+    """Yield the ends of a bridge that carries what the plan has for it."""
     for topic in plan.topics:
         for role in topic.bridge:
             node = "/ros_gz_bridge"
@@ -126,12 +126,12 @@ def robot_edges(robot: Robot) -> Iterator[Edge]:
 
 
 def unspelled(frame: str, robot: str) -> str:
-    """A frame without the robot's name."""
+    """Return a frame without the robot's name."""
     return frame.removesuffix(f"/{robot}").removeprefix(f"{robot}/")
 
 
 def sent(graph: System) -> System:
-    """The graph whose frames tell who publishes on their topic, as a real one has it."""
+    """Return the graph whose frames tell who publishes on their topic, as a real one has it."""
     nodes: dict[str, dict[str, None]] = {}
     for end in graph.ends:
         if (end.kind, end.role) == (TOPIC, PUBLISHES):
@@ -159,7 +159,7 @@ BESIDE = (
 
 
 def healthy(layout: str) -> System:
-    """A fleet as planned, with what is beside it."""
+    """Return a fleet as planned, with what is beside it."""
     graph = as_planned(read_plan(layout))
     if layout != "frames-per-robot":
         return graph
@@ -189,7 +189,7 @@ def without_node(graph: System, node: str) -> System:
 
 
 def without_end(graph: System, name: str, node: str) -> System:
-    """A node that has not one of its names."""
+    """Return a node that has not one of its names."""
     ends = (e for e in graph.ends if (e.name, e.node) != (name, node))
     return sent(graph._replace(ends=tuple(ends)))
 
@@ -201,7 +201,7 @@ def with_node(graph: System, node: str, *ends: tuple[str, str, str]) -> System:
 
 
 def renamed_node(graph: System, old: str, new: str) -> System:
-    """A node under another name, its private names with it."""
+    """Return a node under another name, its private names with it."""
     ends = tuple(
         e._replace(node=new, name=e.name.replace(f"{old}/", f"{new}/", 1)) if e.node == old else e
         for e in graph.ends
@@ -211,7 +211,7 @@ def renamed_node(graph: System, old: str, new: str) -> System:
 
 
 def reframed(change: Callable[[Edge], Edge | None], *more: Edge) -> Callable[[System], System]:
-    """The graph with each of its transforms changed, or left out, and some more."""
+    """Return the graph with each of its transforms changed, or left out, and some more."""
 
     def broken(graph: System) -> System:
         kept = [frame for frame in map(change, graph.edges) if frame is not None]
@@ -243,7 +243,7 @@ def with_type(graph: System, name: str, node: str, type_: str) -> System:
 
 
 def without_namespace(graph: System) -> System:
-    """The plugin of a description that was not rewritten: its node and names in the root."""
+    """Return the plugin of a description that was not rewritten: its node and names in the root."""
     return moved(
         moved(renamed_node(graph, "/robot1/diff_drive", "/diff_drive"), "/robot1/odom", "/odom", "e"),
         "/robot1/cmd_vel", "/cmd_vel", "/diff_drive",
@@ -271,19 +271,19 @@ def captured(graph: System) -> System:
 
 
 def unheard(graph: System) -> System:
-    """A bridge for all robots brings an order under no robot's name."""
+    """Return a system in which a bridge for all brings an order under no robot's name."""
     end = End(TOPIC, PUBLISHES, "/patrol", "std_msgs/msg/String", "", "/order_bridge", None, "")
     nodes = (*graph.nodes, Node("/order_bridge", ""))
     return graph._replace(nodes=nodes, ends=(*graph.ends, end))
 
 
 def bare(frame: Edge) -> Edge:
-    """A transform as the description has it that was not rewritten."""
+    """Return a transform as the description has it that was not rewritten."""
     return frame._replace(child=frame.child.split("/")[0], parent=frame.parent.split("/")[0])
 
 
 def prefixed(frame: Edge, robot: str) -> Edge:
-    """A transform under ``frame_prefix``."""
+    """Return a transform under ``frame_prefix``."""
     return frame._replace(child=f"{robot}/{frame.child}", parent=f"{robot}/{frame.parent}")
 
 
@@ -292,7 +292,7 @@ def on(topic: str, frame: Edge) -> Edge:
 
 
 def global_tf(graph: System, *robots: str) -> System:
-    """The robots' nodes without the rule for tf."""
+    """Return the robots' nodes without the rule for tf."""
     for robot in robots:
         for topic in ("tf", "tf_static"):
             graph = moved(graph, f"/{robot}/{topic}", f"/{topic}")
@@ -395,7 +395,7 @@ def check_lines(plan: str, graph: str) -> str:
 
 
 def printed(*words: str) -> str:
-    """What the command prints on standard output."""
+    """Return what the command prints on standard output."""
     data = BytesIO()
     with TextIOWrapper(data, "utf-8") as out, redirect_stdout(out):
         multibot(list(words))

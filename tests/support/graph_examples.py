@@ -111,7 +111,7 @@ POLICIES = {
 
 
 def read_example(text: str) -> tuple[System, System]:
-    """The plan and the graph of an example; AssertionError for a line that is not in the language."""
+    """Return the plan and graph of an example; AssertionError for a line not in the language."""
     lines = [LINE.fullmatch(line) for line in text.splitlines()]
     assert all(lines), f"a line does not begin with planned:, running: or as planned:\n{text}"
     pairs = [(it[1], it[2]) for it in lines if it]
@@ -123,7 +123,7 @@ def read_example(text: str) -> tuple[System, System]:
 
 
 def read_looks(text: str) -> tuple[System, System]:
-    """The earlier look and the graph of an example."""
+    """Return the earlier look and the graph of an example."""
     pairs = [line.split(": ", 1) for line in text.splitlines()]
     assert {where for where, _ in pairs} <= {"earlier", "running", "as before"}, text
     before, after = (
@@ -134,7 +134,7 @@ def read_looks(text: str) -> tuple[System, System]:
 
 
 def read_system(text: str) -> Index:
-    """The graph of an example without a plan."""
+    """Return the graph of an example without a plan."""
     plan, graph = read_example(text)
     assert not plan.ends, "a danger needs no plan: begin its lines with running:"
     robots = sorted({*ROBOT.findall(text)})
@@ -146,7 +146,7 @@ def read_system(text: str) -> Index:
 
 
 def read_states(lines: list[str]) -> tuple[Answer, ...]:
-    """What the nodes of an example answer."""
+    """Return what the nodes of an example answer."""
     managed = (told(node, state) for node, state in _words(STATE, lines))
     timed = (told(node, sim_time=it == "true") for node, it in _words(SIM_TIME, lines))
     active = [
@@ -163,13 +163,13 @@ def read_states(lines: list[str]) -> tuple[Answer, ...]:
 
 
 def _text(value: str) -> str:
-    """A word is a text, unless it is a number or a truth value."""
+    """Return a word as text, unless it is a number or a truth value."""
     plain = value in ("true", "false") or value.isdigit()
     return value if plain else f'"{value}"'
 
 
 def in_states(plan: System, lines: list[str]) -> System:
-    """The plan with what its nodes are planned to answer, and where they run."""
+    """Return the plan with what its nodes are planned to answer, and where they run."""
     for node, state in _words(PLANNED_STATE, lines):
         plan = planned_told(_with_node(plan, node), node, lifecycle=state)
     for node, host in _words(HOST, lines):
@@ -204,13 +204,13 @@ def _is_known(line: str) -> bool:
 
 
 def _words(pattern: re.Pattern[str], lines: Iterable[str]) -> Iterator[tuple[str, ...]]:
-    """The words of the lines that are such a pattern; what is left out is empty."""
+    """Return the words of the lines that are such a pattern; what is left out is empty."""
     found = filter(None, map(pattern.fullmatch, lines))
     return (it.groups(default="") for it in found)
 
 
 def read_plan(lines: list[str]) -> System:
-    """What the lines plan."""
+    """Return what the lines plan."""
     shared = defaultdict(list, {"topic": [*SENT_BY_EVERY_NODE, "/clock"], "frame": ["map"]})
     for kind, name in _words(SHARED, lines):
         shared[kind].append(name)
@@ -270,7 +270,7 @@ def _heard(lines: list[str]) -> Iterator[Heard]:
 
 
 def read_graph(lines: list[str]) -> System:
-    """What the lines say is running."""
+    """Return what the lines say is running."""
     ends = [words for words in _words(NODE, lines) if words[1]]
     alone = [node for node, role, *_ in _words(NODE, lines) if not role]
     asked = [words[0] for it in ANSWERS for words in _words(it, lines)]

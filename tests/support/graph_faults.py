@@ -73,7 +73,7 @@ MORE_NEEDS = {"two versions of a message": (HASHES, READERS)}
 
 
 def needed(fault: Fault) -> tuple[str, ...]:
-    """What a source must have of a system to show the fault."""
+    """Return what a source must have of a system to show the fault."""
     return MORE_NEEDS.get(fault.name, NEEDS[fault.code])
 
 

@@ -50,7 +50,7 @@ class Cell(NamedTuple):
 
 @cache
 def cell(fault: Fault, column: str) -> Cell:
-    """What is found of the fault in a source."""
+    """Return what is found of the fault in a source."""
     source = SOURCES[column]
     found = diagnose(source.read(fault.change(fault.system()))).findings
     lacks = next((it for it in needed(fault) if it in source.lacks), "")
@@ -70,7 +70,7 @@ def _cell(
 
 @cache
 def planned_cell(fault: Fault) -> Cell | None:
-    """What is found besides with the plan of the system; None for a system without one."""
+    """Return what is found besides with the plan of the system; None for a system without one."""
     if fault.system not in PLANS:
         return None
     planned = PLANS[fault.system]()
@@ -85,7 +85,7 @@ def _healthy_findings(planned: System, graph: System) -> frozenset[Finding]:
 
 
 def lines() -> Iterator[str]:
-    """The page."""
+    """Yield the page."""
     yield HEAD
     rows = {fault: {name: cell(fault, name) for name in SOURCES} for fault in FAULTS}
     causes = sum(it["file"].cause for it in rows.values())
@@ -101,10 +101,6 @@ def lines() -> Iterator[str]:
         some = [code for code in each if 0 < count[code] < len(each[code])]
         cells = (name, f"{sum(count.values())}", " ".join(none) or "-", " ".join(some) or "-")
         yield f"| {' | '.join(cells)} |"
-    yield ""
-    yield f"Faults by code: {', '.join(f'{code} {len(own)}' for code, own in each.items())}."
-    yield ""
-    yield f"Healthy systems: {', '.join(SYSTEMS)}."
 
 
 def _ways() -> Iterator[tuple[str, Callable[[Fault], bool]]]:

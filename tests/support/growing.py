@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 
 def _each(count: int, text: str) -> str:
-    """The text for 0, 1, 2 ..., the number in place of ``#``."""
+    """Return the text for 0, 1, 2 ..., the number in place of ``#``."""
     return "".join(f"{text}\n".replace("#", str(at)) for at in range(count))
 
 
@@ -84,5 +84,5 @@ GROWING: dict[str, Callable[[int], str]] = {
 
 
 def description(what: str, count: int) -> bytes:
-    """A URDF with so many of them."""
+    """Return a URDF with so many of them."""
     return f'<robot name="r">\n{GROWING[what](count)}</robot>\n'.encode()

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
 from fleet_folder import ARM
-from paths import FIXTURES, fixture_text
+from paths import FIXTURES, fixture_text, write_files
 
 # File -> its text, for a number of what it is large in.
 Files = Callable[[int], Mapping[str, str]]
@@ -23,8 +23,8 @@ YAML_NODE = "- node: {pkg: demo_nodes_cpp, exec: talker, name: n#}\n"
 
 
 def each(count: int, text: str) -> str:
-    """The text for 0, 1, 2 ..., the number in place of ``#``, the next one in place of ``@``;
-    ``##`` is a #."""
+    """Return the text for 0, 1, 2 ..., the number in place of ``#``, the next one in place of
+    ``@``; ``##`` is a #."""
     return "".join(_numbered(text, at) for at in range(count))
 
 
@@ -34,7 +34,7 @@ def _numbered(text: str, at: int) -> str:
 
 
 def within(count: int, before: str, inner: str, after: str) -> str:
-    """The inner text with so many others around it."""
+    """Return the inner text with so many others around it."""
     return f"{each(count, before)}{inner}{after * count}"
 
 
@@ -242,15 +242,14 @@ LAUNCHED: Mapping[str, Files] = {
 
 
 def launch_file(files: Mapping[str, str]) -> str:
-    """The one that includes the others."""
+    """Return the one that includes the others."""
     return next(it for it in files if it.startswith("a.launch"))
 
 
 def written(folder: Path, files: Mapping[str, str]) -> Path:
-    """The folder, with these files in it."""
+    """Return the folder, with these files in it."""
     folder.mkdir(exist_ok=True)
-    for name, text in files.items():
-        (folder / name).write_text(text)
+    write_files(folder, files)
     return folder
 
 
@@ -290,7 +289,7 @@ def _edge(child: str, parent: str, static: bool = False, sender: str = "/n0") ->
 
 
 def snapshot(nodes: Iterable[str], ends: Iterable[object], edges: Iterable[object] = ()) -> str:
-    """A saved graph."""
+    """Return a saved graph."""
     environment = json.loads((FIXTURES / "graphs" / "healthy.json").read_text())["environment"]
     return json.dumps(
         {
@@ -405,7 +404,7 @@ GRAPHS: Mapping[str, Callable[[int], str]] = {
 
 
 def graph_of(name: str, count: int, folder: Path) -> Path:
-    """The graph as a file."""
+    """Return the graph as a file."""
     path = folder / f"{count}.json"
     path.write_text(GRAPHS[name](count))
     return path
@@ -418,7 +417,7 @@ COMMON = f"layout: frames-per-robot\ndescription: rover.urdf\n{TWO}"
 
 
 def _of_rover(key: str, file: str, text: Callable[[int], str]) -> Files:
-    """A fleet of two rovers with one file that grows; the name of the file with __ for its dot."""
+    """Return a fleet of two rovers with one file that grows; its name has __ for its dot."""
     named = file.replace("__", ".")
     fleet = f"{COMMON}related_files: {{{key}: {named}}}\n"
     return lambda n: {"fleet": fleet, file: text(n)}
@@ -436,7 +435,7 @@ def _semantic(inner: str) -> Files:
 _LUA = 'x# = "odom", -- [[ a\\ntracking_frame = "lidar_link",\\n'
 FLEETS: Mapping[str, Files] = {
     "robots": lambda n: {
-        "fleet": "layout: both\nstack: nav2\ndescription: rover.urdf\nrobots:\n"
+        "fleet": "layout: both\nnode_sets: nav2\ndescription: rover.urdf\nrobots:\n"
         + each(n // 8, "- {name: robot#}\n")
     },
     "comments": lambda n: {"fleet": each(n, "## comment # {of [many\n") + COMMON},
@@ -487,7 +486,7 @@ MESSAGE = fixture_text("growing_files_message.yaml")
 
 
 def message(count: int) -> str:
-    """What ``ros2 topic echo`` prints of a rosgraph_msgs/Graph."""
+    """Return what ``ros2 topic echo`` prints of a rosgraph_msgs/Graph."""
     return f"nodes:\n{each(count, MESSAGE)}"
 
 
@@ -498,7 +497,7 @@ _OF_ALL = ("tf", "tf_static", "clock", "map")
 
 
 def copies(example: str, count: int) -> str:
-    """The example for so many other robots and nodes, each of its lines once."""
+    """Return the example for so many other robots and nodes, each of its lines once."""
     lines = (line for at in range(count) for line in _copy(example, at).splitlines())
     return "\n".join(dict.fromkeys(lines))
 

@@ -52,7 +52,7 @@ class Step(NamedTuple):
 
 
 def steps(page: str) -> list[Step]:
-    """The blocks of a page in their order."""
+    """Return the blocks of a page in their order."""
     return [_step(before, language, text) for before, _, language, text in _BLOCK.findall(page)]
 
 
@@ -143,7 +143,7 @@ def environment(folder: Path) -> dict[str, str]:
 
 
 def copy_repository(folder: Path) -> None:
-    """What git knows of, or would take, as if cloned into ``folder``."""
+    """Copy what git knows of, or would take, as if cloned into ``folder``."""
     command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
     listed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
     for name in filter(None, listed.split("\0")):

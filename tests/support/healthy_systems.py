@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Systems in which nothing is wrong, as graphs: plans of real stacks, and the tools that people run.
+"""Systems in which nothing is wrong, as graphs: plans of real node sets, and the tools that people run.
 
-Nodes, names and types are those of the stacks' facts; tools have what their sources give them.
+Nodes, names and types are those of the node sets' facts; tools have what their sources give them.
 """
 
 from __future__ import annotations
@@ -48,42 +48,43 @@ TWO = ("robot1", "robot2")
 
 @cache
 def plan(
-    stacks: tuple[str, ...],
+    node_sets: tuple[str, ...],
     layout: str = "L1",
     robots: tuple[str, ...] = TWO,
     release: str = "jazzy",
 ) -> System:
-    """The plan of rovers with these stacks, as the command writes it."""
+    """Return the plan of rovers with these node sets, as the command writes it."""
     with TemporaryDirectory() as folder:
         file = f"{folder}/plan.yaml"
-        given = ["--stack", ",".join(stacks), "--layout", layout, "--distro", release, "-o", file]
+        names = ",".join(node_sets)
+        given = ["--node-set", names, "--layout", layout, "--distro", release, "-o", file]
         assert multibot.main(["plan", str(ROVER), *robots, *given]) == 0
         return from_yaml(Path(file).read_bytes(), file)
 
 
 @cache
 def started(
-    stacks: tuple[str, ...],
+    node_sets: tuple[str, ...],
     layout: str = "L1",
     robots: tuple[str, ...] = TWO,
     release: str = "jazzy",
 ) -> System:
-    """The graph of such a plan, each robot with its tree of frames."""
-    planned = plan(stacks, layout, robots, release)
+    """Return the graph of such a plan, each robot with its tree of frames."""
+    planned = plan(node_sets, layout, robots, release)
     graph = _with_types(as_planned(planned))
     edges = (edge for robot in planned.robots for edge in _edges(robot))
     return sent(graph._replace(edges=tuple(edges)))
 
 
 def _edges(robot: Robot) -> Iterator[Edge]:
-    """The rover's tree, which localization hangs below the map."""
+    """Yield the rover's tree, which localization hangs below the map."""
     odom = next(it for it in robot.frames if unspelled(it, robot.name) == "odom")
     yield Edge(odom, "map", robot.tf_topic, False, ())
     yield from robot_edges(robot)
 
 
 def _with_types(graph: System) -> System:
-    """A type that a plan does not know is that of the other side; Twist of Twist or TwistStamped."""
+    """Return the plan with the other side's type for unknown ones; Twist for Twist or TwistStamped."""
     types: dict[tuple[str, str], str] = {}
     for end in graph.ends:
         types[end.kind, end.name] = types.get((end.kind, end.name)) or end.type
@@ -163,7 +164,7 @@ def with_ends(graph: System, node: str, *ends: Row) -> System:
 
 
 def respelled(graph: System, spelled: Callable[[str], str]) -> System:
-    """The graph with other names of nodes, topics and services."""
+    """Return the graph with other names of nodes, topics and services."""
     nodes = (it._replace(name=spelled(it.name)) for it in graph.nodes)
     ends = (it._replace(name=spelled(it.name), node=spelled(it.node)) for it in graph.ends)
     frames = (it._replace(topic=spelled(it.topic)) for it in graph.edges)
@@ -217,7 +218,7 @@ def arms() -> System:
 
 
 def arms_in_one_node_space() -> System:
-    """A bimanual robot without namespaces: one description with prefixes, one joint_states."""
+    """Return a bimanual robot without namespaces: one description with prefixes, one joint_states."""
     graph = System((), (), (), as_planned(plan(("nav2",))).environment)
     graph = with_node(
         graph, "/robot_state_publisher", (SUBSCRIBES, "/joint_states", JOINTS), (PUBLISHES, "/tf", TF),
@@ -250,7 +251,7 @@ def with_mux() -> System:
 
 
 def idle_mux() -> System:
-    """A twist_mux with an input that no node sends yet, its output on a topic of its own."""
+    """Return a twist_mux with an input that no node sends yet, its output on a topic of its own."""
     graph = with_mux()
     for robot in TWO:
         for node in ("twist_mux", "diff_drive"):
@@ -260,7 +261,7 @@ def idle_mux() -> System:
 
 
 def beside_the_root() -> System:
-    """A robot without a namespace, and another one with one; each has its own tf topic."""
+    """Return a robot without a namespace, and another one with one; each has its own tf topic."""
     graph = started(("nav2",))
 
     def spelled(name: str) -> str:
@@ -270,7 +271,7 @@ def beside_the_root() -> System:
 
 
 def one_map_for_all() -> System:
-    """A map server for the fleet, and static frames of the world from nodes of their own."""
+    """Return a map server for the fleet, and static frames of the world from nodes of their own."""
     graph = started(("navigation",), "L2")
     graph = with_node(graph, "/map_server", (PUBLISHES, "/map", MAP))
     for robot in TWO:
@@ -284,7 +285,7 @@ def one_map_for_all() -> System:
 
 
 def follower() -> System:
-    """A robot that follows another reads its odometry, and its own."""
+    """Return a robot that follows another one: it reads that one's odometry, and its own."""
     graph = nav2_with_tools()
     ends = ((SUBSCRIBES, f"/{robot}/odom", ODOMETRY) for robot in TWO)
     order = (PUBLISHES, "/robot2/cmd_vel_follow", TWIST)
@@ -310,7 +311,7 @@ SYSTEMS: Mapping[str, Callable[[], System]] = {
     "one map for all": one_map_for_all,
     "a follower and a convoy": follower,
 }
-# What stands in each release, with its plan: stacks, layout, robots.
+# What stands in each release, with its plan: node sets, layout, robots.
 OF_EACH_RELEASE = (
     (("nav2",), "L1", TWO),
     (("nav2",), "L2", TWO),

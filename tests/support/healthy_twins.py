@@ -43,7 +43,7 @@ def helper_nodes() -> System:
 
 
 def bridge_both_ways() -> System:
-    """A ros_gz_bridge whose rows have ``@``: it sends and reads each topic."""
+    """Return a ros_gz_bridge whose rows have ``@``: it sends and reads each topic."""
     graph = simulated(*TWO)
     rows = (("cmd_vel", TWIST), ("odom", ODOMETRY), ("scan", SCAN), ("joint_states", JOINTS))
     for robot in TWO:

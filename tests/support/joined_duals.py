@@ -186,7 +186,7 @@ class Compared(NamedTuple):
 
 
 def expanded(path: Path, arguments: Mapping[str, str], environment: Mapping[str, str]) -> bytes:
-    """A description as xacro makes it; raises RuntimeError with its first line."""
+    """Return a description as xacro makes it; raises RuntimeError with its first line."""
     words = [f"{name}:={value}" for name, value in arguments.items()]
     program = "import sys, xacro; sys.exit(xacro.main())"
     made = subprocess.run(
@@ -201,7 +201,7 @@ def expanded(path: Path, arguments: Mapping[str, str], environment: Mapping[str,
 
 
 def compared(dual: Dual, packages: Mapping[str, Path], environment: Mapping[str, str]) -> Compared:
-    """The vendor's two arms and ours, element by element below the root."""
+    """Return the vendor's two arms and ours, element by element below the root."""
     try:
         whole = expanded(_at(dual.description, packages), dual.arguments, environment)
     except RuntimeError as error:
@@ -229,7 +229,7 @@ def _at(path: str, packages: Mapping[str, Path]) -> Path:
 
 
 def _rest(theirs: etree._Element, dual: Dual) -> bytes:
-    """What the vendor's has that is of no arm."""
+    """Return what the vendor's has that is of no arm."""
     root = etree.fromstring(etree.tostring(theirs))
     own = tuple(it.names or it.prefix for it in dual.arms)
     mounts = {it.mount for it in dual.arms} - {""}
@@ -262,7 +262,7 @@ def _left(root: etree._Element, left: Counter[object]) -> Iterator[etree._Elemen
 
 
 def _told(theirs: Sequence[etree._Element], ours: Sequence[etree._Element]) -> Iterator[str]:
-    """What differs, element by element in their order."""
+    """Yield what differs, element by element in their order."""
     if len(theirs) != len(ours):
         yield f"<{(*theirs, *ours)[0].tag}>: {len(theirs)} -> {len(ours)}"
     for one, other in zip(theirs, ours, strict=False):
@@ -288,7 +288,7 @@ def _plain(element: etree._Element) -> dict[str, str]:
 
 
 def _sorted(element: etree._Element) -> list[etree._Element]:
-    """It and what is in it; of a joint in the order of names, which is of no matter there."""
+    """Return the element and what is in it; of a joint in the order of names, for it has none."""
     inside = list(element.iterdescendants("*"))
     return [element, *(sorted(inside, key=lambda it: it.tag) if element.tag == "joint" else inside)]
 

@@ -82,17 +82,17 @@ def pairs() -> Mapping[str, Pair]:
 
 
 def joined_pair(pair: Pair) -> Joined:
-    """The joined robot, with a prefix for the part."""
+    """Return the joined robot, with a prefix for the part."""
     return join([Part(pair.host, name="host"), Part(pair.tool, pair.at, POSE, PREFIX, "tool")])
 
 
 def plain(data: bytes) -> etree._Element:
-    """The root without comments."""
+    """Return the root without comments."""
     return etree.fromstring(data, etree.XMLParser(remove_comments=True))
 
 
 def root_of(root: etree._Element) -> str:
-    """The link that is no child."""
+    """Return the link that is no child."""
     children = {it.get("link") for it in root.iterfind("joint/child")}
     return next(
         it.get("name", "") for it in root.iterfind("link") if it.get("name") not in children
@@ -112,7 +112,7 @@ class Seen(NamedTuple):
 
 
 def seen(data: bytes, prefix: str = "") -> Seen:
-    """A description as pinocchio has it; joints behind ``prefix`` have the angle of their name."""
+    """Return a description as pinocchio has it; joints behind ``prefix`` have their name's angle."""
     import pinocchio as pin  # type: ignore[import-not-found]
 
     model = pin.buildModelFromXML(etree.tostring(plain(data), encoding="unicode"))
@@ -131,7 +131,7 @@ def seen(data: bytes, prefix: str = "") -> Seen:
 
 
 def angle_of(joint: str) -> float:
-    """An angle that belongs to a name."""
+    """Return an angle that belongs to a name."""
     return math.sin(sum(map(ord, joint))) / 2
 
 
@@ -169,7 +169,7 @@ WRONG = ("loose names", "names twice")
 
 
 def counted(data: bytes) -> Counter[str]:
-    """What is in a text: a URDF, or what MuJoCo writes."""
+    """Return what is in a text: a URDF, or what MuJoCo writes."""
     root = plain(data)
     if root.tag == "mujoco":
         # The world is no body of the robot.
@@ -189,7 +189,7 @@ def counted(data: bytes) -> Counter[str]:
 
 
 def loose_names(root: etree._Element) -> Iterator[str]:
-    """Uses of a link or joint that is not there."""
+    """Yield uses of a link or joint that is not there."""
     links = {it.get("name") for it in root.iterfind("link")} | {"world"}
     joints = {it.get("name") for it in root.iterfind("joint")}
     for block in root.iterfind("gazebo"):
@@ -212,7 +212,7 @@ def loose_names(root: etree._Element) -> Iterator[str]:
 
 
 def names_twice(root: etree._Element) -> Iterator[tuple[str, str]]:
-    """What urdfdom and ros2_control refuse, or take the first of."""
+    """Yield what urdfdom and ros2_control refuse, or take the first of."""
     for tag in ("link", "joint", "material", "transmission", "ros2_control"):
         names = Counter(it.get("name", "") for it in root.iterchildren(tag))
         yield from ((tag, name) for name, many in names.items() if many > 1)
@@ -259,7 +259,7 @@ def by_mujoco(pair: Pair) -> bytes:
 
 
 def for_mujoco(path: Path) -> str:
-    """A description without meshes, with MuJoCo's compiler told to keep all links."""
+    """Return a description without meshes, with MuJoCo's compiler told to keep all links."""
     root = plain(path.read_bytes())
     for it in (*root.iter("visual", "collision"), *root.iterchildren("mujoco")):
         above = it.getparent()
@@ -286,7 +286,7 @@ def by_linkforge(pair: Pair) -> bytes:
 
 
 def by_urdf_compose(pair: Pair) -> bytes:
-    """What urdf-compose connects; it takes neither a prefix nor a pose."""
+    """Return what urdf-compose connects; it takes neither a prefix nor a pose."""
     from urdf_compose import compose  # type: ignore[import-not-found]
     from urdf_compose.resolve_connections import URDFDefConn  # type: ignore[import-not-found]
     from urdf_compose.urdf_obj import ExplicitURDFObj  # type: ignore[import-not-found]
@@ -300,7 +300,7 @@ def by_urdf_compose(pair: Pair) -> bytes:
 
 
 def by_join(pair: Pair) -> bytes:
-    """This package."""
+    """Return the pair as this package joins it."""
     return joined_pair(pair).data
 
 
@@ -361,7 +361,7 @@ def _gap(pair: Pair, data: bytes) -> Iterator[float]:
 
 
 def table() -> Iterator[str]:
-    """The rows for the page."""
+    """Yield the rows for the page."""
     heads = (f"pairs of {len(pairs())}", *COUNTED, *WRONG, "largest gap")
     heads += (f"twins of {len(twins())}", "crossed names")
     yield f"| program | {' | '.join(heads)} |"

@@ -72,7 +72,7 @@ def is_missing(idiom: Idiom) -> bool:
 
 
 def tried(idiom: Idiom, folder: Path) -> str:
-    """What becomes of it in the real launch: that it works, or what launch says."""
+    """Return what becomes of it in the real launch: that it works, or what launch says."""
     for it in SOURCES.iterdir():
         (folder / it.name).write_bytes(it.read_bytes())
     (folder / "rover.urdf").write_text(ROVER.read_text())
@@ -94,7 +94,7 @@ HEAD = fixture_text("launch_idioms_head.txt")
 
 
 def page(outcomes: dict[str, str]) -> str:
-    """The page, with what became of each by file name."""
+    """Return the page, with what became of each by file name."""
     every = idioms()
     rows = [
         f"| [{it.about}](../../fixtures/launch_idioms/{it.file.name}) | {it.before} | "

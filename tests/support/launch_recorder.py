@@ -39,7 +39,7 @@ Rows = list[dict[str, Any]]
 
 
 def words_of(command: list[str]) -> dict[str, Any]:
-    """The name, namespace and rules of a node by its command line, and its own arguments."""
+    """Return the name, namespace and rules of a node by its command line, and its own arguments."""
     found: dict[str, Any] = {"name": "", "namespace": "", "rules": [], "files": [], "own": []}
     inside, words = False, iter(command)
     for word in words:
@@ -60,20 +60,20 @@ def words_of(command: list[str]) -> dict[str, Any]:
 
 
 def values_of(path: str) -> dict[str, str]:
-    """A parameter file and its text when a program is started with it; no name if launch made it of
-    parameters in the launch file."""
+    """Return a parameter file and its text when a program is started with it; no name if launch
+    made it of parameters in the launch file."""
     made = Path(path).name.startswith("launch_params_")
     return {"file": "" if made else path, "text": Path(path).read_text()}
 
 
 def texts(words: list[str]) -> dict[str, str]:
-    """The files among the arguments of a program, with what is in them."""
+    """Return the files among the arguments of a program, with what is in them."""
     given = (Path(it) for it in words if it.endswith((".rviz", ".yaml")) or it.startswith("/tmp/"))
     return {str(it): it.read_text() for it in given if it.is_file()}
 
 
 def expanded(line: str) -> str:
-    """What ``xacro FILE NAME:=VALUE`` prints; the text of another command is not needed."""
+    """Return what ``xacro FILE NAME:=VALUE`` prints; the text of another command is not needed."""
     program, *words = shlex.split(line)
     if Path(program).name != "xacro":
         return "<robot name='r'/>"
@@ -144,7 +144,7 @@ def load(action: Any, context: Any, rows: Rows) -> None:
 
 
 def parameters_of(component: Any, context: Any) -> list[Any]:
-    """The parameters of a component, as parameter files would have them."""
+    """Return the parameters of a component, as parameter files would have them."""
     given = evaluate_parameters(context, component.parameters or ())
     return [
         values_of(str(it))

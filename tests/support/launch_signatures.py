@@ -50,7 +50,7 @@ _NONE |= {"SomeEntitiesType", "SomeSubstitutionsType"}
 
 
 def options(module: str, name: str) -> list[str]:
-    """What a class may be given; ``**kwargs`` go to the class above."""
+    """Return what a class may be given; ``**kwargs`` go to the class above."""
     taken: set[str] = set()
     for above in getattr(import_module(module), name).__mro__:
         if "__init__" not in vars(above) or above is object:
@@ -63,7 +63,7 @@ def options(module: str, name: str) -> list[str]:
 
 
 def stand_in() -> dict[str, list[str]]:
-    """What the classes of the stand-in take, by full name."""
+    """Return what the classes of the stand-in take, by full name."""
     return {name: sorted(_taken(it)) for name, it in _classes()}
 
 
@@ -76,7 +76,7 @@ def _classes() -> Iterator[tuple[str, Any]]:
 
 
 def public_names() -> dict[str, list[str]]:
-    """What each package of the real ones offers, by the modules that a launch file imports from."""
+    """Return what each real package offers, by the modules that a launch file imports from."""
     found = {}
     for module in (it for it in known().read if it.partition(".")[0] in ("launch", "launch_ros")):
         real = import_module(module)

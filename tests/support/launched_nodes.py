@@ -37,15 +37,15 @@ def started(package: str, executable: str, name: str = "", **more: object) -> La
 
 def launched(
     *nodes: LaunchedNode,
-    stacks: tuple[str, ...] = (),
+    node_sets: tuple[str, ...] = (),
     notes: tuple[LaunchNote, ...] = (),
     release: str = NEWEST_LTS,
 ) -> Launched:
-    stack = facts_of(stacks, None, NEWEST_LTS)
+    node_set = facts_of(node_sets, None, NEWEST_LTS)
     known = known_nodes(None, NEWEST_LTS, ()).library.nodes
     parameters = load_known_nodes("", NEWEST_LTS)
     return with_launched(
-        stack, LaunchGraph(nodes, notes), known, {"robot1", "r"}, parameters, release
+        node_set, LaunchGraph(nodes, notes), known, {"robot1", "r"}, parameters, release
     )
 
 

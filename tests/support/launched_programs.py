@@ -12,19 +12,17 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from paths import ROOT, SUPPORT
+from paths import ROOT, SUPPORT, write_files
 
 CHILD = SUPPORT / "launch_child.py"
 EXAMPLE = ROOT / "examples" / "multibot_example"
 
 
 def fake_packages(folder: Path, files: dict[str, str], programs: dict[str, str]) -> None:
-    """An install folder of packages whose programs write down what they are told."""
+    """Write an install folder of packages whose programs write down what they are told."""
     index = folder / "share" / "ament_index" / "resource_index" / "packages"
     index.mkdir(parents=True)
-    for name, text in files.items():
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / name).write_text(text)
+    write_files(folder, files)
     for package in {*programs.values(), *(path.split("/")[1] for path in files)}:
         (index / package).touch()
     for program, package in programs.items():
@@ -60,8 +58,9 @@ def launched(
     more: Mapping[str, str] = MappingProxyType({}),
     real: Mapping[str, Path] = MappingProxyType({}),
 ) -> tuple[list[dict[str, Any]], str]:
-    """What the programs of a launch file were told, and what launch said; ``more`` are files of
-    packages, by their paths below ``share``, ``real`` the texts of programs that do more."""
+    """Return what the programs of a launch file were told, and what launch said; ``more`` are
+    files of packages, by their paths below ``share``, ``real`` the texts of programs that do
+    more."""
     share = {
         f"share/multibot_example/{path.relative_to(EXAMPLE)}": path.read_text()
         for path in EXAMPLE.glob("*/*.*")

@@ -37,8 +37,8 @@ No public file has what these rules find. Each rests on the source that `fixture
 names, on its examples and on the defects planted in `tests/lint/`, which it finds alone: {codes}.
 """
 _RULES = """
-| rule | level | found | judged | true | by |
-|---|---|--:|--:|--:|---|
+| rule | level | found | judged | true |
+|---|---|--:|--:|--:|
 """
 PLANTED = {
     "test_lint_gazebo": "below `<gazebo>`, parameters of plugins and hardware",
@@ -69,13 +69,13 @@ class Planted(NamedTuple):
 
 
 def precisions() -> list[Precision]:
-    """The table of precision."""
+    """Return the table of precision."""
     rows = (line.split("\t") for line in PRECISION.read_text().splitlines()[1:])
     return [Precision(code, *map(int, numbers), referee) for code, *numbers, referee in rows]
 
 
 def planted(module: str) -> Planted:
-    """The counts of a file of tests: its ``defects()`` and ``oddities()``, linted."""
+    """Return the counts of a file of tests: its ``defects()`` and ``oddities()``, linted."""
     tests = import_module(module)
     table = {it.code for it in precisions()}
     before = after = count = 0
@@ -87,7 +87,7 @@ def planted(module: str) -> Planted:
 
 @cache
 def _linted(tests: ModuleType, case: object) -> frozenset[str]:
-    """What all rules find, in a workspace of its own: what is next to a file counts."""
+    """Return what all rules find, in a workspace of its own: what is next to a file counts."""
     with TemporaryDirectory() as folder:
         package = Path(folder) / "workspace/src/package"
         package.mkdir(parents=True)
@@ -108,22 +108,22 @@ def hits() -> Counter[str]:
 
 
 def in_descriptions(found: Iterable[list]) -> Counter[str]:  # type: ignore[type-arg]
-    """The findings of each rule in files."""
+    """Return the findings of each rule in files."""
     return Counter(it.code for its in found for it in its)
 
 
 def models() -> list[Path]:
-    """The SDF files of the corpus."""
+    """Return the SDF files of the corpus."""
     return sorted((CORPUS / "sdf").rglob("*.sdf"))
 
 
 def in_models() -> Counter[str]:
-    """The findings of each rule in them."""
+    """Return the findings of each rule in them."""
     return Counter(it.code for it in lint_files([str(it) for it in models()], Settings()))
 
 
 def precision_page() -> str:
-    """The page, Markdown."""
+    """Return the page, Markdown."""
     parts = [_HEAD.format(in_packages=", ".join(IN_PACKAGES))]
     for module, what in PLANTED.items():
         it = planted(module)
@@ -134,14 +134,14 @@ def precision_page() -> str:
     parts += [_NEVER_FOUND.format(codes=never), _RULES]
     parts += (
         f"| {it.code} {RULES[it.code].name} | {RULES[it.code].level} | {it.hits} | {it.judged} "
-        f"| {it.true} | {it.referee} |\n"
+        f"| {it.true} |\n"
         for it in found
     )
     return "".join(parts)
 
 
 def counted() -> str:
-    """The table with today's hits."""
+    """Return the table with today's hits."""
     now = hits()
     head = PRECISION.read_text().splitlines()[0]
     rows = (it if it.code in IN_PACKAGES else it._replace(hits=now[it.code]) for it in precisions())

@@ -25,8 +25,8 @@ LEAST = 5
 
 
 def linted_corpus() -> dict[str, list[Finding]]:
-    """The findings of the public files by their name there, each repository's SRDF files with its
-    own URDF files."""
+    """Return the findings of the public files by their name there, each repository's SRDF files
+    with its own URDF files."""
     files = corpus_files()
     found = _by_file(lint_files([str(it) for it in files.values()], Settings()), files)
     for repository, srdfs in _srdfs().items():
@@ -46,7 +46,7 @@ def _srdfs() -> dict[str, dict[str, Path]]:
 
 
 def linted_wheels() -> dict[str, list[Finding]]:
-    """The findings of the description wheels by file, ``wheel:NAME/...``."""
+    """Return the findings of the description wheels by file, ``wheel:NAME/...``."""
     files = {f"wheel:{name}": path for name, path in wheel_files().items()}
     return _by_file(lint_files([str(it) for it in files.values()], Settings()), files)
 
@@ -66,7 +66,7 @@ def errors(found: Mapping[str, list[Finding]]) -> Counter[str]:
 
 
 def counts_table(corpus: Counter[str], wheels: Counter[str], files: tuple[int, int]) -> str:
-    """The committed table: a line for each rule, the first for the number of files."""
+    """Return the committed table: a line for each rule, the first for the number of files."""
     rows = [("code", "corpus", "wheels"), ("files", *map(str, files))]
     codes = sorted({*corpus, *wheels})
     rows += [(code, str(corpus[code]), str(wheels[code])) for code in codes]

@@ -24,12 +24,12 @@ PATIENTLY = ("--timeout", "40")
 
 
 def domain(offset: int) -> int:
-    """A domain that another run on this machine hardly uses; below 101 as ROS advises."""
+    """Return a domain that another run on this machine hardly uses; below 101 as ROS advises."""
     return 1 + (os.getpid() * 7 + offset) % 100
 
 
 def node(robot: str, name: str = NODES[0], **more: object) -> dict[str, Any]:
-    """A node as planned, for ``live_fleet``; ``more`` is what differs."""
+    """Return a node as planned, for ``live_fleet``; ``more`` is what differs."""
     return {
         "name": name,
         "namespace": robot,
@@ -41,7 +41,7 @@ def node(robot: str, name: str = NODES[0], **more: object) -> dict[str, Any]:
 
 
 def write_plan(path: Path, robots: Iterable[str], nodes: Sequence[str] = NODES) -> Path:
-    """The plan of these robots, each with these nodes, as a file."""
+    """Return the plan of these robots, each with these nodes, as a file."""
     full = {robot: tuple(f"/{robot}/{name}" for name in nodes) for robot in robots}
     fleet = tuple(PlannedRobot(robot, there, (), f"/{robot}/tf") for robot, there in full.items())
     ends = tuple(end for robot, there in full.items() for it in there for end in _wanted(robot, it))
@@ -60,7 +60,7 @@ def _wanted(robot: str, name: str) -> list[End]:
 def multibot(
     *arguments: object, env: Mapping[str, str], inside: Sequence[str] = ()
 ) -> subprocess.CompletedProcess[str]:
-    """The command as a user runs it; ``inside`` is put before its command line."""
+    """Return the command as a user runs it; ``inside`` is put before its command line."""
     return subprocess.run(
         [*inside, *COMMAND, *map(str, arguments)],
         env=env,

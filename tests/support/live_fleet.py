@@ -35,7 +35,7 @@ _MODULES = {
 
 
 def environ(domain: int) -> dict[str, str]:
-    """The environment of nodes that meet on this machine in ``domain`` only."""
+    """Return the environment of nodes that meet on this machine in ``domain`` only."""
     kept = {k: v for k, v in os.environ.items() if not k.startswith(("ROS_", "RMW_", "FASTRTPS_"))}
     return {**kept, "ROS_DOMAIN_ID": str(domain), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
 
@@ -150,7 +150,7 @@ def _node(spec: Mapping[str, Any], executor: Any) -> Any:
 
 
 def _run_clock(node: Any, publisher: Any, type_: str) -> None:
-    """A simulation that has run for a while, if it is a clock."""
+    """Publish the time of a simulation that has run for a while, if the publisher is a clock."""
     if type_ != CLOCK:
         return
     message = _type(CLOCK)()

@@ -48,7 +48,7 @@ class Made(NamedTuple):
 
 
 def healthy() -> dict[str, Made]:
-    """What two robots send that are as planned, by name."""
+    """Return what two robots send that are as planned, by name."""
     found = []
     for robot in ROBOTS:
         for name, (type_, frame, count) in USUAL.items():
@@ -60,7 +60,7 @@ def healthy() -> dict[str, Made]:
 
 
 def plan() -> System:
-    """The plan of the healthy bag."""
+    """Return the plan of the healthy bag."""
     robots = tuple(
         PlannedRobot(
             robot,
@@ -111,7 +111,7 @@ def qos(latched: bool) -> Qos:
 
 
 def write(path: Path, topics: Iterable[Made], mcap: bool = True) -> Path:
-    """The bag as a folder, ten seconds long; returns its path."""
+    """Return the bag as a folder, ten seconds long; returns its path."""
     storage = StoragePlugin.MCAP if mcap else StoragePlugin.SQLITE3
     with Writer(path, version=9, storage_plugin=storage) as writer:
         for made in topics:

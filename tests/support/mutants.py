@@ -30,32 +30,32 @@ def flip(chance: random.Random, data: bytes) -> bytes:
 
 
 def delete(chance: random.Random, data: bytes) -> bytes:
-    """A short span gone."""
+    """Return the text without a short span."""
     start, end = span(chance, data)
     return data[:start] + data[end:]
 
 
 def truncate(chance: random.Random, data: bytes) -> bytes:
-    """The end gone; the root closed again every other time."""
+    """Return the text without its end; the root is closed again every other time."""
     cut = data[: chance.randrange(1, len(data))]
     return cut + chance.choice((b"", b"</robot>"))
 
 
 def insert(chance: random.Random, data: bytes) -> bytes:
-    """A snippet that means something in XML or to a rewriter, anywhere."""
+    """Return a snippet that means something in XML or to a rewriter, anywhere."""
     at = chance.randrange(len(data))
     return data[:at] + chance.choice(SNIPPETS) + data[at:]
 
 
 def insert_in_value(chance: random.Random, data: bytes) -> bytes:
-    """The same at the edge of a value or text, where it hurts most."""
+    """Return the same at the edge of a value or text, where it hurts most."""
     places = [at for at, byte in enumerate(data) if byte in b"\"'>"]
     at = chance.choice(places or [0]) + chance.randrange(2)
     return data[:at] + chance.choice(SNIPPETS) + data[at:]
 
 
 def duplicate(chance: random.Random, data: bytes) -> bytes:
-    """A span twice."""
+    """Return the text with a span twice."""
     start, end = span(chance, data)
     return data[:end] + data[start:]
 
@@ -69,14 +69,14 @@ def swap(chance: random.Random, data: bytes) -> bytes:
 
 
 def double_line(chance: random.Random, data: bytes) -> bytes:
-    """A whole line twice: often a whole element."""
+    """Return the text with a whole line twice: often a whole element."""
     lines = data.split(b"\n")
     at = chance.randrange(len(lines))
     return b"\n".join((*lines[:at], lines[at], *lines[at:]))
 
 
 def change_case(chance: random.Random, data: bytes) -> bytes:
-    """A span with its letters the other way."""
+    """Return the text with the letters of a span in the other case."""
     start, end = span(chance, data)
     return data[:start] + data[start:end].swapcase() + data[end:]
 
@@ -88,7 +88,7 @@ def requote(chance: random.Random, data: bytes) -> bytes:
 
 
 def span(chance: random.Random, data: bytes) -> tuple[int, int]:
-    """A short piece somewhere."""
+    """Return a short piece somewhere."""
     start = chance.randrange(len(data))
     return start, min(len(data), start + chance.randrange(1, 30))
 
@@ -100,7 +100,7 @@ MUTATIONS: tuple[Mutation, ...] = (
 
 
 def mutant(seed: int, sources: list[bytes]) -> bytes:
-    """The mutant of a seed: one source, one to three mutations."""
+    """Return the mutant of a seed: one source, one to three mutations."""
     chance = random.Random(seed)
     data = chance.choice(sources)
     for _ in range(chance.randrange(1, 4)):
@@ -109,10 +109,10 @@ def mutant(seed: int, sources: list[bytes]) -> bytes:
 
 
 def read_all(files: Mapping[str, Path]) -> list[bytes]:
-    """The contents of the files that are not too large to try thousands of times."""
+    """Return the contents of the files that are not too large to try thousands of times."""
     return [data for data in (path.read_bytes() for path in files.values()) if len(data) < LARGEST]
 
 
 def fixtures() -> list[bytes]:
-    """The robots that come with the tests."""
+    """Return the robots that come with the tests."""
     return read_all({path.name: path for path in sorted((FIXTURES / "robots").glob("*.urdf"))})

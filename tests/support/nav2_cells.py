@@ -32,8 +32,8 @@ from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.releases import has_release
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.outputs.built_states import with_built
-from multibot_rewrite.fleet.scripts import LoadedFleet
-from multibot_rewrite.knowledge.stacks import load_nodes
+from multibot_rewrite.knowledge.node_sets import load_nodes
+from multibot_rewrite.library.loaded_fleet import LoadedFleet
 from multibot_rewrite.live.rehearsal import stage, with_substitutes
 from multibot_rewrite.planning.plan import read_plan
 from multibot_rewrite.producers.ros.child import ask, observe, running
@@ -117,8 +117,8 @@ class Cell(NamedTuple):
         return [self.launch, self.release, f"{self.layout}{more}", how, where]
 
     @property
-    def stack(self) -> str:
-        """The stack of the fleet file."""
+    def node_set(self) -> str:
+        """The node set of the fleet file."""
         return f"nav2{'_slam' if self.slam else ''}{'_composed' if self.composed else ''}"
 
 
@@ -151,7 +151,7 @@ def cells() -> Iterator[Cell]:
 
 
 def written(cell: Cell, folder: Path, sources: Path) -> LoadedFleet:
-    """The fleet of a cell, built: with the parameter file that nav2_bringup has itself."""
+    """Return the fleet of a cell, built: with the parameter file that nav2_bringup has itself."""
     nav2, slam = (
         next((sources / cell.release).glob(it)) for it in ("*navigation2*", "*slam_tool*")
     )
@@ -165,7 +165,8 @@ def written(cell: Cell, folder: Path, sources: Path) -> LoadedFleet:
     style = "params_style: bringup" if cell.launch == BRINGUP else ""
     affix = "postfix" if cell.layout == "postfix" else "prefix"
     more = f"{style}\n{cell.more}"
-    text = FLEET.format(**cell._asdict() | {"stack": cell.stack, "affix": affix, "more": more})
+    words = {"node_set": cell.node_set, "affix": affix, "more": more}
+    text = FLEET.format(**cell._asdict() | words)
     (folder / "fleet.yaml").write_text(text)
     return load_fleet(folder / "fleet.yaml")
 
@@ -196,7 +197,7 @@ def _for_bringup(cell: Cell, robot: str, folder: Path) -> Iterator[tuple[str, st
 
 
 def recorded(file: Path, environ: Mapping[str, str]) -> list[dict[str, Any]]:
-    """What launch starts, with its words and files."""
+    """Return what launch starts, with its words and files."""
     command = [sys.executable, str(RECORDER), file.name]
     done = subprocess.run(
         command, cwd=file.parent, env={**environ}, capture_output=True, text=True, check=True
@@ -207,7 +208,7 @@ def recorded(file: Path, environ: Mapping[str, str]) -> list[dict[str, Any]]:
 
 
 def processes(fleet: LoadedFleet, rows: list[dict[str, Any]], folder: Path) -> list[Any]:
-    """The order for the stand-ins: each process with its words, its nodes and those in them."""
+    """Yield the order for the stand-ins: each process with its words, its nodes and those in them."""
     facts = {it.name: it for it in fleet.plan.fleet.facts}
     ends: dict[str, list[Any]] = {}
     for it in named_ends(fleet.planned.table):
@@ -268,8 +269,8 @@ def processes(fleet: LoadedFleet, rows: list[dict[str, Any]], folder: Path) -> l
 
 
 def _handed_on(words: list[str]) -> list[str]:
-    """What a costmap gets of its parent's arguments: nav2_costmap_2d 1.5.1 costmap_2d_ros.cpp
-    (getChildNodeOptions) replaces name and namespace."""
+    """Return what a costmap gets of its parent's arguments: nav2_costmap_2d 1.5.1
+    costmap_2d_ros.cpp (getChildNodeOptions) replaces name and namespace."""
     rules = (it for it in words if it != "-r" and not it.startswith(("__node:=", "__ns:=")))
     return [word for rule in rules for word in ("-r", rule)]
 
@@ -279,7 +280,7 @@ def _full(row: Mapping[str, Any]) -> str:
 
 
 def _kept(word: str, texts: Mapping[str, str], path: Path) -> str:
-    """A word; a file that was there for the launch is there again."""
+    """Return a word; a file that was there for the launch is there again."""
     if word not in texts:
         return word
     kept = path.with_name(f"{path.name}_{list(texts).index(word)}.yaml")
@@ -302,7 +303,7 @@ def outcome(cell: Cell, folder: Path, sources: Path) -> Outcome:
 
 
 def looked_at(order: str, out: Path) -> Outcome:
-    """The graph of the stand-ins against the plan."""
+    """Return the graph of the stand-ins against the plan."""
     # With LOCALHOST the 33rd process and those after it are not found.
     environ = {**stage(None), "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
     with running(str(STAND_INS.stem), order, {**environ, "PYTHONPATH": _path(environ)}) as child:
@@ -325,7 +326,7 @@ def looked_at(order: str, out: Path) -> Outcome:
 def answers(
     graph: System, asked: Mapping[str, list[str]], environ: Mapping[str, str]
 ) -> tuple[Answer, ...]:
-    """What nodes say of the parameters that they are asked for."""
+    """Return what nodes say of the parameters that they are asked for."""
     wanted = sum(len(own) for own in asked.values())
     for _ in range(TIMES):
         states = ask(list(questions(graph, asked)), ASK_SECONDS, environ)
@@ -339,16 +340,14 @@ def _path(environ: Mapping[str, str]) -> str:
 
 
 def rows_of(chosen: list[str], page: str) -> Iterator[str]:
-    """The rows of the table: the chosen ones anew, others as they are in the page."""
+    """Yield the rows of the table: the chosen ones anew, others as they are in the page."""
     rows = (line for line in page.splitlines() if line.startswith("| nav2"))
     kept = {tuple(line.strip("| ").split(" | ")[:5]): line for line in rows}
     sources = sources_folder()
     if sources is None:
         raise SystemExit(f"set {VARIABLE} to a folder with sources by release")
-    yield (
-        "| launch file | release | layout | Nav2 | | nodes | parameters | findings | wrong parameters |"
-    )
-    yield "|---|---|---|---|---|--:|--:|--:|--:|"
+    yield "| launch file | release | layout | Nav2 | | nodes | parameters | wrong |"
+    yield "|---|---|---|---|---|--:|--:|--:|"
     for cell in cells():
         if not set(chosen) <= set(cell.words):
             if before := kept.get(tuple(cell.words)):
@@ -357,7 +356,7 @@ def rows_of(chosen: list[str], page: str) -> Iterator[str]:
         with tempfile.TemporaryDirectory() as folder:
             made = outcome(cell, Path(folder), sources)
         assert made.parameters == made.planned, f"{made.parameters} of {made.planned} answered"
-        counts = (made.nodes, made.parameters, len(made.findings), made.wrong)
+        counts = (made.nodes, made.parameters, len(made.findings) + made.wrong)
         for it in made.findings[:12] if "--write" not in sys.argv else ():
             print("   ", it.code, it.level, it.robot, it.node, it.message[:200], file=sys.stderr)
         yield f"| {' | '.join((*cell.words, *map(str, counts)))} |"

@@ -22,7 +22,7 @@ RVIZ = "Visualization Manager:\n  Displays: []\n  Global Options: {Fixed Frame: 
 FLEET = """\
 layout: {layout}
 distro: {distro}
-stack: [{stack}, robot_state_publisher]
+node_sets: [{node_set}, robot_state_publisher]
 {more}
 robots:
   - {{name: robot1, description: %s, pose: {{x: 1.0}}}}
@@ -33,8 +33,8 @@ FLEET = FLEET.replace("%s", str(ROBOTS / "rover.urdf"))
 
 
 def written(folder: Path, **words: str) -> Path:
-    """The folder, with fleet.yaml and what it names."""
-    given = {"layout": "postfix", "distro": "jazzy", "stack": "nav2", "more": "", **words}
+    """Return the folder, with fleet.yaml and what it names."""
+    given = {"layout": "postfix", "distro": "jazzy", "node_set": "nav2", "more": "", **words}
     (folder / "fleet.yaml").write_text(FLEET.format(**given))
     (folder / "params.yaml").write_text(PARAMS)
     (folder / "one.rviz").write_text(RVIZ)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the tests of pictures share: plans of real stacks, graphs as planned, and ways to spoil them."""
+"""What tests of pictures share: plans of real node sets, graphs as planned, ways to spoil them."""
 
 from __future__ import annotations
 
@@ -59,17 +59,17 @@ NASTY = (
 
 @cache
 def nav2(layout: str = "L2", *robots: str) -> System:
-    """The plan of two rovers with Nav2, as the command writes it."""
+    """Return the plan of two rovers with Nav2, as the command writes it."""
     with TemporaryDirectory() as folder:
         file = f"{folder}/plan.yaml"
         names = robots or ("robot1", "robot2")
-        given = ["--stack", "nav2", "--layout", layout, "--distro", "lyrical", "-o", file]
+        given = ["--node-set", "nav2", "--layout", layout, "--distro", "lyrical", "-o", file]
         assert multibot.main(["plan", str(ROVER), *names, *given]) == 0
         return from_yaml(Path(file).read_bytes(), file)
 
 
 def fleet(robots: int, topics: int) -> System:
-    """The plan of a large fleet of small robots: two nodes with ``topics`` between them."""
+    """Return the plan of a large fleet of small robots: two nodes with ``topics`` between them."""
     names = [f"robot{number}" for number in range(1, robots + 1)]
     return planned(
         "both",
@@ -100,7 +100,7 @@ def _topic(robot: str, at: int) -> tuple[End, End]:
 
 
 def healthy(plan: System) -> System:
-    """The graph exactly as planned, with what every node has."""
+    """Return the graph exactly as planned, with what every node has."""
     nodes = [it.name for it in plan.nodes]
     every = (End(w.kind, w.role, w.name, w.type, "", w.node, None, "") for w in surely(plan).ends)
     usual = (
@@ -130,7 +130,7 @@ def environment(*caveats: Caveat) -> Environment:
 
 
 def moved(graph: System, old: str, new: str, node: str = "") -> System:
-    """The graph with one name under another one, of the nodes whose name ends so."""
+    """Return the graph with one name under another one, of the nodes whose name ends so."""
     return graph._replace(
         ends=tuple(
             e._replace(name=new) if e.name == old and e.node.endswith(node) else e
@@ -147,7 +147,7 @@ def without_node(graph: System, node: str) -> System:
 
 
 def with_end(graph: System, node: str, name: str, role: str = SUBSCRIBES) -> System:
-    """The graph with one more topic of a node, which may be a new one."""
+    """Return the graph with one more topic of a node, which may be a new one."""
     end = End(TOPIC, role, name, TEXT, "", node, None, "")
     there = any(n.name == node for n in graph.nodes)
     nodes = graph.nodes if there else (*graph.nodes, Node(node, ""))
@@ -165,8 +165,8 @@ def spoiled(plan: System) -> System:
 
 
 def nasty(plan: System) -> tuple[System, System]:
-    """A plan and a graph where robots, nodes, topics, types, frames and caveats have names that
-    bite; the odd robot talks across."""
+    """Return a plan and a graph where robots, nodes, topics, types, frames and caveats have
+    names that bite; the odd robot talks across."""
     odd = Robot(f'"></title>{NASTY[1]}', (NASTY[2],), NASTY[0])
     first = plan.nodes[0].name
     missed = (planned_end(first, TOPIC, PUBLISHES, f"{name}/missed", name, name) for name in NASTY)

@@ -44,7 +44,7 @@ def main(order: str, stop: threading.Event, send: Send) -> int:
 
 
 def started(process: dict[str, Any], replaced: dict[str, str]) -> list[Any]:
-    """The nodes of one process, spinning; what they publish again and again."""
+    """Return the nodes of one process, spinning; what they publish again and again."""
     context = Context()
     rclpy.init(args=[process["program"], *process["words"]], context=context)
     executor = SingleThreadedExecutor(context=context)
@@ -62,7 +62,7 @@ def started(process: dict[str, Any], replaced: dict[str, str]) -> list[Any]:
 
 
 def created(context: Context, one: dict[str, Any], above: str) -> Any:
-    """A node as its code makes it: in a namespace below that of its host, if it has a host."""
+    """Return a node as its code makes it: in a namespace below that of its host, if it has a host."""
     own = [*one["words"]]
     if one["below"]:
         space = f"{above.rstrip('/')}/{one['below']}"
@@ -135,7 +135,7 @@ def relay(node: Any, source: str, target: str, replaced: dict[str, str], prefix:
 
 
 def helper_of(session: Any, node: Any, by: str) -> Any:
-    """A node that another one makes: it has the words of the process and a name of its own."""
+    """Return a node that another one makes: it has the words of the process and a name of its own."""
     own = f"{id(node):x}"
     name = node.get_name() + by.replace("*", own) if by else f"transform_listener_impl_{own}"
     words = ["--ros-args", "-r", f"__node:={name}"]
@@ -145,7 +145,7 @@ def helper_of(session: Any, node: Any, by: str) -> Any:
 
 
 def described(text: str) -> Any:
-    """The transforms of a description, as robot_state_publisher sends them."""
+    """Yield the transforms of a description, as robot_state_publisher sends them."""
     for joint in ElementTree.fromstring(text).iter("joint") if text else ():
         ends = [joint.find(it) for it in ("parent", "child")]
         if all(it is not None for it in ends):

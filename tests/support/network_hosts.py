@@ -64,7 +64,8 @@ THIS = Host("127.0.0.1", ())
 
 @contextmanager
 def hosts(count: int, multicast: bool = True) -> Iterator[list[Host]]:
-    """That many hosts on one network; the test is skipped where they cannot be made.
+    """Yield that many hosts on one network; skip the test where they cannot be made. Without
+    ``multicast`` the network takes it and drops it.
 
     Without ``multicast`` the network takes it and drops it.
     """
@@ -91,7 +92,7 @@ def _plugged(switch: tuple[str, ...], number: int) -> Iterator[Host]:
 
 @contextmanager
 def _held(unshare: Sequence[str]) -> Iterator[int]:
-    """The process that keeps new namespaces alive inside the block."""
+    """Yield the process that keeps new namespaces alive inside the block."""
     command = [*unshare, "--net", "--mount", "sh", "-c", _HOLD]
     pipe = subprocess.PIPE
     with subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=pipe, text=True) as child:
@@ -134,7 +135,7 @@ def lost_packets(host: Host) -> int:
 
 @contextmanager
 def discovery_server(host: Host, port: int = 11811) -> Iterator[str]:
-    """A Fast DDS discovery server on ``host``; gives the value of ROS_DISCOVERY_SERVER.
+    """Yield a Fast DDS discovery server on ``host``; gives the value of ROS_DISCOVERY_SERVER.
 
     The test is skipped where there is no server program.
     """

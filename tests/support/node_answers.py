@@ -16,7 +16,8 @@ def told(
     controllers: Iterable[tuple[str, str, tuple[str, ...]]] = (),
     parameters: Iterable[tuple[str, str]] = (),
 ) -> Answer:
-    """``controllers`` are names, states and claims, ``parameters`` names and texts of values."""
+    """Return an answer; ``controllers``: names, states, claims; ``parameters``: names, texts of
+    values."""
     timed = [] if sim_time is None else [(SIM_TIME, parameter_text(sim_time))]
     return Answer(
         node,

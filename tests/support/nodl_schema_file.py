@@ -16,7 +16,7 @@ NAMES = ("nodl.schema.yaml", "parameter.schema.yaml")
 
 
 def nodl_validator() -> Any:
-    """The validator of an installed nodl_schema, or of a checkout that MULTIBOT_NODL names; skips."""
+    """Return the validator of an installed nodl_schema, or of the checkout MULTIBOT_NODL; skips."""
     jsonschema = pytest.importorskip("jsonschema", reason="no jsonschema: pip install '.[test]'")
     folder = _folder()
     if folder is None:

@@ -66,12 +66,12 @@ def without_edge(child: str, topic: str) -> Change:
 
 
 def at(child: str, *numbers: float) -> Change:
-    """The transform as it was received."""
+    """Return the transform as it was received."""
     return reframed(lambda it: it._replace(transform=numbers) if it.child == child else it)
 
 
 def stamped(topic: str, age: float) -> Change:
-    """A message of the topic came so many seconds after its stamp."""
+    """Return the change by which a message comes so many seconds after its stamp."""
     frame = {"scan": "lidar_link", "odom": "odom", "imu": "imu_link"}[topic.rpartition("/")[2]]
     return lambda graph: graph._replace(heard=(*graph.heard, Heard(topic, frame, age)))
 
@@ -265,7 +265,7 @@ def _volatile_map(graph: System) -> System:
 
 
 def place_rows() -> tuple[Fault, ...]:
-    """The map and the robot are not joined."""
+    """Return the faults in which the map and the robot are not joined."""
     scan = renamed("/robot1/scan", "/robot1/elsewhere/scan_raw", "/robot1/lidar_driver")
     return (
         Fault(
@@ -304,7 +304,7 @@ def three() -> System:
 
 
 def like_rows() -> tuple[Fault, ...]:
-    """A robot that is not as the others are."""
+    """Return the faults in which a robot is not as the others are."""
 
     def not_of_robot2(graph: System) -> System:
         own = ("odom", "base_footprint")

@@ -7,10 +7,11 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from fleet_folder import planned_fleet
+from paths import write_files
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
-from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.checks.closed_plan import closed_plan
+from multibot_rewrite.checks.build import make_outputs
+from multibot_rewrite.checks.closed_plan import closed_plan
 
 # What a build tells of the odometry of these robots in some layouts, and is no gap.
 BESIDE = ("MB105", "MF7", "MB4", "MR")
@@ -19,9 +20,8 @@ BESIDE = ("MB105", "MF7", "MB4", "MR")
 def found(
     folder: Path, files: dict[str, str], layout: str = "frames-per-robot"
 ) -> tuple[list[Finding], list[Finding]]:
-    """What a build says, and what a plan says."""
-    for name, text in files.items():
-        (folder / name).write_text(text)
+    """Return what a build says, and what a plan says."""
+    write_files(folder, files)
     fleet = folder / "fleet.yaml"
     fleet.write_text(f"layout: {layout}\n{files['fleet.yaml']}")
     plan = planned_fleet(fleet)

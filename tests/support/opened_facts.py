@@ -64,7 +64,7 @@ class Node(NamedTuple):
 
 @cache
 def facts() -> Mapping[str, tuple[Mapping[str, Any], ...]]:
-    """The facts by the bare name of a library."""
+    """Return the facts by the bare name of a library."""
     found: dict[str, list[Mapping[str, Any]]] = {}
     for file in FILES:
         for fact in json.loads((FACTS / file).read_text()):
@@ -75,7 +75,7 @@ def facts() -> Mapping[str, tuple[Mapping[str, Any], ...]]:
 
 @cache
 def only_in_ros_1() -> tuple[bytes, ...]:
-    """The libraries that gazebo_ros_pkgs has in its branch for ROS 1 alone."""
+    """Return the libraries that gazebo_ros_pkgs has in its branch for ROS 1 alone."""
     every = facts().items()
     return tuple(it.encode() for it, own in every if all("noetic" in one["source"] for one in own))
 
@@ -87,8 +87,8 @@ def bare(library: str) -> str:
 
 
 def opened(text: bytes, robot: str, known: set[str]) -> Iterator[Opened]:
-    """What a description opens once it is spawned as ``robot``; ``known`` gets the libraries that a
-    fact is there for."""
+    """Yield what a description opens once it is spawned as ``robot``; ``known`` gets the
+    libraries that a fact is there for."""
     root = etree.fromstring(text, etree.XMLParser(recover=True, huge_tree=False))
     model = next((it for it in root.iter("model", "robot") if it.get("name")), root)
     said = model.get("name", "")
@@ -110,7 +110,7 @@ def opened(text: bytes, robot: str, known: set[str]) -> Iterator[Opened]:
 
 
 def _fact(plugin: etree._Element) -> Mapping[str, Any] | None:
-    """The fact of a plugin; of ROS 1 and ROS 2 the one that reads more of its children."""
+    """Return the fact of a plugin; of ROS 1 and ROS 2 the one that reads more of its children."""
     every = facts().get(bare(plugin.get("filename", "")), ())
     tags = {it.tag for it in plugin}
 
@@ -136,7 +136,7 @@ def _of_plugin(
 def _written(
     plugin: etree._Element, paths: Paths, node: Node, words: Mapping[str, str]
 ) -> Iterator[tuple[str, str]]:
-    """What its elements name, or their defaults."""
+    """Yield what its elements name, or their defaults."""
     if _reads_ros(plugin, paths) and "@name" in paths:
         yield "node", node.full(node.name)
     for path, it in paths.items():
@@ -155,7 +155,7 @@ def _written(
 def _coded(
     plugin: etree._Element, fact: Mapping[str, Any], node: Node, words: Mapping[str, str]
 ) -> Iterator[tuple[str, str]]:
-    """What its code names, where it does always."""
+    """Yield what its code names, where it does always."""
     paths = {it["path"]: it for it in fact["elements"]}
     for it in (*fact.get("interfaces", ()), *fact.get("implicit_names", ())):
         name = it.get("name") or it.get("value") or ""
@@ -175,7 +175,7 @@ def _coded(
 def values(
     plugin: etree._Element, it: Mapping[str, Any], words: Mapping[str, str]
 ) -> Iterator[str]:
-    """The values of an element of a plugin, or its default as far as it can be told."""
+    """Yield the values of an element of a plugin, or its default as far as it can be told."""
     path, _, attribute = it["path"].partition("@")
     path = path.rstrip("/")
     there = plugin.findall(path) if path else [plugin]
@@ -194,7 +194,7 @@ def values(
 def _filled(
     plugin: etree._Element, name: str, paths: Paths, words: Mapping[str, str]
 ) -> Iterator[str]:
-    """A name of the code with its slots filled; none where one cannot be."""
+    """Yield a name of the code with its slots filled; none where one cannot be."""
     slot = _SLOT.search(name)
     if slot is None:
         yield name
@@ -208,7 +208,7 @@ def _filled(
 
 
 def _node(plugin: etree._Element, paths: Paths, words: Mapping[str, str]) -> Node:
-    """The node of a plugin: gazebo_ros node.cpp for ROS 2; roscpp's NodeHandle(namespace) for ROS 1."""
+    """Return a plugin's node: gazebo_ros node.cpp for ROS 2; roscpp's NodeHandle for ROS 1."""
     if _reads_ros(plugin, paths):
         # gazebo_ros node.cpp: the plugin itself has the settings where it has no <ros>.
         path = "namespace" if plugin.find("ros") is None else "ros/namespace"
@@ -235,7 +235,7 @@ def _reads_ros(plugin: etree._Element, paths: Paths) -> bool:
 
 
 def _manager(plugin: etree._Element, name: str) -> Node:
-    """A controller manager: the plugin's namespace, but for a rule of its own (rcl remap.c)."""
+    """Return a controller manager: the plugin's namespace, but for a rule of its own (rcl remap.c)."""
     namespace = "/" + (plugin.findtext("ros/namespace") or "").strip().strip("/")
     rules = list(_rules(plugin))
     own = [to for of, to in rules if of in ("__ns", f"{name}:__ns")]
@@ -252,7 +252,7 @@ def _rules(plugin: etree._Element) -> Iterator[tuple[str, str]]:
 
 
 def met(one: set[Opened], other: set[Opened], frames: bool) -> set[Opened]:
-    """What two robots both open; frames count where all are in one tree."""
+    """Return what two robots both open; frames count where all are in one tree."""
     theirs = {(it.kind, it.name) for it in other}
     both = {it for it in one if (it.kind, it.name) in theirs}
     return {

@@ -50,7 +50,7 @@ class Shown(NamedTuple):
 
 
 def sections(text: str) -> dict[str, list[Shown]]:
-    """The commands of a page by the heading they are below."""
+    """Return the commands of a page by the heading they are below."""
     found: dict[str, list[Shown]] = {}
     heading = ""
     # A heading, or a block, in which a line may begin as a heading does.
@@ -93,7 +93,7 @@ class Reader(NamedTuple):
     environ: Mapping[str, str]
 
     def run(self, command: str) -> subprocess.CompletedProcess[str]:
-        """What the command does here: in this process where one of its own adds nothing."""
+        """Return what the command does here: in this process where one of its own adds nothing."""
         program, *words = shlex.split(command)
         alone = threading.current_thread() is threading.main_thread()
         if alone and program in MODULES and not (_IN_SHELL.search(command) or LIVE in command):
@@ -130,7 +130,7 @@ class Reader(NamedTuple):
 
 
 def reader(folder: Path, domain: int = 1, **more: str) -> Reader:
-    """A reader in ``folder``, whose nodes meet in ``domain`` only."""
+    """Return a reader in ``folder``, whose nodes meet in ``domain`` only."""
     for name in ("examples", "fixtures", "README.md"):
         (folder / name).symlink_to(ROOT / name)
     programs = folder / ".bin"
@@ -149,7 +149,7 @@ def reader(folder: Path, domain: int = 1, **more: str) -> Reader:
 
 
 def steps(text: str, there: Reader) -> Iterator[tuple[Shown, subprocess.CompletedProcess[str]]]:
-    """What the commands of a page do one after the other; its files are saved where it says so."""
+    """Yield what the commands of a page do in turn; its files are saved where it says so."""
     for file, saved, block in _STEP.findall(text):
         if file:
             (there.folder / file).write_text(saved)
@@ -165,7 +165,8 @@ Tried = Mapping[str, Sequence[tuple[Shown, subprocess.CompletedProcess[str]]]]
 def tried(
     pages: Mapping[str, Sequence[Shown]], folder: Path, offset: int, more: Mapping[str, str]
 ) -> Tried:
-    """What the commands of each part of a page do, each part in a folder and domain of its own.
+    """Return what the commands of each part of a page do, each part in a folder and domain of its
+    own.
 
     Rehearsals are tried side by side: most of one is waiting. Those that need rclpy are left out where
     there is none.
@@ -191,7 +192,7 @@ def tried(
 
 
 def assert_as_shown(name: str, found: Tried) -> None:
-    """The commands of a part end as shown, and print the shown lines in their order."""
+    """Assert that the commands of a part end as shown, and print the shown lines in their order."""
     if name not in found:
         pytest.skip("no rclpy: pip install '.[ros]'")
     for it, done in found[name]:

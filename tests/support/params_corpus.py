@@ -21,7 +21,7 @@ from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.base.naming import Naming, make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.knowledge.stacks import load_stack
+from multibot_rewrite.knowledge.node_sets import load_node_set
 from multibot_rewrite.related_files.context import fill_template, make_context
 from multibot_rewrite.related_files.params.rewrite import rewrite_params
 from multibot_rewrite.related_files.yaml_text import YamlText, read_yaml
@@ -30,7 +30,7 @@ FOLDERS = ("nav2_params", "localization_params", "controllers")
 REFUSALS = FIXTURES / "params_refusals.json"
 ROBOT = "robot1"
 POLICIES = (("L1", "prefix"), ("L2", "prefix"), ("L3", "postfix"), ("L4", "postfix"))
-STACKS = ("nav2", "ros2_control", "robot_localization")
+NODE_SETS = ("nav2", "ros2_control", "robot_localization")
 SHARED = ("map", "world")
 # Frames by the last word of their parameter, in nodes and files of every kind.
 FRAMES = re.compile(r"(base_frame|odom_frame|robot_base_frame|base_link_frame)(_id)?")
@@ -38,7 +38,7 @@ JOINTS = re.compile(r"(joints?|.*_joints?|joint_names|(left|right)_wheel_names)"
 
 
 def files() -> dict[str, Path]:
-    """The parameter files of the corpus, by their path there."""
+    """Return the parameter files of the corpus, by their path there."""
     found = (path for folder in FOLDERS for path in sorted((CORPUS / folder).rglob("*.y*ml")))
     return {str(path.relative_to(CORPUS)): path for path in found}
 
@@ -71,19 +71,19 @@ def outcome(data: bytes, file: str, layout: str, affix: str) -> Outcome:
 
 
 def facts() -> list[object]:
-    found = [node for name in STACKS for node in load_stack(name, NEWEST_LTS)]
+    found = [node for name in NODE_SETS for node in load_node_set(name, NEWEST_LTS)]
     return list(dict.fromkeys(found))
 
 
 def reason(message: str, file: str) -> str:
-    """An error without its place and the names in it."""
+    """Return an error without its place and the names in it."""
     text = message.removeprefix(file)
     text = re.sub(r"^[:\d]*: ", "", text)
     return re.sub(r" \([&*]\w+\)", "", text)
 
 
 def declared(document: YamlText) -> dict[str, dict[str, None]]:
-    """A description made up of the links and joints that a file names."""
+    """Return a description made up of the links and joints that a file names."""
     kinds: dict[str, dict[str, None]] = {it: {} for it in ("link", "joint", "model", "group")}
     for key, value in parameters(document.root):
         for text in texts(value):
@@ -113,7 +113,7 @@ def texts(node: yaml.Node) -> Iterator[str]:
 
 
 def problems(document: YamlText, text: str, naming: Naming) -> Iterator[str]:
-    """What is not as it has to be: bytes between scalars, scalars, frames, joints."""
+    """Yield what is not as it has to be: bytes between scalars, scalars, frames, joints."""
     bare = without_lines(text, document.text)
     if "\r\n" in document.text and "\r\n" not in text:
         yield "line ends changed"
@@ -149,7 +149,7 @@ def is_filled(old: str, new: str) -> bool:
 
 
 def without_lines(text: str, source: str) -> str:
-    """The text without what was inserted: remarks, and lines behind them that are there too often."""
+    """Return the text without what was inserted: remarks, and repeated lines behind them."""
     kept = []
     lines = text.splitlines(keepends=True)
     over = Counter(map(start_of, lines)) - Counter(map(start_of, source.splitlines()))
@@ -169,7 +169,7 @@ def without_lines(text: str, source: str) -> str:
 
 
 def start_of(line: str) -> str:
-    """A line's indent and key."""
+    """Return a line's indent and key."""
     return line.partition(":")[0]
 
 
@@ -186,14 +186,14 @@ def scalars(node: yaml.Node | None) -> Iterator[yaml.ScalarNode]:
 
 
 def gaps(text: str, found: list[yaml.ScalarNode]) -> list[str]:
-    """What stands between the scalars."""
+    """Return what stands between the scalars."""
     ends = [0, *(it.end_mark.index for it in found)]
     starts = [*(it.start_mark.index for it in found), len(text)]
     return [text[end:start] for end, start in zip(ends, starts, strict=True)]
 
 
 def is_respelled(old: str, new: str) -> bool:
-    """The old value with nothing but the robot's name put in, and a slash in front."""
+    """Return whether the new value is the old one with the robot's name and a slash in front."""
     left = re.sub(rf"/{ROBOT}(?=/|$)|{ROBOT}_|_{ROBOT}|{ROBOT}/", "", new)
     return old == new or left.lstrip("/") == old.lstrip("/")
 

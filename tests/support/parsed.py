@@ -23,5 +23,5 @@ def sources() -> dict[str, ast.Module]:
 
 
 def parsed(path: Path) -> ast.Module:
-    """The tree of a file that the first Python can read."""
+    """Return the tree of a file that the first Python can read."""
     return ast.parse(path.read_text(), str(path), feature_version=FIRST)

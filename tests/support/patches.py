@@ -30,12 +30,12 @@ _ROLES = {"publisher": PUBLISHES, "subscription": SUBSCRIBES}
 
 
 def patched(graph: System, remaps: Iterable[Remap], settings: Iterable[Setting]) -> System:
-    """The system after its nodes got these rules and values."""
+    """Return the system after its nodes got these rules and values."""
     return with_settings(remapped(graph, remaps), settings)
 
 
 def remapped(graph: System, rules: Iterable[Remap]) -> System:
-    """The system after its nodes got these rules, as rcl applies them; what one sends goes along."""
+    """Return the system after its nodes got these rules, as rcl applies them, with their ends."""
     for rule in rules:
         if rule.old.startswith("__"):
             graph = _called(graph, rule)
@@ -50,7 +50,7 @@ def remapped(graph: System, rules: Iterable[Remap]) -> System:
 
 
 def _called(graph: System, rule: Remap) -> System:
-    """A node of another name or namespace: what has its old one before it goes along."""
+    """Return a node of another name or namespace: what has its old one before it goes along."""
     space, _, last = rule.node.rpartition("/")
     new = f"{space}/{rule.new}" if rule.old == "__node" else f"{rule.new.rstrip('/')}/{last}"
     target = new.rpartition("/")[0]
@@ -93,7 +93,7 @@ def _once(edges: Iterable[Edge]) -> Iterator[Edge]:
 
 
 def with_settings(graph: System, settings: Iterable[Setting]) -> System:
-    """The system whose nodes have these values: of parameters, or in what they send."""
+    """Return the system whose nodes have these values: of parameters, or in what they send."""
     for it in settings:
         if it.topic:
             heard = (one._replace(**_field(one, it)) for one in graph.heard)
@@ -112,7 +112,7 @@ def _field(heard: Heard, it: Setting) -> dict[str, str]:
 
 
 def _effect(name: str) -> Callable[[System, Setting], System]:
-    """What a parameter does; KeyError for one of which nothing is known: a hint may not name it."""
+    """Return what a parameter does; KeyError for an unknown one: a hint may not name it."""
     first = name.partition(".")[0]
     return _EFFECTS[first]
 

@@ -40,7 +40,7 @@ def planned(
     one_of: Iterable[tuple[str, ...]] = (),
     **more: Any,
 ) -> System:
-    """The plan that has all this."""
+    """Return the plan that has all this."""
     groups = {node: group for group in one_of for node in group}
     fleet = tuple(robots)
     every = [
@@ -69,27 +69,27 @@ def planned_end(
     code_name: str = "",
     also: tuple[str, ...] = (),
 ) -> End:
-    """An end of which nothing is known that only a running system shows."""
+    """Return an end of which nothing is known that only a running system shows."""
     return End(kind, role, name, type_, node=node, code_name=code_name, also=also)
 
 
 def own(plan: System, robot: str = "") -> tuple[str, ...]:
-    """The names of a robot's nodes, or of those for all robots."""
+    """Return the names of a robot's nodes, or of those for all robots."""
     return tuple(nodes_by_robot(plan)[robot])
 
 
 def optional(plan: System, robot: str) -> tuple[str, ...]:
-    """The nodes of a robot that may be missing."""
+    """Return the nodes of a robot that may be missing."""
     return tuple(it.name for it in plan.nodes if it.robot == robot and it.sure.word == MAY.word)
 
 
 def robot_named(plan: System, name: str) -> Robot:
-    """The robot of that name; raises StopIteration."""
+    """Return the robot of that name; raises StopIteration."""
     return next(it for it in plan.robots if it.name == name)
 
 
 def ends_of(plan: System, node: str) -> list[End]:
-    """The ends of a node; raises AssertionError for a node that is not planned."""
+    """Return the ends of a node; raises AssertionError for a node that is not planned."""
     assert node in {it.name for it in plan.nodes}
     return [it for it in plan.ends if it.node == node]
 
@@ -108,22 +108,22 @@ def sends(plan: System) -> dict[str, str]:
 
 
 def from_plugin(plan: System, node: str, place: str) -> System:
-    """The plan where a plugin at ``place`` starts the node."""
+    """Return the plan where a plugin at ``place`` starts the node."""
     return told(plan, node, plugin=place_of(place))
 
 
 def told(plan: System, *names: str, **fields: object) -> System:
-    """The plan with other fields of some nodes."""
+    """Return the plan with other fields of some nodes."""
     return plan._replace(
         nodes=tuple(it._replace(**fields) if it.name in names else it for it in plan.nodes)
     )
 
 
 def more(plan: System, robot: str, *names: str) -> System:
-    """The plan with further nodes of a robot."""
+    """Return the plan with further nodes of a robot."""
     return plan._replace(nodes=(*plan.nodes, *(Node(it, robot=robot) for it in names)))
 
 
 def without(plan: System, *robots: str) -> System:
-    """The plan without the nodes of these robots."""
+    """Return the plan without the nodes of these robots."""
     return plan._replace(nodes=tuple(it for it in plan.nodes if it.robot not in robots))

@@ -39,13 +39,13 @@ def flipped(chance: random.Random, token: bytes, alike: list[bytes]) -> bytes:
 
 
 def shortened(chance: random.Random, token: bytes, alike: list[bytes]) -> bytes:
-    """A byte less."""
+    """Return the text with a byte less."""
     at = chance.randrange(len(token))
     return token[:at] + token[at + 1 :]
 
 
 def lengthened(chance: random.Random, token: bytes, alike: list[bytes]) -> bytes:
-    """A byte twice."""
+    """Return the text with a byte twice."""
     at = chance.randrange(len(token))
     return token[: at + 1] + token[at:]
 
@@ -83,7 +83,7 @@ def wrong_texts(text: bytes, chance: random.Random, times: int) -> Iterator[tupl
 
 
 def wrong_edits(edit: Edit) -> Iterator[tuple[str, list[Edit]]]:
-    """What may come of one edit."""
+    """Yield what may come of one edit."""
     start, end, before, after = edit
     yield "lost", []
     yield "twice", [edit, edit]
@@ -105,7 +105,7 @@ _OTHER = bytes.maketrans(b"/_", b"_/")
 
 
 def wrong_plans(template: Template) -> Iterator[tuple[str, Template]]:
-    """The template with one edit wrong, for each of them; with what was done."""
+    """Yield the template with one edit wrong, for each of them; with what was done."""
     edits, source = template.plan.edits, template.inventory.document.source
     right = texts(template)
     for number, edit in enumerate(edits):
@@ -139,5 +139,5 @@ def _said(text: bytes) -> list[tuple[str, list[tuple[str, str]], str]]:
 
 
 def texts(template: Template) -> list[bytes]:
-    """What two robots would get."""
+    """Return what two robots would get."""
     return [fill(template.pieces, robot) for robot in ("robot1", "other")]

@@ -27,7 +27,7 @@ def mutants(text: str) -> Iterator[tuple[str, str]]:
 
 
 def _values(tree: ast.AST) -> Iterator[ast.Constant]:
-    """The texts and numbers; those of f-strings, too, and no docstring."""
+    """Yield the texts and numbers; those of f-strings, too, and no docstring."""
     about = {
         id(it.body[0].value)
         for it in ast.walk(tree)

@@ -77,13 +77,13 @@ class Fault(NamedTuple):
     new: bytes
 
     def planted(self, text: bytes) -> bytes:
-        """The output with the fault in it, at the first place where it fits."""
+        """Return the output with the fault in it, at the first place where it fits."""
         assert self.old in text, f"{self.about}: the output holds no {self.old!r}"
         return text.replace(self.old, self.new, 1)
 
 
 def read_faults(file: Path = FILE) -> list[Fault]:
-    """The faults of a file, which itself says how they are written."""
+    """Return the faults of a file, which itself says how they are written."""
     faults = []
     head: list[str] = []
     for block in file.read_text().split("\n\n"):

@@ -12,7 +12,7 @@ DOUBTFUL = SMALL.replace("</robot>", '<x y="base"/></robot>')
 FLEET = """\
 layout: frames-per-robot
 affix: prefix
-stack: [nav2, robot_state]
+node_sets: [nav2, robot_state]
 robots:
   - {name: robot1, description: rover.urdf, pose: {x: 1.0}}
   - {name: robot2, description: rover.urdf, pose: {x: 2.0}}

@@ -9,20 +9,20 @@ from pathlib import Path
 from fleet_folder import planned_fleet
 from rule_examples import DESCRIPTION
 
-from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.checks.build import make_outputs
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.knowledge.node_sets import built_in
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
-from multibot_rewrite.knowledge.stacks import built_in
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 TOPICS = ("scan", "/scan", "front/scan", "/front/points", "odom", "/odom", "data")
 FRAMES = ("base_link", "lidar_link", "odom", "map", "wheel")
-STACKS = ("", "nav2", "localization, slam_toolbox", "robot_localization")
+NODE_SETS = ("", "nav2", "localization, slam_toolbox", "robot_localization")
 RELEASE = "jazzy"
 
 
 def has_plain_names(node: NodeFacts) -> bool:
-    """A process of its own, whose parameters name topics that rcl resolves as they stand."""
+    """Return whether a node has its own process, and parameters with topics as rcl resolves them."""
     named = [it for it in node.endpoints if it.parameter]
     return not (node.host or node.shared or "/" in node.name) and any(map(is_plain, named))
 
@@ -51,13 +51,13 @@ def random_file(draw: random.Random) -> str:
 
 
 def planned(
-    folder: Path, text: str, layout: str, affix: str, stack: str
+    folder: Path, text: str, layout: str, affix: str, node_set: str
 ) -> tuple[FleetPlan, dict[str, str]]:
     (folder / "robot.urdf").write_text(DESCRIPTION)
     (folder / "p.yaml").write_text(text)
     (folder / "fleet.yaml").write_text(
         f"layout: {layout}\naffix: {affix}\ndistro: {RELEASE}\ndescription: robot.urdf\n"
-        f"stack: [{stack}]\nrelated_files: {{params: p.yaml}}\n"
+        f"node_sets: [{node_set}]\nrelated_files: {{params: p.yaml}}\n"
         "robots: [{name: robot1}, {name: robot2}]\n"
     )
     plan = planned_fleet(folder / "fleet.yaml")

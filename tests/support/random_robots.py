@@ -77,7 +77,7 @@ class Robot(NamedTuple):
 
 @st.composite
 def random_robots(draw: st.DrawFn, extras: bool = True) -> Robot:
-    """A random tree of links with all that may hang on it."""
+    """Return a random tree of links with all that may hang on it."""
     pool = draw(st.sampled_from((names, names, st.sampled_from(FAMILY))))
     links = draw(st.lists(pool, min_size=1, max_size=7, unique=True))
     joints = draw(st.lists(pool, min_size=len(links) - 1, max_size=len(links) - 1, unique=True))
@@ -95,12 +95,12 @@ def random_robots(draw: st.DrawFn, extras: bool = True) -> Robot:
 def element(
     tag: str, attributes: Mapping[str, str] | None = None, body: str | tuple[Element, ...] = ()
 ) -> Element:
-    """An element from plain words."""
+    """Return an element from plain words."""
     return Element(tag, tuple((attributes or {}).items()), body)
 
 
 def _geometry(name: str) -> tuple[Element, ...]:
-    """A visual whose mesh path holds the link's name: it must stay."""
+    """Return a visual whose mesh path holds the link's name: it must stay."""
     mesh = element("mesh", {"filename": f"package://meshes/{name}.stl"})
     return (element("visual", {}, (element("geometry", {}, (mesh,)),)),)
 
@@ -144,7 +144,7 @@ def _control(joint: str) -> Element:
 def plugins(
     link: st.SearchStrategy[str], joint: st.SearchStrategy[str]
 ) -> st.SearchStrategy[Element]:
-    """A plugin of each family, with a few of its parameters."""
+    """Return a plugin of each family, with a few of its parameters."""
     ros = st.sampled_from(ROS_BLOCKS)
     return st.one_of(
         st.builds(_diff_drive, joint, st.none() | link, st.none() | link, ros),
@@ -201,7 +201,7 @@ PARAMETERS = {
 
 
 def write(root: Element, style: Style) -> bytes:
-    """The robot as text; every choice of spelling comes from the style's seed."""
+    """Return the robot as text; every choice of spelling comes from the style's seed."""
     text = _written(root, style, random.Random(style.seed), 0)
     return f"{style.prolog}{text}{style.newline}".encode()
 

@@ -12,6 +12,7 @@ import tempfile
 import threading
 from collections.abc import Iterator, Sequence
 from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -22,8 +23,16 @@ CHILD = SUPPORT / "rcl_names_child.py"
 SECONDS = 120
 
 
+def needed() -> Any:
+    """Return the mark of tests that ask it."""
+    import pytest
+
+    why = f"names are resolved by the real rcl; install rclpy: {INSTALL}"
+    return pytest.mark.skipif(not find_spec("rclpy"), reason=why)
+
+
 def ask(cases: Sequence[dict[str, Any]]) -> list[Any]:
-    """What rcl says to each case; a case that was asked before is not asked again."""
+    """Return what rcl says to each case; a case that was asked before is not asked again."""
     told, lines = _told(), [json.dumps(it) for it in cases]
     new = [it for it in dict.fromkeys(lines) if it not in told]
     if new:
@@ -33,7 +42,7 @@ def ask(cases: Sequence[dict[str, Any]]) -> list[Any]:
 
 @cache
 def _told() -> dict[str, Any]:
-    """What rcl has said, by case: it depends on nothing else."""
+    """Return what rcl has said, by case: it depends on nothing else."""
     return {}
 
 

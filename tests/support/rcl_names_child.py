@@ -38,7 +38,7 @@ def arguments(rules: list[str]) -> list[str]:
 
 
 def answer(case: dict[str, Any]) -> object:
-    """What rcl says to one case; a check answers with reason and byte, or None for no fault."""
+    """Return what rcl says to one case; a check answers with reason and byte, or None for no fault."""
     kind = case["ask"]
     if kind == "check":
         return CHECKS[case["what"]](case["name"])
@@ -50,7 +50,7 @@ def answer(case: dict[str, Any]) -> object:
 
 
 def refused_or(ask: Callable[[], object]) -> object:
-    """The answer, or None for a refusal."""
+    """Return the answer, or None for a refusal."""
     try:
         return ask()
     except REFUSALS:
@@ -58,7 +58,7 @@ def refused_or(ask: Callable[[], object]) -> object:
 
 
 def started(case: dict[str, Any]) -> list[object]:
-    """A node's full name under its rules, and where each of its names leads."""
+    """Return a node's full name under its rules, and where each of its names leads."""
     with context(case["process_rules"]) as own:
         node = rclpy.create_node(
             case["node"],
@@ -83,7 +83,7 @@ def led(node: Node, kind: str, name: str) -> object:
 
 @contextmanager
 def context(rules: list[str]) -> Iterator[Context]:
-    """A context of its own with the process's rules."""
+    """Yield a context of its own with the process's rules."""
     own = Context()
     rclpy.init(args=arguments(rules), context=own)
     try:

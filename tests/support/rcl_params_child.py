@@ -16,7 +16,7 @@ from rclpy.context import Context
 
 
 def parameters(case: dict[str, Any]) -> list[dict[str, Any]] | None:
-    """What each node (namespace, name) gets of the file; None where rcl refuses it."""
+    """Return what each node (namespace, name) gets of the file; None where rcl refuses it."""
     own = Context()
     try:
         rclpy.init(args=["--ros-args", "--params-file", case["file"]], context=own)
@@ -29,7 +29,7 @@ def parameters(case: dict[str, Any]) -> list[dict[str, Any]] | None:
 
 
 def of_node(context: Context, namespace: str, name: str) -> dict[str, Any]:
-    """The parameters that a node of this name starts with."""
+    """Return the parameters that a node of this name starts with."""
     node = rclpy.create_node(
         name,
         namespace=namespace,
@@ -46,7 +46,7 @@ def of_node(context: Context, namespace: str, name: str) -> dict[str, Any]:
 
 
 def plain(value: Any) -> Any:
-    """A value as JSON has it."""
+    """Return a value as JSON has it."""
     if isinstance(value, str | bytes | bool | int | float) or value is None:
         return value if not isinstance(value, bytes) else list(value)
     return list(value)

@@ -28,7 +28,7 @@ def reason(error: MultibotError) -> str:
 
 
 def is_true(why: str, data: bytes) -> bool:
-    """The reason, seen by other means than the package's; False for a reason not known here."""
+    """Return whether the reason holds, by other means than the package's; False if unknown."""
     if found := re.fullmatch(r"MB105 xacro element <(\w+)>", why):
         wanted = f"//*[contains(namespace-uri(), 'xacro') and local-name() = '{found[1]}']"
         return bool(etree.fromstring(data).xpath(wanted))

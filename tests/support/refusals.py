@@ -18,12 +18,12 @@ NOISE = ("Traceback", "Errno", "<class", "0x", "XML_PARSE_HUGE")
 
 
 def robot(body: str, attributes: str = "") -> str:
-    """A robot of four lines; ``body`` is the third."""
+    """Return a robot of four lines; ``body`` is the third."""
     return f'<?xml version="1.0"?>\n<robot name="bot"{attributes}>\n{body}\n</robot>\n'
 
 
 def xacro(body: str) -> str:
-    """The same for xacro."""
+    """Return the same for xacro."""
     return robot(body, f' xmlns:xacro="{XACRO}"')
 
 
@@ -41,7 +41,7 @@ def check_refusal(folder: Path, result: Result, code: int, words: Sequence[str])
 
 
 def said(call: Callable[..., object], *given: object) -> str:
-    """What a call says that refuses what it is given."""
+    """Return what a call says that refuses what it is given."""
     with pytest.raises(UsageError) as caught:
         call(*given)
     return str(caught.value)

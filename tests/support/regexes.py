@@ -42,13 +42,13 @@ class UnresolvedError(Exception):
 
 @lru_cache(maxsize=1)
 def trees() -> Mapping[Path, ast.Module]:
-    """The syntax tree of each module of the package."""
+    """Return the syntax tree of each module of the package."""
     return {it: ast.parse(it.read_text()) for it in sorted(PACKAGE.rglob("*.py"))}
 
 
 @lru_cache(maxsize=1)
 def uses_of_names() -> Mapping[tuple[str, str], frozenset[str]]:
-    """The methods of patterns that are asked of each name: of a private one in its module."""
+    """Return the methods of patterns that are asked of each name: of a private one in its module."""
     found: dict[tuple[str, str], set[str]] = defaultdict(set)
     for path, tree in trees().items():
         for node in ast.walk(tree):
@@ -66,7 +66,7 @@ def _module(path: Path) -> str:
 
 
 def _last(node: ast.expr) -> str:
-    """The name that an expression ends with; that of the table for an entry of one."""
+    """Return the name that an expression ends with; that of the table for an entry of one."""
     if isinstance(node, ast.Subscript):
         return _last(node.value)
     if isinstance(node, ast.Name):
@@ -101,7 +101,7 @@ def _use_of(call: ast.Call) -> str:
 
 
 def made_by(module: str, call: ast.Call, inside: tuple[ast.AST, ...]) -> list[Regex]:
-    """The patterns that a call makes; raises UnresolvedError where they are known at run time alone."""
+    """Return the patterns that a call makes; UnresolvedError if known at run time alone."""
     holder = _holder(inside)
     if holder is not None and not any(isinstance(it, ast.FunctionDef) for it in inside):
         # A table that the module has made.
@@ -169,7 +169,7 @@ def _uses(inside: tuple[ast.AST, ...], module: str) -> frozenset[str]:
 
 
 def uses_of(name: str, module: str) -> frozenset[str]:
-    """The methods asked of a name, or of the table that it is in."""
+    """Return the methods asked of a name, or of the table that it is in."""
     own = uses_of_names().get(_key(name, module), frozenset())
     tables = tables_of_names().get((name, module), ())
     return own.union(*(uses_of(it, module) for it in tables if it != name))
@@ -177,7 +177,7 @@ def uses_of(name: str, module: str) -> frozenset[str]:
 
 @cache
 def uses_here(module: str) -> frozenset[str]:
-    """The methods that a module asks of patterns that no constant holds."""
+    """Return the methods that a module asks of patterns that no constant holds."""
     tree = next(tree for path, tree in trees().items() if _module(path) == module)
     asked = [it for it in ast.walk(tree) if isinstance(it, ast.Attribute) and it.attr in USES]
     # Any text can be split.
@@ -187,7 +187,7 @@ def uses_here(module: str) -> frozenset[str]:
 
 @lru_cache(maxsize=1)
 def tables_of_names() -> Mapping[tuple[str, str], frozenset[str]]:
-    """The names of the tables of a module that hold a name."""
+    """Return the names of the tables of a module that hold a name."""
     found: dict[tuple[str, str], set[str]] = defaultdict(set)
     for path, tree in trees().items():
         for node in tree.body:

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.knowledge.node_library import extend, stack_of
+from multibot_rewrite.knowledge.node_library import extend, nodes_of_set
+from multibot_rewrite.knowledge.node_sets import built_in
 from multibot_rewrite.knowledge.parameters import built_in_nodes, load_known_nodes
-from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.related_files.context import (
     NAMESPACE_SLOT,
     Context,

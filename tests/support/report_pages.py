@@ -43,7 +43,7 @@ def tf_collision() -> Scene:
 
 
 def twenty() -> Scene:
-    """The driver of every robot lacks the same rule."""
+    """Return a scene in which the driver of every robot lacks the same rule."""
     plan = nav2_graphs.fleet(20, 4)
     graph = nav2_graphs.healthy(plan)
     for robot in plan.robots:
@@ -64,7 +64,7 @@ def inconclusive() -> Scene:
 
 
 def not_closed() -> Scene:
-    """The graph is as planned, the plan has an open end."""
+    """Return a scene in which the graph is as planned and the plan has an open end."""
     plan = nav2_graphs.nav2()
     words = "nothing wrong seen, but the plan has faults"
     outcome = Outcome(Verdict.PLANNED, words)
@@ -72,7 +72,7 @@ def not_closed() -> Scene:
 
 
 def doctors(graph: System) -> Scene:
-    """What the doctor draws of a graph."""
+    """Return what the doctor draws of a graph."""
     seen = diagnose(graph)
     outcome = Outcome(Verdict.WRONG, "something is wrong", "multibot check", planned=False)
     return make_scene(seen_plan(seen), graph, seen.findings, outcome)

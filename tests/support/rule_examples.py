@@ -12,15 +12,16 @@ import yaml
 from fleet_folder import planned_fleet
 from graph_calls import diagnose, seen_plan
 from graph_examples import read_example, read_looks, read_system
-from paths import fixture_text
+from paths import fixture_text, write_files
 
 from multibot_rewrite import RewriteRefused, rewrite_all, strip
 from multibot_rewrite.base.findings.finding import SRDF, URDF, XACRO, Finding, Rule
 from multibot_rewrite.base.findings.selection import grouped
 from multibot_rewrite.base.naming import Policy
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.fleet import known_nodes, make_fleet
+from multibot_rewrite.checks.build import make_outputs
+from multibot_rewrite.checks.judged_plan import make_fleet
+from multibot_rewrite.fleet.fleet import known_nodes
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.producers.launch.read import read_own
@@ -62,7 +63,7 @@ def found(
 ) -> list[Finding]:
     """Return what the rule finds in an example, with the files that are beside it (its own by
     default)."""
-    _write(folder, rule.page.beside if beside is None else beside)
+    write_files(folder, rule.page.beside if beside is None else beside)
     run = beside_example if _is_alone(rule) else RUNNERS[_format(rule)]
     findings = run(rule, example, folder)
     return [it for it in findings if it.code == rule.code]
@@ -85,21 +86,15 @@ def _format(rule: Rule) -> str:
     return next(iter(rule.formats), URDF)
 
 
-def _write(folder: Path, files: Any) -> None:
-    for name, content in files.items():
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / name).write_text(content)
-
-
 def whole(example: str) -> str:
-    """The document that an example stands for."""
+    """Return the document that an example stands for."""
     if re.match(r"\W*(<\?xml|<robot|<sdf)", example):
         return example
     return f'<robot name="r">{example}</robot>'
 
 
 def lint_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
-    """The file of the example, linted with the rule's options."""
+    """Return the file of the example, linted with the rule's options."""
     ending = "urdf.xacro" if XACRO in rule.formats or "xmlns:xacro" in example else "urdf"
     ending = "srdf" if rule.formats == (SRDF,) else ending
     file = folder / f"example.{ending}"
@@ -112,15 +107,15 @@ def lint_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
 
 
 def beside_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
-    """The example as a file of a package, with the rule's files beside it."""
-    _write(folder, {"example.yaml": example})
+    """Return the example as a file of a package, with the rule's files beside it."""
+    write_files(folder, {"example.yaml": example})
     options: dict[str, Any] = dict(rule.options)
     return lint_file(str(folder / "example.yaml"), Settings(select=(rule.code,), **options))
 
 
 def rewrite_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
-    """The example rewritten for ``robots`` of the rule's options, or with ``strip`` taken back for
-    that robot; the other options are those of the call."""
+    """Return the example rewritten for ``robots`` of the rule's options, or with ``strip`` taken
+    back for that robot; the other options are those of the call."""
     endings = {SRDF: "srdf", XACRO: "urdf.xacro"}
     ending = next((endings[it] for it in rule.formats if it in endings), "urdf")
     file = folder / f"example.{ending}"
@@ -139,21 +134,21 @@ def rewrite_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
 
 
 def related_file_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
-    """A fleet of two robots with the example as one of their files."""
+    """Return a fleet of two robots with the example as one of their files."""
     file, key = RELATED_FILES[rule.formats[0]]
-    _write(folder, {file: example})
+    write_files(folder, {file: example})
     named = rule.options.get("related_files", {})
     assert isinstance(named, dict)
     return _fleet(rule, {"related_files": {**named, key: file}}, folder)
 
 
 def fleet_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
-    """The example is the fleet file; what it leaves out is appended."""
+    """Return the findings of the example as a fleet file; what it leaves out is appended."""
     return _fleet(rule, {}, folder, example)
 
 
 def description_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
-    """The example is the description of the robots of a fleet."""
+    """Return the findings of a fleet whose robots have the example as description."""
     return _fleet(rule, {}, folder, description=example)
 
 
@@ -164,22 +159,22 @@ def _fleet(
     text: str = "",
     description: str = DESCRIPTION,
 ) -> list[Finding]:
-    """What is found in a fleet file of ``text`` and, where that says nothing of them, ``keys``."""
+    """Return what is found in a fleet file of ``text`` and, where it lacks them, ``keys``."""
     if "robot.urdf" not in rule.page.beside:
-        _write(folder, {"robot.urdf": description})
+        write_files(folder, {"robot.urdf": description})
     said = yaml.safe_load(text) or {}
     options = {it: value for it, value in rule.options.items() if it != BUILT}
     more = {it: value for it, value in {**FLEET, **options, **keys}.items() if it not in said}
-    _write(folder, {"fleet.yaml": text + (yaml.safe_dump(more) if more else "")})
+    write_files(folder, {"fleet.yaml": text + (yaml.safe_dump(more) if more else "")})
     plan = planned_fleet(folder / "fleet.yaml")
     found = [it for it in make_outputs(plan).findings if it.code == rule.code]
     return found or list(plan.fleet.table.problems)
 
 
 def remap_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
-    """The remap table of ``robots``: the example is their description, or a file of their nodes."""
+    """Return the findings of the remap table of ``robots`` by their description or file of nodes."""
     nodes = {} if example.startswith("<") else yaml.safe_load(example)["nodes"]
-    _write(folder, {"robot.urdf": DESCRIPTION if nodes else example, "nodes.yaml": example})
+    write_files(folder, {"robot.urdf": DESCRIPTION if nodes else example, "nodes.yaml": example})
     options: dict[str, Any] = {"robots": ["robot1", "robot2"], **POLICY, **rule.options}
     robots = options.pop("robots")
     file = str(folder / "nodes.yaml") if nodes else None
@@ -191,7 +186,7 @@ def remap_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
 
 
 def system_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
-    """A graph in the lines of ``graph_examples``, and its plan for a rule that asks for one."""
+    """Return a graph in the lines of ``graph_examples``, and its plan for a rule that asks for one."""
     if "as before: " in example:
         before, graph = read_looks(example)
         return check(seen_plan(diagnose(before)), graph, before=before)
@@ -201,7 +196,7 @@ def system_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
 
 
 def launch_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
-    """A launch file, read without launch."""
+    """Return a launch file, read without launch."""
     file = folder / "example.launch.py"
     file.write_text(example)
     own = folder / "made"

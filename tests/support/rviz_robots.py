@@ -19,7 +19,7 @@ MAPS = {"Frames": "link", "Links": "link", "Joints": "joint"}
 
 
 def declared(document: YamlText) -> Declared:
-    """What a description of the robot in the file would declare."""
+    """Return what a description of the robot in the file would declare."""
     found: Declared = defaultdict(dict, {"link": {}, "joint": {}})
     for kind, name in _names(document.root):
         if name not in rviz_data()["fixed_keys"]:
@@ -37,7 +37,7 @@ def _names(node: yaml.Node | None) -> Iterator[tuple[str, str]]:
 
 
 def robots_of(names: Declared, layout: str, robots: Sequence[str], **more: Any) -> list[RvizRobot]:
-    """A robot of this description for each name."""
+    """Return a robot of this description for each name."""
     naming = make_naming(layout, "postfix" if layout == "L4" else "prefix")
     both = ((name, RelatedNames(names, naming, name)) for name in robots)
     return [RvizRobot(name, it, it, **more) for name, it in both]

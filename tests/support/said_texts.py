@@ -56,7 +56,7 @@ def _texts(it: ast.AST) -> Iterator[tuple[int, str]]:
 
 
 def _joined(it: ast.AST) -> str:
-    """The text of an expression, with a word for each value; empty for one that is no text."""
+    """Return the text of an expression, with a word for each value; empty for one that is no text."""
     if isinstance(it, ast.Constant):
         return it.value if isinstance(it.value, str) else ""
     if isinstance(it, ast.JoinedStr):
@@ -68,13 +68,13 @@ def _joined(it: ast.AST) -> str:
 
 
 def rule_words() -> Iterator[tuple[str, str]]:
-    """What each rule says, with its code."""
+    """Yield what each rule says, with its code."""
     for code, it in catalogue.rules().items():
         yield from ((f"{code} {name}", getattr(it, name)) for name in ("what", "why", "fix"))
 
 
 def help_words() -> Iterator[tuple[str, str]]:
-    """What the help of each command says, with its name; no example and no list of exit codes."""
+    """Yield what the help of each command says, with its name; no example and no list of exit codes."""
     for it in (*COMMANDS.values(), *PROGRAMS.values()):
         yield from ((it.name, text) for text in (it.about, *it.more.split("\n\n")))
         yield from ((it.name, text) for text in it.exit_codes.split("; "))
@@ -92,12 +92,12 @@ def notes() -> Iterator[tuple[str, str]]:
 
 
 def long_sentences(text: str, most: int) -> Iterator[str]:
-    """The sentences with more words; what is quoted is a word."""
+    """Return the sentences with more words; what is quoted is a word."""
     return _longer(_FULL_STOP.split(_QUOTED.sub(VALUE, text)), most)
 
 
 def long_parts(line: str, most: int) -> Iterator[str]:
-    """The parts of a message between semicolons with more words."""
+    """Return the parts of a message between semicolons with more words."""
     return _longer(_IN_A_LINE.split(_QUOTED.sub(VALUE, line)), most)
 
 

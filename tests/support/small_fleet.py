@@ -63,7 +63,7 @@ def frames(layout: str) -> dict[str, list[str]]:
 
 @cache
 def healthy(layout: str = "L2") -> System:
-    """The graph exactly as planned, on odometry."""
+    """Return the graph exactly as planned, on odometry."""
     graph = as_planned(plan(layout))
     naming = make_naming(layout)
     odometry = tuple(
@@ -79,7 +79,7 @@ ROBOT2 = ("/robot2/driver", "/robot2/robot_state_publisher")
 
 
 def moving(graph: System) -> System:
-    """The graph while it changes."""
+    """Return the graph while it changes."""
     around = environment(Caveat("not-settled", True, "the graph is still changing"))
     return graph._replace(environment=around._replace(settled=CHANGING))
 

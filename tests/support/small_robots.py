@@ -14,7 +14,7 @@ PACKAGE = "<package><name>{}</name></package>"
 
 
 def robot(name: str, *joints: str, more: str = "") -> str:
-    """A base with a wheel for each joint."""
+    """Return a base with a wheel for each joint."""
     parts = "".join(
         f'<link name="{it}_wheel"/><joint name="{it}" type="continuous"><parent link="{name}_base"/>'
         f'<child link="{it}_wheel"/><axis xyz="0 1 0"/></joint>'
@@ -51,6 +51,6 @@ def generate_launch_description():
 
 
 def loads(*files: str, drivers: int = 0) -> str:
-    """A launch file that gives these descriptions to publishers and spawners; without drivers
-    it shows them."""
+    """Return a launch file that gives these descriptions to publishers and spawners; without
+    drivers it shows them."""
     return UP.replace("FILES", repr(files)).replace("DRIVERS", str(drivers))

@@ -15,7 +15,7 @@ def inventory(text: str, file: str = "a.urdf") -> Inventory:
 
 
 def surveyed(body: str, file: str = "a.urdf") -> Survey:
-    """A survey of a robot with the links base and arm, the joint hip and ``body``."""
+    """Return a survey of a robot with the links base and arm, the joint hip and ``body``."""
     joint = '<joint name="hip" type="fixed"><parent link="base"/><child link="arm"/></joint>'
     text = f'<robot name="r"><link name="base"/><link name="arm"/>{joint}{body}</robot>'
     return survey(inventory(text, file), builtin_tree((), NEWEST_LTS))

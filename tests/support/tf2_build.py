@@ -17,7 +17,7 @@ import tempfile
 from contextlib import suppress
 from pathlib import Path
 
-from paths import fixture_text
+from paths import fixture_text, write_files
 
 # The wheels' targets name a Python include folder of the machine they were made on.
 _CMAKE = fixture_text("tf2_build_cmake.txt")
@@ -40,7 +40,7 @@ _FILES = {
 
 
 def missing() -> str:
-    """What a build lacks on this machine and how to get it; empty where nothing is lacking."""
+    """Return what a build lacks on this machine and how to get it; empty where nothing is lacking."""
     path = _environ()["PATH"]
     tools = [tool for tool in ("cmake", "c++", "make") if shutil.which(tool, path=path) is None]
     if tools:
@@ -52,7 +52,7 @@ def missing() -> str:
 
 
 def build(cache: Path) -> dict[str, str]:
-    """The environment variables that make tf2_msgs importable; built at the first call.
+    """Return the environment variables that make tf2_msgs importable; built at the first call.
 
     ``cache`` is a folder that may be kept for the next run.
     """
@@ -68,10 +68,7 @@ def build(cache: Path) -> dict[str, str]:
 
 
 def _run_cmake(folder: Path) -> None:
-    for name, text in _FILES.items():
-        file = folder / "source" / name
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text)
+    write_files(folder / "source", _FILES)
     for step in (
         ["cmake", "-S", "source", "-B", "build", *_options(folder / "installed")],
         ["cmake", "--build", "build", "-j4"],

@@ -124,7 +124,7 @@ def _tf(graph: System, parent: str, child: str, topic: str) -> System:
 
 
 def _edges(graph: System, child: str, topic: str, **change: object) -> System:
-    """The transforms of a frame, on a topic or on all, changed or without a change left out."""
+    """Return the transforms of a frame, on a topic or on all, changed or without a change left out."""
 
     def one(it: Edge) -> Edge | None:
         if it.child != child or (topic and it.topic != topic):
@@ -192,8 +192,8 @@ def by_check(plan: System, graph: System) -> tuple[Finding, ...]:
 
 
 def tells(fault: Told, found: Iterable[Finding]) -> bool:
-    """Does one error or warning have all the words? What is other than planned need have two of them:
-    the plan says the rest."""
+    """Return whether one error or warning has all the words. If it says what is not as planned,
+    two of them are enough: the plan says the rest."""
     words = [re.compile(rf"(?<!\w){re.escape(it)}(?![\w/])", re.IGNORECASE) for it in fault.says]
     return any(
         sum(bool(word.search(f"{it} {it.hint}")) for word in words)

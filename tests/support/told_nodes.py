@@ -15,8 +15,8 @@ from typing import Any
 
 import yaml
 
-from multibot_rewrite.fleet.scripts import LoadedFleet
 from multibot_rewrite.knowledge.records import Endpoint
+from multibot_rewrite.library.loaded_fleet import LoadedFleet
 from multibot_rewrite.live.rehearsal import Stub, played, stub_nodes
 from multibot_rewrite.planning.transforms import with_odometry
 from multibot_rewrite.planning.way_checks import running_nodes
@@ -27,7 +27,7 @@ ROS_ARGS = "--ros-args"
 
 
 def words_of(told: Told) -> tuple[str, list[str], list[str]]:
-    """The program, its own words, and those for ROS without parameters."""
+    """Return the program, its own words, and those for ROS without parameters."""
     program, *words = told["words"]
     own, ros = words, []
     if ROS_ARGS in words:
@@ -44,7 +44,7 @@ def placed(rules: Iterable[str]) -> tuple[str, str]:
 
 
 def nodes_of(every: Iterable[Told], fleet: LoadedFleet) -> Iterator[Stub]:
-    """The nodes of these programs."""
+    """Yield the nodes of these programs."""
     stubs = dict(_known(fleet))
     for told in every:
         program, own, rules = words_of(told)
@@ -71,7 +71,7 @@ def _known(fleet: LoadedFleet) -> Iterator[tuple[str, Stub]]:
 def _process(
     full: str, rules: list[str], fleet: LoadedFleet, stubs: Mapping[str, Stub]
 ) -> Iterator[Stub]:
-    """The node of a process and those that it makes; one that no plan has is there, too."""
+    """Yield the node of a process and those that it makes; one that no plan has is there, too."""
     arguments = (ROS_ARGS, *rules) if rules else ()
     own = [it for it in fleet.planned.table.runs if it.full_name == full]
     if not own:
@@ -99,7 +99,7 @@ def _placing(arguments: Iterable[str]) -> list[str]:
 
 
 def _told(stub: Stub, arguments: tuple[str, ...]) -> Stub:
-    """What helpers in the process get, too, without the name, which their code sets."""
+    """Return what helpers in the process get, too, without the name, which their code sets."""
     run, edges = stub
     pairs = (it.split(":=", 1) for it in arguments if ":=" in it and not it.startswith("__node"))
     rules = tuple((old, new) for old, new in pairs)
@@ -107,7 +107,7 @@ def _told(stub: Stub, arguments: tuple[str, ...]) -> Stub:
 
 
 def _controller(own: list[str], rules: list[str], stubs: Mapping[str, Stub]) -> Iterator[Stub]:
-    """A controller in the namespace of its spawner, with the rules that the spawner hands on."""
+    """Yield a controller in the namespace of its spawner, with the rules that the spawner hands on."""
     namespace, _ = placed(rules)
     flag = "--controller-ros-args"
     given = own[own.index(flag) + 1].split() if flag in own else []
@@ -124,7 +124,7 @@ def _plugins(model: str, fleet: LoadedFleet, stubs: Mapping[str, Stub]) -> Itera
 
 
 def _bridge(told: Told, rules: list[str], fleet: LoadedFleet) -> Stub:
-    """A bridge has the rows of its file: names are resolved in its namespace. It brings odometry."""
+    """Return a bridge with the rows of its file, resolved in its namespace. It brings odometry."""
     files = list(told["files"].values())[1:]  # the first one is the program
     sections = [it for text in files for it in (yaml.safe_load(text) or {}).values()]
     (config,) = {

@@ -28,7 +28,7 @@ class Said(NamedTuple):
 
 
 def check_urdf(text: str, folder: Path) -> Said:
-    """The judgement of urdfdom's own program."""
+    """Return the judgement of urdfdom's own program."""
     assert CHECK, "check_urdf of urdfdom 6 is there: pip install cmeel-urdfdom"
     file = folder / "case.urdf"
     file.write_text(text)

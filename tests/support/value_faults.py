@@ -42,7 +42,7 @@ class Fault(NamedTuple):
 
 
 def faults(name: str) -> list[Fault]:
-    """The faults of a list."""
+    """Return the faults of a list."""
     entries: Mapping[str, list[str]] = yaml.load(
         (DEFECTS / f"{name}.yaml").read_bytes(), yaml.CSafeLoader
     )
@@ -50,12 +50,12 @@ def faults(name: str) -> list[Fault]:
 
 
 def found_for(fault: Fault) -> list[Finding]:
-    """What the lint says of the robot with the fault that it does not say without."""
+    """Return what the lint says of the robot with the fault that it does not say without."""
     return [it for it in _linted(fault) if _key(it) not in _healthy()]
 
 
 def level_of(fault: Fault) -> str:
-    """The highest level at which the fault is told, else ``SILENT``."""
+    """Return the highest level at which the fault is told, else ``SILENT``."""
     found = [
         it.level for it in found_for(fault) if re.search(fault.hear, f"{it.message} {it.hint}")
     ]
@@ -63,7 +63,7 @@ def level_of(fault: Fault) -> str:
 
 
 def healthy_findings() -> list[Finding]:
-    """What the lint says of the robot without a fault."""
+    """Return what the lint says of the robot without a fault."""
     return _linted(None)
 
 

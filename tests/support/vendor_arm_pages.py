@@ -36,7 +36,7 @@ _PORT = re.compile(r"port")
 
 
 def told_of_arms(sources: Path) -> dict[str, list[Told]]:
-    """What is said of all arms, with their packages to be found as installed ones."""
+    """Return what is said of all arms, with their packages to be found as installed ones."""
     with tempfile.TemporaryDirectory() as name, pytest.MonkeyPatch.context() as patch:
         for key, value in install(packages_below(sources), Path(name) / "prefix", {}).items():
             patch.setenv(key, value)
@@ -56,7 +56,7 @@ def _told_of_arm(page: str, sources: Path, work: Path) -> Iterator[Told]:
 
 
 def fleets(page: str, sources: Path) -> Iterator[Mapping[str, Any]]:
-    """The fleets of a page."""
+    """Yield the fleets of a page."""
     text = re.sub(r"\bsrc/", f"{sources}/", text_of(page))
     (fleet,) = re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)
     data = yaml.safe_load(fleet)
@@ -66,7 +66,7 @@ def fleets(page: str, sources: Path) -> Iterator[Mapping[str, Any]]:
 
 
 def true_codes(page: str) -> set[str]:
-    """The codes that the page explains."""
+    """Return the codes that the page explains."""
     return set(_CODE.findall(text_of(page))) | EVERYWHERE
 
 
@@ -84,6 +84,6 @@ def _next(name: str, value: str) -> str:
 
 
 def text_of(page: str) -> str:
-    """The section of docs/contributing/arms.md."""
+    """Return the section of docs/contributing/arms.md."""
     text = (ROOT / "docs" / "contributing" / "arms.md").read_text()
     return text.partition(f"\n## {TITLES[page]}\n")[2].partition("\n## ")[0]

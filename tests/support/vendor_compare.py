@@ -30,7 +30,7 @@ from multibot_rewrite.base.rosnames import (
     parse_remap,
     resolve_bound,
 )
-from multibot_rewrite.fleet.build import Outputs
+from multibot_rewrite.checks.build import Outputs
 from multibot_rewrite.fleet.fleet import Fleet
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.planning.of_runs import parsed
@@ -75,7 +75,7 @@ class Built(NamedTuple):
 
 
 def compare(built: Built, robot: str, rows: list[dict[str, Any]], vendors: Vendors) -> Compared:
-    """A robot by its vendor's launch files, and as it is built."""
+    """Return a robot by its vendor's launch files, and as it is built."""
     theirs: Rows = {}
     ours: Rows = {}
     managers = {it["namespace"]: it for it in rows if it["executable"] == "ros2_control_node"}
@@ -96,7 +96,7 @@ def compare(built: Built, robot: str, rows: list[dict[str, Any]], vendors: Vendo
 
 
 def _planned(built: Built, robot: str, theirs: Rows) -> list[str]:
-    """The nodes of a robot that have to run by the plan, and those that may and do."""
+    """Return the nodes of a robot that have to run by the plan, and those that may and do."""
     nodes = [it for it in built.plan.nodes if it.robot == robot] if built.plan else []
     return [it.name for it in nodes if it.sure == RUNS or f"node {it.name}" in theirs]
 
@@ -139,7 +139,7 @@ def _put(word: str, rows: Rows) -> Rows:
 
 
 def files_of(built: Built, robot: str) -> dict[str, str]:
-    """The texts of what is built for a robot, by their paths in its folder."""
+    """Return the texts of what is built for a robot, by their paths in its folder."""
     files = built.outputs.files if built.outputs else ()
     mine = (it for it in files if it.path.startswith(f"{robot}/"))
     return {it.path.partition("/")[2]: it.data.decode() for it in mine}
@@ -165,13 +165,13 @@ def _topics(
 
 
 def _told(it: Endpoint, given: Rows) -> str:
-    """The name of an endpoint as a parameter has it: an absolute one may have the robot's already."""
+    """Return an endpoint's name as a parameter has it: an absolute one may have the robot's."""
     told = given.get(it.parameter, "")
     return told if told.startswith("/") and not check_topic_name(told) else it.name
 
 
 def rules_of(row: Mapping[str, Any]) -> list[RemapRule]:
-    """The remap rules of a program."""
+    """Return the remap rules of a program."""
     found = (parse_remap(f"{old}:={new}") for old, new in row["rules"])
     return [it for it in found if it is not None]
 
@@ -194,7 +194,7 @@ def _special(
 def _rviz(
     row: dict[str, Any], name: str, robot: str, built: Built, theirs: Rows, ours: Rows
 ) -> None:
-    """The config that the vendor opens with its rules, and the one that is built with its command's."""
+    """Compare the config that the vendor opens with the built one, each under its own rules."""
     vendor = next((it for it in row.get("texts", {}).values()), "")
     namespace = row["namespace"] or "/"
     found = rviz_rows(vendor, bind("rviz2", namespace, rules_of(row)), robot)
@@ -235,7 +235,7 @@ def _bridge(
 def _bridge_arguments(
     row: dict[str, Any], name: str, built: Built, theirs: Rows, ours: Rows
 ) -> None:
-    """The ROS side of what a bridge is told by arguments: the launch file of the vendor runs it."""
+    """Compare the ROS side of a bridge's arguments: the launch file of the vendor runs it."""
     namespace, _, node = name.rpartition("/")
     bound = bind(node, namespace or "/", rules_of(row))
     ends = built.plan.ends if built.plan else ()
@@ -247,5 +247,5 @@ def _bridge_arguments(
 
 
 def _gz(what: str, above: str) -> str:
-    """What a bridge passes on, with the slash that Gazebo puts before a topic."""
+    """Return what a bridge passes on, with the slash that Gazebo puts before a topic."""
     return what if what.startswith("/") else f"{above or '/'}{what}"

@@ -131,7 +131,7 @@ TURTLEBOT4: Rows = {
 
 
 def turtlebot4(release: str) -> System:
-    """What the Create 3 sends on its own tf comes once more on the robot's.
+    """Return what the Create 3 sends on its own tf comes once more on the robot's.
 
     Without its teleop_twist_joy, which sends cmd_vel beside Nav2: what MG312 says of that is true.
     """

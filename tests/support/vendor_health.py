@@ -27,7 +27,7 @@ _TWIST = "geometry_msgs/msg/Twist"
 
 
 def findings(found: Outcome, release: str, kinds: Mapping[str, str]) -> tuple[Finding, ...]:
-    """What ``check`` says of two robots that run as the vendor starts them."""
+    """Return what ``check`` says of two robots that run as the vendor starts them."""
     known = {it.name: _unstamped(it) for it in found.fleet.facts}
     rules = {it.full_name: it.rules for it in found.fleet.table.runs}
     nodes: list[str] = []
@@ -47,7 +47,7 @@ def findings(found: Outcome, release: str, kinds: Mapping[str, str]) -> tuple[Fi
 
 
 def _unstamped(node: NodeFacts) -> NodeFacts:
-    """The node without the plan's choice of the type of commands: ``_as_set`` makes its own."""
+    """Return the node without the plan's choice of the type of commands: ``_as_set`` makes its own."""
     ends = (it._replace(type=it.type.replace(f"{_TWIST}Stamped", _TWIST)) for it in node.endpoints)
     return node._replace(endpoints=tuple(ends))
 
@@ -65,7 +65,7 @@ def _as_set(node: Started, ends: Iterable[End]) -> Iterator[End]:
 
 
 def two(nodes: Iterable[Started]) -> Iterator[Started]:
-    """The nodes of the first robot, and of the second as the same launch files start them."""
+    """Yield the nodes of the first robot, and of the second as the same launch files start them."""
     for it in nodes:
         yield it
         if it.name.startswith(f"/{ROBOT}/"):
@@ -74,7 +74,7 @@ def two(nodes: Iterable[Started]) -> Iterator[Started]:
 
 
 def kind_of(node: Started, short: str, release: str, kinds: Mapping[str, str]) -> str:
-    """The node whose sources the facts are of; empty for none."""
+    """Return the node whose sources the facts are of; empty for none."""
     last = short.rpartition("/")[2]
     program = node.by.rpartition("/")[2].removesuffix("_driver")
     words = (short, last, "" if program == "spawner" else program)
@@ -83,8 +83,9 @@ def kind_of(node: Started, short: str, release: str, kinds: Mapping[str, str]) -
 
 
 def placed(node: Started, short: str, more: Rules) -> Run:
-    """The node under its name, with the remap rules that the launch gives it, then with those that it
-    needs besides: vendors' launch files do not separate names that are absolute in the code."""
+    """Return the node under its name, with the remap rules that the launch gives it, then with
+    those that it needs besides: vendors' launch files do not separate names that are absolute in
+    the code."""
     namespace, _, name = node.name.rpartition("/")
     # tf is heard by a helper node in the namespace of the process, not in that of a costmap in it.
     rules = tuple(it for it in node.rules if "/" not in short or it[0] not in TF)
@@ -92,7 +93,7 @@ def placed(node: Started, short: str, more: Rules) -> Run:
 
 
 def _of(plan: System, nodes: Iterable[str]) -> System:
-    """The plan without the endpoints of other nodes than these and those that they make."""
+    """Return the plan without the endpoints of other nodes than these and those that they make."""
     mine = tuple(nodes)
     ends = tuple(it for it in plan.ends if it.node.startswith(mine))
     return plan._replace(ends=ends)

@@ -47,7 +47,7 @@ class Told(NamedTuple):
 
 
 def told(layout: str, built: Sequence[Said], looked: Looked, true: Callable[[Said], bool]) -> Told:
-    """What is said of a fleet in a layout."""
+    """Return what is said of a fleet in a layout."""
     every = (built, looked.rehearsed, looked.checked)
     false = sum(not true(it) for part in every for it in part)
     return Told(layout, (len(built), len(looked.rehearsed), len(looked.checked)), false)
@@ -69,7 +69,7 @@ def look(file: Path, built: Mapping[str, bytes], robots: Iterable[str]) -> Looke
 
 
 def said(findings: Iterable[Finding], robots: Iterable[str]) -> tuple[Said, ...]:
-    """What is said, once for all robots."""
+    """Return what is said, once for all robots."""
     robot = re.compile(rf"\b({'|'.join(map(re.escape, robots))})(?=\b|_)")
     told = (it for it in findings if it.level != NOTE)
     return tuple(dict.fromkeys(Said(it.code, robot.sub("robot", it.message)) for it in told))
@@ -80,8 +80,8 @@ def _finding(row: Mapping[str, str]) -> Finding:
 
 
 def _substituted(plan: System, graph: System) -> System:
-    """The plan with the types that the rehearsal has in place of those that are not installed: no
-    stand-in has these."""
+    """Return the plan with the types that the rehearsal has in place of those that are not
+    installed: no stand-in has these."""
     there = {it.type for it in graph.ends}
     return with_substitutes(plan, {t: new for t, new in _substitutes(plan) if t not in there})
 

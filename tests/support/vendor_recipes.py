@@ -28,7 +28,7 @@ from vendor_systems import RECORDER, Vendors, filled, prepare
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.checks.build import make_outputs
 from multibot_rewrite.fleet.fleet import expected
 
 HERE = Path(__file__).parent
@@ -70,7 +70,7 @@ def read_recipes() -> dict[str, Recipe]:
 
 @contextmanager
 def workspace(system: Mapping[str, Any], vendors: Vendors, folder: Path) -> Iterator[Path]:
-    """A folder in which the packages of a system are found as installed ones."""
+    """Yield a folder in which the packages of a system are found as installed ones."""
     used = (packages_below(folder / it) for it in reversed(system["uses"]))
     packages = {name: path for found in used for name, path in found.items()}
     before = dict(os.environ)
@@ -90,12 +90,12 @@ def workspace(system: Mapping[str, Any], vendors: Vendors, folder: Path) -> Iter
 
 
 def words_for(folder: Path, work: Path, robot: str) -> dict[str, str]:
-    """What stands for ``{sources}``, ``{work}`` and ``{robot}`` of a robot."""
+    """Return what stands for ``{sources}``, ``{work}`` and ``{robot}`` of a robot."""
     return {"sources": str(folder), "work": str(work), "robot": robot}
 
 
 def fleet_text(recipe: Recipe, system: Mapping[str, Any], layout: str, count: int) -> str:
-    """The fleet file of a recipe, with its words not yet filled in."""
+    """Return the fleet file of a recipe, with its words not yet filled in."""
     robots = []
     for number in range(1, count + 1):
         mine = {**system.get("robot", {}), **recipe.robot, "launch": system["launch"]}
@@ -123,7 +123,7 @@ def build(text: str, words: Mapping[str, str], layout: str, count: int) -> Built
 
 
 def recorded(system: Mapping[str, Any], words: Mapping[str, str]) -> list[dict[str, Any]]:
-    """The programs of a robot, by the real launch with real descriptions."""
+    """Return the programs of a robot, by the real launch with real descriptions."""
     rows: list[dict[str, Any]] = []
     for line in filled(system["launch"], words):
         command = [sys.executable, str(RECORDER), "--xacro", *line.split()]
@@ -134,7 +134,7 @@ def recorded(system: Mapping[str, Any], words: Mapping[str, str]) -> list[dict[s
 
 
 def judged(recipe: Recipe, found: Compared) -> Compared:
-    """The differences with the reasons of the recipe."""
+    """Return the differences with the reasons of the recipe."""
     return found._replace(
         differences=tuple(it._replace(reason=_reason(recipe, it)) for it in found.differences)
     )
@@ -148,12 +148,12 @@ def _reason(recipe: Recipe, it: Difference) -> str:
 
 
 def false_findings(recipe: Recipe, built: Built) -> list[Finding]:
-    """The warnings and errors of a build that the recipe does not call true."""
+    """Return the warnings and errors of a build that the recipe does not call true."""
     return [it for it in built.findings if not is_true(recipe, it)]
 
 
 def is_true(recipe: Recipe, it: Finding | Said) -> bool:
-    """Does the recipe say so?"""
+    """Return whether the recipe says so."""
     rules = (rule for rule in recipe.right if rule["code"] == it.code)
     return any(re.search(rule.get("says", ""), it.message) for rule in rules)
 
@@ -198,7 +198,7 @@ def outcome(recipe: Recipe, vendors: Vendors, folder: Path, live: bool = False) 
 
 
 def rehearsed(built: Built, work: Path) -> Looked:
-    """What a rehearsal says of the fleet file that was built last."""
+    """Return what a rehearsal says of the fleet file that was built last."""
     if built.outputs is None:
         return Looked((), ())
     files = {it.path: it.data for it in built.outputs.files}

@@ -49,13 +49,13 @@ Merging.add_constructor("tag:yaml.org,2002:python/tuple", _listed)
 
 
 def load(text: str) -> Any:
-    """The data of a YAML text."""
+    """Return the data of a YAML text."""
     return yaml.load(text, Merging)
 
 
 def description_rows(text: str, robot: str, frame_prefix: str = "") -> Rows:
-    """A row for every attribute and text. Elements go by their names without the robot's, elements
-    that only have a text go together. ``frame_prefix`` is put in front of links, as
+    """Return a row for every attribute and text. Elements go by their names without the robot's,
+    elements that only have a text go together. ``frame_prefix`` is put in front of links, as
     robot_state_publisher does it."""
     root = ET.fromstring(text)
     for tag, key in (("link", "name"), ("parent", "link"), ("child", "link")):
@@ -93,12 +93,12 @@ def _plain(text: str) -> str:
 
 
 def _bare(name: str, robot: str) -> str:
-    """A name without the robot's in front or behind."""
+    """Return a name without the robot's in front or behind."""
     return re.sub(rf"^{robot}[/_]|[/_]{robot}$", "", name)
 
 
 def parameter_rows(texts: Iterable[str], node: str) -> Rows:
-    """The parameters of a node by several files, the last that says it counts."""
+    """Return the parameters of a node by several files, the last that says it counts."""
     found: Rows = {}
     for text in texts:
         for pattern, values in _sections(load(text), ""):
@@ -134,8 +134,9 @@ def flat(value: Any, at: str) -> Iterator[tuple[str, str]]:
 
 
 def rviz_rows(text: str, bound: BoundNode, robot: str) -> Rows:
-    """What an RViz config shows of a robot: displays and tools by class and name, topics as they are
-    called in the graph; ``bound`` is its rviz2. A window for all robots has a group for each."""
+    """Return what an RViz config shows of a robot: displays and tools by class and name, topics
+    as they are called in the graph; ``bound`` is its rviz2. A window for all robots has a group
+    for each."""
     data = load(text) or {}
     manager = data.get("Visualization Manager", {})
     shown = [part for it in manager.get("Displays", ()) for part in _dissolved(it, robot)]
@@ -147,7 +148,7 @@ def rviz_rows(text: str, bound: BoundNode, robot: str) -> Rows:
 
 
 def _dissolved(display: dict[str, Any], robot: str) -> list[dict[str, Any]]:
-    """The displays of the robot's group, none of another robot's, any other display itself."""
+    """Return the displays of the robot's group, none of another robot's, any other display itself."""
     name = str(display.get("Name"))
     if display.get("Class") != _GROUP or not _ROBOT.fullmatch(name):
         return [display]
@@ -161,7 +162,7 @@ def _is_of(tool: Any, robot: str) -> bool:
 
 
 def _by_name(value: Any) -> Any:
-    """Lists of displays and tools as maps; groups of one name are one."""
+    """Return lists of displays and tools as maps; groups of one name are one."""
     if isinstance(value, dict):
         return {key: _by_name(it) for key, it in value.items()}
     if not isinstance(value, list) or not all(
@@ -185,7 +186,7 @@ def _both(one: Any, other: Any) -> Any:
 
 
 def bridge_rows(text: str) -> Iterator[tuple[str, str]]:
-    """The ROS topics of a bridge's file, each with what it passes on."""
+    """Yield the ROS topics of a bridge's file, each with what it passes on."""
     for it in load(text) or ():
         topic = it.get("ros_topic_name") or it.get("topic_name")
         gz = it.get("gz_topic_name") or it.get("topic_name")
@@ -194,7 +195,7 @@ def bridge_rows(text: str) -> Iterator[tuple[str, str]]:
 
 
 def bridge_argument(word: str) -> tuple[str, str] | None:
-    """The same of an argument of a bridge; None for another one."""
+    """Return the same of an argument of a bridge; None for another one."""
     found = _ARGUMENT.fullmatch(word)
     if found is None:
         return None
@@ -203,7 +204,7 @@ def bridge_argument(word: str) -> tuple[str, str] | None:
 
 
 def static_edge(words: list[str]) -> str:
-    """The transform of a static_transform_publisher, by its arguments."""
+    """Return the transform of a static_transform_publisher, by its arguments."""
     given = dict(pairwise(words))
     if "--frame-id" in given:
         return f"{given['--frame-id']} -> {given.get('--child-frame-id', '')}"

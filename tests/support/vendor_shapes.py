@@ -16,9 +16,9 @@ from vendor_recipes import Recipe, fleet_text, recorded, words_for, workspace
 from vendor_rows import description_rows, load, parameter_rows
 from vendor_systems import Vendors, filled, prepare, started_by
 
-from multibot_rewrite.fleet.build import make_outputs
+from multibot_rewrite.checks.build import make_outputs
+from multibot_rewrite.checks.judged_plan import plan_fleet
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 from multibot_rewrite.fleet.outputs.shape_outputs import vendor_commands
 from multibot_rewrite.fleet.robots.robot_groups import split_per_robot
 
@@ -47,8 +47,8 @@ class Taken(NamedTuple):
 def taken(
     recipe: Recipe, shape: str, simulator: str, vendors: Vendors, folder: Path
 ) -> tuple[list[str], dict[str, Taken]]:
-    """The vendor's commands for a robot that a build with a shape writes, and what its nodes, by their
-    full names, get when they run."""
+    """Return the vendor's commands for a robot that a build with a shape writes, and what its
+    nodes, by their full names, get when they run."""
     system = vendors.systems[recipe.system]
     with workspace(system, vendors, folder) as work:
         for robot in ("/", "robot1", ROBOT):
@@ -66,7 +66,7 @@ def taken(
 
 
 def _marked(path: str, text: str) -> str:
-    """A description or a parameter file that can be told from the vendor's own."""
+    """Return a description or a parameter file that can be told from the vendor's own."""
     if text.lstrip().startswith("<"):
         return text.replace("<robot ", f'<robot {MARK}="here" ', 1)
     if "ros__parameters" not in text or not path.endswith(".yaml"):
@@ -97,7 +97,7 @@ def _built(work: Path, shape: str, simulator: str) -> tuple[dict[str, bytes], li
 
 
 def _run(line: str, folder: Path) -> list[dict[str, Any]]:
-    """The programs that a command starts; one that generates files is run."""
+    """Return the programs that a command starts; one that generates files is run."""
     words = shlex.split(line)
     own = dict(it.split("=", 1) for it in words if "=" in it.partition(":=")[0])
     _, verb, *words = words[len(own) :]

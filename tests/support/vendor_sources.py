@@ -26,7 +26,7 @@ _NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
 
 
 def sources_folder() -> Path | None:
-    """The folder with the checkouts; None if none is named."""
+    """Return the folder with the checkouts; None if none is named."""
     folder = os.environ.get(VARIABLE, "")
     return Path(folder).resolve() if folder else None
 
@@ -73,7 +73,7 @@ def install(
 
 
 def installed_sources(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    """The folder of checkouts, with its packages to be found as installed ones."""
+    """Yield the folder of checkouts, with its packages to be found as installed ones."""
     folder = sources_folder()
     if folder is None:
         pytest.skip(WITHOUT)

@@ -93,7 +93,7 @@ def read_vendors() -> Vendors:
 
 
 def filled(value: Any, words: Mapping[str, str]) -> Any:
-    """A value with ``{sources}``, ``{work}`` and ``{robot}`` replaced in every text."""
+    """Return a value with ``{sources}``, ``{work}`` and ``{robot}`` replaced in every text."""
     if isinstance(value, str):
         for word, text in words.items():
             value = value.replace(f"{{{word}}}", text)
@@ -116,7 +116,7 @@ def prepare(system: Mapping[str, Any], words: Mapping[str, str]) -> None:
 
 
 def started(system: Mapping[str, Any], vendors: Vendors, words: Mapping[str, str]) -> list[Started]:
-    """The nodes of one robot, by the real launch."""
+    """Return the nodes of one robot, by the real launch."""
     rows = [row for line in filled(system["launch"], words) for row in _recorded(line)]
     below = filled(system.get("below", ""), words)
     nodes = [it for row in rows for it in started_by(row, vendors.named)]
@@ -138,7 +138,7 @@ def _recorded(line: str) -> list[dict[str, Any]]:
 
 
 def started_by(row: Mapping[str, Any], named: Mapping[str, Mapping[str, Any]]) -> Iterator[Started]:
-    """The nodes of a program: it may have several, and a spawner has its controllers."""
+    """Yield the nodes of a program: it may have several, and a spawner has its controllers."""
     by = f"{row['package']}/{row['executable']}"
     if not row["package"] or row["executable"] in _PASSING:
         return
@@ -159,14 +159,14 @@ def started_by(row: Mapping[str, Any], named: Mapping[str, Mapping[str, Any]]) -
 
 
 def _below(it: Started, namespace: str) -> Started:
-    """The node in a namespace; one RViz serves all robots."""
+    """Return the node in a namespace; one RViz serves all robots."""
     alone = not namespace or it.by.startswith("rviz2/")
     return it if alone else it._replace(name=f"/{namespace}{it.name}")
 
 
 def _home(words: list[str], namespace: str) -> str:
-    """The namespace of the controller manager that a spawner is told: controllers run in it. A relative
-    name is below that of the spawner, which is an option, too (spawner.py)."""
+    """Return the namespace of the controller manager that a spawner is told: controllers run in
+    it. A relative name is below that of the spawner, which is an option, too (spawner.py)."""
     given = dict(pairwise(words))
     manager = given.get("-c") or given.get("--controller-manager") or "controller_manager"
     own = given.get("-n") or given.get("--namespace") or namespace
@@ -184,7 +184,7 @@ def _positional(words: Iterable[str]) -> Iterator[str]:
 
 
 def planned(system: Mapping[str, Any], words: Mapping[str, str], launch: bool) -> Fleet:
-    """The plan of two robots by the vendor's files, with its launch files or without."""
+    """Return the plan of two robots by the vendor's files, with its launch files or without."""
     work = Path(words["work"])
     robots = []
     for robot in (ROBOT, OTHER):
@@ -198,7 +198,7 @@ def planned(system: Mapping[str, Any], words: Mapping[str, str], launch: bool) -
 
 
 def missing(system: Mapping[str, Any], folder: Path) -> list[str]:
-    """The checkouts that a system needs and that are not there."""
+    """Return the checkouts that a system needs and that are not there."""
     return [it for it in system["uses"] if not (folder / it).is_dir()]
 
 
@@ -227,7 +227,7 @@ def outcome(name: str, vendors: Vendors, folder: Path) -> Outcome:
 
 
 def nodes_of(plan: System) -> dict[str, bool]:
-    """The nodes of a plan that belong to the first robot or to all, and whether each has to run."""
+    """Return a plan's nodes of the first robot and of all, and whether each has to run."""
     own = {it.name: it.sure == RUNS for it in plan.nodes if it.robot == ROBOT}
     return {**own, **{it.name: False for it in plan.nodes if not it.robot}}
 
@@ -244,7 +244,7 @@ def with_topics(plan: System, there: Mapping[str, Started]) -> list[str]:
 
 
 def page(outcomes: Iterable[Outcome]) -> str:
-    """The page: a row a system."""
+    """Return the page: a row a system."""
     return "\n".join([HEAD, *map(_row, outcomes), ""])
 
 
@@ -261,7 +261,10 @@ def _table(it: Outcome) -> Iterator[str]:
     plans = [
         (
             nodes_of(plan),
-            {it.name: f"stack {it.stack}" if it.stack else str(it.place) for it in plan.nodes},
+            {
+                it.name: f"node set {it.node_set}" if it.node_set else str(it.place)
+                for it in plan.nodes
+            },
         )
         for plan in (it.own, it.launched)
     ]
@@ -280,7 +283,7 @@ def _table(it: Outcome) -> Iterator[str]:
 
 
 def _short(origin: str) -> str:
-    """A place without the folders above its file."""
+    """Return a place without the folders above its file."""
     return origin.rpartition("/")[2]
 
 

@@ -16,7 +16,7 @@ from multibot_rewrite.system.records import System
 
 
 def page(folder: Path, *words: object, code: int = 0) -> dict[str, Any]:
-    """The data of the page for these words."""
+    """Return the data of the page for these words."""
     pytest.importorskip("trimesh", reason="no trimesh: pip install '.[view]'")
     out = folder / "view.html"
     assert main(["view", *map(str, words), "-o", str(out), "-q"]) == code

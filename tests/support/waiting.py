@@ -13,7 +13,7 @@ Found = TypeVar("Found")
 
 
 def wait_until(look: Callable[[], Found], seconds: float = PATIENCE) -> Found:
-    """The first answer of ``look`` that is true; AssertionError where none comes in that time."""
+    """Return the first true answer of ``look``; AssertionError if none comes in that time."""
     limit = time.monotonic() + seconds
     while not (found := look()):
         assert time.monotonic() < limit, f"it does not come within {seconds} s"

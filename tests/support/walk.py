@@ -54,7 +54,7 @@ class Step(NamedTuple):
 
 
 def page(repository: Path, description: str = TURTLEBOT) -> str:
-    """The walk in a copy of this checkout, Markdown."""
+    """Return the walk in a copy of this checkout, Markdown."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name) / repository.name
         shutil.copytree(repository, folder, ignore=shutil.ignore_patterns(".git"))
@@ -65,12 +65,12 @@ def page(repository: Path, description: str = TURTLEBOT) -> str:
 
 
 def in_words(text: str) -> str:
-    """A page without its seconds."""
+    """Return a page without its seconds."""
     return _SECONDS.sub("... s", text)
 
 
 def walk(folder: Path, description: str, beside: Path) -> Iterator[Step]:
-    """The steps; what is made is in ``folder``, what stands for ROS is ``beside`` it."""
+    """Yield the steps; what is made is in ``folder``, what stands for ROS is ``beside`` it."""
     for title, command, lines in HELP[:2]:
         yield shell(title, command, folder, lines)
     yield shell("A fleet file", f"multibot init {description}", folder)
@@ -86,7 +86,7 @@ def walk(folder: Path, description: str, beside: Path) -> Iterator[Step]:
 
 
 def shell(title: str, command: str, folder: Path, lines: int = 0) -> Step:
-    """What a command prints, the first ``lines`` of it or all."""
+    """Return what a command prints, the first ``lines`` of it or all."""
     program = f"import sys; sys.argv[0] = 'multibot'; {_MAIN}"
     words = command.split()
     own = [sys.executable, "-c", program, *words[1:]] if words[0] == "multibot" else words
@@ -108,7 +108,7 @@ _MAIN = "from multibot_rewrite.cli.multibot import main; sys.exit(main())"
 
 
 def _launch(folder: Path, beside: Path) -> tuple[list[dict[str, Any]], Step]:
-    """What the programs of the launch file were told."""
+    """Return what the programs of the launch file were told."""
     file = folder / OUT / "fleet.launch.py"
     pairs = re.findall(r"package='(\w+)',\s+executable='([\w.]+)'", file.read_text())
     programs = {executable: package for package, executable in pairs}
@@ -125,7 +125,7 @@ def _launch(folder: Path, beside: Path) -> tuple[list[dict[str, Any]], Step]:
 
 
 def _told(every: list[dict[str, Any]]) -> list[str]:
-    """The programs with their namespaces, names and remap rules."""
+    """Return the programs with their namespaces, names and remap rules."""
     rows = (words_of(it) for it in every)
     return sorted(
         f"{name}: {' '.join(it for it in ros if ':=' in it)}" for name, _, ros in rows if ros
@@ -133,7 +133,7 @@ def _told(every: list[dict[str, Any]]) -> list[str]:
 
 
 def _seen(told: list[dict[str, Any]], folder: Path) -> bytes:
-    """The graph of nodes that do as the programs were told, as ``multibot snapshot`` writes it.
+    """Return the graph of nodes that obey their commands, as ``multibot snapshot`` writes it.
 
     Messages that are not installed here are replaced by others, and have their names again here.
     """

@@ -41,7 +41,7 @@ class Fault(NamedTuple):
     instead: bool = False
 
     def planted(self) -> Callable[..., Any]:
-        """The function with the fault in it."""
+        """Return the function with the fault in it."""
         right = getattr(self.module, self.function)
         return self.wrong if self.instead else lambda *given: self.wrong(right(*given))
 
@@ -50,18 +50,18 @@ class Fault(NamedTuple):
 
 
 def behind(text: bytes, source: bytes = ROVER) -> int:
-    """The offset right behind a text of the source."""
+    """Return the offset right behind a text of the source."""
     assert text in source, f"the source holds no {text!r}"
     return source.index(text) + len(text)
 
 
 def edits(change: Callable[[list[Edit]], list[Edit]]) -> Wrong:
-    """A plan with other edits."""
+    """Return a plan with other edits."""
     return lambda plan: plan._replace(edits=sorted(change(plan.edits), key=lambda it: it.start))
 
 
 def at(text: bytes, change: Callable[[Edit], list[Edit]], source: str = "rover") -> Wrong:
-    """A plan with other edits right behind a text of the source."""
+    """Return a plan with other edits right behind a text of the source."""
     place = behind(text, SOURCES[source])
     return edits(
         lambda all_: [new for it in all_ for new in (change(it) if it.start == place else [it])]
@@ -69,18 +69,18 @@ def at(text: bytes, change: Callable[[Edit], list[Edit]], source: str = "rover")
 
 
 def more(text: bytes, before: bytes, after: bytes | None, source: str = "rover") -> Wrong:
-    """A plan with one more edit right behind a text of the source."""
+    """Return a plan with one more edit right behind a text of the source."""
     place = behind(text, SOURCES[source])
     return edits(lambda all_: [*all_, Edit(place, place, before, after)])
 
 
 def literal(edit: Edit) -> list[Edit]:
-    """The robot's name as it is, in the place of a slot."""
+    """Return the robot's name as it is, in the place of a slot."""
     return [edit._replace(before=edit.before + b"robot1" + (edit.after or b""), after=None)]
 
 
 def in_marker(plan: Plan) -> Plan:
-    """A plan that misses the model's name, with one slot more in inserted text: as many as ever."""
+    """Return a plan without the model's name, with one slot more in inserted text."""
     kept = [it for it in plan.edits if it.start != behind(b'<robot name="rover')]
     first = next(number for number, it in enumerate(kept) if b"multibot" in it.before)
     words, bracket, rest = (kept[first].after or b"").partition(b"(")
@@ -150,7 +150,7 @@ def shifted(edit: Edit, by: int) -> Edit:
 
 
 def unnamed(chosen: Callable[[str], bool]) -> Wrong:
-    """A rename map without some names, by the value that they are."""
+    """Return a rename map without some names, by the value that they are."""
 
     def wrong(renames: RenameMap) -> RenameMap:
         values = [() if it and chosen(it[0].text) else it for it in renames.values]
@@ -160,7 +160,7 @@ def unnamed(chosen: Callable[[str], bool]) -> Wrong:
 
 
 def once(text: str, nth: int) -> Wrong:
-    """A rename map that misses the nth value with a name."""
+    """Return a rename map that misses the nth value with a name."""
 
     def wrong(renames: RenameMap) -> RenameMap:
         places = [at for at, it in enumerate(renames.values) if it and it[0].text == text]
@@ -171,7 +171,7 @@ def once(text: str, nth: int) -> Wrong:
 
 
 def respelled(text: str, before: str, after: str, at_: int | None = None) -> Wrong:
-    """A rename map with another affix for a name, wherever it is."""
+    """Return a rename map with another affix for a name, wherever it is."""
 
     def wrong(renames: RenameMap) -> RenameMap:
         values = []
@@ -212,7 +212,7 @@ RENAMES = {
 
 
 def named_otherwise(**words: Any) -> Callable[..., Any]:
-    """Makes the rename map of another naming."""
+    """Return a function that makes the rename map of another naming."""
     return lambda inventory, naming: make_renames(inventory, make_naming(**words))
 
 

@@ -23,7 +23,7 @@ def claim_of(inventory: Inventory, text: bytes) -> int:
 
 
 def without(text: bytes) -> Wrong:
-    """A reading that misses what is claimed of an element."""
+    """Return a reading that misses what is claimed of an element."""
 
     def wrong(inventory: Inventory) -> Inventory:
         gone = claim_of(inventory, text)
@@ -36,7 +36,7 @@ def without(text: bytes) -> Wrong:
 
 
 def claimed(text: bytes, **fields: Any) -> Wrong:
-    """A reading with another claim in the place of that of an element."""
+    """Return a reading with another claim in the place of that of an element."""
 
     def wrong(inventory: Inventory) -> Inventory:
         at = claim_of(inventory, text)
@@ -48,7 +48,7 @@ def claimed(text: bytes, **fields: Any) -> Wrong:
 
 
 def also_claimed(text: bytes, like: bytes, attribute: str, value: str) -> Wrong:
-    """A reading with one claim more, behind that of the element ``like``, which it resembles."""
+    """Return a reading with one claim more, behind that of the element ``like``, which it resembles."""
 
     def wrong(inventory: Inventory) -> Inventory:
         document = inventory.document
@@ -69,7 +69,7 @@ def also_claimed(text: bytes, like: bytes, attribute: str, value: str) -> Wrong:
 
 
 def resolved(text: bytes, *names: dict[str, Any]) -> Wrong:
-    """A reading with other names in the value of an element: each is the first one but for these."""
+    """Return a reading with other names in an element's value: the first one but for these."""
 
     def wrong(inventory: Inventory) -> Inventory:
         at = claim_of(inventory, text)
@@ -82,7 +82,7 @@ def resolved(text: bytes, *names: dict[str, Any]) -> Wrong:
 
 
 def other_order(inventory: Inventory) -> Inventory:
-    """The first two claims of links in the place of each other."""
+    """Return the first two claims of links in the place of each other."""
     one, two = claim_of(inventory, b'<link name="base'), claim_of(inventory, b"<link name='wheel")
     claims, names = list(inventory.claims), list(inventory.names)
     claims[one], claims[two] = claims[two], claims[one]

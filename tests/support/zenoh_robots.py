@@ -31,7 +31,7 @@ PERIOD = 0.05
 
 
 def config(**settings: Any) -> Any:
-    """A configuration without multicast; ``a__b`` is the key a/b."""
+    """Return a configuration without multicast; ``a__b`` is the key a/b."""
     import zenoh
 
     made = zenoh.Config()
@@ -43,7 +43,7 @@ def config(**settings: Any) -> Any:
 
 @contextmanager
 def router(**settings: Any) -> Iterator[str]:
-    """A router on loopback; gives its endpoint."""
+    """Yield a router on loopback; gives its endpoint."""
     import zenoh
 
     with ExitStack() as stack:
@@ -70,7 +70,7 @@ class Robot(NamedTuple):
     witness: Any
 
     def hold(self, token: str) -> None:
-        """It is there when the witness knows of it: a session tells its router when it likes."""
+        """Wait until the witness knows of the token: a session tells its router when it likes."""
         self.held.append(self.session.liveliness().declare_token(token))
         wait_until(lambda: any(reply.ok for reply in self.witness.liveliness().get(token)))
 
@@ -97,7 +97,7 @@ class Robot(NamedTuple):
         gid: bytes = b"g",
         period: float = PERIOD,
     ) -> Iterator[None]:
-        """Transforms on a topic: latched once in a cache, others again and again."""
+        """Publish transforms on a topic: latched once in a cache, others again and again."""
         from zenoh import ext
 
         key = f"{self.domain}/{topic.strip('/')}/{TF_TYPE}/{TF_HASH}"
@@ -128,7 +128,7 @@ class Robot(NamedTuple):
 
 @contextmanager
 def robot(address: str, domain: int = 0, **settings: Any) -> Iterator[Robot]:
-    """A session as rmw_zenoh opens it: a peer that listens and connects to its router."""
+    """Yield a session as rmw_zenoh opens it: a peer that listens and connects to its router."""
     import zenoh
 
     given: Mapping[str, Any] = {
@@ -149,7 +149,7 @@ def robot(address: str, domain: int = 0, **settings: Any) -> Iterator[Robot]:
 
 
 def drive(there: Robot, name: str, number: int = 0) -> None:
-    """The node that the plan of ``live_commands`` has for each robot."""
+    """Run the node that the plan of ``live_commands`` has for each robot."""
     space = f"/{name}"
     there.node(number, space, "drive")
     there.end(number, space, "drive", "MP", f"/{name}/odom", STRING)
@@ -168,7 +168,7 @@ def tf_message(
     numbers: tuple[float, ...] = (1, 2, 3, 0, 0, 0, 1),
     stamp: tuple[int, int] = (7, 8),
 ) -> bytes:
-    """A TFMessage in CDR, little endian or big; its transforms have these numbers and this stamp."""
+    """Return a TFMessage in CDR, of either endianness; all transforms have these numbers and stamp."""
     data = struct.pack(f"{mark}I", len(edges))
     for edge in edges:
         data += b"\0" * (-len(data) % 4) + struct.pack(f"{mark}iI", *stamp)
@@ -180,7 +180,7 @@ def tf_message(
 
 
 def main(address: str, *words: str) -> None:
-    """A machine with a router and robots, until standard input closes."""
+    """Run a machine with a router and robots, until standard input closes."""
     others = [word[1:] for word in words if word.startswith("+")]
     names = [word for word in words if not word.startswith("+")]
     import zenoh

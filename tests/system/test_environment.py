@@ -198,7 +198,7 @@ def test_discovery_is_not_finished_while_a_node_or_its_ends_are_missing() -> Non
 
 
 def serving(node: str, namespace: str = "/robot1") -> tuple[End, ...]:
-    """The ends that every node has, as far as they count here."""
+    """Return the ends that every node has, as far as they count here."""
     name = f"{namespace}/{node}"
     service = End(SERVICE, SERVES, f"{name}/get_parameters", "", "", name, None, "p")
     return service, end("p", name, f"{name}/out")

@@ -27,9 +27,9 @@ from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.base.rosnames import bind, resolve_bound
 from multibot_rewrite.fleet.fleet import expected
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.knowledge.node_sets import built_in
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.planning.of_runs import parsed
 from multibot_rewrite.planning.records import Run
 from multibot_rewrite.system.records import TOPIC, Edge, End, Node, System
@@ -64,7 +64,7 @@ ARM = fixture_text("arm_systems_arm.urdf")
 
 @cache
 def started(name: str, release: str) -> tuple[dict[str, Any], dict[str, Any]]:
-    """The nodes and the controllers of a system in a release."""
+    """Return the nodes and the controllers of a system in a release."""
     system = SYSTEMS[name]
     nodes, controllers = (
         {key: it for key, it in system[part].items() if release in it.get("releases", [release])}
@@ -111,7 +111,7 @@ def kinds(name: str, release: str) -> dict[str, str]:
 
 
 def played(name: str, release: str, plan: FleetPlan) -> System:
-    """The graph of all nodes that run, with what their sources declare."""
+    """Return the graph of all nodes that run, with what their sources declare."""
     placed = {(it.robot, it.node): it for it in plan.fleet.table.runs}
     known: dict[str, NodeFacts] = {it.name: it for it in plan.fleet.facts}
     ends: list[End] = []
@@ -145,7 +145,7 @@ def played(name: str, release: str, plan: FleetPlan) -> System:
 
 
 def _pose(beside: Edge, params: dict[str, str]) -> Edge:
-    """What pose_broadcaster sends: its frames are spelled as the links are."""
+    """Return what pose_broadcaster sends: its frames are spelled as the links are."""
     child = beside.parent.replace(params["frame_id"], params["tf.child_frame_id"])
     return beside._replace(child=child)
 
@@ -155,7 +155,7 @@ def _node(name: str) -> Node:
 
 
 def _tree(description: bytes, publisher: Run) -> Iterator[Edge]:
-    """What robot_state_publisher sends of a description."""
+    """Yield what robot_state_publisher sends of a description."""
     bound = bind(publisher.name, publisher.namespace, parsed(publisher.rules))
     for joint in etree.fromstring(description).findall("joint"):
         fixed = joint.get("type") == "fixed"

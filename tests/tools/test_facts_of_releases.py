@@ -14,7 +14,7 @@ import pytest
 from paths import FIXTURES
 
 from multibot_rewrite.base.releases import RELEASES
-from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.knowledge.node_sets import built_in
 from tools.interfaces.compare import (
     OURS,
     THEIRS,
@@ -96,7 +96,7 @@ def test_the_planning_scene_is_of_a_private_node() -> None:
 
 
 def difference(name: str, **changed: str) -> set[str]:
-    """What is said of amcl's initial pose, if the sources had it another way."""
+    """Return what is said of amcl's initial pose, if the sources had it another way."""
     rest = [it for it in facts("jazzy") if it.node == "amcl" and it.name != "initialpose"]
     (fact,) = (it for it in facts("jazzy") if it[:3] == ("amcl", "subscribes", "initialpose"))
     made = differences([*rest, fact._replace(name=name, **changed)], built_in("jazzy"))

@@ -2,7 +2,7 @@
 """A healthy system of a release has no finding: its endpoints are what the sources declare.
 
 Each node has what ``fixtures/interfaces/RELEASE.tsv`` says of it, in its robot's namespace and with
-the remap rules of the table. Only values of parameters are taken from the stack.
+the remap rules of the table. Only values of parameters are taken from the node set.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from nav2_graphs import environment
 from multibot_rewrite import compare
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.base.releases import NEWEST_LTS, RELEASES
-from multibot_rewrite.knowledge.node_library import stack_of
+from multibot_rewrite.knowledge.node_library import nodes_of_set
+from multibot_rewrite.knowledge.node_sets import built_in
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.planning.plan import expect
 from multibot_rewrite.planning.records import Table
 from multibot_rewrite.planning.table import build_table
@@ -27,7 +27,7 @@ SYSTEMS = {
     "arms": ("robot_state", "moveit", "ros2_control"),
     "gps": ("robot_state", "slam_toolbox", "robot_localization_gps"),
 }
-# The usual names of nodes that a stack calls otherwise.
+# The usual names of nodes that a node set calls otherwise.
 KINDS = {
     "lifecycle_manager_localization": "lifecycle_manager",
     "lifecycle_manager_navigation": "lifecycle_manager",
@@ -35,7 +35,7 @@ KINDS = {
     "ekf_filter_node_map": "ekf_filter_node",
     "navsat_transform": "navsat_transform_node",
 }
-# What Nav2 reads, and what is published below another name: no rule of these stacks joins them.
+# What Nav2 reads, and what is published below another name: no rule of these node sets joins them.
 ODOMETRY = {(f"/{it}/odom", f"/{it}/diff_drive_controller/odom") for it in ("robot1", "robot2")}
 # Humble's speed filter has no default with the namespace of its costmap's parent (speed_filter.cpp).
 SPEED = {(f"/{it}/speed_limit", f"/{it}/local_costmap/speed_limit") for it in ("robot1", "robot2")}
@@ -49,9 +49,9 @@ UNFED = {
 
 
 def system(release: str, name: str) -> tuple[list[tuple[str, NodeFacts]], Table, System]:
-    """The nodes with the names that they have in the tables, the remap table, the plan."""
+    """Return the nodes with the names that they have in the tables, the remap table, the plan."""
     library = built_in(release)
-    nodes = tuple(dict.fromkeys(it for stack in SYSTEMS[name] for it in stack_of(library, stack)))
+    nodes = tuple(dict.fromkeys(it for word in SYSTEMS[name] for it in nodes_of_set(library, word)))
     naming = make_naming("L2")
     table = build_table(("robot1", "robot2"), nodes, naming, release=NEWEST_LTS)
     kinds = [(KINDS.get(it.name, it.name), it) for it in nodes]

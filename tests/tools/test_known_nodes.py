@@ -13,7 +13,7 @@ Capture = pytest.CaptureFixture[str]
 
 
 def printed(folder: Path, text: str, capsys: Capture, *more: str) -> list[list[str]]:
-    """The rows that the command prints for one C++ file."""
+    """Return the rows that the command prints for one C++ file."""
     folder.mkdir(exist_ok=True)
     (folder / "a.cpp").write_text(text)
     main([str(folder), *more])

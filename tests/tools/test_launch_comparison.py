@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Our stacks are what the launch files of each release start, or an exception says why not.
+"""Our node sets are what the launch files of each release start, or an exception says why not.
 
-``fixtures/interfaces/launch_exceptions.tsv`` has kind, stack, node (and rule) and the reason.
+``fixtures/interfaces/launch_exceptions.tsv`` has kind, node set, node (and rule) and the reason.
 """
 
 from __future__ import annotations
@@ -19,16 +19,16 @@ from tools.interfaces.launch_comparison import (
     RULE_MISSING,
     RULE_NOT_THERE,
     LaunchDifference,
-    StackNode,
+    SetNode,
     launch_differences,
     launch_files,
-    stack_nodes,
+    nodes_of_sets,
 )
 from tools.interfaces.launch_files import LaunchedNode
 from tools.interfaces.parameter_tables import LaunchFact, launch_lines, read_launches
 
 TABLES = FIXTURES / "interfaces"
-STACKS = (ROOT / "multibot_rewrite" / "knowledge" / "stacks.yaml").read_text()
+NODE_SETS = (ROOT / "multibot_rewrite" / "knowledge" / "node_sets.yaml").read_text()
 EXCEPTIONS = {
     LaunchDifference(*words): why
     for *words, why in (
@@ -46,9 +46,9 @@ def facts(release: str) -> tuple[LaunchFact, ...]:
 def found(release: str) -> tuple[LaunchDifference, ...]:
     return tuple(
         it
-        for stack, paths in launch_files().items()
+        for node_set, paths in launch_files().items()
         for it in launch_differences(
-            stack, stack_nodes(STACKS, stack, release), facts(release), paths
+            node_set, nodes_of_sets(NODE_SETS, node_set, release), facts(release), paths
         )
     )
 
@@ -95,7 +95,9 @@ def test_a_table_is_read_as_it_is_written(release: str) -> None:
 def test_a_node_of_navigation_by_release(node: str, releases: tuple[str, ...]) -> None:
     started = [it for it in RELEASES if node in {fact.node.name for fact in facts(it)}]
     there = [
-        it for it in RELEASES if node in {n.name for n in stack_nodes(STACKS, "navigation", it)}
+        it
+        for it in RELEASES
+        if node in {n.name for n in nodes_of_sets(NODE_SETS, "navigation", it)}
     ]
     assert tuple(started) == tuple(there) == releases
 
@@ -108,8 +110,8 @@ def launched(name: str, remaps: str = "", executable: str = "server") -> LaunchF
     return LaunchFact("nav", LaunchedNode("node", "nav", executable, name, "", remaps, 1), PLACE)
 
 
-def ours(name: str, *rules: str) -> StackNode:
-    return StackNode(name, name, frozenset(rules))
+def ours(name: str, *rules: str) -> SetNode:
+    return SetNode(name, name, frozenset(rules))
 
 
 @pytest.mark.parametrize(
@@ -120,10 +122,10 @@ def ours(name: str, *rules: str) -> StackNode:
         pytest.param(ours("a"), launched("b"), [NOT_STARTED, NOT_OURS], id="another-node"),
         pytest.param(ours("a"), launched("a", "x:=y"), [RULE_MISSING], id="a-rule-more"),
         pytest.param(ours("a", "x:=y"), launched("a"), [RULE_NOT_THERE], id="a-rule-less"),
-        pytest.param(ours("a"), launched("a", "/tf:=tf x:=x"), [], id="no-rule-of-the-stack"),
+        pytest.param(ours("a"), launched("a", "/tf:=tf x:=x"), [], id="no-rule-of-the-node-set"),
     ],
 )
-def test_a_difference_is_noticed(node: StackNode, fact: LaunchFact, kinds: list[str]) -> None:
+def test_a_difference_is_noticed(node: SetNode, fact: LaunchFact, kinds: list[str]) -> None:
     assert [it.kind for it in launch_differences("s", [node], [fact], PATHS)] == kinds
 
 

@@ -26,7 +26,7 @@ WRITTEN = (ROOT / "docs" / STANDS_FOR).read_text()
 
 
 def rows(page: str) -> list[list[str]]:
-    """The cells of the rows of tables."""
+    """Return the cells of the rows of tables."""
     return [line.split(" | ") for line in page.splitlines() if line.startswith("| ")]
 
 

@@ -15,7 +15,7 @@ from paths import FIXTURES
 
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.knowledge.declared import DECLARED, YAML
-from multibot_rewrite.knowledge.stacks import every_release
+from multibot_rewrite.knowledge.node_sets import every_release
 from multibot_rewrite.producers.sources.records import Place
 from tools.interfaces.declared_table import plugin_owners
 from tools.interfaces.parameter_comparison import (

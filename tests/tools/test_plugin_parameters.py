@@ -17,7 +17,7 @@ HEAD = "void Drive::Configure(const std::shared_ptr<const sdf::Element> &_sdf) {
 
 
 def read(line: str, before: str = "") -> list[Parameter]:
-    """What a function of a plugin reads."""
+    """Return what a function of a plugin reads."""
     return list(parameters_of([("Drive.cc", f"{before}{HEAD}{line}\n}}\n")]))
 
 
@@ -104,7 +104,7 @@ class Timer {
 
 
 def made_of(folders: list[Path]) -> str:
-    """What is printed where nothing is known yet."""
+    """Return what is printed where nothing is known yet."""
     return plugin_files.new_values(folders, Definitions({}, ""))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``python -m tools.bringups FOLDER``: does a fleet start what the vendor's bringup starts?
+"""``python -m tools.bringups FOLDER``: compare what a fleet starts with the vendor's bringup.
 
 FOLDER has a checkout of each repository of ``bringups.tsv``, called owner+name. The bringup is
 started with stubs for its programs, and so is the fleet that ``multibot init`` and ``multibot build``

@@ -18,7 +18,7 @@ from pathlib import Path
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.releases import RELEASES
 from multibot_rewrite.description.rewriters.plugin_definitions import load_definitions
-from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.knowledge.node_sets import built_in
 from multibot_rewrite.producers.sources.records import joined
 from tools.interfaces import plugin_files, sdf_elements
 from tools.interfaces.checkouts import read_folder

@@ -83,7 +83,7 @@ def is_same(fact: Fact, end: Endpoint) -> bool:
 
 
 def same_name(one: str, other: str, node: str) -> bool:
-    """Can both names be one?"""
+    """Return whether both names can be one."""
     plain = [_plain(it, node) for it in (one, other)]
     return bool(
         _pattern(plain[0]).fullmatch(_sample(plain[1]))

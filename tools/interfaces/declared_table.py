@@ -19,7 +19,7 @@ from typing import NamedTuple
 from multibot_rewrite.base.bounded import load_yaml
 from multibot_rewrite.base.releases import RELEASES as EVERY
 from multibot_rewrite.knowledge.declared import ANY, CHECKS, DECLARED, RELEASES, YAML, checks_in
-from multibot_rewrite.knowledge.stacks import every_release
+from multibot_rewrite.knowledge.node_sets import every_release
 from multibot_rewrite.producers.sources.records import Place
 from multibot_rewrite.rules.files.parameter_files import NO_DEFAULT, beyond
 from tools.interfaces.parameter_facts import ParameterFact, read_parameters

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Our stacks held against the launch files that start their nodes.
+"""Our node sets held against the launch files that start their nodes.
 
-Four kinds of difference: ``not started`` (no launch file of the release starts a node of the stack),
-``not ours`` (the stack lacks a node), ``rule missing`` and ``rule not there`` (remap rules).
+Four kinds of difference: ``not started`` (no launch file of the release starts a node of the node set),
+``not ours`` (the node set lacks a node), ``rule missing`` and ``rule not there`` (remap rules).
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ _TF = ("/tf:=tf", "/tf_static:=tf_static")
 _NO_PART = ("component_container", "component_container_isolated", "rviz2")
 
 
-class StackNode(NamedTuple):
-    """A node of a stack: its name there, the node's own, and its remap rules."""
+class SetNode(NamedTuple):
+    """A node of a node set: its name there, the node's own, and its remap rules."""
 
     name: str
     node: str
@@ -35,37 +35,37 @@ class LaunchDifference(NamedTuple):
     """``what`` is a node's name, or its name and a rule."""
 
     kind: str
-    stack: str
+    node_set: str
     what: str
 
 
 def launch_files() -> Mapping[str, Sequence[str]]:
-    """Stack -> its launch files, as ``launch_stacks.yaml`` has them."""
-    text = files("tools.interfaces").joinpath("launch_stacks.yaml").read_text("utf-8")
-    found: Mapping[str, Sequence[str]] = load_yaml(text, "launch_stacks.yaml")
+    """Node set -> its launch files, as ``launched_node_sets.yaml`` has them."""
+    text = files("tools.interfaces").joinpath("launched_node_sets.yaml").read_text("utf-8")
+    found: Mapping[str, Sequence[str]] = load_yaml(text, "launched_node_sets.yaml")
     return found
 
 
-def stack_nodes(stacks: str, stack: str, release: str) -> tuple[StackNode, ...]:
-    """Return the nodes of a stack in a release, from the text of stacks.yaml; not those it includes."""
-    entries = load_yaml(stacks, "stacks.yaml")["stacks"][stack].get("nodes", ())
+def nodes_of_sets(node_sets: str, node_set: str, release: str) -> tuple[SetNode, ...]:
+    """Return a node set's own nodes in a release, from the text of node_sets.yaml."""
+    entries = load_yaml(node_sets, "node_sets.yaml")["node_sets"][node_set].get("nodes", ())
     rows = [it if isinstance(it, dict) else {"node": it} for it in entries]
     return tuple(_node(it) for it in rows if has_release(it.get("releases", ""), release))
 
 
-def _node(entry: Mapping[str, object]) -> StackNode:
+def _node(entry: Mapping[str, object]) -> SetNode:
     node = str(entry["node"])
     remaps = entry.get("remaps", {})
     rules = remaps.items() if isinstance(remaps, dict) else ()
-    return StackNode(
+    return SetNode(
         str(entry.get("as", node)), node, frozenset(f"{old}:={new}" for old, new in rules)
     )
 
 
 def launch_differences(
-    stack: str, ours: Iterable[StackNode], facts: Iterable[LaunchFact], paths: Sequence[str]
+    node_set: str, ours: Iterable[SetNode], facts: Iterable[LaunchFact], paths: Sequence[str]
 ) -> Iterator[LaunchDifference]:
-    """Where a stack and its launch files differ; nothing where the release has none of the files."""
+    """Where a node set and its launch files differ; nothing where the release has none of the files."""
     started = _started(facts, paths)
     if not started:
         return
@@ -74,15 +74,15 @@ def launch_differences(
     for name, node in there.items():
         found = started.get(name, started.get(node.node))
         if found is None:
-            yield LaunchDifference(NOT_STARTED, stack, name)
+            yield LaunchDifference(NOT_STARTED, node_set, name)
             continue
         for rule in sorted(found - node.rules):
-            yield LaunchDifference(RULE_MISSING, stack, f"{name} {rule}")
+            yield LaunchDifference(RULE_MISSING, node_set, f"{name} {rule}")
         for rule in sorted(node.rules - found):
-            yield LaunchDifference(RULE_NOT_THERE, stack, f"{name} {rule}")
+            yield LaunchDifference(RULE_NOT_THERE, node_set, f"{name} {rule}")
     known = {*there, *(it.node for it in there.values())}
     for name in sorted(started.keys() - known):
-        yield LaunchDifference(NOT_OURS, stack, name)
+        yield LaunchDifference(NOT_OURS, node_set, name)
 
 
 def _started(facts: Iterable[LaunchFact], paths: Sequence[str]) -> dict[str, frozenset[str]]:

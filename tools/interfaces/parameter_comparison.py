@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Our table of parameters held against what the sources say: where do the two differ?
+"""Compare our table of parameters with what the sources say.
 
 Three kinds of difference: ``missing`` (a parameter of ours is in no source of a release that it is
 claimed for), ``default`` (the sources have another one), ``unknown`` (a parameter of the sources looks

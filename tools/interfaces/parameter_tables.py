@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``python -m tools.interfaces.parameter_tables TABLES RELEASE FOLDER...``
+"""``python -m tools.interfaces.parameter_tables TABLES RELEASE FOLDER...``: read sources.
 
 Each FOLDER is a checkout of a tag or commit and is called REPOSITORY@VERSION, with + for a slash in
 REPOSITORY. The tables ``parameters_RELEASE.tsv`` and ``launch_RELEASE.tsv`` are written to TABLES.

@@ -48,7 +48,7 @@ def _ends(branch: Any) -> bool:
 
 
 def is_conditional(node: Node) -> bool:
-    """Is it in a part of its function that may be left out?"""
+    """Return whether it is in a part of its function that may be left out."""
     above = node.parent
     while above is not None and above.type != "function_definition":
         if above.type in CONDITIONAL:

@@ -248,7 +248,7 @@ def _is_computed(name: Node) -> bool:
 
 
 def _is_element(function: Node) -> bool:
-    """Is an element asked, by the name of its variable?"""
+    """Return whether an element is asked, by the name of its variable."""
     asked = re.split(r"\.|->", text_of(function.child_by_field_name("argument")))[-1]
     return _ELEMENT.fullmatch(asked) is not None
 

@@ -21,8 +21,8 @@ from typing import NamedTuple
 import yaml
 
 from multibot_rewrite.base.releases import CAME, RELEASES
+from multibot_rewrite.knowledge.node_sets import every_release
 from multibot_rewrite.knowledge.packages import COMMENT, NONE
-from multibot_rewrite.knowledge.stacks import every_release
 
 SOURCES = Path("fixtures/interfaces/sources.tsv")
 # What sources.tsv calls otherwise than rosdistro.

@@ -8,12 +8,12 @@ from importlib.resources import files
 from pathlib import Path
 
 from multibot_rewrite.base.releases import RELEASES
-from multibot_rewrite.knowledge.stacks import every_release
+from multibot_rewrite.knowledge.node_sets import every_release
 from tools.interfaces.declared_table import plugin_owners
 from tools.interfaces.launch_comparison import (
     launch_differences,
     launch_files,
-    stack_nodes,
+    nodes_of_sets,
 )
 from tools.interfaces.parameter_comparison import differences, our_parameters
 from tools.interfaces.parameter_facts import ParameterFact, read_parameters
@@ -32,7 +32,7 @@ our table no longer has, *excepted* those with a reason in `parameters_exception
 |---|--:|--:|--:|--:|--:|--:|
 """
 _LAUNCH = """
-Our stacks against the launch files that start them (`launch_stacks.yaml`): nodes and remap rules.
+Our node sets against the launch files that start them (`launched_node_sets.yaml`).
 
 | release | launched nodes | components | differences | corrected | excepted |
 |---|--:|--:|--:|--:|--:|
@@ -69,11 +69,13 @@ def _row(tables: Path, release: str, facts: tuple[ParameterFact, ...]) -> str:
 def _launches(tables: Path, release: str) -> str:
     """Return the row of a release about launch files."""
     facts = read_launches(_text(tables / f"launch_{release}.tsv"))
-    stacks = files("multibot_rewrite.knowledge").joinpath("stacks.yaml").read_text("utf-8")
+    node_sets = files("multibot_rewrite.knowledge").joinpath("node_sets.yaml").read_text("utf-8")
     left = sum(
         1
-        for stack, paths in launch_files().items()
-        for _ in launch_differences(stack, stack_nodes(stacks, stack, release), facts, paths)
+        for node_set, paths in launch_files().items()
+        for _ in launch_differences(
+            node_set, nodes_of_sets(node_sets, node_set, release), facts, paths
+        )
     )
     corrected = _corrected(tables / "launch_corrected.tsv", release)
     components = sum(it.node.kind == "component" for it in facts)

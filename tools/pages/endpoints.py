@@ -6,7 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from multibot_rewrite.base.releases import RELEASES
-from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.knowledge.node_sets import built_in
 from tools.interfaces.compare import differences, excepted, exceptions_of
 from tools.interfaces.table import from_table
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page of known nodes and stacks, of all releases."""
+"""The page of known nodes and node sets, of all releases."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.knowledge.conditions import said
 from multibot_rewrite.knowledge.controller_ways import CONTROLLER_WAYS, ControllerWay
-from multibot_rewrite.knowledge.node_library import NodeLibrary, Stack
+from multibot_rewrite.knowledge.node_library import NodeLibrary, NodeSet
+from multibot_rewrite.knowledge.node_sets import every_release
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
-from multibot_rewrite.knowledge.stacks import every_release
 from tools.pages.markdown import plain
 
 HEAD = """\
 # Known nodes
 
-The topics, services and actions of known nodes, and the stacks of nodes that are started together.
-How they are used and what the columns say: [nodes and stacks](stacks.md).
+The topics, services and actions of known nodes, and the node sets of nodes that are started together.
+How they are used and what the columns say: [nodes and node sets](node-sets.md).
 
 ## Where a controller's rules stand
 
@@ -36,8 +36,8 @@ HELPER = "a helper node uses it: only a rule for the whole process reaches it"
 def page() -> str:
     """Return the whole page as Markdown."""
     library = every_release()
-    parts = [HEAD, *(_controllers(it) for it in CONTROLLER_WAYS), "\n## Stacks\n"]
-    parts += [_stack(name, stack) for name, stack in library.stacks.items()]
+    parts = [HEAD, *(_controllers(it) for it in CONTROLLER_WAYS), "\n## Node sets\n"]
+    parts += [_node_set(name, node_set) for name, node_set in library.node_sets.items()]
     nodes = sorted(library.nodes.values(), key=lambda it: it.name.lower())
     parts.append(REACH)
     parts += [row for node in nodes for row in _reach(node)]
@@ -55,11 +55,11 @@ def _controllers(way: ControllerWay) -> str:
     return f"| {way.releases} | {given} | {handed} | {way.source} |\n"
 
 
-def _stack(name: str, stack: Stack) -> str:
-    lines = [f"\n### {name}\n\n{stack.about}.\n\n"]
-    within = f", in the container `{stack.container}`" if stack.container else ""
-    lines += [f"- all nodes of {other}{within}\n" for other in stack.include]
-    lines += [f"- {_member(node)}\n" for node in stack.nodes]
+def _node_set(name: str, node_set: NodeSet) -> str:
+    lines = [f"\n### {name}\n\n{node_set.about}.\n\n"]
+    within = f", in the container `{node_set.container}`" if node_set.container else ""
+    lines += [f"- all nodes of {other}{within}\n" for other in node_set.include]
+    lines += [f"- {_member(node)}\n" for node in node_set.nodes]
     return "".join(lines)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The JSON schema of a file of nodes and stacks: ``python -m tools.schemas.nodes``.
+"""The JSON schema of a file of nodes and node sets: ``python -m tools.schemas.nodes``.
 
 It has the keys that the reader takes; what their values may be the reader says.
 """
@@ -16,7 +16,7 @@ from multibot_rewrite.knowledge.node_library import (
     ENTRY_KEYS,
     ENTRY_OF_NODE,
     FILE_KEYS,
-    STACK_KEYS,
+    NODE_SET_KEYS,
 )
 from multibot_rewrite.system.records import ROLES
 from tools.schemas import address
@@ -30,12 +30,14 @@ def schema() -> Schema:
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "$id": address(editors.NODES),
         "title": "Nodes and node sets: multibot plan --nodes, nodes: of a fleet file",
-        **_keys(FILE_KEYS, parts=_named("part"), nodes=_named("node"), stacks=_named("stack")),
+        **_keys(
+            FILE_KEYS, parts=_named("part"), nodes=_named("node"), node_sets=_named("node_set")
+        ),
         "$defs": {
             "part": _keys(ROLES, **_roles()),
             "node": _keys(ENTRY_OF_NODE, **_roles(), params=_named("param")),
-            "stack": _keys(
-                STACK_KEYS, nodes={"type": "array", "items": _or_word(_keys(ENTRY_KEYS))}
+            "node_set": _keys(
+                NODE_SET_KEYS, nodes={"type": "array", "items": _or_word(_keys(ENTRY_KEYS))}
             ),
             "endpoint": _or_several(_or_word(_keys(ENDPOINT_KEYS))),
             "param": _or_several({"anyOf": [{"enum": list(KINDS)}, _keys(PARAM_KEYS)]}),

@@ -13,12 +13,12 @@ from multibot_rewrite import load_fleet
 
 
 def share(package, *path):
-    """The path of a package's file."""
+    """Return the path of a package's file."""
     return PathJoinSubstitution([FindPackageShare(package), *path])
 
 
 def robots(context):
-    """What each robot needs; the name of the fleet file is known only now."""
+    """Return what each robot needs; the name of the fleet file is known only now."""
     for robot in load_fleet(LaunchConfiguration("fleet").perform(context)).robots:
         yield Node(
             package="robot_state_publisher",
@@ -45,7 +45,7 @@ def robots(context):
 
 
 def generate_launch_description():
-    """The simulator, then robot by robot."""
+    """Return the simulator, then robot by robot."""
     return LaunchDescription(
         [
             DeclareLaunchArgument(

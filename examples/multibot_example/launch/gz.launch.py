@@ -13,12 +13,12 @@ SIM = {"use_sim_time": True}
 
 
 def share(package, *path):
-    """The path of a package's file."""
+    """Return the path of a package's file."""
     return PathJoinSubstitution([FindPackageShare(package), *path])
 
 
 def bridge(namespace, file):
-    """What carries topics between gz-sim and ROS."""
+    """Return the node that carries topics between gz-sim and ROS."""
     return Node(
         package="ros_gz_bridge",
         executable="parameter_bridge",
@@ -28,7 +28,7 @@ def bridge(namespace, file):
 
 
 def actions(robot):
-    """What one robot needs."""
+    """Return the actions that one robot needs."""
     its_node = robot.node("robot_state_publisher")
     its_node["parameters"] = [
         params_file("params.yaml"),
@@ -46,7 +46,7 @@ def actions(robot):
 
 
 def generate_launch_description():
-    """The simulator, then robot by robot, then one window for all of them."""
+    """Return the simulator, then robot by robot, then one window for all of them."""
     return LaunchDescription(
         [
             DeclareLaunchArgument(

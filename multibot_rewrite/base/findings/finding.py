@@ -9,8 +9,6 @@ each below its title: ``Bad``, ``Fixed`` (what ``--fix`` makes), ``Good``, and `
 for each other file. ``Bad (line N)`` says where the finding is.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache, lru_cache, partial
@@ -190,7 +188,7 @@ class Rule(NamedTuple):
         return rule_page(self.code).fix
 
     @property
-    def page(self) -> RulePage:
+    def page(self) -> "RulePage":
         """The page with the examples."""
         return rule_page(self.examples or self.code)
 

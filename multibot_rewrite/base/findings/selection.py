@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which rules are on, and at which level: the same for every command and configuration."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
@@ -26,11 +24,16 @@ if TYPE_CHECKING:
         them to levels or ``OFF``."""
 
         @property
-        def select(self) -> Sequence[str]: ...
+        def select(self) -> Sequence[str]:
+            """Return the codes and names of rules that alone are wanted."""
+
         @property
-        def ignore(self) -> Sequence[str]: ...
+        def ignore(self) -> Sequence[str]:
+            """Return the codes and names of rules that are off."""
+
         @property
-        def levels(self) -> Mapping[str, str]: ...
+        def levels(self) -> Mapping[str, str]:
+            """Return the chosen level of each rule."""
 
 
 class Selection(NamedTuple):
@@ -41,7 +44,7 @@ class Selection(NamedTuple):
     levels: Mapping[str, str] = NO_LEVELS
 
 
-def selected(findings: Iterable[Finding], selection: Selecting) -> list[Finding]:
+def selected(findings: Iterable[Finding], selection: "Selecting") -> list[Finding]:
     """Return the findings of rules that are on, with the level that the selection gives each."""
     return [
         it._replace(level=level_of(selection, it.code, it.level))
@@ -61,20 +64,20 @@ def matched(codes: Sequence[str], code: str) -> int:
     return max([len(it) for it in codes if code.startswith(it)], default=-1)
 
 
-def is_on(selection: Selecting, code: str) -> bool:
+def is_on(selection: "Selecting", code: str) -> bool:
     """Return whether the rule is on; the longer of the codes that select and ignore it counts."""
     decided = _level_key(selection, code)
     off = len(decided) if selection.levels.get(decided) == OFF else -1
     return matched(selection.select, code) > max(matched(selection.ignore, code), off)
 
 
-def level_of(selection: Selecting, code: str, default: str) -> str:
+def level_of(selection: "Selecting", code: str, default: str) -> str:
     """Return the level that the selection gives a rule, by the longest beginning of its code."""
     level = selection.levels.get(_level_key(selection, code), OFF)
     return default if level == OFF else level
 
 
-def _level_key(selection: Selecting, code: str) -> str:
+def _level_key(selection: "Selecting", code: str) -> str:
     if not selection.levels:
         return ""
     return max((it for it in selection.levels if code.startswith(it)), key=len, default="")

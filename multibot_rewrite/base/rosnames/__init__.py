@@ -6,8 +6,6 @@ Sources: rcl ``arguments.c`` (``_rcl_parse_remap_begin_remap_rule`` and what it 
 ``node_resolve_name.c`` for the rest.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
@@ -89,27 +87,26 @@ def read_remap(text: str) -> RemapRule | NameFault:
     at += len(scheme)
     source = _PATH.match(text, at)
     if source is None:
-        return _refused(text, at, "a name")
+        return _unexpected_character(text, at, "a name")
     return _sides(text, node, scheme, source.span(), _PATH)
 
 
 def _sides(
     text: str, node: str, scheme: str, source: tuple[int, int], form: re.Pattern[str]
 ) -> RemapRule | NameFault:
-    """Return the rule with a left side up to ``source[1]`` and a right side of ``form``, or its
-    fault."""
+    """Return the rule with its left side up to ``source[1]`` and its right side, or its fault."""
     start, end = source
     if not text.startswith(":=", end):
-        return _refused(text, end, "':='")
+        return _unexpected_character(text, end, "':='")
     target = None if text.startswith(SCHEMES, end + 2) else form.match(text, end + 2)
     if target is None:
-        return _refused(text, end + 2, _FORMS[form])
+        return _unexpected_character(text, end + 2, _FORMS[form])
     if target.end() != len(text):
-        return _refused(text, target.end(), "the end")
+        return _unexpected_character(text, target.end(), "the end")
     return RemapRule(node, text[start:end], target[0], start, end + 2, scheme)
 
 
-def _refused(text: str, at: int, wanted: str) -> NameFault:
+def _unexpected_character(text: str, at: int, wanted: str) -> NameFault:
     found = next((hint for key, hint in _HINTS.items() if text.startswith(key, at)), "")
     if not found:
         found = repr(text[at]) if at < len(text) else "the end"
@@ -146,15 +143,15 @@ def remapped_node(node: str, namespace: str, rules: Iterable[RemapRule]) -> tupl
     namespace = namespace if namespace.startswith("/") else f"/{namespace}"
     _demand("node name", node, check_node_name(node))
     _demand("namespace", namespace, check_namespace(namespace))
-    node = _first(rules, NODE_KEYS, node) or node
-    namespace = _first(rules, (NAMESPACE_KEY,), node) or namespace
+    node = _first_target(rules, NODE_KEYS, node) or node
+    namespace = _first_target(rules, (NAMESPACE_KEY,), node) or namespace
     # rmw_create_node looks at both once more: a rule may end in a slash or be too long.
     _demand("node name", node, check_node_name(node))
     _demand("namespace", namespace, check_namespace(namespace))
     return node, namespace
 
 
-def _first(rules: Iterable[RemapRule], keys: tuple[str, ...], node: str) -> str:
+def _first_target(rules: Iterable[RemapRule], keys: tuple[str, ...], node: str) -> str:
     return next((r.target for r in rules if r.source in keys and r.node in ("", node)), "")
 
 
@@ -198,13 +195,3 @@ def resolve_bound(name: str, kind: str, bound: BoundNode) -> str:
     full = (bound.services if kind == "service" else bound.topics).get(full, full)
     _demand(f"{kind} name", full, check_full_name(full))
     return full
-
-
-def resolve_name(
-    name: str, kind: str, node: str, namespace: str, rules: Iterable[RemapRule]
-) -> str:
-    """Return the name that ``name`` becomes, a topic or service of ``node`` started in
-    ``namespace`` with ``rules``. ``node`` and ``namespace`` are those before the rules; ``rules``
-    the node's own ones followed by the process's. Raises UsageError where rcl refuses the node or
-    the name. See ``bind`` for many."""
-    return resolve_bound(name, kind, bind(node, namespace, rules))

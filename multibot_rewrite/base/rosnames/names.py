@@ -6,8 +6,6 @@ rcl ``validate_topic_name.c`` and ``expand_topic_name.c``; rmw ``validate_full_t
 ``validate_namespace.c``, ``validate_node_name.c`` and their headers (the limits).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from itertools import pairwise
 from typing import NamedTuple
@@ -90,24 +88,24 @@ def _braces_and_letters(name: str) -> NameFault | None:
                 opened = -1
             elif letter not in _TOKEN:
                 reason = "does not belong in a {substitution}: letters, digits and underscores do"
-                return _at(name, at, reason)
+                return _fault_at(name, at, reason)
             elif letter in _DIGITS and at == opened + 1:
-                return _at(name, at, "is a digit, with which no substitution starts")
+                return _fault_at(name, at, "is a digit, with which no substitution starts")
         elif letter == "{":
             opened = at
         elif letter == "}":
-            return _at(name, at, "closes what was not opened")
+            return _fault_at(name, at, "closes what was not opened")
         elif letter == "~" and at:
-            return _at(name, at, "may only be the first character")
+            return _fault_at(name, at, "may only be the first character")
         elif letter not in _TOKEN and letter not in "/~":
-            return _at(name, at, "is not a letter, a digit, or one of _ / ~ { }")
-    return _at(name, opened, "is not closed") if opened >= 0 else None
+            return _fault_at(name, at, "is not a letter, a digit, or one of _ / ~ { }")
+    return _fault_at(name, opened, "is not closed") if opened >= 0 else None
 
 
 def _first_letters(name: str) -> NameFault | None:
     # Two characters, as "~a", pass: rcl never looks at the last one here.
     if name[0] == "~" and len(name) > 2 and name[1] != "/":
-        return _at(name, 1, "follows '~', which only a slash may follow")
+        return _fault_at(name, 1, "follows '~', which only a slash may follow")
     for at, (letter, following) in enumerate(pairwise(name), 1):
         if letter == "/" and following in _DIGITS:
             return _digit_first(name, at)
@@ -121,7 +119,7 @@ def _full_form(name: str) -> NameFault | None:
     if not name:
         return NameFault("it is empty", 0)
     if name[0] != "/":
-        return _at(name, 0, "is not the slash that a fully qualified name starts with")
+        return _fault_at(name, 0, "is not the slash that a fully qualified name starts with")
     if name.endswith("/"):
         return _slash_last(name)
     return _letters(name, _TOKEN | {"/"}, "a letter, a digit, an underscore or a slash") or (
@@ -132,7 +130,7 @@ def _full_form(name: str) -> NameFault | None:
 def _pairs(name: str) -> NameFault | None:
     for at, (letter, following) in enumerate(pairwise(name), 1):
         if letter == following == "/":
-            return _at(name, at, "is a slash right after a slash")
+            return _fault_at(name, at, "is a slash right after a slash")
         if letter == "/" and following in _DIGITS:
             return _digit_first(name, at)
     return None
@@ -141,20 +139,20 @@ def _pairs(name: str) -> NameFault | None:
 def _letters(name: str, allowed: frozenset[str], words: str) -> NameFault | None:
     for at, letter in enumerate(name):
         if letter not in allowed:
-            return _at(name, at, f"is not {words}")
+            return _fault_at(name, at, f"is not {words}")
     return None
 
 
-def _at(name: str, at: int, reason: str) -> NameFault:
+def _fault_at(name: str, at: int, reason: str) -> NameFault:
     return NameFault(f"character {at + 1}, {name[at]!r}, {reason}", at)
 
 
 def _digit_first(name: str, at: int) -> NameFault:
-    return _at(name, at, "is a digit, with which no part of a name starts")
+    return _fault_at(name, at, "is a digit, with which no part of a name starts")
 
 
 def _slash_last(name: str) -> NameFault:
-    return _at(name, len(name) - 1, "is a slash at the end")
+    return _fault_at(name, len(name) - 1, "is a slash at the end")
 
 
 def _too_long(name: str, limit: int) -> NameFault | None:

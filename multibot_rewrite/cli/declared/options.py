@@ -5,8 +5,6 @@ A kind is a function: first what the option is for, then the words behind its ki
 module and the reader of the pages import nothing heavy: a help text is made of them alone.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import Any, NamedTuple

@@ -253,8 +253,7 @@ def outside_frames(inventory: Inventory, renames: RenameMap) -> Iterator[Problem
 
 
 def reordered(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
-    """Yield joints whose order changes: urdfdom sorts siblings by name, and pinocchio's
-    configuration vector has that order."""
+    """Yield joints that urdfdom sorts by name: pinocchio's configuration vector has that order."""
     if renames.naming.affix != POSTFIX or "joint" not in renames.naming.separators:
         return
     # Those of an SRDF are in its URDF.
@@ -284,7 +283,7 @@ def ignored_namespaces(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     release = tree.definitions.release
     for model in [] if _are_read(tree) else _with_namespace(inventory):
         who = f"Gazebo {GAZEBO.get(release, 'of main')} ({release})"
-        message = f"{who} does not read the namespace {namespace_of(model)!r} of {_named(model)}"
+        message = f"{who} does not read the namespace {namespace_of(model)!r} of {_name_of(model)}"
         yield Problem(model, message, None, "set the topics of its plugins", (), IGNORED)
 
 
@@ -300,7 +299,7 @@ def used_namespaces(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     for model in models:
         if count := sum(model in plugin.iterancestors() for plugin in below):
             puts = f"{plural(count, 'plugin')} {'puts' if count == 1 else 'put'}"
-            what = f"the namespace {namespace_of(model)!r} of {_named(model)}"
+            what = f"the namespace {namespace_of(model)!r} of {_name_of(model)}"
             message = f"{puts} {what} in front of relative topics, if Gazebo was built with that"
             yield Problem(model, message, None, "absolute topics hold everywhere", (), IN_USE)
 
@@ -317,6 +316,6 @@ def _with_namespace(inventory: Inventory) -> list[_Element]:
     return [model for model in models if namespace_of(model)]
 
 
-def _named(model: _Element) -> str:
+def _name_of(model: _Element) -> str:
     name = text_at(model, "name") if model.tag == INCLUDE else model.get("name")
     return f"model {name!r}" if name else f"this <{model.tag}>"

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The links and joints of a URDF as records, for rules about the kinematic tree."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple, TypeVar
 
@@ -167,8 +165,7 @@ def is_tree(robot: Robot) -> bool:
 
 
 def loops(robot: Robot) -> list[list[Joint]]:
-    """Return loops of joints; a joint from a link to itself is not one. Of loops that share links
-    one is found."""
+    """Return loops of joints, one of those that share links; a joint from a link to itself is none."""
     rest = _not_of_a_tree(robot)
     done: set[str] = set()
     found = []

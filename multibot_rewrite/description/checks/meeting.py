@@ -49,7 +49,7 @@ def shared_by_all(
     the robot's is the same for all. Raises ProofError for a text that is no XML, and for a frame that
     was left below the name of the model.
     """
-    robot = _unused(document)
+    robot = _unused_robot_name(document)
     return shared_with(document, fill(pieces, robot), robot, naming, definitions)
 
 
@@ -63,7 +63,7 @@ def said_of(robot: str, found: Iterable[Said]) -> Iterator[Said]:
         yield it._replace(message=message, hint=hint)
 
 
-def _unused(document: Document) -> str:
+def _unused_robot_name(document: Document) -> str:
     robot = TWIN
     while robot.encode() in document.source:
         robot += "x"
@@ -79,7 +79,7 @@ def shared_by_both(
 ) -> Iterator[Problem]:
     """Yield the names that these two robots would share, but not every robot, as ``arm_left`` of ``b``
     and ``arm`` of ``left_b``."""
-    twin = _unused(document)
+    twin = _unused_robot_name(document)
     named = {it: read(fill(pieces, it), document.file, definitions).names for it in (*robots, twin)}
     every = {(it.kind, it.name) for it in meeting.same_for_all(named.pop(twin), twin, naming)}
     for met in meeting.meetings(named, naming):
@@ -114,7 +114,7 @@ def shared_with(
     yield from found
     if not found and robot.encode() not in text:
         yield from _same_text(document, naming, definitions)
-    if next(document.root.iter("link"), None) is None:
+    if all(document.root.find(it) is None for it in ("link", ".//model/link", ".//include")):
         from multibot_rewrite.description.sources.included_by import robot_instead  # few ask for it
 
         hint = robot_instead(document.file)
@@ -122,8 +122,7 @@ def shared_with(
 
 
 def _same_text(document: Document, naming: Naming, definitions: Definitions) -> Iterator[Problem]:
-    """Yield a problem if all robots get the same text, and something in it is not kept apart by a
-    namespace."""
+    """Yield a problem if all robots get one text with names that no namespace keeps apart."""
     parts = list(active_parts(document.root, definitions))
     for part in parts:
         if part.opens_something and not (naming.topics == NAMESPACE and part.is_apart):
@@ -206,8 +205,7 @@ GIVEN = {
 
 
 def given(findings: Iterable[Finding], of_world: Iterable[str] = ()) -> str:
-    """Return the conditions of ``verified``: of controllers, and of systems that were left to the
-    world; empty without any."""
+    """Return the conditions of ``verified``: of controllers and systems of the world; empty if none."""
     codes = {it.code for it in findings}
     said = [words for code, words in GIVEN.items() if code in codes]
     systems = ", ".join(sorted(set(of_world)))

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Names of links, joints and lights in values that no site claims: a rewrite leaves them so."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Collection, Iterator
@@ -16,9 +14,9 @@ from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import SiteRow
 from multibot_rewrite.base.naming import TF_TOPICS, Naming, spelled
+from multibot_rewrite.base.releases import ROS_1, ROS_2
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.readback.active import is_loaded
-from multibot_rewrite.description.rewriters.plugin_definitions import Definitions
 from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.rewriters.tree import Tree, TreeNode, values_of_plugin
 from multibot_rewrite.description.steps.collect import Inventory
@@ -102,15 +100,15 @@ def unclaimed_mentions(
         Mention(*slot, telling[slot[3]])
         for slot in _unclaimed(inventory, suspects)
         if not kept(slot[0], slot[2], tree, nodes)
-        and not _is_unread(slot[0], slot[2], tree.definitions)
+        and not _is_unread(slot[0], slot[2], tree, nodes)
         and (telling[slot[3]] in names or _is_meant(slot[0], slot[2], slot[3]))
     ]
 
 
-def _is_unread(element: etree._Element, attribute: str, definitions: Definitions) -> bool:
+def _is_unread(element: etree._Element, attribute: str, tree: Tree, nodes: Nodes) -> bool:
     """Return whether it is text that urdfdom does not read (model.cpp, link.cpp, joint.cpp), or is
-    in a parameter that a plugin or hardware reads in no release, for ROS 1 or 2. Then all that it
-    reads is known. Nothing reads the call of a macro that xacro has left."""
+    in a parameter that a plugin or hardware reads in no release of the ROS that loads it. Then all
+    that it reads is known. Nothing reads the call of a macro that xacro has left."""
     if any(map(is_macro_call, (element, *element.iterancestors()))):
         return True
     parent = element.getparent()
@@ -121,9 +119,12 @@ def _is_unread(element: etree._Element, attribute: str, definitions: Definitions
         path = f"{element.tag}/{path}"
         if parent.tag == HARDWARE:
             name = element.get("name", "")
-            every = [definitions.values(text_at(parent, PLUGIN))]
+            every = [tree.definitions.values(text_at(parent, PLUGIN))]
         elif parent.tag == PLUGIN:
-            every = [values_of_plugin(parent, definitions, it) for it in (False, True)]
+            node = node_of(parent, tree, nodes)
+            loader = node.section.ros if node and node.section else ""
+            flavours = [it == ROS_1 for it in (ROS_2, ROS_1) if loader in ("", it)]
+            every = [values_of_plugin(parent, tree.definitions, it) for it in flavours]
             # A node's own element has a known content.
             name = path[:-1] if path.startswith("ros/") else str(element.tag)
         else:
@@ -160,7 +161,7 @@ def _telling(values: list[str], names: frozenset[str]) -> dict[str, str]:
     telling = {value: value for value in names & different}
     others = [value for value in different - names if value.strip(_NUMERIC)]
     # One look at all of them, then one without files: mostly none holds a name.
-    if _held(" ".join(others), names) and _held(" ".join(map(_without_files, others)), names):
+    if _name_in(" ".join(others), names) and _name_in(" ".join(map(_without_files, others)), names):
         telling |= {value: name for value in others if (name := mentioned(value, names))}
     return telling
 
@@ -169,10 +170,10 @@ def mentioned(value: str, names: frozenset[str]) -> str:
     """Return the name that a value is or holds; empty if it has none."""
     if value in names:
         return value
-    return _held(_without_files(value), names) if value.strip(_NUMERIC) else ""
+    return _name_in(_without_files(value), names) if value.strip(_NUMERIC) else ""
 
 
-def _held(text: str, names: frozenset[str]) -> str:
+def _name_in(text: str, names: frozenset[str]) -> str:
     """Return a name that a text holds; empty if it has none."""
     for it in _looks(names):
         words = it.split(text)

@@ -8,8 +8,6 @@ urdfdom and sdformat: the origin of a joint is the child's frame in the parent's
 the child's.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from math import atan2, cos, hypot, isfinite, sin, sqrt
@@ -118,7 +116,7 @@ def pose_of(origin: _Element | None) -> Pose | None:
     Of two rotations the quaternion counts.
     """
     at = vector(ZERO if origin is None else origin.get("xyz", ZERO))
-    turn = quaternion(origin) or _rolled(origin)
+    turn = quaternion(origin) or _rotation_of(origin)
     return None if at is None or turn is None else Pose(at, matrix_of_quaternion(turn))
 
 
@@ -133,18 +131,17 @@ def quaternion(origin: _Element | None) -> Quaternion | None:
 
 def rolled(origin: _Element) -> Matrix | None:
     """Return the rotation of ``rpy`` alone."""
-    turn = _rolled(origin)
+    turn = _rotation_of(origin)
     return None if turn is None else matrix_of_quaternion(turn)
 
 
-def _rolled(origin: _Element | None) -> Quaternion | None:
+def _rotation_of(origin: _Element | None) -> Quaternion | None:
     rpy = vector(ZERO if origin is None else origin.get("rpy", ZERO))
     return None if rpy is None else quaternion_of_rpy(rpy)
 
 
 def link_poses(robot: Robot) -> Mapping[str, Pose]:
-    """Return each link's pose in the root of its tree; those below an origin that is no number are
-    left out."""
+    """Return each link's pose in the root of its tree, without those below an invalid origin."""
     found = {it.name: HERE for it in roots(robot)}
     todo = list(found)
     for name in todo:  # grows

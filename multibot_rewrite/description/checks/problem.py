@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A problem at an element of a document: what checks and lint rules find, before it has a line."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 

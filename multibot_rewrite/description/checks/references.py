@@ -2,8 +2,6 @@
 """Names that nothing declares, that are ambiguous, or that are declared twice; and a xacro's arguments:
 those that no file knows, those that reach one of a frame and its link."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -159,7 +157,7 @@ ARGUMENT_MISSES_REFERENCE = declare(
 
 
 def missed_by_arguments(
-    inventory: Inventory, renames: RenameMap, plain: Mapping[tuple[str, str], str], robot: str
+    inventory: Inventory, renames: "RenameMap", plain: Mapping[tuple[str, str], str], robot: str
 ) -> Iterator[Problem]:
     """Yield frames that arguments do not rename: ``plain`` maps names without the arguments (kind
     and text) to those that ``robot`` has with them."""
@@ -171,16 +169,16 @@ def missed_by_arguments(
             if name.kind not in FRAME_KINDS or text in links:
                 continue
             if plain.get(("link", text)) in links:
-                yield _missed(claim, text, plain["link", text])
+                yield _missed_reference(claim, text, plain["link", text])
             # A frame with the argument, named after a link without it.
             bare = text.replace(robot, "").strip(SEPARATORS)
             if (name.kind, name.text) in renames.naming.own and bare in links:
                 link = renames.spelled(robot, "link", bare)
                 if link != text:
-                    yield _missed(claim, text, link)
+                    yield _missed_reference(claim, text, link)
 
 
-def _missed(claim: Claim, frame: str, link: str) -> Problem:
+def _missed_reference(claim: Claim, frame: str, link: str) -> Problem:
     message = f"frame {frame!r} is the link {link!r}: the xacro's argument reaches only one of them"
     hint = "write the argument at both, or do not give it"
     return about(claim, ARGUMENT_MISSES_REFERENCE.code, message, hint)

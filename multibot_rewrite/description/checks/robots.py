@@ -29,7 +29,7 @@ def taken_names(
 ) -> Iterator[Problem]:
     """Yield names that stay unchanged, or are shared, and that another name becomes for some robot."""
     yield from _shared_names(inventory, renames, robots)
-    kept = list(_kept(inventory, renames))
+    kept = list(_unchanged_names(inventory, renames))
     # Names that an argument of the xacro made are kept, and another name may become one of them.
     naming = renames.naming._replace(own=NO_OWN_NAMES)
     for robot in robots if kept else ():
@@ -62,7 +62,7 @@ def _shared_names(
                 yield Problem(inventory.document.root, message, None, hint, (), "MB420")
 
 
-def _kept(inventory: Inventory, renames: RenameMap) -> Iterator[tuple[str, str, Claim]]:
+def _unchanged_names(inventory: Inventory, renames: RenameMap) -> Iterator[tuple[str, str, Claim]]:
     """Yield declared names that stay as they are, with those of an SRDF's URDF, and names that are used
     and declared nowhere."""
     for kind, declared in inventory.declared.items():

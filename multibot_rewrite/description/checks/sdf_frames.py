@@ -5,8 +5,6 @@ Source: sdformat.org, "Pose Frame Semantics": a pose is in the frame ``relative_
 joint is in its child, of a frame in what it is attached to, of all others in its model.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from math import radians
 from typing import NamedTuple
@@ -37,6 +35,7 @@ class Named(NamedTuple):
 
     @property
     def tag(self) -> str:
+        """Return the element's tag."""
         return str(self.element.tag)
 
     def text(self, path: str) -> str:
@@ -51,6 +50,7 @@ class Named(NamedTuple):
 
 
 def named_in(model: _Element, scope: str) -> Iterator[Named]:
+    """Yield the named elements of a model and of those in it, with their scopes."""
     for it in model.iterchildren("link", "joint", "frame", "model"):
         name = f"{scope}{it.get('name', '')}"
         yield Named(name, it, scope)
@@ -129,5 +129,6 @@ def ends_of(frames: Frames) -> dict[str, JointEnds]:
 
 
 def seen_from(above: Pose, below: Pose) -> Pose:
+    """Return the pose ``below`` in the frame of ``above``."""
     back = Pose((0.0, 0.0, 0.0), inverse(above.matrix))
     return placed(back, Pose(minus(below.at, above.at), below.matrix))

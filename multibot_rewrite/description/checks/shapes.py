@@ -7,8 +7,6 @@ link without a shape. How large a Collada mesh is, as RViz and Gazebo show it.
 AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION), and ColladaLoader.cc of gz-common does not read it.
 Corners that no triangle has count too: the box may be larger than what is seen."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import reduce
 from io import BytesIO
@@ -62,24 +60,26 @@ def placed_box(box: Extent, pose: Pose) -> Extent:
     """Return the box around a box at a pose."""
     centre = point_in(pose, box.middle)
     x, y, z = minus(box.high, box.middle)
-    reach = _three(abs(a) * x + abs(b) * y + abs(c) * z for a, b, c in pose.matrix)
+    reach = _vector_of(abs(a) * x + abs(b) * y + abs(c) * z for a, b, c in pose.matrix)
     return Extent(minus(centre, reach), plus(centre, reach))
 
 
 def _half(shape: _Element) -> Vector | None:
     """Return half of a shape's size along its own axes."""
     if shape.tag == "box":
-        size = vector(_said(shape, "size"))
+        size = vector(_written_size(shape, "size"))
         return None if size is None or min(size) <= 0 else scaled(size, 0.5)
     if shape.tag not in ("cylinder", "sphere"):
         return None
-    sizes = numbers(f"{_said(shape, 'radius') or '?'} {_said(shape, 'length') or '0'}")
+    sizes = numbers(
+        f"{_written_size(shape, 'radius') or '?'} {_written_size(shape, 'length') or '0'}"
+    )
     if not sizes or sizes[1:2] == () or sizes[0] <= 0:
         return None
     return sizes[0], sizes[0], (sizes[0] if shape.tag == "sphere" else sizes[1] / 2)
 
 
-def _said(shape: _Element, key: str) -> str | None:
+def _written_size(shape: _Element, key: str) -> str | None:
     """Return a size as it is written: an attribute in URDF, an element in SDF."""
     value = shape.get(key)
     return shape.findtext(key) if value is None else value
@@ -100,17 +100,16 @@ def around(extents: Iterable[Extent]) -> Extent | None:
     if not every:
         return None
     low, high = (list(zip(*its, strict=True)) for its in zip(*every, strict=True))
-    return Extent(_three(map(min, low)), _three(map(max, high)))
+    return Extent(_vector_of(map(min, low)), _vector_of(map(max, high)))
 
 
-def _three(values: Iterable[float]) -> Vector:
+def _vector_of(values: Iterable[float]) -> Vector:
     x, y, z = values
     return x, y, z
 
 
 def way_out(shape: _Element, start: Vector, along: Vector) -> float:
-    """Return the distance from a point inside a shape to its face; 0 from a point outside. All in
-    its frame."""
+    """Return the distance from a point inside a shape to its face, in its frame; 0 if outside."""
     half = _half(shape)
     if half is None:
         return 0.0

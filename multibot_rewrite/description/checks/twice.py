@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Does a description carry a robot's name already? A rewrite for that robot would add it once more."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator
 from typing import NamedTuple
@@ -134,7 +132,7 @@ def _most(found: Iterable[UsedName], known: Iterable[UsedName], robot: str) -> b
 
 
 def _problem(inventory: Inventory, robot: str, found: list[UsedName], marked: bool) -> Problem:
-    carried = f"its name is in {_shown(inventory, found)}" if found else ""
+    carried = f"its name is in {_names_in_words(inventory, found)}" if found else ""
     added = "elements were added for it" if marked else ""
     why = " and ".join(filter(None, (carried, added)))
     message = f"the description is already rewritten for {robot}: {why}"
@@ -147,7 +145,7 @@ def _problem(inventory: Inventory, robot: str, found: list[UsedName], marked: bo
     return Problem(inventory.document.root, message, None, hint, (), "MB106")
 
 
-def _shown(inventory: Inventory, found: list[UsedName]) -> str:
+def _names_in_words(inventory: Inventory, found: list[UsedName]) -> str:
     # One of each kind tells more than three links.
     by_kind: dict[str, UsedName] = {}
     for name in found:

@@ -48,7 +48,7 @@ def unknown_parts(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     by_ros = _by_ros(parts, tree.definitions)
     for part in parts:
         if not part.is_known:
-            message, hint = _said(part, tree.definitions, guesses)
+            message, hint = _message_and_hint(part, tree.definitions, guesses)
             yield Problem(part.element, message, None, hint, (), CODES.get(part.kind, "MB902"))
         elif part is old:
             message = f"plugin {part.name!r} is of Gazebo Classic, which is not in {release}"
@@ -77,12 +77,14 @@ def is_unknown(section: PluginDefinition) -> bool:
     return section.select == "plugin" or section.names[0] == ANY_WITH_ROS
 
 
-def _said(part: ActivePart, definitions: Definitions, guesses: Guesses) -> tuple[str, str]:
+def _message_and_hint(
+    part: ActivePart, definitions: Definitions, guesses: Guesses
+) -> tuple[str, str]:
     if part.kind == INCLUDE:
         return (
             f"the included {part.name!r} is not read: its topics and frames stay as they are",
             "put its folder next to the model's, or name the one above it in GZ_SIM_RESOURCE_PATH; "
-            "what is older than SDF 1.7, in a world or a <gazebo>, write it here",
+            "copy a model of SDF 1.6 or older, of a world or of a <gazebo> into this file",
         )
     who = f"{part.kind} {part.name!r}"
     if part.section is not None:

@@ -12,8 +12,6 @@ and any number of joints, sensors, gpios and transmissions; urdfdom model.cpp (`
 material below ``<robot>`` that is there twice is an error; ``assignMaterial``: of a name that the
 model has, whatever is in the visual is not read)."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import NamedTuple
 
@@ -44,14 +42,14 @@ class Once(NamedTuple):
 def said_once(joined: Inventory, part: Inventory) -> Once:
     """Return a part's blocks for the whole robot that are left out: an earlier part has them."""
     managers, others = _managers(joined), _managers(part)
-    said = {plain(it) for block in _blocks(joined) for it in _inside(block)}
+    said = {plain(it) for block in _blocks(joined) for it in _child_elements(block)}
     spans, before = Spans(part.document), Spans(joined.document)
     edits: list[Edit] = []
     more: list[Edit] = []
     notes: list[str] = []
     file = part.document.file
     for block in _blocks(part):
-        doubles = [it for it in _inside(block) if plain(it) in said]
+        doubles = [it for it in _child_elements(block) if plain(it) in said]
         for plugin, names in others.items():
             if plugin.getparent() is not block or plugin in doubles or not managers:
                 continue
@@ -66,10 +64,10 @@ def said_once(joined: Inventory, part: Inventory) -> Once:
             notes += _other_settings(first, plugin, part)
         notes += (
             f"{file}:{it.sourceline}: <{it.tag}> now applies to the whole robot"
-            for it in _inside(block)
+            for it in _child_elements(block)
             if it.tag not in _THINGS and it not in doubles
         )
-        gone = [block] if doubles and len(doubles) == len(_inside(block)) else doubles
+        gone = [block] if doubles and len(doubles) == len(_child_elements(block)) else doubles
         edits += [left_out(spans, it) for it in gone]
     return Once(tuple(edits), tuple(more), tuple(notes))
 
@@ -80,7 +78,7 @@ def _blocks(inventory: Inventory) -> Iterator[_Element]:
             yield it
 
 
-def _inside(element: _Element) -> list[_Element]:
+def _child_elements(element: _Element) -> list[_Element]:
     return list(element.iterchildren("*"))
 
 
@@ -97,7 +95,7 @@ def _more_files(before: Spans, plugin: _Element, other: _Element, spans: Spans) 
     """Yield the edits that move parameter files of a removed plugin into the one that stays."""
     known = {text_of(it) for it in _files(plugin)}
     texts = [spans.text_of(it) for it in _files(other) if text_of(it) not in known]
-    if last := _inside(plugin)[-1:]:
+    if last := _child_elements(plugin)[-1:]:
         at = before.end_of(last[0])
         yield from (was(at, at, b"", b"\n      " + text) for text in texts)
     elif texts:
@@ -109,8 +107,8 @@ def _more_files(before: Spans, plugin: _Element, other: _Element, spans: Spans) 
 
 
 def _other_settings(plugin: _Element, other: _Element, part: Inventory) -> Iterator[str]:
-    first = {plain(it) for it in _inside(plugin)}
-    for it in _inside(other):
+    first = {plain(it) for it in _child_elements(plugin)}
+    for it in _child_elements(other):
         if it.tag != _FILES and plain(it) not in first:
             where = f"{part.document.file}:{it.sourceline}"
             yield f"{where}: <{it.tag}> is left out: the plugin of an earlier part counts"

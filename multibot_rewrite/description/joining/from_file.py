@@ -143,14 +143,14 @@ def part_of(keys: Mapping[str, Any]) -> Part:
         # YAML's true is xacro's true.
         {name: str(it).lower() if isinstance(it, bool) else str(it) for name, it in arguments},
         keys.get("srdf") or None,
-        controllers=tuple(_listed(keys.get("controllers", ()))),
+        controllers=tuple(_as_list(keys.get("controllers", ()))),
         one_system=keys.get("one_system", False),
-        moveit=tuple(_listed(keys.get("moveit", ()))),
+        moveit=tuple(_as_list(keys.get("moveit", ()))),
         rviz=keys.get("rviz", ""),
     )
 
 
-def _listed(value: str | Sequence[str]) -> Sequence[str]:
+def _as_list(value: str | Sequence[str]) -> Sequence[str]:
     return [value] if isinstance(value, str) else value
 
 

@@ -4,8 +4,6 @@
 The first part's file goes on: its declaration, name and attributes are those of the whole. A root
 link ``world`` of a later part is left out, and what is fixed to it is fixed to ``at`` itself."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from math import isfinite
 from typing import NamedTuple
@@ -103,7 +101,7 @@ def _moved(part: ReadPart, joint: Joint, spec: Part, spans: Spans) -> Edit:
         raise InputError(f"{part.file}: <parent> of {joint.name!r}: write its link as plain text")
     edits = [Edit(*slot, spec.at.translate(ESCAPES).encode(), None)]
     edits += _turned(part, joint, spec.pose, spans)
-    return kept.was(start, end, source[start:end], _edited(source[:end], edits)[start:])
+    return kept.was(start, end, source[start:end], _edited_text(source[:end], edits)[start:])
 
 
 def _turned(part: ReadPart, joint: Joint, pose: Sequence[float], spans: Spans) -> Iterator[Edit]:
@@ -137,8 +135,7 @@ _ENDS = 5
 
 
 class JoinedText(NamedTuple):
-    """One description of several: ``notes`` are what a person should know, ``findings`` are about
-    names that have no prefix."""
+    """One description of several; ``notes`` for people, ``findings`` about names without prefix."""
 
     data: bytes
     parts: tuple[Mounted, ...]
@@ -212,16 +209,16 @@ def _added(
     system = one_system(joined, part.inventory) if spec.one_system else Once()
     twice = repeated(joined.document.root, spans)
     edits = [*mount.edits, *twice, *once.part, *system.part]
-    made = _edited(text, [*edits, *own_spaces(joined.document, spans, edits)])
+    made = _edited_text(text, [*edits, *own_spaces(joined.document, spans, edits)])
     own = kept.KeptText(part.name, part.prefix, names, made)
     more = kept.section(own, start, end + len(made) - len(text))
-    base = _edited(data, (*once.joined, *system.joined))
+    base = _edited_text(data, (*once.joined, *system.joined))
     mounted = Mounted(part, spec.at, spec.pose, mount.joint, made)
     notes = (*mount.notes, *once.notes, *system.notes)
     return kept.placed(base, first.name, first.prefix, more), mounted, notes
 
 
-def _edited(text: bytes, edits: Iterable[Edit]) -> bytes:
+def _edited_text(text: bytes, edits: Iterable[Edit]) -> bytes:
     return b"".join(cut(text, sorted(edits, key=lambda it: it.start)))
 
 

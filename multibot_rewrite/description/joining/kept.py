@@ -14,8 +14,6 @@ tag on. What was left out or changed is kept where it was, before the 0 or 1 ele
 A comment holds no ``--``, and no colon before a blank: launch files pass a description as YAML.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -46,8 +44,7 @@ _ESCAPED = lazy_compile(rb"%|-(?=-|\Z)|(?<=:) ")
 
 
 class KeptText(NamedTuple):
-    """A part as a joined text holds it: its ``text`` has its prefix still, and prefixed names of
-    ``materials``."""
+    """A part inside a joined text: its ``text`` with its prefix, and its prefixed ``materials``."""
 
     name: str
     prefix: str
@@ -72,7 +69,7 @@ def without_marks(text: bytes) -> bytes:
 
 def was(start: int, end: int, old: bytes, new: bytes = b"") -> Edit:
     """Return the edit that replaces ``old`` by ``new``, and keeps ``old`` in a comment."""
-    kept = b"<!-- multibot was %d %s -->" % (bool(new), _hidden(old))
+    kept = b"<!-- multibot was %d %s -->" % (bool(new), _with_codes(old))
     return Edit(start, end, kept + new, None)
 
 
@@ -84,13 +81,13 @@ def left_out(spans: Spans, element: _Element) -> Edit:
 def section(it: KeptText, start: int, end: int) -> bytes:
     """Return a part for a joined text; ``start`` and ``end`` delimit the content of its root."""
     names = ",".join(quote(name, safe="") for name in it.materials).replace("--", "-%2D")
-    words = _words(it.name, prefix=it.prefix, materials=names)
-    first = b"  <!-- multibot part %s %s -->" % (words, _hidden(it.text[:start]))
-    last = _END % it.name.encode() + _hidden(it.text[end:]) + b" -->\n"
+    words = _comment(it.name, prefix=it.prefix, materials=names)
+    first = b"  <!-- multibot part %s %s -->" % (words, _with_codes(it.text[:start]))
+    last = _END % it.name.encode() + _with_codes(it.text[end:]) + b" -->\n"
     return first + it.text[start:end] + last
 
 
-def _words(name: str, **more: str) -> bytes:
+def _comment(name: str, **more: str) -> bytes:
     return " ".join([name, *(f"{key}={text}" for key, text in more.items() if text)]).encode()
 
 
@@ -101,7 +98,7 @@ def placed(text: bytes, name: str, prefix: str, more: bytes) -> bytes:
         at = text.index(b" -->\n", last) + len(b" -->\n")
         return text[:at] + more + text[at:]
     at = silenced(text).rindex(b"</")
-    mark = b"  <!-- multibot base %s -->\n" % _words(name, prefix=prefix)
+    mark = b"  <!-- multibot base %s -->\n" % _comment(name, prefix=prefix)
     return text[:at] + mark + more + text[at:]
 
 
@@ -110,7 +107,7 @@ def sections(text: bytes, file: str) -> list[KeptText]:
     # The text with what was left out or changed in its old place.
     spans = Spans(read_document(text, file))
     edits = [
-        Edit(it.start(), _end(spans, it, file), _shown(it[2]), None) for it in _WAS.finditer(text)
+        Edit(it.start(), _end(spans, it, file), _plain(it[2]), None) for it in _WAS.finditer(text)
     ]
     before = b"".join(cut(text, edits))
     mark = _BASE.search(before)
@@ -126,7 +123,7 @@ def sections(text: bytes, file: str) -> list[KeptText]:
             what = f"the comment at the end of part {name.decode()!r} was edited by hand"
             raise InputError(f"{file}: {what}")
         tail = before[close + len(end) : stop]
-        whole = _shown(head) + before[part.end() : close] + _shown(tail)
+        whole = _plain(head) + before[part.end() : close] + _plain(tail)
         names = tuple(unquote(it) for it in materials.decode().split(",") if it)
         found.append(KeptText(name.decode(), prefix.decode(), names, whole))
         last = stop + len(b" -->\n")
@@ -149,9 +146,9 @@ _HIDDEN = {shown: hidden for hidden, shown in _SHOWN.items()}
 _CODE = lazy_compile(rb"%25|%2D|%20")
 
 
-def _hidden(text: bytes) -> bytes:
+def _with_codes(text: bytes) -> bytes:
     return _ESCAPED.sub(lambda it: _HIDDEN[it[0]], text)
 
 
-def _shown(text: bytes) -> bytes:
+def _plain(text: bytes) -> bytes:
     return _CODE.sub(lambda it: _SHOWN[it[0]], text)

@@ -4,8 +4,6 @@
 Sources: urdfdom model.cpp (``initTree``, ``initRoot``: one root, one joint above each link).
 """
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence

@@ -7,8 +7,6 @@ link ``world`` gives way to the link that the part is on, its ros2_control to on
 it.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from itertools import chain
@@ -44,7 +42,7 @@ class Mounted(NamedTuple):
 
     @property
     def is_without_world(self) -> bool:
-        """Does its link ``world`` give way?"""
+        """Whether its link ``world`` gives way to the base."""
         return bool(self.at) and self.part.root == WORLD
 
 
@@ -94,10 +92,10 @@ def _stands_for_it(it: _Element, mounted: Mounted, root: _Element) -> bool:
         return on_world and _moved(it, mounted, root)
     if it.tag == "material":
         return any(other.get("name") == name for other in root.iterchildren("material"))
-    return it.tag == "gazebo" and not it.get("reference") and _is_said(it, root)
+    return it.tag == "gazebo" and not it.get("reference") and _has_block(it, root)
 
 
-def _is_said(block: _Element, root: _Element) -> bool:
+def _has_block(block: _Element, root: _Element) -> bool:
     """Return whether the whole text has all of a block, and of a plugin all parameter files."""
     blocks = [it for it in root.iterchildren("gazebo") if not it.get("reference")]
     said = [it for block in blocks for it in block.iterchildren("*")]
@@ -151,8 +149,7 @@ def _check_tree(root: _Element) -> None:
 
 
 def taken_out(it: KeptText, file: str, tree: Tree) -> bytes:
-    """Return a part of a joined text as it was before; raises InputError if the text was edited by
-    hand."""
+    """Return a part of a joined text as it was; raises InputError if the text was edited by hand."""
     word = word_of(it.name, it.prefix)
     text = bare(it.text, file, word, it.materials) if it.materials else it.text
     if not it.prefix:

@@ -10,8 +10,6 @@ root link), moveit_setup_assistant compute_default_collisions.cpp (``computeConn
 without geometry between two others leave these adjacent).
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from itertools import combinations, product
@@ -55,7 +53,7 @@ class JoinedSemantics(NamedTuple):
     notes: tuple[str, ...]
 
 
-def spelled_srdf(part: ReadPart, data: bytes, file: str, tree: Tree) -> PartSemantics:
+def renamed_srdf(part: ReadPart, data: bytes, file: str, tree: Tree) -> PartSemantics:
     """Return the SRDF of a part with its prefix; raises InputError."""
     declared = declarations(part.data, part.file, tree)
     found = collect(read_document(data, file), tree, declared)
@@ -99,7 +97,7 @@ def joined_srdf(
         files = {link: it.part.file for it in parts for link in it.part.robot.link}
         found = touching(described, others, files, samples)
         reasons |= found.reasons
-        notes = list(_sampled(others, found, samples))
+        notes = list(_sampling(others, found, samples))
     for (one, other), why in reasons.items():
         etree.SubElement(root, "disable_collisions", link1=one, link2=other, reason=why)
     told = dict.fromkeys(str(it) for part in parts for it in part.findings if it.level == WARNING)
@@ -128,21 +126,21 @@ def _adjacent(described: _Element, parts: Iterable[PartSemantics]) -> Iterator[t
     joints = described.iterchildren("joint")
     ends = [(end_of(it, "parent"), end_of(it, "child")) for it in joints]
     beside = sets_by_key((*ends, *((child, parent) for parent, child in ends)))
-    shaped = _shaped(described)
+    shaped = _links_with_collision(described)
     for it in parts:
         own = set(it.part.robot.link)
         for link in sorted(own & shaped):
-            for other in _near(link, beside, shaped):
+            for other in _nearest(link, beside, shaped):
                 if other not in own:
                     yield min(link, other), max(link, other)
 
 
-def _shaped(described: _Element) -> set[str]:
+def _links_with_collision(described: _Element) -> set[str]:
     links = described.iterchildren("link")
     return {it.get("name", "") for it in links if it.find("collision") is not None}
 
 
-def _near(link: str, beside: dict[str, set[str]], shaped: Collection[str]) -> Iterator[str]:
+def _nearest(link: str, beside: dict[str, set[str]], shaped: Collection[str]) -> Iterator[str]:
     seen, todo = {link}, [link]
     for at in todo:  # grows
         for other in beside[at] - seen:
@@ -155,13 +153,13 @@ def _near(link: str, beside: dict[str, set[str]], shaped: Collection[str]) -> It
 
 def _between(described: _Element, parts: Sequence[PartSemantics]) -> Iterator[tuple[str, str]]:
     """Yield the pairs of links of two parts that have shapes."""
-    shaped = _shaped(described)
+    shaped = _links_with_collision(described)
     own = [sorted(shaped & set(it.part.robot.link)) for it in parts]
     for some, more in combinations(own, 2):
         yield from ((min(it), max(it)) for it in product(some, more))
 
 
-def _sampled(pairs: Sequence[tuple[str, str]], found: Touching, samples: int) -> Iterator[str]:
+def _sampling(pairs: Sequence[tuple[str, str]], found: Touching, samples: int) -> Iterator[str]:
     many = Counter(found.reasons.values())
     what = f"of {plural(len(pairs), 'pair')} of links of two parts {many[NEVER]} never touch"
     yield f"SRDF: {what} in {samples} random poses; the others are checked for collisions"

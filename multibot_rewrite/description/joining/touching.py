@@ -6,8 +6,6 @@ As MoveIt's Setup Assistant has it: compute_default_collisions.cpp (``disableNev
 moves by itself here, so that a pair is rather called one that may touch.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from importlib import import_module
@@ -126,8 +124,7 @@ def _pose(pin: Any, model: Any, random: Random) -> Any:
 
 
 def _with_files(root: _Element, files: Mapping[str, str]) -> Iterator[tuple[str, str]]:
-    """Put the paths of files into the meshes of collisions; yield links whose files are missing,
-    and take out their shapes."""
+    """Set paths in collision meshes; yield links with missing files, without these shapes."""
     for link in root.iterchildren("link"):
         name = link.get("name", "")
         for it in link.findall("visual"):

@@ -8,8 +8,6 @@ src/Root.cc, Model.cc and parser_urdf.cc (plugins are anywhere in a ``<gazebo>``
 SystemManager.cc (a plugin of a plugin is its own matter), webots_ros2_driver WebotsNode.cpp,
 ros2_control component_parser.cpp."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 

@@ -7,8 +7,6 @@ A rewrite, a lint, a remap table and a build ask here: what they find has the co
 finds it in a system that runs.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple

@@ -5,8 +5,6 @@ Sources: gazebo_ros_pkgs ros2 gazebo_ros/src/node.cpp (a <ros> hides the plugin'
 plugin's name is the node's, an empty namespace is the root), gz_ros2_control_plugin.cpp.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from itertools import islice
 from math import pi

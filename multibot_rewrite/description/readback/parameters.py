@@ -57,7 +57,7 @@ def default_of(host: _Element, default: str) -> str:
         return ""
     sibling, derived, last = default.partition("/../")
     if not derived:
-        words = {it: _named(host, it) for it in _SLOT.findall(default)}
+        words = {it: _text_of_word(host, it) for it in _SLOT.findall(default)}
         return _SLOT.sub(lambda slot: words[slot[1]], default) if all(words.values()) else ""
     topic = child_text(host, sibling) or ""
     return f"{topic.rpartition('/')[0]}/{last}" if "/" in topic else last if topic else ""
@@ -65,10 +65,10 @@ def default_of(host: _Element, default: str) -> str:
 
 def holds(host: _Element, conditions: str) -> bool:
     """Return whether all of ``a=true,../@b=x|y`` hold. A missing flag is off."""
-    return all(_holds(host, it) for it in conditions.split(","))
+    return all(_condition_holds(host, it) for it in conditions.split(","))
 
 
-def _holds(host: _Element, condition: str) -> bool:
+def _condition_holds(host: _Element, condition: str) -> bool:
     path, _, wanted = condition.rpartition("=")
     text = next(iter(given_at(host, path)), "")
     if wanted not in ("true", "false"):
@@ -103,7 +103,7 @@ def _switches(host: _Element, section: PluginDefinition) -> Iterator[tuple[str, 
         yield parameter, topic, is_on(child_text(host, parameter), usual=bool(usual))
 
 
-def _named(host: _Element, word: str) -> str:
+def _text_of_word(host: _Element, word: str) -> str:
     if word == "link":
         return _first_link(host)
     if word == "sensor":

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Description bytes -> everything that runs because of it, by the names it has then."""
 
-from __future__ import annotations
-
 from collections.abc import Container, Iterable, Iterator
 from typing import NamedTuple
 
@@ -182,7 +180,7 @@ def _of_hosts(
             yield from _topics(host, tag, definitions.release)
         yield from _frames(host, tag)
         yield from _lookups(root, host, definitions)
-        yield from _opened(host, tag)
+        yield from _opened_names(host, tag)
 
 
 def _is_of_either(host: _Host) -> bool:
@@ -197,10 +195,12 @@ def _of_sensors(root: _Element, definitions: Definitions) -> Iterator[RuntimeNam
     for number, sensor in enumerate(root.iter("sensor")):
         # What is known about every sensor, and about those of this type.
         of_type = definitions.find("sensor", sensor.get("type", "").strip())
+        unread = {it.path for section in of_type for it in section.sites if it.role == "keep"}
         for section in (*definitions.find("element", "sensor"), *of_type):
-            host = _Host(sensor, number, section)
+            sites = tuple(it for it in section.sites if it.path not in unread)
+            host = _Host(sensor, number, section._replace(sites=sites) if unread else section)
             yield from _topics(host, "sensor", definitions.release)
-            yield from _opened(host, "sensor")
+            yield from _opened_names(host, "sensor")
 
 
 def _of_elements(root: _Element, definitions: Definitions) -> Iterator[RuntimeName]:
@@ -236,7 +236,7 @@ def _frames(host: _Host, tag: str) -> Iterator[RuntimeName]:
             yield RuntimeName(FRAME, value, tag, host.number, IN_CODE)
 
 
-def _opened(host: _Host, tag: str) -> Iterator[RuntimeName]:
+def _opened_names(host: _Host, tag: str) -> Iterator[RuntimeName]:
     for kind, value, path in active.opened(host.element, host.section):
         yield RuntimeName(kind, value, tag, host.number, path)
 

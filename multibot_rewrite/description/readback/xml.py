@@ -68,8 +68,7 @@ def elements_at(element: _Element, steps: tuple[str, ...]) -> Iterator[_Element]
 
 
 def plain(element: _Element) -> tuple[object, ...]:
-    """Return an element as its readers see it: without comments, blanks between elements and the order
-    of attributes."""
+    """Return an element as readers see it: no comments, no blanks between, sorted attributes."""
     parts = tuple(plain(it) for it in element.iterchildren("*"))
     return element.tag, frozenset(element.items()), text_of(element), parts
 

@@ -3,8 +3,6 @@
 them, and what becomes of them.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, NamedTuple
@@ -35,14 +33,14 @@ if TYPE_CHECKING:
 _PREFIXES = {uri: prefix for prefix, uri in NAMESPACES.items()}
 
 
-def tag_path(element: _Element, attribute: str) -> str:
+def tag_path(element: "_Element", attribute: str) -> str:
     """Return the path of a value: the tags from the root on, and the attribute."""
-    steps = [_step(element), *(_step(above) for above in element.iterancestors())]
+    steps = [_path_step(element), *(_path_step(above) for above in element.iterancestors())]
     path = "/".join(reversed(steps))
     return f"{path}@{short_name(attribute)}" if attribute else path
 
 
-def _step(element: _Element) -> str:
+def _path_step(element: "_Element") -> str:
     tag = short_name(str(element.tag), element.prefix)
     if tag == "plugin":
         return f"{tag}[{plugin_name(element)}]"
@@ -57,7 +55,7 @@ def short_name(name: str, prefix: str | None = None) -> str:
     return f"{short}:{local}" if short else name
 
 
-def plugin_name(element: _Element) -> str:
+def plugin_name(element: "_Element") -> str:
     """Return the name of a ``<plugin>``: its library without folders, or its class."""
     library = element.get("filename", "").strip().rpartition("/")[2]
     return library or element.get("name", "").strip()
@@ -89,7 +87,10 @@ def explain_line(
 ) -> list[Explanation]:
     """Return everything that starts on ``line``, in source order; empty where nothing does."""
     plan = make_plan(inventory, naming)
-    found = [*_claimed(inventory, plan, naming, robot, line), *_others(inventory, tree, line)]
+    found = [
+        *_claims(inventory, plan, naming, robot, line),
+        *_others(inventory, tree, line),
+    ]
     found += _inserted(inventory, plan, robot, line)
     found = [it._replace(source=_source(tree, it.site)) if it.site else it for it in found]
     return sorted(found, key=lambda item: (item.column, item.path))
@@ -102,7 +103,7 @@ def _source(tree: Tree, site: SiteRow) -> str:
     return next((it.source for it in sections if it.source and site in it.sites), "")
 
 
-def _claimed(
+def _claims(
     inventory: Inventory, plan: Plan, naming: Naming, robot: str, line: int
 ) -> Iterator[Explanation]:
     recomputed = {claim.start: new.replace(ROBOT_SLOT, robot) for claim, new in plan.collisions}
@@ -276,11 +277,11 @@ def _made_on(it: _Line, document: Document, explain: OnLine) -> Iterator[Explana
             if at is not None:
                 line, column = locate(it.read.sources[it.file], at)
                 plain = len(pieces) < 2 and all(one.kind == LITERAL for one in pieces)
-                made_of = () if plain else tuple(_words(it.read, pieces))
+                made_of = () if plain else tuple(_piece_lines(it.read, pieces))
                 yield found._replace(line=line, column=column, made_of=made_of)
 
 
-def _words(read: Expansion, pieces: tuple[Piece, ...]) -> Iterator[str]:
+def _piece_lines(read: Expansion, pieces: tuple[Piece, ...]) -> Iterator[str]:
     """Yield each piece, what wrote it, and where."""
     for piece in pieces:
         if piece.kind == GIVEN:

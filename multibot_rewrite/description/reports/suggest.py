@@ -2,8 +2,6 @@
 """First plugin definitions for what a description loads and nothing knows: guessed, each with its
 why."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
@@ -82,8 +80,7 @@ class Loaded(NamedTuple):
 
 
 def suggest(inventory: Inventory) -> list[SuggestedSection]:
-    """Return a section for each unknown plugin, and each unknown hardware class with parameters, in the
-    order of the file."""
+    """Return a section for each unknown plugin and hardware class with parameters, in file order."""
     hosts: dict[tuple[str, str, str], list[Host]] = {}
     for host in inventory.hosts:
         thing = loaded_by(host)
@@ -113,7 +110,7 @@ def loaded_by(host: Host) -> Loaded | None:
     return Loaded(type_, class_, not section.select) if class_ else None
 
 
-def _section_name(type_: str, element: _Element) -> str:
+def _section_name(type_: str, element: "_Element") -> str:
     """Return the first name by which the element is looked up and that a section can have."""
     keys = tree.plugin_keys(element) if type_ == "plugin" else tree.hardware_keys(element)
     return next((key for key in keys if key != tree.ANY_WITH_ROS and _can_head(type_, key)), "")
@@ -126,7 +123,9 @@ def _can_head(type_: str, name: str) -> bool:
         return False
 
 
-def _values(element: _Element, node: tree.TreeNode | None, path: str) -> Iterator[tuple[str, str]]:
+def _values(
+    element: "_Element", node: tree.TreeNode | None, path: str
+) -> Iterator[tuple[str, str]]:
     """Yield path and value of every attribute and text below an element that no row is about."""
     known = {""} if node is not None and node.text is not None else set()
     if node is not None:
@@ -138,15 +137,15 @@ def _values(element: _Element, node: tree.TreeNode | None, path: str) -> Iterato
     if "" not in known and element.text and element.text.strip() and path:
         yield path, element.text.strip()
     for child in element.iterchildren("*"):
-        yield from _values(child, _below(node, child), f"{path}/{_step(child)}".lstrip("/"))
+        yield from _values(child, _child_node(node, child), f"{path}/{_step(child)}".lstrip("/"))
 
 
-def _below(node: tree.TreeNode | None, child: _Element) -> tree.TreeNode | None:
+def _child_node(node: tree.TreeNode | None, child: "_Element") -> tree.TreeNode | None:
     below = node.children.get(str(child.tag)) if node is not None else None
     return below.select(child) if below is not None and below.select is not None else below
 
 
-def _step(element: _Element) -> str:
+def _step(element: "_Element") -> str:
     """Return a step of a path for an element; parameters are told apart by their name."""
     tag, name = short_name(str(element.tag)), element.get("name", "")
     step = f"{tag}[@name={name}]"
@@ -210,13 +209,13 @@ def _by_value(value: str, declared: Declared) -> Guess | None:
     for form, names in _readings(value):
         found = {kind: next((n for n in names if n in declared[kind]), "") for kind in MENTIONED}
         if named := [(kind, name) for kind, name in found.items() if name]:
-            return Guess(tuple(kind for kind, _ in named), form, _why(value, named))
+            return Guess(tuple(kind for kind, _ in named), form, _held_names(value, named))
     if value.startswith("/") and value[1:] in declared["link"]:
         return Guess(("frame",), "whole", f"{shown(value)} is a link here, but for the slash")
     return None
 
 
-def _why(value: str, named: Sequence[tuple[str, str]]) -> str:
+def _held_names(value: str, named: Sequence[tuple[str, str]]) -> str:
     if all(name == value for _, name in named):
         return f"{shown(value)} is a {' and a '.join(kind for kind, _ in named)} here"
     return f"{shown(value)} holds {' and '.join(f'the {k} {shown(name)}' for k, name in named)}"

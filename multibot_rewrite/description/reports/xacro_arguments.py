@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which argument of a xacro goes into which names: found by expanding it with another word for each."""
 
-from __future__ import annotations
-
 import re
 import time
 from collections import Counter

@@ -5,8 +5,6 @@ A form maps a value to its parts. Because a part is a position and not a new tex
 and remap rules need no writer of their own.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
@@ -79,7 +77,7 @@ def scoped(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]
     model: their names are declared elsewhere. A link itself may be called ``a::b``: SDF 1.7 is
     flattened so."""
     scopes: list[NamePart] = []
-    for at, name in _pieces(value):
+    for at, name in _scoped_parts(value):
         rest = value[at:].rstrip()
         if rest == name or any(rest in declared.get(kind, ()) for kind in kinds):
             return (*scopes, NamePart(at, rest, kinds, True))
@@ -97,7 +95,7 @@ def is_included(model: str, declared: Declared) -> bool:
     return claim is not None and not claim.attribute
 
 
-def _pieces(value: str) -> Iterator[tuple[int, str]]:
+def _scoped_parts(value: str) -> Iterator[tuple[int, str]]:
     at = len(value) - len(value.lstrip())
     for name in value.strip().split("::"):
         if name:
@@ -131,7 +129,7 @@ def member(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]
     name = value[at:].rstrip()
     if name and scopes and scopes[-1].text in declared["link"]:
         return (*scopes, NamePart(at, name, kinds))
-    (start, model), *below = _pieces(value)
+    (start, model), *below = _scoped_parts(value)
     inside = member(value[below[0][0] :], kinds, declared) if below[1:] else ()
     moved = (part._replace(at=part.at + below[0][0]) for part in inside)
     return (NamePart(start, model, ("model",), True), *moved) if inside else ()
@@ -145,7 +143,7 @@ def _owner(value: str, kinds: Kinds, declared: Declared) -> tuple[list[NamePart]
     """
     at = len(value) - len(value.lstrip())
     parts = []
-    pieces = list(_pieces(value))
+    pieces = list(_scoped_parts(value))
     for start, name in pieces[:-1]:
         if name in declared["model"] and not any(name in declared.get(k, ()) for k in kinds):
             parts.append(NamePart(start, name, ("model",), True))

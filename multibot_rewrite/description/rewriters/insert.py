@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What has to be added: defaults and hard-wired topics that every robot would share otherwise."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import NamedTuple
 

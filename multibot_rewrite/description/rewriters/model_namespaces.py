@@ -87,7 +87,7 @@ def _word_of(claim: Claim, plugins: Container[_Element]) -> Claim:
     if claim.site.kinds != ("namespace",) or not whole:
         return claim
     plugin = next(claim.element.iterancestors("plugin"), None)
-    return claim._replace(site=_word(claim.site)) if plugin in plugins else claim
+    return claim._replace(site=_as_stem(claim.site)) if plugin in plugins else claim
 
 
 def has_own_names(section: PluginDefinition) -> bool:
@@ -99,7 +99,7 @@ def has_own_names(section: PluginDefinition) -> bool:
 
 
 @cache
-def _word(site: SiteRow) -> SiteRow:
+def _as_stem(site: SiteRow) -> SiteRow:
     return site._replace(kinds=("stem",), namespaced=False)
 
 

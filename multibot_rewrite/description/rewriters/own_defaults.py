@@ -35,7 +35,7 @@ Hosts = Iterable[tuple[etree._Element, PluginDefinition]]
 def default_of(host: etree._Element, default: str, naming: Naming) -> str:
     """Return the value in force if the site is absent: a literal, or made from another topic."""
     conditions, asked, default = default.rpartition("?")
-    if asked and not all(_holds(host, condition) for condition in conditions.split(",")):
+    if asked and not all(_condition_holds(host, condition) for condition in conditions.split(",")):
         return ""
     sibling, derived, last = default.partition("/../")
     if not derived:
@@ -45,7 +45,7 @@ def default_of(host: etree._Element, default: str, naming: Naming) -> str:
     return topic[: topic.rfind("/") + 1] + last if topic else ""
 
 
-def _holds(host: etree._Element, condition: str) -> bool:
+def _condition_holds(host: etree._Element, condition: str) -> bool:
     child, _, wanted = condition.partition("=")
     text = text_at(host, child)
     if wanted in ("true", "false"):
@@ -54,13 +54,12 @@ def _holds(host: etree._Element, condition: str) -> bool:
 
 
 def filled(host: etree._Element, default: str) -> str:
-    """Return the default with its names filled in, ``MODEL`` for that of the model; empty if one is
-    missing."""
-    words = {it: _own(host, it) for it in _SLOT.findall(default)}
+    """Return the default with names filled in (``MODEL``: the model's); empty if one is missing."""
+    words = {it: _own_link(host, it) for it in _SLOT.findall(default)}
     return _SLOT.sub(lambda slot: words[slot[1]], default) if all(words.values()) else ""
 
 
-def _own(host: etree._Element, word: str) -> str:
+def _own_link(host: etree._Element, word: str) -> str:
     if word == "model":
         return MODEL[:-1]
     if word == "sensor":

@@ -72,7 +72,7 @@ class Pattern:
             raise PatternError(f"longer than {_LENGTH} characters")
         pieces = deque(piece[0] for piece in pieces_of(_bytes(pattern)))
         self._states: list[_State] = [(None, ())]
-        first = _either(pieces, 0)(self._states, 0)
+        first = _alternatives(pieces, 0)(self._states, 0)
         if pieces:
             raise PatternError("a bracket is not opened")
         self._first = self._reached((first,), {_BEGIN})
@@ -113,7 +113,7 @@ def _bytes(text: str) -> str:
     return text.encode("utf-8", "surrogateescape").decode("latin-1")
 
 
-def _either(pieces: deque[str], depth: int) -> _Piece:
+def _alternatives(pieces: deque[str], depth: int) -> _Piece:
     if depth > _DEPTH:
         raise PatternError(f"nested deeper than {_DEPTH} levels")
     ways = [_row(pieces, depth)]
@@ -144,7 +144,7 @@ def _row(pieces: deque[str], depth: int) -> _Piece:
 
 def _atom(piece: str, pieces: deque[str], depth: int) -> _Piece:
     if piece in ("(", "(?:"):
-        inner = _either(pieces, depth + 1)
+        inner = _alternatives(pieces, depth + 1)
         if not pieces:
             raise PatternError("a bracket is not closed")
         pieces.popleft()
@@ -203,10 +203,10 @@ def _characters(piece: str) -> frozenset[str]:
     if piece[0] == "[":
         inner = piece[1:-1]
         return _ALL - _class(inner[1:]) if inner[:1] == "^" else _class(inner)
-    return _escaped(piece[1:]) if piece[0] == "\\" else frozenset(piece)
+    return _escaped_letters(piece[1:]) if piece[0] == "\\" else frozenset(piece)
 
 
-def _escaped(letter: str) -> frozenset[str]:
+def _escaped_letters(letter: str) -> frozenset[str]:
     if letter.lower() in _ESCAPED:
         known = _ESCAPED[letter.lower()]
         return known if letter.islower() else _ALL - known
@@ -237,7 +237,7 @@ def _class(inner: str) -> frozenset[str]:
 
 def _member(piece: str) -> frozenset[str]:
     if not piece.startswith("[:"):
-        return _escaped(piece[1:]) if piece[0] == "\\" else frozenset(piece)
+        return _escaped_letters(piece[1:]) if piece[0] == "\\" else frozenset(piece)
     if piece[2:-2] not in _POSIX:
         raise PatternError(f"{piece} is no class of characters")
     return _POSIX[piece[2:-2]]

@@ -7,8 +7,6 @@ plugin, one below the name of the node or a word of a parameter moves with these
 that is absolute in the code stays.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
@@ -149,10 +147,10 @@ def _names(claim: Claim, node: _Node, process_wide: bool) -> Iterator[NamePart]:
         return
     if process_wide or rule.node in ("", node.name):
         lead = len(claim.value) - len(claim.value.lstrip())
-        yield from _left(rule.source, lead + rule.source_at, node)
+        yield from _names_in_left_side(rule.source, lead + rule.source_at, node)
 
 
-def _left(source: str, at: int, node: _Node) -> Iterator[NamePart]:
+def _names_in_left_side(source: str, at: int, node: _Node) -> Iterator[NamePart]:
     """Yield the names in a left side that starts at character ``at``: none in a relative one for an
     absolute name, since robots' names may be put into these at different places."""
     full = node.full(source)

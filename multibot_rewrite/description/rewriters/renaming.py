@@ -6,8 +6,6 @@ cannot share it; where two models of a file use one name for two kinds, the mode
 leads to decides.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
@@ -73,12 +71,12 @@ def resolved_names(
         key = (of, scope_of(claim.element)) if site.form == "scoped" else of, claim.value
         names = known.get(key)
         if names is None:
-            names = known[key] = _resolved(claim, declared, apart)
+            names = known[key] = _resolved_names(claim, declared, apart)
         result.append(names)
     return result
 
 
-def _resolved(claim: Claim, declared: Declared, apart: bool) -> tuple[ResolvedName, ...]:
+def _resolved_names(claim: Claim, declared: Declared, apart: bool) -> tuple[ResolvedName, ...]:
     site, value = claim.site, claim.value
     if site.whole_value_kind and value in declared[site.whole_value_kind]:
         return (ResolvedName(0, value, site.whole_value_kind, site.kinds),)
@@ -192,7 +190,7 @@ def respelled(value: str, spelling: Spelling, robot: str) -> str:
     return value
 
 
-def spelled_names(declared: Declared, naming: Naming, robot: str) -> Declared:
+def renamed_names(declared: Declared, naming: Naming, robot: str) -> Declared:
     """Return declarations by the names they have after a rewrite for ``robot``."""
     return {
         kind: {spelled(naming, robot, kind, name): claim for name, claim in names.items()}

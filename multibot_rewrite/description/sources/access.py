@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the expansion of a xacro file may use: files below its roots, packages, ROS's variables."""
 
-from __future__ import annotations
-
 import os
 import stat
 from collections.abc import Callable, Iterator
@@ -57,7 +55,9 @@ class Access:
         self.path, self.reach, self.find = path, reach, find
         self.beside = {os.path.dirname(it) for it in _real(path)}
         self.roots = [real_path(it) for it in (*_homes(path), *reach.roots)]
-        self.sourced = [os.path.abspath(it) for it in (*_prefixes(), *_listed("ROS_PACKAGE_PATH"))]
+        self.sourced = [
+            os.path.abspath(it) for it in (*_prefixes(), *_paths_in("ROS_PACKAGE_PATH"))
+        ]
 
     def readable(self, name: str) -> str:
         """Return the path to open for ``name``; raises NotAllowedError."""
@@ -65,11 +65,11 @@ class Access:
             return name
         # A workspace that was sourced is trusted, with the links that colcon makes in it.
         plain, real = os.path.abspath(name), real_path(name)
-        if any(_below(plain, it) for it in self.sourced):
+        if any(_is_below(plain, it) for it in self.sourced):
             return plain
         folder = os.path.dirname(real)
         roots = (*self.roots, folder) if folder in self.beside else self.roots
-        root = next((it for it in roots if _below(real, it)), None)
+        root = next((it for it in roots if _is_below(real, it)), None)
         if root is None:
             raise NotAllowedError(f"{name} is outside of the folders that xacro may read")
         if any(it[0] == "." for it in os.path.relpath(real, root).split(os.sep) if it != "."):
@@ -80,14 +80,16 @@ class Access:
         """Return the folder for $(find NAME), which may be read from now on; raises LookupError."""
         if os.path.basename(name) != name or name in ("", os.curdir, os.pardir):
             raise LookupError(f"{name!r} is no name of a package")
-        folder = (self.find and self.find(name)) or _installed(name) or self._beside(name)
+        folder = (
+            (self.find and self.find(name)) or _installed(name) or self._package_in_workspace(name)
+        )
         if not folder:
             why = "" if _prefixes() or self.find else ": AMENT_PREFIX_PATH is not set"
             raise LookupError(f"package {name!r} is not found{why}")
         self.roots.append(real_path(folder))
         return folder
 
-    def _beside(self, name: str) -> str:
+    def _package_in_workspace(self, name: str) -> str:
         """Return a package of the same repository or workspace: no ROS has to be sourced."""
         repository = _repository(os.path.dirname(_real(self.path)[0]))
         # A workspace has its repositories side by side in src.
@@ -95,7 +97,7 @@ class Access:
         workspace = above if os.path.basename(above) == "src" else ""
         home = os.path.realpath(os.path.expanduser("~"))
         both = (it for it in (repository, workspace) if it)
-        roots = tuple(it for it in both if not _below(home, it))
+        roots = tuple(it for it in both if not _is_below(home, it))
         folder = package_folder(name, _real(self.path)[0], roots)
         return folder if os.path.isfile(os.path.join(folder, "package.xml")) else ""
 
@@ -186,14 +188,14 @@ def _homes(path: str) -> tuple[str, ...]:
     for file in _real(path):
         folder = os.path.dirname(file)
         marked = _marked(folder, "package.xml"), _repository(folder)
-        worked_in = here if _below(folder, here) else ""
-        found += (it for it in (folder, *marked, worked_in) if it and not _below(home, it))
+        worked_in = here if _is_below(folder, here) else ""
+        found += (it for it in (folder, *marked, worked_in) if it and not _is_below(home, it))
     return tuple(found)
 
 
 def _marked(folder: str, mark: str) -> str:
     """Return the nearest folder above that holds ``mark``; empty if there is none."""
-    return next((it for it in _above(folder) if os.path.lexists(os.path.join(it, mark))), "")
+    return next((it for it in _parents(folder) if os.path.lexists(os.path.join(it, mark))), "")
 
 
 def _repository(folder: str) -> str:
@@ -203,27 +205,27 @@ def _repository(folder: str) -> str:
     if known := _marked(folder, ".git"):
         return known
     package = _marked(folder, "package.xml")
-    above = list(_above(os.path.dirname(package))) if package else []
+    above = list(_parents(os.path.dirname(package))) if package else []
     marks = (os.path.join(it, mark) for it in above for mark in _OF_REPOSITORY)
     found = next((os.path.dirname(it) for it in marks if os.path.lexists(it)), "")
     return found or next((it for it in above if os.path.basename(it) == "src"), "")
 
 
-def _above(folder: str) -> Iterator[str]:
+def _parents(folder: str) -> Iterator[str]:
     for _ in range(HIGHEST):
         yield folder
         folder = os.path.dirname(folder)
 
 
-def _below(path: str, folder: str) -> bool:
+def _is_below(path: str, folder: str) -> bool:
     return path == folder or path.startswith(os.path.join(folder, ""))
 
 
 def _prefixes() -> list[str]:
-    return _listed("AMENT_PREFIX_PATH")
+    return _paths_in("AMENT_PREFIX_PATH")
 
 
-def _listed(name: str) -> list[str]:
+def _paths_in(name: str) -> list[str]:
     return [it for it in (variable(name) or "").split(os.pathsep) if it]
 
 

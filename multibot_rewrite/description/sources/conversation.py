@@ -158,8 +158,8 @@ def _result(it: XacroChild, data: bytes) -> Result:
     if "missing" in report:
         raise InputError(f"{_text(report['missing'])}; pip install xacro, or source ROS 2")
     failed = report.get("error")
-    text = b"" if failed else _expected(it, frames.TEXT)
-    origins = b"" if failed else _expected(it, frames.ORIGINS)
+    text = b"" if failed else _expected_answer(it, frames.TEXT)
+    origins = b"" if failed else _expected_answer(it, frames.ORIGINS)
     return Result(
         _text(report["notes"]),
         tuple(_text(name) for name in report["fences"]),
@@ -169,13 +169,13 @@ def _result(it: XacroChild, data: bytes) -> Result:
         ("", "") if failed else (_text(report["root"][0] or ""), _text(report["root"][1])),
         text,
         _numbers(origins, _TRIPLE),
-        _numbers(_expected(it, frames.CALLS), _QUADRUPLE),
-        _numbers(_expected(it, frames.PIECES), _EIGHT),
+        _numbers(_expected_answer(it, frames.CALLS), _QUADRUPLE),
+        _numbers(_expected_answer(it, frames.PIECES), _EIGHT),
         tuple(_text(word) for word in report["words"]),
     )
 
 
-def _expected(it: XacroChild, kind: bytes) -> bytes:
+def _expected_answer(it: XacroChild, kind: bytes) -> bytes:
     return frames.received(it.read, {kind: frames.LONGEST[kind]})[1]
 
 

@@ -28,8 +28,7 @@ _BUILT_BY_CATKIN = lazy_compile(rb"<(?:build|buildtool)_depend>\s*catkin\s*<")
 
 
 def ros_shown(data: bytes, file: str, tree: Tree) -> str:
-    """Return the ROS that a document or its package shows, empty where none does or no plugin depends
-    on it."""
+    """Return the ROS that a document or its package shows; empty if none, or if no plugin needs it."""
     names = {it.decode(errors="replace").strip() for it in _LIBRARY.findall(data)}
     keys = {library_key(it.rpartition("/")[2]) for it in names}
     found = [{one.ros for one in tree.definitions.find("plugin", it)} for it in keys]

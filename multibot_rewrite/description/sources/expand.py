@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Expand xacro in a process of its own, which reaches no further than it may."""
 
-from __future__ import annotations
-
 import os
 import re
 import sys

@@ -51,7 +51,7 @@ def with_includes(data: bytes, file: str, above: tuple[str, ...] = ()) -> bytes:
         parent = element.getparent()
         if element.tag != "include" or parent is None or parent.tag != "model":
             continue
-        made = _made(element, document.file, above)
+        made = _included_text(element, document.file, above)
         end = next((it.end() for it in _END.finditer(source, start) if it[0][:4] != b"<!--"), 0)
         if made and end and len(made) + len(source) <= MAX_BYTES:
             done += (source[last:start], made, b"\n" * source.count(b"\n", start, end))
@@ -59,7 +59,7 @@ def with_includes(data: bytes, file: str, above: tuple[str, ...] = ()) -> bytes:
     return b"".join((*done, source[last:]))
 
 
-def _made(include: _Element, file: str, above: tuple[str, ...]) -> bytes:
+def _included_text(include: _Element, file: str, above: tuple[str, ...]) -> bytes:
     """Return the text in place of an include; nothing if its model is not found or too new."""
     uri = text_at(include, "uri")
     path = model_file(uri, os.path.dirname(os.path.abspath(file)))

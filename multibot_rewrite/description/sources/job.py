@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What one rewrite works on: everything it depends on but the robots, read once."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Iterable, Sequence
 from contextlib import suppress
 from functools import cache
@@ -223,7 +221,7 @@ def job_for(
     plain = _plain(read, given, words, common)
     if plain is None:
         return job
-    if twin and job.urdf and _lacks(job) and not _lacks(plain):
+    if twin and job.urdf and _lacks_names(job) and not _lacks_names(plain):
         # The arguments make an SRDF of it that is not the URDF's: the one without them follows that.
         job, twin = job._replace(data=plain.data), b""
         texts = marked_texts(plain.inventories[1], other.inventories[1])
@@ -281,7 +279,7 @@ def _marked(read: Reader, given: Arguments, words: Sequence[str], common: Collec
     return read(args)
 
 
-def _lacks(job: Job) -> bool:
+def _lacks_names(job: Job) -> bool:
     said = job.inventories[0]
     found = (name for names in said.names for name in names if not name.kind)
     return any(not PARTS.isdisjoint(name.kinds) for name in found)

@@ -6,8 +6,6 @@ Sources: xacro/__init__.py (``<xacro:arg name=``, ``xacro.arg('NAME')``) and xac
 knows does nothing, and xacro does not say so.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple

@@ -5,8 +5,6 @@ The author of a xacro may have given it a prefix or a namespace argument. Which 
 reaches is found by expanding the file once more, with a word that nobody uses for the robot's.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
@@ -66,11 +64,12 @@ def marked(
     Those that are ``common`` to robots name none of them.
     """
     return {
-        name: text if name in common else _marked(text, words) for name, text in arguments.items()
+        name: text if name in common else _marked_text(text, words)
+        for name, text in arguments.items()
     }
 
 
-def _marked(text: str, words: Sequence[str]) -> str:
+def _marked_text(text: str, words: Sequence[str]) -> str:
     if ROBOT in text:
         # It says where the robot is: another left in it is the left finger.
         return text.replace(ROBOT, MARKS[0])
@@ -102,7 +101,7 @@ def common_to(robots: Sequence[tuple[Arguments, Sequence[str]]]) -> frozenset[st
     )
 
 
-def own_names(inventory: Inventory, words: Sequence[str]) -> OwnNames:
+def own_names(inventory: "Inventory", words: Sequence[str]) -> OwnNames:
     """Return the names with a mark in them, as they are for the robot with these words.
 
     Raises UsageError for a name that has the robot's name twice in a row.
@@ -112,7 +111,7 @@ def own_names(inventory: Inventory, words: Sequence[str]) -> OwnNames:
     for kind, text in every:
         if not _is_marked(text):
             continue
-        name = _unmarked(text, words)
+        name = _unmarked_text(text, words)
         if _TWICE.search(text):
             hint = "give one argument only, or none: the rewrite names what is left"
             raise UsageError(f"the xacro's arguments would make {name!r} of a {kind}; {hint}")
@@ -129,13 +128,13 @@ def has_mark(data: bytes) -> bool:
     return any(mark.encode() in data for mark in MARKS)
 
 
-def _unmarked(text: str, words: Sequence[str]) -> str:
+def _unmarked_text(text: str, words: Sequence[str]) -> str:
     for word, mark in zip(words, MARKS, strict=False):
         text = text.replace(mark, word)
     return text
 
 
-def marked_texts(plain: Inventory, marked: Inventory) -> NameTexts:
+def marked_texts(plain: "Inventory", marked: "Inventory") -> NameTexts:
     """Return names as they are without the arguments -> the same with marks. Names are matched by
     their order among those of their kind: a kind with another number of names is left out."""
     found: dict[tuple[str, str], str] = {}
@@ -147,7 +146,7 @@ def marked_texts(plain: Inventory, marked: Inventory) -> NameTexts:
     return found
 
 
-def _by_kind(inventory: Inventory) -> dict[str, list[str]]:
+def _by_kind(inventory: "Inventory") -> dict[str, list[str]]:
     every = (it for names in inventory.names for it in names if it.kind not in DECLARED_KINDS)
     found = lists_by_key((it.kind, it.text) for it in every)
     # A reference that an argument misses is of another kind without its declaration.
@@ -156,16 +155,16 @@ def _by_kind(inventory: Inventory) -> dict[str, list[str]]:
 
 def own_texts(texts: NameTexts, words: Sequence[str]) -> NameTexts:
     """Return the texts for the robot with these words."""
-    return {key: _unmarked(text, words) for key, text in texts.items()}
+    return {key: _unmarked_text(text, words) for key, text in texts.items()}
 
 
 def own_affixes(texts: NameTexts) -> OwnNames | None:
     """Return where the robot's name goes in the plain names; None if more of a name is replaced."""
-    found = {key: _inserted(key[1], text) for key, text in texts.items()}
+    found = {key: _inserted_affix(key[1], text) for key, text in texts.items()}
     return None if None in found.values() else found
 
 
-def _inserted(plain: str, marked: str) -> Affix | None:
+def _inserted_affix(plain: str, marked: str) -> Affix | None:
     for at in range(len(plain) + 1):
         middle = marked[at : len(marked) - len(plain) + at]
         before, mark, after = middle.partition(MARKS[0])

@@ -107,8 +107,7 @@ def sources_around(file: str) -> str:
 
 @lru_cache(maxsize=64)
 def packages_below(roots: tuple[str, ...]) -> Mapping[str, tuple[str, ...]]:
-    """Return packages below some folders by name, each with its folders; a folder of that name counts
-    if no manifest has it."""
+    """Return packages below folders by name; a folder of the name counts if no manifest has it."""
     folders = list(_folders(roots))
     named = lists_by_key((_package_name(it), it) for it, is_package in folders if is_package)
     called = lists_by_key(
@@ -125,7 +124,7 @@ def _folders(roots: tuple[str, ...]) -> Iterator[tuple[str, bool]]:
         if not waiting:
             return
         folder, depth = waiting.popleft()
-        inside = _inside(folder)
+        inside = _folder_entries(folder)
         is_package = any(it.name == MANIFEST for it in inside)
         yield folder, is_package
         if depth < DEEPEST and not is_package:
@@ -134,7 +133,7 @@ def _folders(roots: tuple[str, ...]) -> Iterator[tuple[str, bool]]:
             waiting += ((it, depth + 1) for it in below)
 
 
-def _inside(folder: str) -> list[os.DirEntry[str]]:
+def _folder_entries(folder: str) -> list[os.DirEntry[str]]:
     try:
         with os.scandir(folder) as found:
             return list(found)
@@ -214,8 +213,7 @@ def in_sources(path: str) -> str:
 
 @lru_cache(maxsize=64)
 def _installed(folder: str) -> tuple[tuple[str, str], ...]:
-    """Return the files and folders of a package that its CMakeLists.txt installs below its share, each
-    with its path there."""
+    """Return the files and folders that a package's CMakeLists.txt installs, with their paths."""
     lines = _start_of(os.path.join(folder, "CMakeLists.txt"), _LONGEST).decode("utf-8", "replace")
     text = " ".join(line.partition("#")[0] for line in lines.splitlines())
     calls = (it.partition(")")[0].replace('"', " ").split() for it in text.split("install(")[1:])

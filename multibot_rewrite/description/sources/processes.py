@@ -47,7 +47,7 @@ class Server:
                 command, stdin=theirs.fileno(), stdout=nothing, stderr=nothing, env=kept, cwd=os.sep
             )
         self.pid = process.pid
-        weakref.finalize(self, _close, self.control, process)
+        weakref.finalize(self, _close_and_wait, self.control, process)
 
     def start(self, theirs: socket.socket) -> int:
         """Start a child with that socket; its number. Raises ServerGoneError."""
@@ -117,7 +117,7 @@ def child(seconds: float) -> Iterator[XacroChild]:
     """Yield a child with a time limit, which ends with the block. Raises InputError."""
     ours, theirs = socket.socketpair()
     with theirs:
-        server, pid = _started(theirs)
+        server, pid = _started_child(theirs)
     found = XacroChild(server, pid, ours, monotonic() + seconds + SLACK_SECONDS)
     try:
         yield found
@@ -125,7 +125,7 @@ def child(seconds: float) -> Iterator[XacroChild]:
         found.end()
 
 
-def _started(theirs: socket.socket) -> tuple[Server, int]:
+def _started_child(theirs: socket.socket) -> tuple[Server, int]:
     for _ in range(2):
         server = _server(os.getpid())
         try:
@@ -141,7 +141,7 @@ def _server(pid: int) -> Server:
     return Server()
 
 
-def _close(control: socket.socket, process: subprocess.Popen[bytes]) -> None:
+def _close_and_wait(control: socket.socket, process: subprocess.Popen[bytes]) -> None:
     control.close()
     process.terminate()
     process.wait()

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where a description comes from: a path, text or bytes, xacro expanded on the way."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Mapping
 from contextlib import suppress
@@ -32,7 +30,7 @@ class SourceText(NamedTuple):
     data: bytes
     file: str
     read: tuple[str, ...] = ()
-    known: KnownArguments | None = None
+    known: "KnownArguments | None" = None
 
 
 def args_for(source: Source, other: Source | None, args: Mapping[str, str]) -> Mapping[str, str]:
@@ -67,7 +65,7 @@ def read_alone(source: Source, xacro_args: Mapping[str, str], trust: bool = Fals
     if isinstance(source, bytes):
         return SourceText(source, "<bytes>")
     if isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<"):
-        return SourceText(_encoded(source), "<text>")
+        return SourceText(_encoded_text(source), "<text>")
     path = os.fspath(source)
     if is_xacro(path):
         from multibot_rewrite.description.sources.access import BOUNDED, TRUSTED
@@ -86,8 +84,7 @@ def read_alone(source: Source, xacro_args: Mapping[str, str], trust: bool = Fals
 
 
 def read_model(path: str) -> bytes:
-    """Return the bytes of a description that is no xacro, with the models that it includes; raises as
-    ``read_file``."""
+    """Return a plain description's bytes with the models it includes; raises as ``read_file``."""
     data = read_file(path)
     if b"<include" not in data:  # few have one
         return data
@@ -96,7 +93,7 @@ def read_model(path: str) -> bytes:
     return with_includes(data, path)
 
 
-def _encoded(text: str) -> bytes:
+def _encoded_text(text: str) -> bytes:
     try:
         return text.encode()
     except UnicodeEncodeError as error:

@@ -6,8 +6,6 @@ Sources: docs.github.com "Workflow syntax" (.github/workflows), docs.gitlab.com 
 149 (package.xml); for the packages REP 2000 and gazebosim.org/docs, "Installing Gazebo with ROS".
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable
 from typing import NamedTuple
@@ -37,8 +35,7 @@ class SaidRelease(NamedTuple):
 
 
 def release_said(told: str, text: bytes, file: str, who: str = "it") -> SaidRelease:
-    """Return the release that was ``told``, or that of a description's text, or of its repository;
-    ``who`` has the text."""
+    """Return the release that was ``told``, else that of a description's text or repository."""
     if told:
         return SaidRelease(told)
     if built := release_of_build(file):

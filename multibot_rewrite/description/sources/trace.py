@@ -7,8 +7,6 @@ up in the files as they were read here, so a number that is wrong leads nowhere 
 as written there only where the bytes read back as it.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Sequence
 from functools import cached_property
@@ -48,7 +46,7 @@ class Trace:
     ``sources`` are the files that were read, named as ``given`` is where that is possible.
     """
 
-    def __init__(self, result: Result, sources: Sources, given: str) -> None:
+    def __init__(self, result: "Result", sources: "Sources", given: str) -> None:
         self.result = result
         texts = sources.texts
         self.names = [it if it == given else alike(it, given) for it, _ in result.files]
@@ -98,10 +96,10 @@ def alike(path: str, given: str) -> str:
     if os.path.isabs(given) or not os.path.isabs(path):
         return path
     relative = os.path.relpath(path)
-    return relative if _climbs(relative) <= _climbs(os.path.normpath(given)) else path
+    return relative if _steps_up(relative) <= _steps_up(os.path.normpath(given)) else path
 
 
-def _climbs(path: str) -> int:
+def _steps_up(path: str) -> int:
     return path.split(os.sep).count(os.pardir)
 
 

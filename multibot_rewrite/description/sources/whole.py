@@ -9,8 +9,7 @@ from multibot_rewrite.description.sources.read import JOIN, Source, SourceText, 
 
 
 def read_whole(source: Source, xacro_args: Mapping[str, str], trust: bool = False) -> SourceText:
-    """Return the bytes of a source with the files that were read; ``trust`` lets a xacro file do
-    anything."""
+    """Return a source's bytes and the files that were read; ``trust``: xacro without the sandbox."""
     if not isinstance(source, bytes) and str(source).endswith(JOIN) and not xacro_args:
         from multibot_rewrite.description.joining.from_file import read_joined
 

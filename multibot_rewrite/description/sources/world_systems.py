@@ -9,17 +9,20 @@ with the Sensors system crashes it (gz-sensors issue 497).
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+
+from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import Edit, InputError
 from multibot_rewrite.description.checks.hazards import LEFT, WORLD, system_key, world_systems
 from multibot_rewrite.description.checks.problem import Problem, to_findings
-from multibot_rewrite.description.rewriters.tree import Tree, library_and_class
+from multibot_rewrite.description.rewriters.tree import Tree, library_and_class, library_key
 from multibot_rewrite.description.steps.apply import Spans, cut
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.description.steps.document import Document, read_document
+from multibot_rewrite.knowledge.worlds import DRIVES, SYSTEMS
 
 _OPEN, _CLOSE = b"<!-- left to the world ", b" -->"
 _ASIDE = lazy_compile(_OPEN + rb"(<plugin\b(?:[^-]|-(?!-))*?>)" + _CLOSE)
@@ -31,8 +34,7 @@ Systems = tuple[tuple[str, str], ...]
 
 
 def set_aside(source: bytes, file: str, tree: Tree) -> tuple[bytes, Systems]:
-    """Return the description with its world systems as comments, and their names and texts. Raises
-    InputError."""
+    """Return the description with world systems as comments, and their texts. Raises InputError."""
     if not any(_may_load(it, tree) for it in {*_TAGS.findall(source)}):
         return source, ()
     document = read_document(source, file)
@@ -80,3 +82,25 @@ def put_back(source: bytes, file: str, tree: Tree) -> bytes:
         what = "a comment 'left to the world' is not what a rewrite writes"
         raise InputError(f"{file}: {what}: take back what was edited")
     return whole
+
+
+def needed_systems(models: Iterable[tuple[str, _Element]]) -> Iterator[tuple[str, str]]:
+    """Yield the systems that a Gazebo world needs for these models, each once, with the reason.
+    Source: user_commands of gz-sim8 spawns entities."""
+    every = list(models)
+    if every:
+        yield "user-commands", f"{every[0][0]} is not spawned"
+    libraries = [
+        (name, library_key(one.get("filename", "")))
+        for name, root in every
+        for one in root.iter("plugin")
+    ]
+    if moved := next((name for name, it in libraries if it in DRIVES), ""):
+        yield "physics", f"{moved} does not move"
+    first: dict[str, str] = {}
+    for name, root in every:
+        for sensor in root.iter("sensor"):
+            system, _ = SYSTEMS.get(sensor.get("type", ""), ("", ""))
+            if system:
+                first.setdefault(system, f"{sensor.get('name')} of {name} sends nothing")
+    yield from first.items()

@@ -2,8 +2,6 @@
 """Plan -> text: a template is cut once at every slot, then each robot is one ``bytes.join``; and where
 whole elements are in the bytes of a document."""
 
-from __future__ import annotations
-
 from bisect import bisect_left
 from collections.abc import Iterable
 from typing import NamedTuple
@@ -83,8 +81,7 @@ def _change(source: bytes, claim: Claim, kind: str, new: str) -> Change:
 
 
 class Spans:
-    """The place of each element; an element ends before its next sibling, or before the end tag
-    of the one it is in."""
+    """The place of each element; it ends before its next sibling, or its parent's end tag."""
 
     def __init__(self, document: Document) -> None:
         self.document = document

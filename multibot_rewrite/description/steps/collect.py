@@ -2,8 +2,6 @@
 """Document -> inventory: every value a site claims, the names in it, every symbol declared, every
 plugin met."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from lxml import etree

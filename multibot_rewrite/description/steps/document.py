@@ -6,8 +6,6 @@ A position is found by scanning one start tag; a value is editable only if the b
 back as the parsed value. What would make that unsafe (other encodings, DOCTYPE) is refused here.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Sequence
 from contextlib import suppress

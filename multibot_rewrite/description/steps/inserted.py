@@ -12,8 +12,6 @@ marker is a comment because TinyXML-2, which urdfdom and sdformat read with, ref
 instructions inside the root element.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -153,7 +151,7 @@ def removals(document: Document, robot: str) -> list[Edit]:
         try:
             edits += _removal(document, marker, starts)
         except ValueError:  # an end tag is not where this module writes it
-            raise _edited(document, marker) from None
+            raise _edited_by_hand(document, marker) from None
     return edits
 
 
@@ -164,7 +162,7 @@ def _removal(
     parent = marker.comment.getparent()
     inserted = list(marker.comment.itersiblings("*"))[: marker.elements]
     if parent is None or len(inserted) != marker.elements:
-        raise _edited(document, marker)
+        raise _edited_by_hand(document, marker)
     at = source.index(b"<!--%s-->" % (marker.comment.text or "").encode(), starts[parent])
     # Everything back to the tag before it is white space that was written with it.
     begin = source.rindex(b">", 0, at) + 1
@@ -180,12 +178,12 @@ def _removal(
         text = text_of(filled) if filled is not None else ""
         slot = text_slot(document.source, start, text) if text else None
         if slot is None:
-            raise _edited(document, marker)
+            raise _edited_by_hand(document, marker)
         begin, end, before, _ = emptied(document.source, slot)
         yield Edit(start, end, document.source[start:begin] + before, None)
 
 
-def _edited(document: Document, marker: Marker) -> InputError:
+def _edited_by_hand(document: Document, marker: Marker) -> InputError:
     place = f"{document.file}:{marker.comment.sourceline}:1"
     return InputError(f"{place}: the elements this marker counts were edited by hand")
 

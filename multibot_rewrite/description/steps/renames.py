@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Inventory + naming -> rename map: names are renamed once, everything after reads the map."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import NamedTuple
 

@@ -5,8 +5,6 @@ It trusts how the source was read and what the naming says. It does not trust th
 made of it.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable, Collection, Iterator
 from functools import partial
@@ -25,7 +23,7 @@ from multibot_rewrite.description.rewriters.renaming import (
     ROBOT_SLOT,
     ResolvedName,
     is_reached,
-    spelled_names,
+    renamed_names,
 )
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.rewriters.tree import Tree
@@ -83,7 +81,7 @@ def verify(
     ``slots`` says how often the robot's name was put in; ``urdf_declarations`` is what the URDF of
     an SRDF declares."""
     file = inventory.document.file
-    beside = spelled_names(urdf_declarations, naming, robot)
+    beside = renamed_names(urdf_declarations, naming, robot)
     # Byte offsets of elements are needed only if more than affixes has to be removed.
     asks_places = MARKER in output or bool(naming.own) or _replaces(plan)
     try:
@@ -148,11 +146,11 @@ def _expected(inventory: Inventory, naming: Naming) -> Iterator[str]:
             continue
         key = id(names), claim.site.namespaced
         if key not in known:
-            known[key] = _named(claim, names, naming)
+            known[key] = _renamed_value(claim, names, naming)
         yield known[key]
 
 
-def _named(claim: Claim, names: Names, naming: Naming) -> str:
+def _renamed_value(claim: Claim, names: Names, naming: Naming) -> str:
     value, namespaced = claim.value, claim.site.namespaced
     if names[0].text == value:
         return spelled(naming, ROBOT_SLOT, names[0].kind, value, namespaced)
@@ -238,12 +236,12 @@ def added_once(it: Evidence) -> None:
     for marker in it.markers:
         behind = list(marker.comment.itersiblings("*"))
         added = behind[: marker.elements]
-        _once(it, added, [*behind, *marker.comment.itersiblings("*", preceding=True)])
+        _check_once(it, added, [*behind, *marker.comment.itersiblings("*", preceding=True)])
         for element in added:
-            _once(it, list(element), list(element))
+            _check_once(it, list(element), list(element))
 
 
-def _once(it: Evidence, added: list[etree._Element], beside: list[etree._Element]) -> None:
+def _check_once(it: Evidence, added: list[etree._Element], beside: list[etree._Element]) -> None:
     there = Counter(map(_key, beside))
     for element in added:
         if there[_key(element)] > 1:

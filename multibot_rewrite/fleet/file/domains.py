@@ -6,9 +6,7 @@ move_group runs once, and reads the joint states of all arms on one topic: MoveI
 messages with some of the joints (moveit2 2.12.4 current_state_monitor.cpp, ``jointStateCallback``).
 """
 
-from __future__ import annotations
-
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import SHARED_TOPICS
@@ -32,7 +30,7 @@ class FreeFleet(NamedTuple):
 
 
 class Apart(NamedTuple):
-    """The domain of each robot by its namespace, and of nodes of all robots; topics of each robot that
+    """The domain of each robot by its name, and of nodes of all robots; topics of each robot that
     go to the latter; what free_fleet gets, if it is asked for; where the file says it. All is empty for
     one domain."""
 
@@ -41,13 +39,18 @@ class Apart(NamedTuple):
     free_fleet: FreeFleet | None = None
     place: tuple[str, int] = ("", 1)
 
+    @property
+    def numbers(self) -> dict[str, int]:
+        """The domain by robot, with "" for all robots; empty for a fleet of one domain."""
+        return {it.robot: it.number for it in self.domains}
+
 
 TOGETHER = Apart()
 
 
-def apart_of(read: FleetData, robots: Mapping[str, str]) -> Apart:
-    """Return the domains of a fleet file; ``robots`` are the names with the namespaces. Raises
-    InputError with its line if they do not fit together."""
+def apart_of(read: FleetData, robots: Collection[str]) -> Apart:
+    """Return the domains of a fleet file; ``robots`` are the names. Raises InputError with its line
+    if they do not fit together."""
     data = read.data
     for key in (it for it in (CROSSING, FREE_FLEET) if it in data and DOMAINS not in data):
         file, line = read.places.get((key,), (read.file, 1))
@@ -69,7 +72,7 @@ def apart_of(read: FleetData, robots: Mapping[str, str]) -> Apart:
     if adapter is not None:
         charger = adapter.get("charger", "{robot}_charger")
         adapter = FreeFleet(adapter["router"], adapter["map"], charger)
-    numbers = {space: given[name] for name, space in robots.items()}
+    numbers = {name: given[name] for name in robots}
     numbers[""] = given.get(SHARED, USUAL_DOMAIN)
     return Apart(
         tuple(Domain(*it) for it in numbers.items()),
@@ -92,8 +95,7 @@ class Cell(NamedTuple):
 
 
 def with_cell(read: FleetData) -> FleetData:
-    """Return the data with what a cell means for its keys: groups for each arm, one move_group, one
-    topic of joint states."""
+    """Return the data with what a cell means: groups per arm, one move_group, one topic of states."""
     if CELL not in read.data:
         return read
     data = dict(read.data)

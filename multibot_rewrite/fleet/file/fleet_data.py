@@ -2,8 +2,6 @@
 """A fleet file with those it includes, or a dict -> checked data, with the place of each value;
 paths are relative to the file's folder, and there."""
 
-from __future__ import annotations
-
 import json
 import os
 import re
@@ -152,8 +150,7 @@ FleetSource: TypeAlias = str | Mapping[str, Any] | FleetText
 
 
 def without_place(message: str, file: str = DICT) -> str:
-    """Return a message about a dict, or a text that is not written yet, without the place in it, which
-    nobody has seen."""
+    """Return a message about data that is in no file yet, without its place."""
     return re.sub(rf"^{re.escape(file)}(:\d+)*: ", "", message)
 
 
@@ -175,8 +172,7 @@ class _Dumper(yaml.SafeDumper):
 
 
 def fleet_yaml(value: Any, **options: Any) -> str:
-    """Return a value as a fleet file has it; raises YAMLError for what is no data, RecursionError for
-    what holds itself."""
+    """Return a value as fleet file text; raises YAMLError, or RecursionError if it holds itself."""
     return str(yaml.dump(value, Dumper=_Dumper, sort_keys=False, **options))
 
 

@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The fleet file: YAML -> records, or one line that says what is wrong and where."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple, cast
 
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import Naming, Policy, make_naming
-from multibot_rewrite.base.releases import chosen_release, why_told
+from multibot_rewrite.base.releases import chosen_release, why_release
 from multibot_rewrite.description.sources.release_said import SaidRelease, release_of_all
 from multibot_rewrite.fleet.file.domains import TOGETHER, Apart, Cell, apart_of, cell_of, with_cell
 from multibot_rewrite.fleet.file.fleet_data import (
@@ -23,7 +21,7 @@ from multibot_rewrite.fleet.file.robot_spec import WORLD_LINK, RobotSpec, is_sim
 from multibot_rewrite.fleet.outputs.zenoh_configuration import Setup, zenoh_of
 
 KINDS = ("params", "rviz", "moveit", "bridge", "behavior_trees", "lua")
-LISTS = ("include", "stack", "nodl", "definitions", "shared_frames", "shared_topics")
+LISTS = ("include", "node_sets", "nodl", "definitions", "shared_frames", "shared_topics")
 POLICY = tuple(Policy.__annotations__)
 # What ``params_style`` says of parameter files for nav2_bringup.
 BRINGUP = "bringup"
@@ -109,7 +107,7 @@ def read_fleet(
         zenoh_of(read),
         data.get("simulator_world", ""),
         read.places.get(("simulator_world",), (read.file, 1)),
-        apart_of(read, {it.name: it.namespace for it in robots}),
+        apart_of(read, [it.name for it in robots]),
         why,
         tuple((it, read.places[it,]) for it in LISTS if (it,) in read.places),
         _nodes(data, "own_nodes"),
@@ -151,7 +149,7 @@ def _release(data: Mapping[str, Any], given: str, environment: Mapping[str, str]
     """Return the release, and what it comes from."""
     asked = given or data.get("distro", "")
     chosen = chosen_release(asked, environment)
-    if why := why_told(asked, environment):
+    if why := why_release(asked, environment):
         return SaidRelease(chosen, IN_FILE if asked and not given else why)
     named = (it.get("description") or data.get("description") for it in data["robots"])
     said = release_of_all("", dict.fromkeys(it for it in named if isinstance(it, str)))

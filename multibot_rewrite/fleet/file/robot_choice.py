@@ -4,8 +4,6 @@
 A robot of the file with ``count`` is a pattern: ``{name: robot, count: 3, step: {y: 2}}`` stands
 for robot1, robot2 and robot3, each 2 m from the one before."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """One robot of a fleet file: its row and what the file says for all robots -> a record."""
 
-from __future__ import annotations
-
 import math
 import os
 from collections.abc import Iterator, Mapping
@@ -72,7 +70,7 @@ class RobotSpec(NamedTuple):
     model: str
     pose: Pose | None
     colour: str | tuple[int, ...]
-    stacks: tuple[str, ...]
+    node_sets: tuple[str, ...]
     related_files: Mapping[str, tuple[str, ...]]
     file: str
     line: int
@@ -133,11 +131,16 @@ def robot_spec(read: FleetData, naming: Naming, at: int, release: str) -> RobotS
     if simulator == REAL:
         related_files.pop("bridge", None)
     texts = texts_of(listed(related_files.get(PARAMS, [])), file)
-    stacks = tuple(listed(own.get("stack", data.get("stack", []))))
+    node_sets = tuple(listed(own.get("node_sets", data.get("node_sets", []))))
     try:
-        facts_of(stacks, data.get("nodes") or None, release, listed(data.get("nodl", [])))
+        facts_of(node_sets, data.get("nodes") or None, release, listed(data.get("nodl", [])))
     except UsageError as error:
-        keys: tuple[Path, ...] = (("robots", at, "stack"), ("stack",), ("nodes",), ("nodl",))
+        keys: tuple[Path, ...] = (
+            ("robots", at, "node_sets"),
+            ("node_sets",),
+            ("nodes",),
+            ("nodl",),
+        )
         file, line = next(read.places[it] for it in keys if it in read.places)
         raise InputError(f"{file}:{line}: {error}") from None
     namespace = str(own.get("namespace", name)).strip("/")
@@ -166,7 +169,7 @@ def robot_spec(read: FleetData, naming: Naming, at: int, release: str) -> RobotS
         own.get("model", name),
         _pose(own, place),
         _colour(own, place),
-        stacks,
+        node_sets,
         files,
         file,
         line,

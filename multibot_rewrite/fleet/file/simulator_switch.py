@@ -8,8 +8,6 @@ the hardware class of ``<ros2_control>``, and often the plugins of the simulator
 They are filled where the names that they reach become what the layout makes of them. What they make
 is the robot's already, so the rewrite leaves it."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -39,7 +37,7 @@ from multibot_rewrite.description.sources.read import is_xacro, read_file
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.fleet.file.fleet_file import FleetFile
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
-from multibot_rewrite.rules.facts.simulators import SIMULATORS
+from multibot_rewrite.knowledge.worlds import SIMULATORS
 
 _NAME = lazy_compile(r"sim|gazebo|ignition|(?:^|_)(?:gz|ign|real|hardware|hw|fake|mock)(?:_|$)")
 _OTHER = {"true": "false", "True": "False", "1": "0"}

@@ -6,8 +6,6 @@ them have stays as it is, whatever it says. A text that is the same but for the 
 f-string, if it gives the text of every robot. Any other text becomes a parameter of the function.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import count
@@ -116,8 +114,7 @@ def _functions(group: Sequence[RobotStarts]) -> list[Function]:
 
 
 class _Merging(NamedTuple):
-    """The names of robots of one kind, and the parameters that are known by now: by name the value of
-    each robot."""
+    """Names of robots of one kind, and the parameters known so far: each robot's value by name."""
 
     names: tuple[str, ...]
     parameters: dict[str, tuple[str, ...]]
@@ -150,8 +147,7 @@ class _Merging(NamedTuple):
         return first
 
     def label(self, owner: Any, field: str, above: str) -> str:
-        """Return what a value may be called: the name of a node is not that of the robot, a path is
-        what it is given as."""
+        """Return a variable's name for a value; a node's is not the robot's, a path's is its role."""
         if isinstance(owner, Start):
             return "node_name" if field == _NAME else field
         return above if field == "path" else field

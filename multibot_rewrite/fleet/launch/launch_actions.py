@@ -5,8 +5,6 @@ What only runs under a condition that no file answers, and nodes whose program i
 to the reader: they are named in the file.
 """
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -72,6 +70,7 @@ from multibot_rewrite.producers.launch.handed_on import (
 from multibot_rewrite.producers.launch.known_node import LUA_FLAGS, STATIC, with_frames
 from multibot_rewrite.producers.launch.records import LaunchedNode
 from multibot_rewrite.system.records import PUBLISHES, TOPIC
+from multibot_rewrite.system.words import START_POSE
 
 STATE = "robot_state_publisher"
 # Their words name files of the robot.
@@ -79,10 +78,12 @@ _WORDS_OF_BUILD = (STATE, CARTOGRAPHER)
 # What launch files themselves set, by robot and node.
 Values: TypeAlias = Mapping[tuple[str, str], Mapping[str, Any]]
 # Started by hand, or once for all robots.
-_BY_HAND = (*BY_HAND, "ros_gz_bridge", start_poses.NODE)
+_BY_HAND = (*BY_HAND, "ros_gz_bridge", START_POSE)
 # What helps where a node is not started.
-_DESCRIBE = "describe it in a file of nodes, with `{}:` (docs/stacks.md)"
-_NAME = "if it runs, add it to a `stack:`, name its launch file under `launch:`, or start it here"
+_DESCRIBE = "describe it in a file of nodes, with `{}:` (docs/node-sets.md)"
+_NAME = (
+    "if it runs, add it to a `node_sets:`, name its launch file under `launch:`, or start it here"
+)
 _OTHERWISE = "give it another value behind its file under `launch:`, and build again"
 _NO_NAME = "unnamed"
 _OF_MOVEIT = ("move_group", "servo_node")
@@ -107,7 +108,7 @@ def of_robot(
     facts = {it.name: it for it in one.evidence_of(robot).nodes}
     readers = dict(_readers(one, robot))
     given = _Given(one, robot, names, facts, files, bridged, values, readers, {})
-    given = given._replace(left=dict(_left(given)))
+    given = given._replace(left=dict(_not_started(given)))
     processes = (_started(given, it) for it in given.running if names.started[it].way != COMPONENT)
     relayed = [it.start for it in relays(robot.spec.namespace, one.fleet.naming, one.file)]
     launched = sorted((*processes, *_processes(one, robot)), key=lambda it: it.number)
@@ -166,9 +167,8 @@ class _Given(NamedTuple):
         return [it for it in self.names.started if it not in self.left]
 
 
-def _left(given: _Given) -> Iterator[tuple[str, str]]:
-    """Yield the nodes that are not started, each with the reason; it is empty for those that are
-    started by something else."""
+def _not_started(given: _Given) -> Iterator[tuple[str, str]]:
+    """Yield nodes that are not started, with the reason; empty if something else starts them."""
     naming, file = given.plan.fleet.naming, given.plan.file
     relayed = {it.run.node for it in relays(given.robot.spec.namespace, naming, file)}
     for name in given.names.started:
@@ -213,7 +213,7 @@ def _started(given: _Given, name: str) -> Start:
     it, facts = given.names.started[name], given.facts[name]
     if it.way == SPAWNER:
         return controller(given.plan, it)
-    made = _made(given, name)
+    made = _start_of_node(given, name)
     own = given.values.get((given.robot.spec.name, name), {})
     words = made.arguments
     if made.name and names_its_process(facts.kind, given.release):
@@ -233,7 +233,7 @@ def _started(given: _Given, name: str) -> Start:
     return made._replace(
         arguments=tuple(words),
         components=tuple(
-            _made(given, one)
+            _start_of_node(given, one)
             for one in given.running
             if (started := given.names.started[one]).way == COMPONENT
             and started.node.fact.container == name
@@ -255,7 +255,7 @@ def _program(given: _Given, name: str) -> Program | None:
     return Program(own.program[0], "", own.program[1]) if own else None
 
 
-def _made(given: _Given, name: str) -> Start:
+def _start_of_node(given: _Given, name: str) -> Start:
     """Return the process or component of a node, with its parameters and its launch file's."""
     program = _program(given, name)
     assert program is not None
@@ -301,8 +301,7 @@ def _processes(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[Start]:
 
 
 def _of_one(it: LaunchedNode, space: str, naming: Naming) -> tuple[str, ...]:
-    """Return the command and its words; those of ``ros2`` name nodes and topics of its robot, in a
-    line for a shell, too."""
+    """Return a command and its words; names of nodes and topics for ``ros2`` are its robot's."""
     words, verb = (it.executable, *it.arguments), ""
     found: list[str] = []
     for at, word in enumerate(words):
@@ -544,9 +543,9 @@ def _qos(plan: FleetPlan, robot: RewrittenRobot, space: str) -> Iterator[tuple[s
 
 def _domain_bridge(robot: RewrittenRobot, files: Collection[str]) -> Iterator[Start]:
     """Yield the process that brings topics between the robot's domain and that of all robots."""
-    path = bridge_path(robot.spec.namespace)
+    path = bridge_path(robot.spec.name)
     if path in files:
-        name = bridge_name(robot.spec.namespace)
+        name = bridge_name(robot.spec.name)
         yield Start("domain_bridge", "domain_bridge", "", name, arguments=(File(path),))
 
 

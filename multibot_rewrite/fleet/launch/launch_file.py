@@ -71,7 +71,7 @@ def fleet_starts(
         bool(simulators) or _is_simulated(plan) if clock is None else clock,
         [shell_line(it.start) for one in each for it in teleop.teleops(one)],
         _world(simulators, paths, launched.world),
-        domains_of(plan),
+        plan.file.apart.numbers,
         [window for _, window in shown],
         environment,
         "".join(f"{it} " for it in launched.options),
@@ -91,7 +91,7 @@ def _environment(
     }
     first = own[plan.robots[0].spec.name]
     common = [it for it in first if all(it in every for every in own.values())]
-    domains = domains_of(plan)
+    domains = plan.file.apart.numbers
     made = []
     for robot in robots:
         more = dict(it for it in own[robot.name] if it not in common)
@@ -109,13 +109,6 @@ def _is_simulated(plan: FleetPlan) -> bool:
     robots = (it for it in plan.robots if it.spec.simulator != REAL)
     handed = (it for robot in robots for it in plan.evidence_of(robot).handed_on.values())
     return {it.clock for it in handed if it.clock is not None} == {True}
-
-
-def domains_of(plan: FleetPlan) -> dict[str, int]:
-    """Return the ROS domain of each robot by its name and that of all (empty), if they have several."""
-    numbers = {it.robot: it.number for it in plan.file.apart.domains}
-    own = {it.spec.name: numbers[it.spec.namespace] for it in plan.robots if numbers}
-    return {**own, "": numbers[""]} if numbers else {}
 
 
 def _world(simulators: Collection[str], paths: Collection[str], launched: str) -> File | str:

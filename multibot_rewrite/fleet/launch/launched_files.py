@@ -6,8 +6,6 @@ Clearpath starts the bridge of each sensor in NAMESPACE/sensors (clearpath_gener
 launch/sensors.py): relative ROS names of its file are there.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import NamedTuple

@@ -30,7 +30,7 @@ NOT_SPAWNED = "no spawner of the launch files loads it"
 
 
 def launched_robot(
-    stack: Sequence[NodeFacts],
+    node_set: Sequence[NodeFacts],
     orders: Sequence[LaunchOrder],
     known: Mapping[str, NodeFacts],
     words: Sequence[str],
@@ -42,26 +42,25 @@ def launched_robot(
     InputError for a launch file that cannot be read, and UsageError for an unknown placeholder."""
     if not orders:
         return None
-    mine = _own(orders, words[0])
+    mine = _own_orders(orders, words[0])
     graph = launch_of(orders, words[0])
     # What stands for the robot besides its own words: its namespace in a launch.
     values = (value.strip("/") for it in mine for _, value in it.arguments)
     every = {*words, *filter(None, values)}
-    return with_launched(stack, graph, known, every, parameters, release)
+    return with_launched(node_set, graph, known, every, parameters, release)
 
 
 def known_here(
     known: Mapping[str, NodeFacts], orders: Sequence[LaunchOrder], robot: str, release: str
 ) -> dict[str, NodeFacts]:
-    """Return the known nodes, and by their sources those that launch files start; raises as
-    ``launched_robot``."""
+    """Return known nodes and, by source, those of launch files; raises as ``launched_robot``."""
     return with_sources(known, launch_of(orders, robot).nodes if orders else (), orders, release)
 
 
 def launch_of(orders: Sequence[LaunchOrder], robot: str) -> LaunchGraph:
     """Return all that these launch files start, with the robot in the place of ``{robot}``; of
     several robots the first one. Raises as ``launched_robot``."""
-    graph = with_extras(of_first_robot(joined([*map(_read, _own(orders, robot))])))
+    graph = with_extras(of_first_robot(joined([*map(_read, _own_orders(orders, robot))])))
     return _with_off(graph, {name for it in orders for name, _ in it.arguments})
 
 
@@ -132,20 +131,20 @@ def times_of(file: str) -> tuple[int, ...]:
     return found.st_mtime_ns, found.st_size, found.st_ino
 
 
-def _own(orders: Sequence[LaunchOrder], robot: str) -> list[LaunchOrder]:
+def _own_orders(orders: Sequence[LaunchOrder], robot: str) -> list[LaunchOrder]:
     pairs = ((it, filled(dict(it.arguments), robot)) for it in orders)
     return [it._replace(arguments=tuple(given.items())) for it, given in pairs]
 
 
 def nodes_with(
     launched: Launched | None,
-    stack: Sequence[NodeFacts],
+    node_set: Sequence[NodeFacts],
     given: Sequence[Run],
     known: Mapping[str, NodeFacts],
 ) -> RobotNodes:
     """Return the nodes that a robot runs, by its launch files, its other files and its node sets."""
     if launched is None:
-        return nodes_of(stack, given, known)
+        return nodes_of(node_set, given, known)
     # Controllers of which launch files say whether they run -> the condition; empty for always.
     later = {name: it.later for name, it in launched.spawned.items()}
     if later and launched.whole:

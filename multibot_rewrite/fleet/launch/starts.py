@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a fleet starts: its launch file does, and lines for a shell do some of it."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import NamedTuple
 

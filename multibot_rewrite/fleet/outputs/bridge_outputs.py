@@ -11,11 +11,12 @@ import yaml
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, declare
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.fleet.checks.written_files import wrong_in_file
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import (
     FilesAndFindings,
+    FilesToCheck,
     OutputFile,
+    ReadFile,
     gz_bridge_path,
     own_yaml,
     path_for,
@@ -52,7 +53,7 @@ from multibot_rewrite.related_files.yaml_text import (
 )
 
 
-def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
+def bridge_outputs(plan: FleetPlan) -> FilesToCheck:
     """Return every bridge file of a fleet. Raises InputError for a bridge file that cannot be read
     or rewritten."""
     fleet = plan.fleet
@@ -74,7 +75,8 @@ def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
         groups.append((group, bridges))
     for group, files in groups:
         for file in files.values():
-            yield from (*file.own.findings, *wrong_in_file(plan, file.own.file, group.robots))
+            yield from file.own.findings
+            yield ReadFile(file.own.file, tuple(group.robots))
         for robot in group.robots:
             made = list(_for_robot(robot, files, topics))
             yield from made
@@ -90,7 +92,7 @@ def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
                 written = robot.member.inventory.document.root.iter(it.tag)
                 number = [cast("int", one.sourceline) for one in written].index(it.line)
                 line = line_of(robot.member.source, it.tag, number)
-                message = f"{it.what} of {it.robot} is not bridged: {it.why}"
+                message = f"{it.what} of {robot.spec.name} is not bridged: {it.why}"
                 yield NO_TOPIC.finding(message, it.hint, file=robot.spec.description, line=line)
     yield from _for_all([files for _, files in groups], topics, simulators(plan) == ["gz"])
 
@@ -177,8 +179,8 @@ def merge_bridges(
         if not isinstance(root, yaml.SequenceNode) or not root.value:
             continue
         for node, (start, end, column) in zip(root.value, blocks(document, root), strict=True):
-            gz = _full(text_of(node, BOTH) or text_of(node, GZ) or text_of(node, ROS))
-            ros = _full(text_of(node, BOTH) or text_of(node, ROS) or text_of(node, GZ))
+            gz = _absolute_name(text_of(node, BOTH) or text_of(node, GZ) or text_of(node, ROS))
+            ros = _absolute_name(text_of(node, BOTH) or text_of(node, ROS) or text_of(node, GZ))
             # Topics for all robots, such as the clock, are bridged once, by the first file.
             if bridged.setdefault(gz, at) == at:
                 first = onto.setdefault(ros, gz)
@@ -188,11 +190,11 @@ def merge_bridges(
                     hint = "give each its own ros_topic_name"
                     findings.append(found_at(document, node, ONE_ROS_TOPIC, message, hint))
                 parts.append(moved(cut_out(document, start, end), -column))
-    more = [it for it in generated if _full(it.gz) not in bridged]
+    more = [it for it in generated if _absolute_name(it.gz) not in bridged]
     return "".join(parts) + as_yaml(more), tuple(findings)
 
 
-def _full(name: str) -> str:
+def _absolute_name(name: str) -> str:
     return f"/{name.lstrip('/')}"
 
 

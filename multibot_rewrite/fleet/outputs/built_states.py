@@ -7,7 +7,6 @@ import os
 from collections.abc import Iterator, Sequence
 
 from multibot_rewrite.description.sources.read import read_file
-from multibot_rewrite.fleet.build import folders_of
 from multibot_rewrite.fleet.outputs.params_style import ZONES
 from multibot_rewrite.producers.evidence.parameter_files import named_values
 from multibot_rewrite.related_files.params.sections import PARAMETERS
@@ -23,10 +22,10 @@ def with_built(plan: System, folder: str) -> System:
     """Return the plan with the parameters in the files of ``folder``, which has a folder for each
     robot. What the plan itself says of a node comes first. Raises InputError for a file that rcl
     rejects."""
-    folders = folders_of(folder)
+    nodes = nodes_by_robot(plan)
     found = (
-        it for robot, nodes in nodes_by_robot(plan).items() if robot
-        for it in _of_robot(robot, nodes, os.path.join(folder, folders.get(robot, robot)))
+        it for robot in plan.robots
+        for it in _of_robot(robot.space, nodes[robot.name], os.path.join(folder, robot.name))
     )  # fmt: skip
     built: dict[str, dict[str, Parameter]] = {}
     for node, parameters in found:
@@ -43,14 +42,14 @@ def with_built(plan: System, folder: str) -> System:
 
 
 def _of_robot(
-    robot: str, nodes: Sequence[str], folder: str
+    space: str, nodes: Sequence[str], folder: str
 ) -> Iterator[tuple[str, dict[str, Parameter]]]:
     for name in sorted(os.listdir(folder)) if os.path.isdir(folder) else ():
         path = os.path.join(folder, name)
         data = read_file(path) if name.endswith((".yaml", ".yml")) else b""
         if PARAMETERS.encode() in data:
             document = read_yaml(data, path)
-            names = _names(document, robot, nodes)
+            names = _names(document, space, nodes)
             for node, values in named_values(document, names):
                 found = {}
                 for key, (value, place) in values.items():
@@ -61,10 +60,10 @@ def _of_robot(
                 yield names[node], found
 
 
-def _names(document: YamlText, robot: str, nodes: Sequence[str]) -> dict[str, str]:
+def _names(document: YamlText, space: str, nodes: Sequence[str]) -> dict[str, str]:
     """Return the full names of a robot's nodes by the names that a file has for them. A file for
     nav2_bringup has them below the robot's namespace; all others begin with a slash."""
     if any(key.value.startswith("/") for key, _ in pairs(document.root)):
         return {it: it for it in nodes}
-    above = f"/{robot}"
+    above = f"/{space}"
     return {it.removeprefix(above): it for it in nodes if it.startswith(f"{above}/")}

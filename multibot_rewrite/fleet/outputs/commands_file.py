@@ -10,7 +10,6 @@ from multibot_rewrite.base.releases import facts_of_release
 from multibot_rewrite.fleet.file.fleet_file import BRINGUP
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.launch.launch_actions import controller
-from multibot_rewrite.fleet.launch.launch_file import domains_of
 from multibot_rewrite.fleet.outputs import spawn, teleop
 from multibot_rewrite.fleet.outputs.moveit_parameters import cell_commands, moveit_commands
 from multibot_rewrite.fleet.outputs.output_file import FilesAndFindings, OutputFile, path_for
@@ -32,7 +31,7 @@ def commands_file(
 ) -> FilesAndFindings:
     """Yield the commands robot by robot, and the parameters of those that amcl has to place.
     ``each`` is every robot as a fleet of its own, ``windows`` open RViz, each with its robot."""
-    domains = domains_of(plan)
+    domains = plan.file.apart.numbers
     clocks: set[bool | None] = set()
     rows = [f"# Commands of this fleet{facts_of_release(plan.file.distro)}\n"]
     for one in each:
@@ -46,7 +45,7 @@ def commands_file(
         clocks.add(clock)
         rows += _lines((it.start for it in poses.transforms), clock)
         if is_simulated(robot) and not spawn.is_of_vendor(one.evidence_of(robot).placing):
-            rows += [spawn.either(it, robot) for it in spawn.in_folder(one)]
+            rows += [spawn.command_of(it, robot) for it in spawn.in_folder(one)]
         rows += _controllers(one)
         relayed = (it.start for it in relays(robot.spec.namespace, one.fleet.naming, one.file))
         driven = (it.start for it in teleop.teleops(one))

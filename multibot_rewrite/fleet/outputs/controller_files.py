@@ -132,7 +132,7 @@ def with_loaded_files(robot: RewrittenRobot) -> RewrittenRobot:
     for path, _ in loaded_files(robot):
         if any(is_same(path, it, file) or named_alike(path, it) for it in params):
             continue
-        found = next(_found(path, file), "")
+        found = next(_existing_files(path, file), "")
         if not found:
             message = f"robot {spec.name!r}: its description loads {path!r}, which is not there"
             hint = "list the file under params, or source the workspace that has it"
@@ -144,7 +144,7 @@ def with_loaded_files(robot: RewrittenRobot) -> RewrittenRobot:
     return robot._replace(spec=spec._replace(related_files=related_files), findings=said)
 
 
-def _found(path: str, description: str) -> Iterator[str]:
+def _existing_files(path: str, description: str) -> Iterator[str]:
     """Yield the existing files that a path in a description may name."""
     plain = path.removeprefix("file://")
     match = IN_PACKAGE.fullmatch(plain)

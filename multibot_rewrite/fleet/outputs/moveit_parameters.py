@@ -56,7 +56,7 @@ from multibot_rewrite.related_files.rviz.rewrite import RvizText
 from multibot_rewrite.related_files.yaml_text import YamlText, read_yaml, replaced, spliced
 
 FILE = "moveit_parameters.yaml"
-# Package and executable of the nodes that take it, by their names in the stack.
+# Package and executable of the nodes that take it, by their names in the node set.
 _MOVE_GROUP = "move_group"
 PROGRAMS = {
     _MOVE_GROUP: ("moveit_ros_move_group", "move_group"),

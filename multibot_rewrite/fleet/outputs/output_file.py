@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A file that a build writes with the source line of each line, and what each step of a build yields:
-files and findings."""
-
-from __future__ import annotations
+files, findings, and files to check."""
 
 import os
 from collections.abc import Collection, Iterable, Iterator
@@ -15,6 +13,8 @@ from multibot_rewrite.description.sources.read import JOIN, XACRO, read_file
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.producers.ends import BRIDGE_FILE
+from multibot_rewrite.related_files.context import NAMESPACE_SLOT, TAG_SLOT
+from multibot_rewrite.related_files.named_file import NamedFile
 from multibot_rewrite.related_files.yaml_text import YamlText, read_yaml
 
 # The plan of a built fleet.
@@ -43,7 +43,15 @@ class OutputFile(NamedTuple):
         return read_yaml(self.data, self.path)
 
 
+class ReadFile(NamedTuple):
+    """A related file as it was read, to be checked for the robots that it is rewritten for."""
+
+    file: NamedFile
+    robots: tuple[RewrittenRobot, ...]
+
+
 FilesAndFindings: TypeAlias = Iterator[OutputFile | Finding]
+FilesToCheck: TypeAlias = Iterator[OutputFile | ReadFile | Finding]
 
 
 def described_path(robot: RewrittenRobot, node: str) -> str:
@@ -80,10 +88,10 @@ def name_among(source: str, every: Iterable[str]) -> str:
     name = os.path.basename(source)
     alike = {os.path.abspath(it) for it in every if os.path.basename(it) == name}
     one_of_several = len(alike) > 1 and os.path.abspath(source) in alike
-    return _told_apart(os.path.abspath(source), alike) if one_of_several else name
+    return _shortest_own_end(os.path.abspath(source), alike) if one_of_several else name
 
 
-def _told_apart(path: str, alike: Collection[str]) -> str:
+def _shortest_own_end(path: str, alike: Collection[str]) -> str:
     """Return the shortest end of a path below the folder of all, in whole steps, that no other one ends
     with: where that folder is makes no difference."""
     steps = os.path.relpath(path, os.path.commonpath(map(os.path.dirname, alike))).split(os.sep)
@@ -99,8 +107,7 @@ def expanded_name(path: str) -> str:
 
 
 def params_paths(robot: RewrittenRobot, files: Collection[str]) -> tuple[str, ...]:
-    """Return where a robot's parameter files are among the ``files`` of a build; the default one if
-    it has no others."""
+    """Return a robot's parameter files among the ``files`` of a build; the default one if none."""
     named = robot.spec.related_files.get("params", ())
     paths = tuple(path_for(robot, it) for it in named or (DEFAULTS,))
     return tuple(it for it in paths if it in files)
@@ -146,3 +153,12 @@ def _changes(file: OutputFile) -> tuple[tuple[int, int, int, int], ...]:
         return ()
     codes = SequenceMatcher(None, old, file.text.splitlines(), False).get_opcodes()
     return tuple(it[1:] for it in codes)
+
+
+def without_slots(it: Finding, spec: RobotSpec) -> Finding:
+    """Return a finding about the file of any robot with the names of one in place of slots."""
+    message, hint = (
+        text.replace(NAMESPACE_SLOT, spec.namespace).replace(TAG_SLOT, spec.tag)
+        for text in (it.message, it.hint)
+    )
+    return it._replace(message=message, hint=hint)

@@ -20,14 +20,14 @@ from multibot_rewrite.fleet.file.robot_spec import RobotSpec
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import FilesAndFindings, OutputFile, path_for
 from multibot_rewrite.fleet.outputs.shape_outputs import taken_as_they_are
-from multibot_rewrite.fleet.robots.robot_nodes import stack_nodes
+from multibot_rewrite.fleet.robots.robot_nodes import nodes_of_sets
 from multibot_rewrite.fleet.robots.start_poses import start_poses
-from multibot_rewrite.knowledge.stacks import load_stack
+from multibot_rewrite.knowledge.node_sets import load_node_set
 from multibot_rewrite.related_files.params.shared_defaults import for_bringup
 from multibot_rewrite.related_files.yaml_text import read_yaml
 
-# The stacks that are nav2_bringup's launch files.
-_STACKS = ("nav2_composed", "nav2_slam")
+# The node sets that are nav2_bringup's launch files.
+_NODE_SETS = ("nav2_composed", "nav2_slam")
 # What its launch files replace in parameter files, from Kilted on -> the node that makes it true.
 ZONES = MappingProxyType(
     {
@@ -51,7 +51,7 @@ def check_style(file: FleetFile) -> None:
         why = "it always starts Nav2 in the robot's namespace and remaps /tf to tf there"
         what = f"nav2_bringup cannot start layout {layout.name}"
         raise UsageError(f"{place}: {what}: {why}; {_INSTEAD}")
-    started = {it.name for stack in _STACKS for it in load_stack(stack, file.distro)}
+    started = {it.name for node_set in _NODE_SETS for it in load_node_set(node_set, file.distro)}
     for name in (it for it in file.shared_nodes if it in started):
         hint = f"remove {name} from shared_nodes, or start Nav2 with nav2.launch.py of multibot_rewrite"
         raise UsageError(f"{place}: nav2_bringup starts {name} for each robot; {hint}")
@@ -87,7 +87,7 @@ def _with_zones(it: OutputFile, spec: RobotSpec, file: FleetFile) -> OutputFile:
     """Return the file with true or false for the zone words, as nav2_bringup's launch files do."""
     if not any(word.encode() in it.data for word in ZONES):
         return it
-    runs = {node.name for node in stack_nodes(spec, file)}
+    runs = {node.name for node in nodes_of_sets(spec, file)}
     data = it.data
     for word, server in ZONES.items():
         data = data.replace(word.encode(), b"true" if server in runs else b"false")
@@ -97,7 +97,9 @@ def _with_zones(it: OutputFile, spec: RobotSpec, file: FleetFile) -> OutputFile:
 def _without_rule(plan: FleetPlan) -> Iterator[Finding]:
     """Yield the absolute names of a robot's nodes that neither a rule nor a parameter changes."""
     first = plan.robots[0].spec.namespace
-    started = {it.name for stack in _STACKS for it in load_stack(stack, plan.file.distro)}
+    started = {
+        it.name for node_set in _NODE_SETS for it in load_node_set(node_set, plan.file.distro)
+    }
     left = [
         f"{end.name} of {run.node}"
         for run, end, name in plan.fleet.table.ends

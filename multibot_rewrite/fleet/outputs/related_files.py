@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Parameter files, MoveIt files, behavior trees and Lua files of a fleet: one for each robot."""
 
-from __future__ import annotations
-
 import json
 import os
 from collections import defaultdict
@@ -13,18 +11,19 @@ from multibot_rewrite.base.bounded import load_yaml, own_text
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.naming import Naming
 from multibot_rewrite.base.nearest import meant_name
-from multibot_rewrite.description.own_ports import said_of_numbers
-from multibot_rewrite.fleet.checks.written_files import wrong_in_file
+from multibot_rewrite.description.own_ports import numbers_message
 from multibot_rewrite.fleet.file.fleet_file import BRINGUP
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import (
     DEFAULTS,
     OPTIONS,
-    FilesAndFindings,
+    FilesToCheck,
     OutputFile,
+    ReadFile,
     params_of,
     path_for,
     text_of,
+    without_slots,
 )
 from multibot_rewrite.fleet.robots.rewritten_robots import OWN_PORTS
 from multibot_rewrite.fleet.robots.robot_groups import RobotGroup, group_robots
@@ -36,9 +35,7 @@ from multibot_rewrite.producers.evidence.nodes import children_of
 from multibot_rewrite.producers.launch.handed_on import HandedOn
 from multibot_rewrite.producers.launch.known_node import STATIC
 from multibot_rewrite.related_files.context import (
-    NAMESPACE_SLOT,
     NUMBER_STEP,
-    TAG_SLOT,
     fill_template,
     make_template,
 )
@@ -56,7 +53,7 @@ from multibot_rewrite.related_files.yaml_text import Splice, read_yaml
 _KINDS = {"params": PARAMS, "moveit": MOVEIT, "behavior_trees": TREE, "lua": LUA}
 
 
-def related_files(plan: FleetPlan) -> FilesAndFindings:
+def related_files(plan: FleetPlan) -> FilesToCheck:
     """Yield every related file that is one text with slots for the robot. Raises InputError for a
     file that cannot be read or rewritten."""
     groups = list(group_robots(plan))
@@ -159,7 +156,7 @@ def _known(plan: FleetPlan, group: RobotGroup) -> tuple[KnownNodes, frozenset[st
     return known._replace(sent=known.sent | {it for it in sent if not meant_name(it, links)}), bare
 
 
-def _files(plan: FleetPlan, group: RobotGroup, key: str, path: str) -> FilesAndFindings:
+def _files(plan: FleetPlan, group: RobotGroup, key: str, path: str) -> FilesToCheck:
     """Yield a file for each robot of a group, and what is found in it."""
     spec = group.robots[0].spec
     if _KINDS[key] == PARAMS:
@@ -172,19 +169,13 @@ def _files(plan: FleetPlan, group: RobotGroup, key: str, path: str) -> FilesAndF
     numbers = {it.spec.name: at for at, it in enumerate(having)}
     # Robots that differ in their descriptions may have one file.
     file = made.file._replace(is_for_one=made.file.is_for_one and len(numbers) == 1)
-    found = (*made.findings, *wrong_in_file(plan, file, group.robots))
-    for it in found:
-        # It is about any robot: slots have the names of this one.
-        message, hint = (
-            text.replace(NAMESPACE_SLOT, spec.namespace).replace(TAG_SLOT, spec.tag)
-            for text in (it.message, it.hint)
-        )
-        yield it._replace(message=message, hint=hint)
+    yield ReadFile(file, tuple(group.robots))
+    yield from (without_slots(it, spec) for it in made.findings)
     # The ports that robots get numbers of their own for.
     for site in made.file.names if len(numbers) > 1 else ():
         if site.kind == PORT and site.text.isdecimal() and int(site.text):
             given = {name: int(site.text) + at * NUMBER_STEP for name, at in numbers.items()}
-            message, hint = said_of_numbers(site.key, given.items())
+            message, hint = numbers_message(site.key, given.items())
             yield found_in(made.file.file, site.slot, OWN_PORTS, message, hint)
     for robot in group.robots:
         spec = robot.spec

@@ -10,8 +10,6 @@ transform joins that to the world of the fleet. Source: tf_namespace_bridge
 src/tf_namespace_bridge.cpp, launch/tf_namespace_bridge.yaml, CMakeLists.txt (41881734b).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
@@ -45,10 +43,10 @@ def relays(robot: str, naming: Naming, file: FleetFile) -> list[Relay]:
     if not file.relayed:
         return []
     copied = naming.layout.frames
-    return [*(_copies(robot, naming) if copied else _bridge(robot, naming, file.world))]
+    return [*(_relays_to_tf(robot, naming) if copied else _bridge(robot, naming, file.world))]
 
 
-def _copies(robot: str, naming: Naming) -> Iterator[Relay]:
+def _relays_to_tf(robot: str, naming: Naming) -> Iterator[Relay]:
     above = f"/{robot}" if naming.topics == NAMESPACE else ""
     for topic in TF_TOPICS:
         node = f"{topic}_relay"

@@ -6,8 +6,6 @@ paths in the robot's colour, and tools for its goal and pose.
 Sources: classes and properties ``rviz.yaml``; a map is latched (nav2_map_server map_server.cpp), so is
 a description (robot_state_publisher.cpp); drivers send scans and clouds best effort (REP 2003)."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
@@ -17,7 +15,6 @@ from multibot_rewrite.base.findings.finding import WARNING, Finding, declare
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import MultibotError
 from multibot_rewrite.base.naming import LAYOUTS, PREFIX, TF_TOPICS, find_layout, make_naming
-from multibot_rewrite.fleet.checks.written_files import wrong_in_file
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.moveit_parameters import (
     FILE,
@@ -26,8 +23,9 @@ from multibot_rewrite.fleet.outputs.moveit_parameters import (
     parameters_path,
 )
 from multibot_rewrite.fleet.outputs.output_file import (
-    FilesAndFindings,
+    FilesToCheck,
     OutputFile,
+    ReadFile,
     name_among,
     own_yaml,
     path_for,
@@ -136,7 +134,7 @@ def _text(displays: Sequence[dict[str, Any]], robots: Sequence[Shown], frame: st
         if (topic := it.clicked(word))
     ]
     usual = [{"Class": f"rviz_default_plugins/{it}"} for it in ("MoveCamera", "Select")]
-    first = [_plain("Grid"), _plain("TF")]
+    first = [_plain_display("Grid"), _plain_display("TF")]
     config = {
         "Panels": [{"Class": "rviz_common/Displays", "Name": "Displays"}],
         "Visualization Manager": {
@@ -150,7 +148,7 @@ def _text(displays: Sequence[dict[str, Any]], robots: Sequence[Shown], frame: st
     return "".join(f"{line}\n" for line in _lines(config))
 
 
-def _plain(kind: str) -> dict[str, Any]:
+def _plain_display(kind: str) -> dict[str, Any]:
     return {"Class": f"rviz_default_plugins/{kind}", "Name": kind, "Enabled": True}
 
 
@@ -215,12 +213,12 @@ USUAL = "/fleet.rviz"
 
 
 class RvizOutput(NamedTuple):
-    """The results of one RViz config, whose path is ``source``; ``name`` is that of a window for
-    several robots."""
+    """The results of one RViz config, whose path is ``source``; ``findings`` are about it, or have it
+    checked, ``name`` is that of a window for several robots."""
 
     source: str
     windows: tuple[RvizText, ...]
-    findings: tuple[Finding, ...]
+    findings: tuple[Finding | ReadFile, ...]
     name: str
 
     def path(self, window: RvizText) -> str:
@@ -247,10 +245,11 @@ def rviz_outputs(plan: FleetPlan, each: Iterable[FleetPlan]) -> Iterator[RvizOut
         if relayed and not plan.fleet.naming.layout.frames:
             window, bare = bridged_window(document, shown, world)
             texts, found = (window, *texts), (*found, *bare)
-        found = (*found, *wrong_in_file(plan, read_for(document, shown, plan.file.distro), robots))
         done = ONE_TF_TOPIC.code if relayed else ""
         left = tuple(it for it in found if it.code != done)
-        yield RvizOutput(path, texts, left, name_among(path, robots_of).replace("/", "_"))
+        read = ReadFile(read_for(document, shown, plan.file.distro), tuple(robots))
+        name = name_among(path, robots_of).replace("/", "_")
+        yield RvizOutput(path, texts, (*left, read), name)
 
 
 def usual_windows(plan: FleetPlan, planned: System) -> list[RvizOutput]:
@@ -275,7 +274,7 @@ def _as_rviz_robot(plan: FleetPlan) -> RvizRobot:
     names = robot.names._replace(robot=spec.tag)
     topics = robot.topics._replace(robot=spec.namespace)
     known = fleet_topics(plan.fleet.table, plan.fleet.facts, spec.namespace)
-    # The name and the rules of an rviz2 that the robot's stacks start.
+    # The name and the rules of an rviz2 that the robot's node sets start.
     own = next((it for it in plan.fleet.table.runs if it.robot and it.node == RVIZ), None)
     rules = own.rules if own else ()
     if own and not plan.fleet.naming.layout.namespaced:
@@ -284,7 +283,7 @@ def _as_rviz_robot(plan: FleetPlan) -> RvizRobot:
     return RvizRobot(spec.name, names, topics, spec.colour, known, prefix, rules)
 
 
-def rviz_files(configs: Iterable[RvizOutput]) -> FilesAndFindings:
+def rviz_files(configs: Iterable[RvizOutput]) -> FilesToCheck:
     """Yield the files of the windows, and the findings."""
     for config in configs:
         yield from config.findings

@@ -5,8 +5,6 @@ Sources: ros_gz jazzy ``ros_gz_sim/src/create.cpp``; gazebo_ros_pkgs ros2 ``spaw
 ``gazebo_ros_factory.cpp``.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import NamedTuple
@@ -127,7 +125,7 @@ def spawner(it: Spawn, classic: bool) -> Start:
     return Start(*program, arguments=(named, it.model, *it.source, *pose, *more, *it.further))
 
 
-def either(it: Spawn, robot: RewrittenRobot) -> str:
+def command_of(it: Spawn, robot: RewrittenRobot) -> str:
     """Return the command for the description's simulator, with the other simulator's as a comment."""
     gz, classic = (shell_line(spawner(it, classic)) for classic in (False, True))
     if robot.is_classic:
@@ -183,7 +181,7 @@ def _of_ros_1(robot: RewrittenRobot) -> Iterator[Finding]:
         yield at_robot(PLUGIN_OF_ROS_1, robot, message, hint)
 
 
-def _made(robot: RewrittenRobot) -> set[str]:
+def _plugin_topics(robot: RewrittenRobot) -> set[str]:
     """Return the gz topics that the robot's plugins make, as the model is spawned."""
     spec, inventory = robot.spec, robot.member.inventory
     names = {spec.namespace: spec.model}
@@ -197,7 +195,7 @@ def _other_models(robot: RewrittenRobot) -> Iterator[Finding]:
     own = model_name(inventory)
     if own == robot.spec.model:
         return
-    made, plugins = _made(robot), inventory.document.root.iter("plugin")
+    made, plugins = _plugin_topics(robot), inventory.document.root.iter("plugin")
     fixed = made.intersection(text_of(it) for plugin in plugins for it in plugin.iter())
     for claim, names in zip(inventory.claims, inventory.names, strict=True):
         _, model, rest = claim.value.partition(f"/model/{own}/")

@@ -4,8 +4,6 @@
 Source: teleop_twist_keyboard jazzy (``stamped`` and ``frame_id``; it publishes ``cmd_vel``).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
@@ -44,13 +42,12 @@ class Teleop(NamedTuple):
 
 
 def teleops(plan: FleetPlan) -> tuple[Teleop, ...]:
-    """Return how to drive each robot that reads velocity commands. Raises InputError for a bridge
-    file that cannot be read."""
+    """Return how to drive each robot that reads velocities. Raises InputError for a bad bridge file."""
     found = []
     for robot in plan.robots:
         # Something reads velocity commands, or sends them to a base that is not in the plan.
         own = _ends(plan, robot)
-        sends = any(end.role == PUBLISHES and name == _usual(robot) for _, end, name in own)
+        sends = any(end.role == PUBLISHES and name == _cmd_vel(robot) for _, end, name in own)
         if sends or _obeyed([*_commands(plan, robot)]):
             found.append(teleop(plan, robot))
     return tuple(found)
@@ -61,7 +58,7 @@ def _ends(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, Endpoin
     yield from ((run.full_name, end, name) for run in runs for end, name in run.names)
 
 
-def _usual(robot: RewrittenRobot) -> str:
+def _cmd_vel(robot: RewrittenRobot) -> str:
     return robot_topic(robot.topics, f"/{COMMAND}")
 
 
@@ -69,7 +66,7 @@ def teleop(plan: FleetPlan, robot: RewrittenRobot) -> Teleop:
     """Return how to drive a robot: by its ``cmd_vel`` if a node obeys it, else the first topic that
     one obeys; if a mux, a smoother or a monitor sends there, by an input of that."""
     ends = [*_commands(plan, robot)]
-    usual, obeyed = _usual(robot), _obeyed(ends)
+    usual, obeyed = _cmd_vel(robot), _obeyed(ends)
     topic = entry_of(usual if usual in obeyed or not obeyed else obeyed[0], ends)
     types = {it.type for it in ends if it.role == SUBSCRIBES and it.topic == topic}
     if STAMPED not in types or PLAIN in types:
@@ -80,8 +77,7 @@ def teleop(plan: FleetPlan, robot: RewrittenRobot) -> Teleop:
 
 
 def _commands(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[CommandEnd]:
-    """Yield the ends of a robot with velocities: those of its nodes, then the bridges to the simulator,
-    which have no name."""
+    """Yield a robot's ends with velocities: those of nodes, then of bridges, which have no name."""
     for node, end, name in _ends(plan, robot):
         if end.kind == TOPIC and end.type in (PLAIN, STAMPED) and not end.when:
             yield CommandEnd(node, end.role, name, end.type, end.parameter, end.name)

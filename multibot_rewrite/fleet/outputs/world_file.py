@@ -11,8 +11,6 @@ A block of a plugin that names it (``<wind_obj>`` of VRX, ``<performer>`` of gz-
 robot; a parameter of the plugin itself can name one robot only, and names the first.
 Sources: gz-sim examples/worlds/levels.sdf; osrf/vrx vrx_gz/src/USVWind.cc, ScoringPlugin.cc."""
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Iterator, Sequence
@@ -29,6 +27,7 @@ from multibot_rewrite.description.rewriters.text import text_at, text_of
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.description.sources.included_models import model_file
 from multibot_rewrite.description.sources.read import read_file
+from multibot_rewrite.description.sources.world_systems import needed_systems
 from multibot_rewrite.description.steps.apply import Spans, cut
 from multibot_rewrite.description.steps.document import Document, read_document, tag_end, text_slot
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
@@ -37,7 +36,6 @@ from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.simulators import is_simulated, systems_of
 from multibot_rewrite.knowledge.worlds import DEFAULTS, SENT_BY, SENT_BY_ANY, SYSTEMS
 from multibot_rewrite.related_files.names.rename_map import is_declared, spell
-from multibot_rewrite.rules.facts.simulators import needed_systems
 
 _SCOPE = "::"
 _BELOW_MODEL = r"((?:^|/)model/){}(?=/|$)"
@@ -85,7 +83,7 @@ def own_world(
         names = kind.names | {name for one in gone if (name := _name(one))}
         for one in gone:
             edits.append(Edit(*it.spans.of(one), b"", None))
-            findings.append(_said(it, one, f"the world's {_name(one)!r} is left out", NOTE))
+            findings.append(_finding(it, one, f"the world's {_name(one)!r} is left out", NOTE))
         inside = {below for one in gone for below in one.iter()}
         for plugin in world.iter("plugin"):
             if plugin not in inside:
@@ -100,21 +98,20 @@ def own_world(
 
 
 def world_topics(path: str) -> dict[str, str]:
-    """Return the gz topics of a user's world, or of Gazebo's empty one, each with its type: empty
-    if unknown."""
+    """Return the gz topics of a user's world, or of Gazebo's empty one, with types; empty: unknown."""
     root = read_document(read_file(path), path).root if path else None
     world = root.find("world") if root is not None else None
     if root is None or world is None:
-        return _sent("empty", DEFAULTS)
+        return _world_topics("empty", DEFAULTS)
     plugins = [library_key(it.get("filename") or "") for it in world.iterchildren("plugin")]
     systems = [it.removeprefix("gz-sim-").removesuffix("-system") for it in plugins]
     texts = (text_of(it) for it in world.iter("*") if str(it.tag).endswith("topic"))
     named = {*texts, *(it.get("topic", "") for it in world.iter("*"))} - {""}
     told = {f"/{it.lstrip('/')}": "" for it in named}
-    return told | _sent(world.get("name", ""), systems or DEFAULTS)
+    return told | _world_topics(world.get("name", ""), systems or DEFAULTS)
 
 
-def _sent(world: str, systems: Sequence[str]) -> dict[str, str]:
+def _world_topics(world: str, systems: Sequence[str]) -> dict[str, str]:
     own = (SENT_BY_ANY, *(SENT_BY.get(it, {}) for it in systems))
     return {
         f"/world/{world}/{name}": f"gz.msgs.{type_}" for it in own for name, type_ in it.items()
@@ -158,7 +155,7 @@ def _in_plugin(it: _Text, plugin: _Element, kind: _Kind) -> Iterator[Edit | Find
         who = plugin.get("name") or plugin.get("filename") or "plugin"
         first = kind.robots[0].spec.name
         message = f"{who} of the world names one robot in <{named[0].tag}>: now {first} alone"
-        yield _said(it, named[0], message, WARNING)
+        yield _finding(it, named[0], message, WARNING)
 
 
 def _block(it: _Text, block: _Element, kind: _Kind, robot: RewrittenRobot) -> bytes:
@@ -215,7 +212,7 @@ def _own_paths(it: _Text) -> Iterator[Edit]:
                 yield Edit(*slot, f"file://{path}".encode(), None)
 
 
-def _said(it: _Text, one: _Element, message: str, level: str) -> Finding:
+def _finding(it: _Text, one: _Element, message: str, level: str) -> Finding:
     place = f"{it.document.file}:{one.sourceline}"
     hint = f"{place}; robots are spawned by the launch file" if level == NOTE else f"see {place}"
     return WORLD_ROBOT.finding(message, hint, level=level, file=it.file, line=it.line)

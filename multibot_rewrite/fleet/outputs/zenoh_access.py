@@ -7,8 +7,6 @@ includes its own. rmw_zenoh ``docs/design.md`` has the keys: a topic or service 
 with ``@adv`` (zenoh-ext ``advanced_publisher.rs``); ``**`` does not match a part that begins with @.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import takewhile
 from typing import NamedTuple
@@ -57,7 +55,7 @@ def rights(plan: System, domain: int) -> list[Rights]:
     none. All below its namespace is its own, unless another robot has names there too. Of all other
     names it has those that its nodes have in the plan."""
     numbers, bridged = domain_of(plan), beyond(plan)
-    bridges = {it.name for it in plan.nodes if it.stack == DOMAIN_BRIDGE}
+    bridges = {it.name for it in plan.nodes if it.node_set == DOMAIN_BRIDGE}
     whole = plan
     plan = plan._replace(nodes=tuple(it for it in plan.nodes if it.name not in bridges))
     owner = {it.name: it.robot for it in plan.nodes}
@@ -99,7 +97,7 @@ def _with_bridge(
     at = {
         it.name: numbers["" if it.name in beyond_ else given.robot]
         for it in plan.nodes
-        if it.stack == DOMAIN_BRIDGE and beyond_.get(it.name, it.robot) == given.robot
+        if it.node_set == DOMAIN_BRIDGE and beyond_.get(it.name, it.robot) == given.robot
     }
     ends = [it for it in plan.ends if it.node in at]
     own = [f"{number}{name}/**" for name, number in at.items()]

@@ -16,8 +16,6 @@ tf topic alone, and wants ``navigation_stack`` and ``initial_map`` of each robot
 bridges are of zenoh-bridge-ros2dds, where a name is a regular expression of the whole name
 (DEFAULT_CONFIG.json5 at 0b277b7)."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator
 from typing import Any, NamedTuple
@@ -218,7 +216,7 @@ def free_fleet_files(plan: System, setup: FreeFleet) -> Iterator[tuple[str, byte
     numbers, whose = domain_of(plan), whose_by_plan(plan)
     for robot in plan.robots:
         # Why the adapter would find nothing of the robot.
-        tf, served = f"/{robot.name}/{TF_TOPICS[0]}", f"/{robot.name}/{_NAVIGATE}"
+        tf, served = (f"/{robot.space}/{it}" for it in (TF_TOPICS[0], _NAVIGATE))
         if robot.tf_topic != tf:
             wanted = f"its adapter reads {tf}, and {robot.name} has {robot.tf_topic}"
             raise UsageError(f"{FREE_FLEET}: {wanted}; take layout tf-per-robot or both")
@@ -246,7 +244,7 @@ def free_fleet_files(plan: System, setup: FreeFleet) -> Iterator[tuple[str, byte
 
 
 def _bridge(robot: Robot, domain: int, setup: FreeFleet) -> bytes:
-    battery = f"/{robot.name}/{_BATTERY}"
+    battery = f"/{robot.space}/{_BATTERY}"
     config = {
         "plugins": {
             "ros2dds": {
@@ -256,7 +254,7 @@ def _bridge(robot: Robot, domain: int, setup: FreeFleet) -> bytes:
                     "subscribers": [],
                     "service_servers": [],
                     "service_clients": [],
-                    "action_servers": [f"/{robot.name}/{_NAVIGATE}"],
+                    "action_servers": [f"/{robot.space}/{_NAVIGATE}"],
                     "action_clients": [],
                 },
                 "pub_max_frequencies": [f"{battery}=1"],

@@ -4,8 +4,6 @@
 They are texts of files that are on no disk; what reads a file of a robot takes them by their paths.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple

@@ -23,9 +23,9 @@ from multibot_rewrite.fleet.outputs.relays import Relay, relays
 from multibot_rewrite.fleet.robots import start_poses
 from multibot_rewrite.fleet.robots.node_names import NodeNames, Rules, names_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
-from multibot_rewrite.fleet.robots.robot_nodes import stack_nodes
+from multibot_rewrite.fleet.robots.robot_nodes import nodes_of_sets
+from multibot_rewrite.knowledge.node_sets import is_apart
 from multibot_rewrite.knowledge.programs import Program, started_as
-from multibot_rewrite.knowledge.stacks import is_apart
 from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.planning.of_runs import placed, target_of
 from multibot_rewrite.related_files.names.node_topics import fleet_topics, robot_topic
@@ -64,22 +64,35 @@ class OfFleet(Protocol):
     kept: KeptFiles
 
     @property
-    def planned(self) -> Fleet: ...
+    def planned(self) -> Fleet:
+        """Return the fleet with its plan."""
+
     @property
-    def placed(self) -> start_poses.StartPoses: ...
+    def placed(self) -> start_poses.StartPoses:
+        """Return where each robot starts."""
+
     @property
-    def files(self) -> Mapping[str, OutputFile]: ...
-    def text(self, path: str) -> str: ...
-    def node_text(self, path: str) -> str: ...
-    def parameters(self, path: str) -> YamlText: ...
-    def robot(self, name: str) -> LoadedRobot: ...
+    def files(self) -> Mapping[str, OutputFile]:
+        """Return the files that a build writes, by path."""
+
+    def text(self, path: str) -> str:
+        """Return the text of a file of the build."""
+
+    def node_text(self, path: str) -> str:
+        """Return the text of a parameter file for nodes that are started one by one."""
+
+    def parameters(self, path: str) -> YamlText:
+        """Return a parameter file of the build as parsed YAML."""
+
+    def robot(self, name: str) -> LoadedRobot:
+        """Return the robot of that name."""
 
 
 class LoadedRobot:
     """One robot of a fleet: what its nodes, its simulator and its tf need, as plain values.
 
     ``namespace`` is absolute; ``tag`` is the prefix or postfix of its frames and joints; ``pose``
-    is None if the fleet file has none; ``stack`` are the nodes of its node sets. It can be copied
+    is None if the fleet file has none; ``node_set`` are the nodes of its node sets. It can be copied
     and pickled, with its fleet."""
 
     def __init__(self, fleet: OfFleet, robot: RewrittenRobot) -> None:
@@ -92,8 +105,8 @@ class LoadedRobot:
         self.pose: Pose | None = spec.pose
         self.use_sim_time: bool | None = spec.use_sim_time
         self.distro: str = fleet.plan.file.distro
-        nodes = stack_nodes(spec, fleet.plan.file)
-        self.stack: tuple[str, ...] = tuple(it.name for it in nodes)
+        nodes = nodes_of_sets(spec, fleet.plan.file)
+        self.node_set: tuple[str, ...] = tuple(it.name for it in nodes)
         namespaced = robot.topics.naming.topics == NAMESPACE
         self.namespace: str = f"/{spec.namespace}" if namespaced else "/"
 
@@ -297,15 +310,13 @@ class LoadedRobot:
 
     @property
     def transform_arguments(self) -> list[str]:
-        """``arguments`` of the ``static_transform_publisher`` of its pose, empty if it needs none;
-        raises nothing."""
+        """Arguments of its pose's ``static_transform_publisher``, if it needs one; raises nothing."""
         made = self._fleet.placed.transforms
         return next((it.start.words for it in made if it.robot == self._graph), [])
 
     @checked
     def start_parameters(self, node: str) -> dict[str, Any]:
-        """Return parameters with the start pose for ``node``, empty if it does not use them; raises
-        as ``frame``."""
+        """Return ``node``'s parameters with the start pose, if it has them; raises as ``frame``."""
         made = self._fleet.placed.initial
         own = (it for it in made if it.robot == self._graph and it.node == node)
         return next((dict(it.values) for it in own), {})

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A robot of a fleet, with all that its rewritten description says."""
 
-from __future__ import annotations
-
 from itertools import islice
 from typing import NamedTuple
 
@@ -26,18 +24,20 @@ from multibot_rewrite.description.steps.document import Document, read_document
 
 
 class Member(NamedTuple):
-    """A robot of a fleet: its namespace, the tag in its frames, and what its rewritten description
-    holds and starts. ``described`` is what robot_state_publisher gets; where the simulator gets another
-    file, all else is of that. ``source`` is the description before, ``sent`` the one that ``described``
-    is made of, ``tree`` what is known of plugins, ``shared`` are findings about names that any two
-    robots of it would have, ``unread`` about arguments that its xacro does not know; ``read`` are the
-    files that were read for it, ``plain`` the names that arguments of its xacro make, by what they are
-    without. ``handed_on`` are the remap rules of a plugin with a controller manager, as they are in
-    ``source``. ``published`` are frames of ``described`` that the simulator's file has not.
+    """A robot of a fleet: its namespace, the tag in its frames, its name, and what its rewritten
+    description holds and starts. ``described`` is what robot_state_publisher gets; where the simulator
+    gets another file, all else is of that. ``source`` is the description before, ``sent`` the one that
+    ``described`` is made of, ``tree`` what is known of plugins, ``shared`` are findings about names
+    that any two robots of it would have, ``unread`` about arguments that its xacro does not know;
+    ``read`` are the files that were read for it, ``plain`` the names that arguments of its xacro make,
+    by what they are without. ``handed_on`` are the remap rules of a plugin with a controller manager,
+    as they are in ``source``. ``published`` are frames of ``described`` that the simulator's file has
+    not.
     """
 
     robot: str
     tag: str
+    name: str
     described: Inventory
     inventory: Inventory
     reading: Reading
@@ -83,12 +83,13 @@ def member(
     words = (shared, unread, job.read.files, job.own.plain, handed_on)
     if not described:
         return Member(
-            source.robot, tag, written, written, reading, document, document, tree, *words
+            *(source.robot, tag, source.robot, written, written, reading, document, document),
+            *(tree, *words),
         )
     frames = {it.name for it in reading.names if it.kind == FRAME}
     others = (it for it in described.reading.names if it.kind == FRAME and it.name not in frames)
     files = (described.described, written, reading, document, described.sent)
-    return Member(source.robot, tag, *files, tree, *words, published=tuple(others))
+    return Member(source.robot, tag, source.robot, *files, tree, *words, published=tuple(others))
 
 
 def with_text(it: Member, data: bytes) -> Member:

@@ -36,7 +36,7 @@ class NodeNames(NamedTuple):
         """Return the node's remap rules, as ``launch_ros.actions.Node`` and ``ComposableNode`` take
         them. Rules for nodes in its process come first: rcl applies the first rule that matches.
         Raises UsageError for a node that no node set of the fleet has, and for a controller."""
-        own = self._found(node)
+        own = self._node_of(node)
         it = self.started.get(node)
         if it is None:
             return list(own.rules)
@@ -49,7 +49,7 @@ class NodeNames(NamedTuple):
         """Return package, executable, namespace and arguments of the program that loads a
         controller. ``launch_ros.actions.Node`` takes them as they are. Raises as ``for_node``, and
         UsageError for a node that is no controller."""
-        self._found(node)
+        self._node_of(node)
         it = self.started.get(node)
         if it is None or it.way != SPAWNER:
             controllers = [name for name, it in self.started.items() if it.way == SPAWNER]
@@ -61,14 +61,12 @@ class NodeNames(NamedTuple):
         return node in self.started and self.started[node].way == SPAWNER
 
     def container(self, node: str) -> str:
-        """Return the full name of the container that this node is loaded into, empty for other
-        nodes; raises nothing."""
+        """Return the full name of the container of this node, empty for other nodes; raises nothing."""
         it = self.started.get(node)
         return self.full_name(it.node.fact.container) if it and it.way == COMPONENT else ""
 
     def inside(self, node: str) -> list[str]:
-        """Return the other nodes in the process that is started for this one: costmaps, components;
-        raises nothing."""
+        """Return the other nodes in this one's process: costmaps, components; raises nothing."""
         homes = {it.node: it.fact.host or it.fact.container for it in self.nodes.values()}
         found = []
         for name in homes:
@@ -82,23 +80,23 @@ class NodeNames(NamedTuple):
     @checked
     def name(self, node: str) -> str:
         """Return the name the node runs under, without its namespace; raises as ``for_node``."""
-        return self._found(node).name
+        return self._node_of(node).name
 
     @checked
     def namespace(self, node: str) -> str:
         """Return the namespace the node runs in, from the root; raises as ``for_node``."""
-        return self._found(node).namespace
+        return self._node_of(node).namespace
 
     @checked
     def full_name(self, node: str) -> str:
         """Return the node's name with its namespace; raises as ``for_node``."""
         return f"{self.namespace(node).rstrip('/')}/{self.name(node)}"
 
-    def _found(self, node: str) -> Run:
+    def _node_of(self, node: str) -> Run:
         if node in self.nodes:
             return self.nodes[node]
         where = f"robot {self.robot!r}" if self.robot else "nodes for all robots"
-        hint = "add its node set to stack: in the fleet file"
+        hint = "add its node set to node_sets: in the fleet file"
         raise UsageError(f"{where}: {unknown('node', node, self.nodes)}; {hint}")
 
 

@@ -2,8 +2,6 @@
 """How each robot of a fleet gets a value of its own in its description: by which argument of its xacro,
 or at which line that has no argument."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
@@ -24,8 +22,7 @@ _MARK, _TRIED = "multibot_mark", 12
 
 
 class Written(NamedTuple):
-    """The file that a robot's description, or its model for the simulator, is made of, and the
-    arguments that it gets."""
+    """The file of a robot's description, or of its model for the simulator, and its arguments."""
 
     path: str
     arguments: Mapping[str, str]

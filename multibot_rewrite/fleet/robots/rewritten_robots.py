@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The robots of a fleet file with their rewritten descriptions; one parse for each source."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from functools import cache
 from types import MappingProxyType
 from typing import NamedTuple
 
-from multibot_rewrite.base.findings.finding import NOTE, Finding, Rule, declare
+from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding, Rule, declare
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.lazy import without_comments
 from multibot_rewrite.base.model import InputError
@@ -34,6 +32,7 @@ from multibot_rewrite.description.sources.read import is_xacro
 from multibot_rewrite.description.steps.apply import Template
 from multibot_rewrite.description.steps.collect import NOTHING
 from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec, Sources
+from multibot_rewrite.fleet.file.simulator_switch import hardware_classes, may_be_simulated
 from multibot_rewrite.fleet.robots.member import Member, member, with_text
 from multibot_rewrite.fleet.robots.own_values import Written
 from multibot_rewrite.planning.transforms import links_of, tree_of
@@ -42,7 +41,6 @@ from multibot_rewrite.related_files.names.rename_map import (
     related_file_names,
     with_srdf,
 )
-from multibot_rewrite.rules.files.names import of_another_robot
 from multibot_rewrite.system.records import Edge
 
 # Kinds that are ROS names and get the namespace; the others get the tag.
@@ -136,8 +134,7 @@ def read_jobs(
     trust: bool,
     release: str,
 ) -> dict[Sources, Jobs]:
-    """Read every description and SRDF once; raises as ``read_job``. ``trust`` lets xacro files do
-    anything."""
+    """Read each description and SRDF once, as ``read_job``; ``trust``: xacro without the sandbox."""
 
     @cache
     def read_in(source: str, urdf: str | None, file: str) -> Reader:
@@ -212,8 +209,8 @@ def rewrite_robots(
 def _names_simulator(it: RewrittenRobot) -> bool:
     """Return whether its description has what one simulator alone loads: plugins, hardware, SDF."""
     root = it.member.inventory.document.root
-    parts = ("gazebo//plugin", "gazebo//sensor", "ros2_control")
-    return root.tag == "sdf" or any(root.find(part) is not None for part in parts)
+    parts = any(root.find(f"gazebo//{it}") is not None for it in ("plugin", "sensor"))
+    return root.tag == "sdf" or parts or any(map(may_be_simulated, hardware_classes(root)))
 
 
 def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobot]:
@@ -249,7 +246,7 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
             _final(semantic, robot, naming) if semantic else b"",
             names,
             names._replace(robot=robot.namespace),
-            made,
+            made._replace(name=robot.name),
             # These the fleet says, of the robots that it has.
             tuple(it for it in found if it.code not in (*SHARED_CODES, UNREAD)),
             simulated,
@@ -277,7 +274,7 @@ def _srdf_findings(semantic: Rewrite) -> Iterator[Finding]:
     first = min(loose, key=lambda it: it.line)
     hint = "; ".join((*filter(None, [first.hint]), "give both the same arguments:"))
     place = {"file": first.file, "line": first.line, "column": first.column}
-    yield of_another_robot.finding(message, hint, **place)
+    yield OF_ANOTHER_ROBOT.finding(message, hint, **place)
     yield from (it for it in semantic.findings if it.code not in _LOOSE)
 
 
@@ -303,8 +300,8 @@ def _final(text: Rewrite, robot: RobotSpec, naming: Naming) -> bytes:
         return text.data
     template = text.template
     source, file = template.inventory.document.source, template.inventory.document.file
-    data = _half(source, file, robot.namespace, _kinds(naming, graph=True), template)
-    return _half(data, file, robot.tag, _kinds(naming, graph=False), template)
+    data = _halved(source, file, robot.namespace, _kinds(naming, graph=True), template)
+    return _halved(data, file, robot.tag, _kinds(naming, graph=False), template)
 
 
 def _kinds(naming: Naming, graph: bool) -> Naming:
@@ -312,12 +309,14 @@ def _kinds(naming: Naming, graph: bool) -> Naming:
     return naming._replace(separators=kept)
 
 
-def _half(source: bytes, file: str, robot: str, naming: Naming, template: Template) -> bytes:
+def _halved(source: bytes, file: str, robot: str, naming: Naming, template: Template) -> bytes:
     # The second rewrite finds names that the first one has rewritten for the other word.
     prepared = pipeline.prepare(source, file, naming, template.tree, template.urdf_declarations)
     return next(pipeline.render(prepared, [robot], again=True))
 
 
+# The rule for related files says the same of one alone.
+OF_ANOTHER_ROBOT = declare("MB875", "file-of-another-robot", ERROR, formats=("fleet",))
 OWN_PORTS = declare(NUMBERED, "own-ports", NOTE, formats=("fleet",))
 
 

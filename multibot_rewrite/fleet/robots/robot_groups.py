@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Robots that share everything but their names: what they have in common is read and planned once."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
@@ -15,8 +13,8 @@ from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_nodes import (
     launched_nodes,
+    nodes_of_sets,
     related_file_nodes,
-    stack_nodes,
 )
 from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.related_files.context import Context, make_context
@@ -40,7 +38,7 @@ def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
     for robots in lists_by_key((_key(it.spec), it) for it in plan.robots).values():
         spec = robots[0].spec
         evidence = plan.evidence_of(robots[0])
-        facts = tuple(related_file_nodes(evidence.nodes, stack_nodes(spec, plan.file)))
+        facts = tuple(related_file_nodes(evidence.nodes, nodes_of_sets(spec, plan.file)))
         declared, naming, _, own, words, given = robots[0].names
         context = make_context(declared, naming, facts, plan.file.distro, own, words, given)
         others = launched_nodes(evidence, facts)
@@ -52,7 +50,7 @@ def _key(spec: RobotSpec) -> object:
     """Return a key; robots with equal keys have the same files."""
     files = tuple(spec.related_files.items())
     said = spec.use_sim_time, spec.bridge_namespace, spec.bridges_below
-    return spec.sources, spec.stacks, spec.launch, spec.simulator, files, said
+    return spec.sources, spec.node_sets, spec.launch, spec.simulator, files, said
 
 
 def split_per_robot(plan: FleetPlan) -> Iterator[FleetPlan]:

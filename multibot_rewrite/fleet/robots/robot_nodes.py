@@ -2,8 +2,6 @@
 """The nodes that a robot of a fleet file runs: its node sets, as its own files have them. Some run
 once for all robots, as one map_server with one map."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
@@ -38,9 +36,9 @@ from multibot_rewrite.fleet.robots.fitting.fitted import (
     sent_by_controllers,
     with_frames,
 )
-from multibot_rewrite.fleet.robots.left_idle import left_idle
 from multibot_rewrite.fleet.robots.member import Member
-from multibot_rewrite.knowledge.node_library import stack_of
+from multibot_rewrite.knowledge.node_library import nodes_of_set
+from multibot_rewrite.knowledge.node_sets import built_in, load_node_set
 from multibot_rewrite.knowledge.nodl.lookup import declared
 from multibot_rewrite.knowledge.parameters import (
     KnownNodes,
@@ -50,7 +48,6 @@ from multibot_rewrite.knowledge.parameters import (
     load_known_nodes,
 )
 from multibot_rewrite.knowledge.records import CARTOGRAPHER, MANAGER, MOVE_GROUP, UNKNOWN, NodeFacts
-from multibot_rewrite.knowledge.stacks import built_in, load_stack
 from multibot_rewrite.planning.bridged_topics import is_bridged, plugin_libraries
 from multibot_rewrite.planning.records import Run
 from multibot_rewrite.producers.ends import BRIDGE_NODE
@@ -72,7 +69,7 @@ from multibot_rewrite.related_files.lua import lua_values
 from multibot_rewrite.system.records import Edge, Origin, Place
 
 WORLD = "world"
-# The stack of a controller manager that no plugin makes.
+# The node set of a controller manager that no plugin makes.
 PROGRAM = "ros2_control"
 BY_ARGUMENT = "an argument of the xacro makes it"
 # What decides the nodes of a robot.
@@ -88,7 +85,7 @@ def node_sources(spec: RobotSpec) -> NodeSources:
     files = tuple(
         spec.related_files.get(it, ()) for it in ("params", "bridge", "rviz", "moveit", "lua")
     )
-    return spec.stacks, files, spec.launch, spec.srdf, spec.simulator, spec.sources
+    return spec.node_sets, files, spec.launch, spec.srdf, spec.simulator, spec.sources
 
 
 class RobotEvidence(NamedTuple):
@@ -134,17 +131,17 @@ def robot_nodes(
     read = [*(it for it in read if it.name != CARTOGRAPHER), *_of_lua(spec)]
     own = tuple(without_robot(it, spec.words) for it in read)
     known = _known(own, file)
-    stack = tuple(it for it in stack_nodes(spec, file) if _is_needed(it, spec, member))
+    node_set = tuple(it for it in nodes_of_sets(spec, file) if _is_needed(it, spec, member))
     if spec.simulator != REAL:
-        stack = (*stack, *_manager_in_plugin(stack, own, member, file.distro))
+        node_set = (*node_set, *_manager_in_plugin(node_set, own, member, file.distro))
     known = known_here(known, spec.launch, spec.words[0], file.distro)
-    launched = launched_robot(stack, spec.launch, known, spec.words, parameters, file.distro)
+    launched = launched_robot(node_set, spec.launch, known, spec.words, parameters, file.distro)
     launched = without_bridges(launched) if launched else None
     given = given_with(launched, own)
     spawned = launched.spawned if launched else {}
     # A controller manager that only a parameter file has is as its usual launch files start it.
-    started_here = {it.name: it for it in load_stack(PROGRAM, file.distro) if it.name == MANAGER}
-    without, findings = nodes_with(launched, stack, given, known | started_here)
+    started_here = {it.name: it for it in load_node_set(PROGRAM, file.distro) if it.name == MANAGER}
+    without, findings = nodes_with(launched, node_set, given, known | started_here)
     source = member.source
     standing = _for_its_wheels(without, given, member)
     wired = under_plugins(standing, launched, member.handed_on, file.distro)
@@ -156,9 +153,9 @@ def robot_nodes(
     fits = fitting_frames(member, nodes, (*has.sent, *sent_by_controllers(nodes)))
     known = {name: with_frames(it, fits) for name, it in known.items()}
     own_fits = [with_frames(it, fits) for it in nodes]
-    mine = frozenset(it.name for it in (*stack, *of_srdf)) - started.keys()
+    mine = frozenset(it.name for it in (*node_set, *of_srdf)) - started.keys()
     free = free_nodes(mine, given)
-    # A stack of the user's own says what its nodes hear and send.
+    # A node set of the user's own says what its nodes hear and send.
     has = has._replace(offered={}) if file.nodes else has
     mine = frozenset() if file.nodes else mine
     fitting = fitted(own_fits, mine, free, given, known, has, spec)
@@ -208,11 +205,9 @@ def _for_its_wheels(
 def _with_launch(
     it: RobotEvidence, spec: RobotSpec, launched: Launched | None, file: FleetFile
 ) -> RobotEvidence:
-    """Return a robot's evidence with what its launch files start, or without any with what its
-    files leave idle."""
+    """Return a robot's evidence with what its launch files start."""
     if not launched:
-        idle = left_idle(it.nodes, it.given, it.known)
-        return it._replace(findings=(*it.findings, *idle))
+        return it
     every = (one._replace(once=_is_once(one.name, one.once, file)) for one in launched.processes)
     own: dict[str, Any] = {it: getattr(launched, it) for it in _HANDED_ON}
     own["processes"] = tuple(every)
@@ -309,41 +304,40 @@ def _known(given: Iterable[Run], file: FleetFile) -> dict[str, NodeFacts]:
     return nodes | {name: declared(facts, nodes[name]) for name in named}
 
 
-def stack_nodes(spec: RobotSpec, file: FleetFile) -> tuple[NodeFacts, ...]:
+def nodes_of_sets(spec: RobotSpec, file: FleetFile) -> tuple[NodeFacts, ...]:
     """Return the nodes of a robot's node sets, as their usual files have them."""
-    return facts_of(spec.stacks, file.nodes or None, file.distro, file.nodl)
+    return facts_of(spec.node_sets, file.nodes or None, file.distro, file.nodl)
 
 
 def _manager_in_plugin(
-    stack: Iterable[NodeFacts], own: Iterable[Run], member: Member, release: str
+    node_set: Iterable[NodeFacts], own: Iterable[Run], member: Member, release: str
 ) -> Iterator[NodeFacts]:
     """Yield the controller manager of a plugin in the description, as the plugin's node set has it:
     if a robot's file sets it, or a node set has controllers and no manager."""
-    nodes = tuple(stack)
+    nodes = tuple(node_set)
     if any(it.name == MANAGER for it in nodes):
         return
     wide = (it.section for it in member.reading.nodes if it.section.process_wide)
     names = {name for it in wide for name in it.names}
     library = built_in(release)
     if any(it.host == MANAGER for it in nodes) or any(it.fact.known == MANAGER for it in own):
-        made = (it for name in library.stacks for it in stack_of(library, name) if it.plugin)
+        made = (it for name in library.node_sets for it in nodes_of_set(library, name) if it.plugin)
         yield from [it for it in made if it.name == MANAGER and it.plugin in names][:1]
 
 
 def related_file_nodes(
-    nodes: Sequence[NodeFacts], stack: Sequence[NodeFacts]
+    nodes: Sequence[NodeFacts], node_set: Sequence[NodeFacts]
 ) -> Iterator[NodeFacts]:
     """Yield the nodes for which related files are rewritten, with the names in their code: those in
     parameters are what is rewritten."""
-    bare: Mapping[str, NodeFacts] = {it.name: it for it in stack}
+    bare: Mapping[str, NodeFacts] = {it.name: it for it in node_set}
     # A section for a node in a namespace below the robot's is known to be right if the node runs there.
     mine = (it for it in nodes if it.name in bare or it.shared or it.host or "/" in it.name)
     yield from (bare.get(it.name, it)._replace(shared=it.shared) for it in mine)
 
 
 def launched_nodes(evidence: RobotEvidence, others: Iterable[NodeFacts]) -> Iterator[NodeFacts]:
-    """Yield the other nodes that surely run, with the ends that their files call as their code does:
-    their rules move these."""
+    """Yield the other nodes that surely run, with ends under the names in their code."""
     found = {it.name for it in others}
     for it in evidence.nodes:
         if it.name not in found and it.kind in evidence.known and not it.when:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Is a robot simulated? The fleet file says so, or its launch files do; is its hardware, too? Does
-anybody know what moves it?
+"""Whether a robot and its hardware are simulated, by the fleet file or its launch files, and whether
+it is known what moves it.
 
 What a description has for a simulator does nothing on a real robot: plugins start no node, sensors and
 drives need no bridge.
@@ -38,7 +38,7 @@ from multibot_rewrite.fleet.file.simulator_switch import (
 )
 from multibot_rewrite.fleet.robots.member import has_parts_for_simulator, is_for_simulator
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot, at_robot, robot_with_text
-from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence, stack_nodes
+from multibot_rewrite.fleet.robots.robot_nodes import RobotEvidence, nodes_of_sets
 from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
 from multibot_rewrite.planning.bridged_topics import DIRECTIONS, bridged_topics
 from multibot_rewrite.producers.evidence.semantics import FIXED
@@ -52,13 +52,13 @@ def other_hardware(robots: Sequence[RewrittenRobot], file: FleetFile) -> Iterato
     """Find hardware that is not of the world that the robots are in, once for each description."""
     told = set()
     for it in robots:
-        wrong = _of_other_world(it, stack_nodes(it.spec, file))
+        wrong = _of_other_world(it, nodes_of_sets(it.spec, file))
         if wrong and it.spec.sources not in told:
             told.add(it.spec.sources)
-            yield _other(it, wrong)
+            yield _other_hardware(it, wrong)
 
 
-def _of_other_world(robot: RewrittenRobot, stack: Iterable[NodeFacts]) -> str:
+def _of_other_world(robot: RewrittenRobot, node_set: Iterable[NodeFacts]) -> str:
     """Return the first hardware class of a robot that is not of its world. What a simulator's plugin
     does not load waits for ros2_control_node, and a real robot's controllers wait for it as well."""
     root: etree._Element = robot.member.inventory.document.root
@@ -70,12 +70,12 @@ def _of_other_world(robot: RewrittenRobot, stack: Iterable[NodeFacts]) -> str:
         return next((it for it in classes if not may_be_simulated(it)), "")
     waiting = any(
         MANAGER in (it.kind, it.host) if simulator == REAL else it.kind == MANAGER and not it.plugin
-        for it in stack
+        for it in node_set
     )
     return next(filter(of_simulator, classes), "") if waiting else ""
 
 
-def _other(robot: RewrittenRobot, wrong: str) -> Finding:
+def _other_hardware(robot: RewrittenRobot, wrong: str) -> Finding:
     real = robot.spec.simulator == REAL
     suits = suits_real if real else suits_simulator
     spec = robot.spec
@@ -191,7 +191,7 @@ MOVED = declare(LEFT, "system-of-the-world", NOTE, formats=("fleet",))
 
 def without_world_systems(robots: Sequence[RewrittenRobot]) -> list[RewrittenRobot]:
     """Return the robots without world systems, each with those that it had; the first has the note."""
-    made = [_without(it) for it in robots]
+    made = [_without_world_systems(it) for it in robots]
     first = next((it for it in made if it.world_systems), None)
     if first is None:
         return made
@@ -217,7 +217,7 @@ def systems_of(robots: Sequence[RewrittenRobot]) -> dict[str, str]:
     return found
 
 
-def _without(robot: RewrittenRobot) -> RewrittenRobot:
+def _without_world_systems(robot: RewrittenRobot) -> RewrittenRobot:
     said = tuple(it for it in robot.findings if it.code != _IN_ROBOT)
     if robot.spec.simulator == REAL:  # no simulator loads it
         return robot._replace(findings=said)

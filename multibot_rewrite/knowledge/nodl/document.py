@@ -5,8 +5,6 @@ What is allowed is what ``nodl_schema/schemas/nodl.schema.yaml`` and ``parameter
 ros-tooling/nodl (main, 915a4da) say.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from typing import NamedTuple
@@ -120,7 +118,7 @@ def parse(text: str, file: str) -> Document:
     for section, (kind, role) in SECTIONS.items():
         # One endpoint for two of a name, as two publishers of a node may have.
         found: dict[str, Endpoint] = {}
-        for entry in _listed(top, section):
+        for entry in _listed_entries(top, section):
             end = _endpoint(entry, section, kind, role)
             first = found.setdefault(end.name, end)
             if end.type not in (first.type, *first.also):
@@ -128,7 +126,7 @@ def parse(text: str, file: str) -> Document:
         endpoints += found.values()
     parameters = tuple(_parameters(table_of(top, "parameters")))
     includes = []
-    for entry in _listed(top, "include"):
+    for entry in _listed_entries(top, "include"):
         ref = word_of(table(entry, "an include", ("ref",)), "ref")
         if not _REFERENCE.fullmatch(ref):
             wrong(entry, f"include {ref!r}: write ref: nodl://PACKAGE/NAME or local://FILE")
@@ -136,7 +134,7 @@ def parse(text: str, file: str) -> Document:
     return Document(file, tuple(endpoints), parameters, tuple(includes))
 
 
-def _listed(top: Mapping[str, YamlItem], key: str) -> tuple[YamlItem, ...]:
+def _listed_entries(top: Mapping[str, YamlItem], key: str) -> tuple[YamlItem, ...]:
     if key in top and isinstance(top[key].value, str):
         wrong(top[key], f"{key} is the text {top[key].value!r}; write a list")
     return entries_of(top, key)

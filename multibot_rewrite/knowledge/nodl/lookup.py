@@ -9,8 +9,6 @@ It cannot say everything: conditions, helper nodes, which names an image_transpo
 file's own rules. These stay from the library where it knows the same endpoint.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
@@ -20,7 +18,7 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.rosnames import expand
 from multibot_rewrite.knowledge.conditions import NODL, OPEN_KIND
-from multibot_rewrite.knowledge.node_library import NodeLibrary, stack_of
+from multibot_rewrite.knowledge.node_library import NodeLibrary, nodes_of_set
 from multibot_rewrite.knowledge.nodl.document import Document, Include, Parameter, parse
 from multibot_rewrite.knowledge.records import TRANSPORTS, Endpoint, FrameParameter, NodeFacts
 from multibot_rewrite.system.records import SERVES, SERVICE, SUBSCRIBES, TOPIC
@@ -60,7 +58,7 @@ def find_interfaces(paths: Sequence[str]) -> Interfaces:
         return NONE
     given: dict[Identity, str] = {}
     for path in paths:
-        for identity, file in _below(path):
+        for identity, file in _documents_below(path):
             first = given.setdefault(identity, file)
             if os.path.realpath(first) != os.path.realpath(file):
                 both = f"{first} and {file}"
@@ -74,20 +72,20 @@ def shown(identity: Identity) -> str:
     return "/".join(filter(None, identity))
 
 
-def _below(path: str) -> Iterator[tuple[Identity, str]]:
+def _documents_below(path: str) -> Iterator[tuple[Identity, str]]:
     if os.path.isfile(path):
         yield _identity(path, os.path.dirname(path)), path
         return
     if not os.path.isdir(path):
         raise UsageError(f"{path}: does not exist; name a NoDL file or a folder of them")
     index = os.path.join(path, INDEX)
-    found = sorted(_indexed(index) if os.path.isdir(index) else _in_folder(path))
+    found = sorted(_documents_in_index(index) if os.path.isdir(index) else _in_folder(path))
     if not found:
         raise UsageError(f"{path}: there is no NoDL file (*.nodl.yaml) in this folder")
     yield from found
 
 
-def _indexed(index: str) -> Iterator[tuple[Identity, str]]:
+def _documents_in_index(index: str) -> Iterator[tuple[Identity, str]]:
     for key in os.listdir(index):
         package, between, name = key.partition(_BETWEEN)
         if between and os.path.isfile(os.path.join(index, key)):
@@ -147,7 +145,7 @@ def file_of(interfaces: Interfaces, identity: Identity) -> str:
 def identities(interfaces: Interfaces) -> set[Identity]:
     """Return all nodes that have a document."""
     folders = filter(os.path.isdir, interfaces.installed)
-    return {*interfaces.given, *(it for folder in folders for it, _ in _indexed(folder))}
+    return {*interfaces.given, *(it for folder in folders for it, _ in _documents_in_index(folder))}
 
 
 def load(path: str, interfaces: Interfaces) -> Document:
@@ -178,7 +176,7 @@ def _with_included(path: str, interfaces: Interfaces, seen: dict[str, str]) -> I
         raise UsageError(f"{path}: cannot be read: it is not UTF-8; save it as UTF-8") from None
     yield document
     for include in document.includes:
-        other = _resolved(include, path, interfaces)
+        other = _resolved_include(include, path, interfaces)
         real = os.path.realpath(other)
         if real in seen:
             raise UsageError(
@@ -188,7 +186,7 @@ def _with_included(path: str, interfaces: Interfaces, seen: dict[str, str]) -> I
         yield from _with_included(other, interfaces, seen)
 
 
-def _resolved(include: Include, path: str, interfaces: Interfaces) -> str:
+def _resolved_include(include: Include, path: str, interfaces: Interfaces) -> str:
     ref = include.ref
     if ref.startswith(_LOCAL):
         found = os.path.join(os.path.dirname(path), ref.removeprefix(_LOCAL))
@@ -231,12 +229,16 @@ class NodeKnowledge(NamedTuple):
     own: frozenset[str] = frozenset()
 
 
-def nodes_of(known: NodeKnowledge, stack: str) -> Iterator[NodeFacts]:
+def nodes_of(known: NodeKnowledge, node_set: str) -> Iterator[NodeFacts]:
     """Yield the nodes of a node set, each by its NoDL document if there is one. A name that is no
     node set of the library may be that of a document. Raises UsageError."""
     library = known.library
-    alone = None if stack in library.stacks or stack in library.nodes else _alone(known, stack)
-    yield from [alone] if alone else (declared(known, it) for it in stack_of(library, stack))
+    alone = (
+        None
+        if node_set in library.node_sets or node_set in library.nodes
+        else _alone(known, node_set)
+    )
+    yield from [alone] if alone else (declared(known, it) for it in nodes_of_set(library, node_set))
 
 
 def declared(known: NodeKnowledge, node: NodeFacts) -> NodeFacts:
@@ -249,7 +251,7 @@ def declared(known: NodeKnowledge, node: NodeFacts) -> NodeFacts:
     file = next(filter(None, found), "")
     if not file:
         return node
-    return _merged(node, usual, load(file, known.interfaces), known.library.parts)
+    return _merged_node(node, usual, load(file, known.interfaces), known.library.parts)
 
 
 def _alone(known: NodeKnowledge, name: str) -> NodeFacts | None:
@@ -262,16 +264,16 @@ def _alone(known: NodeKnowledge, name: str) -> NodeFacts | None:
         return None
     bare = NodeFacts(found[0].name, found[0].package, ())
     document = load(file_of(known.interfaces, found[0]), known.interfaces)
-    return _merged(bare, bare.name, document, known.library.parts)
+    return _merged_node(bare, bare.name, document, known.library.parts)
 
 
-def _merged(
+def _merged_node(
     node: NodeFacts, usual: str, document: Document, parts: Mapping[str, tuple[Endpoint, ...]]
 ) -> NodeFacts:
     ours = {_slot(end, usual): end for end in reversed(node.endpoints)}
     # What ROS gives every node is not the node's own.
-    always = {(it.role, _last(it)) for it in (*parts.get(EVERY_NODE, ()), TYPE_DESCRIPTION)}
-    own = [end for end in document.endpoints if (end.role, _last(end)) not in always]
+    always = {(it.role, _last_word(it)) for it in (*parts.get(EVERY_NODE, ()), TYPE_DESCRIPTION)}
+    own = [end for end in document.endpoints if (end.role, _last_word(end)) not in always]
     theirs = {_slot(end, usual): end for end in _folded(own)}
     ends = [_both(end, ours.get(slot)) for slot, end in theirs.items()]
     for end in node.endpoints:
@@ -296,7 +298,7 @@ def _slot(end: Endpoint, node: str) -> _Slot:
     return _Slot(end.kind, end.role, name)
 
 
-def _last(end: Endpoint) -> str:
+def _last_word(end: Endpoint) -> str:
     return end.name.rpartition("/")[2]
 
 

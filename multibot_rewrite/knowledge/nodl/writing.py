@@ -4,8 +4,6 @@
 A document has no conditions and no endpoint of several types: two types are two entries.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterable
 from typing import NamedTuple, TypeAlias

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The cache of one run: what is remembered, how it is written, and what all of it rests on."""
 
-from __future__ import annotations
-
 import os
 import sys
 from _thread import get_ident  # threading is slow to import

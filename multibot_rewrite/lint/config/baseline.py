@@ -4,8 +4,6 @@
 A finding is recognised by its code, its file and its message, so lines may move.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import re
@@ -76,7 +74,7 @@ def beyond(
             left[key] -= 1
         else:
             new.append(finding)
-    names = None if linted is None else {_relative(it, path) for it in linted}
+    names = None if linted is None else {_relative_path(it, path) for it in linted}
     folder = os.path.dirname(path)
     gone = (
         count
@@ -101,9 +99,9 @@ def baseline_text(findings: Iterable[Finding], path: str) -> bytes:
 
 def _key(finding: Finding, path: str) -> Key:
     message = _LINE.sub("line N", finding.message)
-    return Key(finding.code, _relative(finding.file, path), message)
+    return Key(finding.code, _relative_path(finding.file, path), message)
 
 
-def _relative(file: str, path: str) -> str:
+def _relative_path(file: str, path: str) -> str:
     folder = os.path.dirname(os.path.abspath(path))
     return os.path.relpath(file, folder).replace(os.sep, "/")

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which files changed since a revision, and which xacro files include one that did."""
 
-from __future__ import annotations
-
 import os
 import re
 import subprocess

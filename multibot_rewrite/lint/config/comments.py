@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Findings that comments suppress, and comments that suppress nothing."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
@@ -59,7 +57,7 @@ def after_comments(
     left += _selected(broken, BROKEN, settings)
     if _UNFINISHED.isdisjoint(codes):
         own = [it for it in comments if it.file == next(iter(sources)) and _is_whole(it, settings)]
-        left += _selected(_unused(own, used, settings), UNUSED, settings)
+        left += _selected(_unused_comments(own, used, settings), UNUSED, settings)
     return left
 
 
@@ -88,7 +86,7 @@ def _reaches(comment: Comment, finding: Finding) -> bool:
     """Return whether a comment reaches a finding; a comment at a macro reaches those in its output."""
     if comment.it.word == IGNORE_FILE:
         return file_of(finding) == comment.file
-    if finding.file == comment.file and _holds(comment, (finding.line, finding.column)):
+    if finding.file == comment.file and _comment_holds(comment, (finding.line, finding.column)):
         return True
     spans = [comment.lines]
     if comment.element:
@@ -98,7 +96,7 @@ def _reaches(comment: Comment, finding: Finding) -> bool:
     return any(first <= line <= last for line in lines for first, last in spans)
 
 
-def _holds(comment: Comment, at: Position) -> bool:
+def _comment_holds(comment: Comment, at: Position) -> bool:
     first, last = comment.lines
     element = comment.element
     return first <= at[0] <= last or (element is not None and element[0] <= at < element[1])
@@ -122,7 +120,7 @@ def _is_whole(comment: Comment, settings: Settings) -> bool:
     return _NAMED.search(comment.source) is not None and not comment.it.sometimes
 
 
-def _unused(
+def _unused_comments(
     comments: Iterable[Comment], used: set[tuple[str, int]], settings: Settings
 ) -> Iterator[Finding]:
     for comment in comments:

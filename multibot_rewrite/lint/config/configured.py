@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """``urdf-lint.toml`` or ``[tool.urdf-lint]`` -> settings; what a command adds to them."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
@@ -51,8 +49,8 @@ def configured(near: str, file: str | None) -> Configured:
     """Return the configuration in ``file`` or, without one, the nearest above ``near``. In one
     folder a urdf-lint.toml comes before a pyproject.toml, which counts if it has a table
     ``[tool.urdf-lint]``. Raises UsageError, naming the file, for anything that is wrong in it."""
-    path = file or next(_above(near), "")
-    result = _configured(path, _table(path)) if path else Configured()
+    path = file or next(_configurations_above(near), "")
+    result = _configured_by(path, _table(path)) if path else Configured()
     settings = result.settings
     definitions = (*config.configured_definitions(near), *settings.definitions)
     return result._replace(
@@ -60,7 +58,7 @@ def configured(near: str, file: str | None) -> Configured:
     )
 
 
-def _above(near: str) -> Iterator[str]:
+def _configurations_above(near: str) -> Iterator[str]:
     for folder in config.folders_above(near):
         own, project = os.path.join(folder, OWN), os.path.join(folder, PROJECT)
         if os.path.isfile(own):
@@ -93,7 +91,7 @@ def _in_project(path: str, data: bytes) -> Mapping[str, object] | None:
     return table
 
 
-def _configured(path: str, table: Mapping[str, object]) -> Configured:
+def _configured_by(path: str, table: Mapping[str, object]) -> Configured:
     folder = os.path.dirname(os.path.abspath(path))
     values: dict[str, Any] = {}
     for key, value in table.items():

@@ -5,8 +5,6 @@
 <!-- urdf-lint: ignore-file MB401: a reason -->
 """
 
-from __future__ import annotations
-
 import re
 from bisect import bisect_left
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Values of a configuration file -> settings; a wrong value is a UsageError in one line."""
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -81,10 +79,12 @@ def _one_of(given: KeyValue, allowed: Sequence[str]) -> str:
 
 
 def targets(given: KeyValue) -> tuple[str, ...]:
+    """Return the targets that a key lists; raises for an unknown one."""
     return tuple(_one_of(given._replace(value=it), TARGETS) for it in _texts(given))
 
 
 def checked_robots(robots: Sequence[str], where: str) -> tuple[str, ...]:
+    """Return the robots' names; raises UsageError for one that is not valid."""
     try:
         return check_robot_names(robots)
     except UsageError as error:
@@ -125,7 +125,7 @@ def _per_file(given: KeyValue) -> tuple[tuple[str, tuple[str, ...]], ...]:
     )
 
 
-def _excluded(given: KeyValue) -> tuple[str, ...]:
+def _excluded_patterns(given: KeyValue) -> tuple[str, ...]:
     return tuple(it for key in _texts(given) for it in _patterns(key, given))
 
 
@@ -177,7 +177,7 @@ READERS: Mapping[str, Callable[[KeyValue], object]] = {
     "urdf": _file,
     "definitions": lambda it: listed_files(*it),
     "xacro": _argument_sets,
-    "exclude": _excluded,
+    "exclude": _excluded_patterns,
     "baseline": _path,
     "fail-on": partial(_one_of, allowed=LEVELS),
     "seconds": _seconds,

@@ -26,10 +26,9 @@ _LITERAL = lazy_compile(r"^[^*.]{4}.*\*|\*[^*.]{4}|^[^*]*$")
 
 
 def included(paths: Sequence[str]) -> frozenset[str]:
-    """Return the files that a xacro file among them, or in their packages, includes, by the known
-    end of its path."""
+    """Return files that xacro files here or in their packages include, by the known end of a path."""
     files = {real_path(path): path for path in paths}
-    read = filter(_is_read, dict.fromkeys((*files.values(), *_beside(paths))))
+    read = filter(_is_read, dict.fromkeys((*files.values(), *_other_xacros(paths))))
     ends = sets_by_key((os.path.basename(it), it) for path in read for it in _asked_for(path))
     loose = [it for its in ends.values() for it in its if "*" in it]
     return frozenset(
@@ -63,7 +62,7 @@ def _included_by(path: str) -> Iterator[str]:
             yield real_path(os.path.join(os.path.dirname(path), text))
 
 
-def _beside(paths: Sequence[str]) -> Iterator[str]:
+def _other_xacros(paths: Sequence[str]) -> Iterator[str]:
     """Yield the other xacro files of the packages of xacro files."""
     owners = (package_of(path) for path in paths if path.endswith(".xacro"))
     for folder in dict.fromkeys(own[1] for own in owners if own):
@@ -93,8 +92,7 @@ def _asked_for(path: str) -> Iterator[str]:
 
 
 def set_among(paths: Sequence[str], settings: Settings) -> Settings:
-    """Return the settings with what the others include, the URDFs of SRDFs, and the arguments that
-    xacro files know."""
+    """Return the settings with included files, the URDFs of SRDFs, and the arguments of xacros."""
     settings = settings._replace(included=included(paths))
     if len(paths) == 1:
         return settings

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which URDF an SRDF belongs to: the one it names among the linted files, else one near it."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import redirect_stderr
@@ -22,7 +20,7 @@ from multibot_rewrite.description.sources.read import XACRO, is_xacro, read_file
 from multibot_rewrite.description.steps.collect import NOTHING, Inventory, collect
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.lint.files.named import SRDF_MARK, files_like, robot_name
-from multibot_rewrite.related_files.named_file import is_beside
+from multibot_rewrite.related_files.named_file import is_related_file
 from multibot_rewrite.rules.settings import Settings, matches
 
 if TYPE_CHECKING:
@@ -38,8 +36,7 @@ PART, SLIPS = 4, 2
 
 
 class Pair(NamedTuple):
-    """The robot of an SRDF's URDF and what that declares; ``misses`` of the SRDF's names are not in
-    it."""
+    """The robot of an SRDF's URDF with what it declares, without the SRDF's names in ``misses``."""
 
     robot: Robot | None
     declared: Declared
@@ -51,7 +48,9 @@ NO_PAIR = Pair(None, NOTHING)
 
 def named_urdfs(paths: Sequence[str], included: frozenset[str]) -> tuple[tuple[str, str], ...]:
     """Return the robot names of the descriptions, if an SRDF or another related file is among them."""
-    others = [it for it in paths if SRDF_MARK not in os.path.basename(it) and not is_beside(it)]
+    others = [
+        it for it in paths if SRDF_MARK not in os.path.basename(it) and not is_related_file(it)
+    ]
     if len(others) == len(paths):
         return ()
     whole = (it for it in others if it not in included or not it.endswith(".xacro"))
@@ -137,7 +136,7 @@ def described(path: str, settings: Settings) -> tuple[bytes, str]:
             return expand(path, sets[0], find, reach), name
 
 
-def reach_of(settings: Settings) -> Reach:
+def reach_of(settings: Settings) -> "Reach":
     """Return the limits for the xacro files of a lint, with the time limit of a file."""
     from multibot_rewrite.description.sources.access import Reach
 

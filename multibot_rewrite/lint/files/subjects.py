@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A file -> what rules check: its document, once for each set of xacro arguments."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator
 from contextlib import redirect_stderr

@@ -2,8 +2,6 @@
 """Which nodes of a graph to learn (without tools, and without helper nodes of others), and which of
 their ends are one in a node's code: an action, an image, a known part."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence

@@ -5,8 +5,6 @@ The code and the remap rules of a running node are not visible, only the resulti
 names that the code may have, the one is written whose remap rule is right for the others as well.
 """
 
-from __future__ import annotations
-
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence

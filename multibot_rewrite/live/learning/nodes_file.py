@@ -5,8 +5,6 @@ A NoDL document has no helper nodes, conditions or several types: helpers' endpo
 two types are two entries.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from textwrap import wrap
@@ -15,7 +13,7 @@ from typing import NamedTuple
 from multibot_rewrite.base.conventions import CLOCK
 from multibot_rewrite.base.model import ProofError, UsageError
 from multibot_rewrite.base.rosnames import expand
-from multibot_rewrite.knowledge.node_library import NodeLibrary, extend, stack_of
+from multibot_rewrite.knowledge.node_library import NodeLibrary, extend, nodes_of_set
 from multibot_rewrite.knowledge.nodl.document import POLICIES
 from multibot_rewrite.knowledge.nodl.writing import DEFAULT, UNKNOWN_QOS, NodlFile, document_of
 from multibot_rewrite.knowledge.records import TRANSPORTS, Endpoint
@@ -34,13 +32,13 @@ WIDTH = 100
 _NO_WRAP = 1 << 30
 
 
-def to_yaml(learned: Sequence[LearnedNode], stack: str, library: NodeLibrary) -> str:
+def to_yaml(learned: Sequence[LearnedNode], node_set: str, library: NodeLibrary) -> str:
     """Return the text of a file with the nodes and one node set of them. Raises ProofError if
     reading it does not give the same nodes."""
-    text = "".join(f"{line}\n" for line in _lines(learned, stack))
+    text = "".join(f"{line}\n" for line in _lines(learned, node_set))
     facts = tuple(node.facts for node in learned)
     try:
-        found = stack_of(extend(library, text, stack), stack)
+        found = nodes_of_set(extend(library, text, node_set), node_set)
     except UsageError as error:
         raise ProofError(f"the learned nodes cannot be read back: {error}") from None
     # Frames are those of known parameters: the file says nothing of either.
@@ -51,7 +49,7 @@ def to_yaml(learned: Sequence[LearnedNode], stack: str, library: NodeLibrary) ->
     return text
 
 
-def _lines(learned: Sequence[LearnedNode], stack: str) -> Iterator[str]:
+def _lines(learned: Sequence[LearnedNode], node_set: str) -> Iterator[str]:
     yield from HEAD.splitlines()
     yield from _comment(f"Of: {' '.join(node.seen for node in learned)}", "")
     yield from ("", "nodes:")
@@ -70,7 +68,7 @@ def _lines(learned: Sequence[LearnedNode], stack: str) -> Iterator[str]:
                 yield f"    {role}:"
             yield from (f"      {_scalar(end.name)}: {_value(end)}" for end in own)
         yield ""
-    yield from ("stacks:", f"  {_scalar(stack)}:", "    about: Learned from a running graph")
+    yield from ("node_sets:", f"  {_scalar(node_set)}:", "    about: Learned from a running graph")
     yield "    nodes:"
     yield from (f"      - {_scalar(node.facts.name)}" for node in learned)
 

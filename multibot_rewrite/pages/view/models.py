@@ -6,8 +6,6 @@ Meshes are looked for as ROS does: package://, file://, and paths next to the de
 without a colour is that of its name in the robot (urdfdom urdf_parser model.cpp).
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress

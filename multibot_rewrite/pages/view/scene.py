@@ -2,8 +2,6 @@
 """A planned fleet -> the scene: each robot's model at its pose, what every name was before, and the
 transforms of a snapshot as trees to be drawn over the robots."""
 
-from __future__ import annotations
-
 import os
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -68,7 +66,7 @@ class ShownScene(NamedTuple):
     """The robots, and what a snapshot has of tf."""
 
     robots: tuple[ViewedRobot, ...]
-    trees: tuple[HeardTree, ...]
+    trees: "tuple[HeardTree, ...]"
 
 
 def scene_of(plan: FleetPlan, graph: System | None = None) -> ShownScene:

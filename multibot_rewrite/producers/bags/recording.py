@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a recording holds: frozen records. It knows topics and not nodes."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import NamedTuple
 

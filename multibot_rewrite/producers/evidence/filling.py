@@ -34,12 +34,12 @@ def filled(node: NodeFacts, given: Run, known: NodeFacts | None = None) -> NodeF
     parameters say more. Raises InputError for a word of a list that makes no valid name."""
     values, value_of = given.values, lookup(node, given.values)
     whole = known or node
-    of_stack: dict[tuple[str, str], list[Endpoint]]
-    of_stack = {(it.role, it.name): [] for it in whole.endpoints}
-    alone: list[Endpoint] = []  # those of a part that the stack adds
+    of_set: dict[tuple[str, str], list[Endpoint]]
+    of_set = {(it.role, it.name): [] for it in whole.endpoints}
+    alone: list[Endpoint] = []  # those of a part that the node set adds
     for it in node.endpoints:
-        of_stack.get((it.role, it.named_from or it.name), alone).append(it)
-    each = ((it, of_stack[it.role, it.name]) for it in whole.endpoints)
+        of_set.get((it.role, it.named_from or it.name), alone).append(it)
+    each = ((it, of_set[it.role, it.name]) for it in whole.endpoints)
     made = [it for raw, own in each for it in _endpoint(node, raw, own, values, value_of)] + alone
     frames = []
     texts = {name: str(it.value) for name, it in values.items()}
@@ -99,10 +99,10 @@ def _endpoint(
     is_there = verdict(raw.when, value_of) if raw.when and not wanted else None
     if is_there is False:
         return
-    of_stack = [_sure(it, is_there) for it in own]
-    remapped = next((it.remapped for it in of_stack), "")
-    if not _is_decided(raw, [ids[it] for it in wanted], values, of_stack):
-        yield from (_typed(it, value_of) for it in of_stack)
+    of_set = [_sure(it, is_there) for it in own]
+    remapped = next((it.remapped for it in of_set), "")
+    if not _is_decided(raw, [ids[it] for it in wanted], values, of_set):
+        yield from (_typed(it, value_of) for it in of_set)
         return
     for binding in _bindings(ids, wanted, values):
         bound = _bound(raw._replace(remapped=remapped), binding)
@@ -142,7 +142,7 @@ def _typed(endpoint: Endpoint, value_of: Values) -> Endpoint:
 
 
 def _is_decided(
-    raw: Endpoint, lists: Iterable[str], values: Mapping[str, Given], of_stack: Iterable[Endpoint]
+    raw: Endpoint, lists: Iterable[str], values: Mapping[str, Given], of_set: Iterable[Endpoint]
 ) -> bool:
     """Return whether the parameters decide if it exists, or its name."""
     needed = list(lists)
@@ -153,7 +153,7 @@ def _is_decided(
     # Of a pattern all are there that a file has, and no others.
     if "*" in raw.name and values:
         return True
-    return "<" in raw.name and all("<" in it.name for it in of_stack)
+    return "<" in raw.name and all("<" in it.name for it in of_set)
 
 
 def _wanted(ids: Mapping[str, str], *texts: str) -> list[str]:
@@ -175,7 +175,7 @@ def _bindings(
         found = [
             {**binding, name: word}
             for binding in found
-            for word in _words(values.get(_put(ids[name], binding)))
+            for word in _items(values.get(_put(ids[name], binding)))
         ]
     yield from found
 
@@ -189,7 +189,7 @@ def _in_order(ids: Mapping[str, str], wanted: Iterable[str]) -> list[str]:
     return order
 
 
-def _words(given: Given | None) -> list[str]:
+def _items(given: Given | None) -> list[str]:
     """Return the items of a list; a text is a list of its words."""
     if given is None:
         return []
@@ -216,8 +216,7 @@ def _bound(endpoint: Endpoint, binding: Ids) -> Endpoint:
 
 
 def _ending(node: NodeFacts, raw: Endpoint) -> str:
-    """Return what the node appends to the topic of a parameter, such as ``_updates``: another
-    endpoint has the topic itself."""
+    """Return what a node appends to a parameter's topic for another endpoint, such as ``_updates``."""
     alike = (it.named_from or it.name for it in node.endpoints if it.parameter == raw.parameter)
     bases = [it for it in alike if raw.name.startswith(it)] if raw.parameter else []
     return raw.name.removeprefix(min(bases, key=len)) if bases else ""
@@ -246,7 +245,7 @@ def _set_names(parameter: str, values: Mapping[str, Given]) -> Iterator[tuple[st
         found = []
         for name in _called(one, values):
             value = values[name].value
-            topics = _words(values[name]) if isinstance(value, list) else [str(value)]
+            topics = _items(values[name]) if isinstance(value, list) else [str(value)]
             found += ((name, it) for it in topics if not it or not check_name_in_code(it))
         if any(topic for _, topic in found):
             break

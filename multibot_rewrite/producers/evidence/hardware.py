@@ -14,8 +14,6 @@ for ``<a>``. A parameter that is not set and has no default makes no name. ``<ty
 controller.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
@@ -150,8 +148,7 @@ def control_system(
     exports: Iterable[Exported],
     active: Collection[str] = (),
 ) -> System:
-    """Return the controllers that files declare, and all interfaces; ``active`` are those that
-    launch files start active."""
+    """Return the controllers in files, and all interfaces; ``active``: started so by launch files."""
     declared = [it for it in given if it.host_name]
     own = [Interface(it.kind, it.name, f"/{MANAGER}", EXPORTS, it.place) for it in exports]
     controllers = []
@@ -210,8 +207,7 @@ def claimed(claims: Iterable[Claim], values: Mapping[str, Given]) -> Iterator[Cl
 
 
 def claimed_twice(claims: Iterable[Claim], node: Run) -> Iterator[tuple[Claimed, Place]]:
-    """Yield command interfaces that two parameters of a controller name; the second with the place
-    of the first."""
+    """Yield command interfaces that two parameters of a controller claim, with the first's place."""
     values, first = {**node.values, TYPE: Given(node.program, node.place)}, dict[str, Place]()
     for claim in (it for it in claims if it.kind == COMMAND):
         for made in _names(claim.template, _Made("", claim.condition, None), values):

@@ -9,8 +9,6 @@ controller_manager.cpp and resource_manager.cpp (a command interface is claimed 
 controller), and the hardware, which moves a joint in one mode at a time.
 """
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
@@ -29,7 +27,11 @@ from multibot_rewrite.system.records import COMMAND, STATE, Origin
 
 MANAGER = "controller_manager"
 NOT_DECLARED = declare(
-    "MF801", "controller-not-declared", NOTE, formats=("params",), options={"stack": "ros2_control"}
+    "MF801",
+    "controller-not-declared",
+    NOTE,
+    formats=("params",),
+    options={"node_sets": "ros2_control"},
 )
 UNKNOWN_TYPE = declare("MF802", "controller-type-not-known", WARNING, formats=("params",))
 
@@ -37,6 +39,7 @@ UNKNOWN_TYPE = declare("MF802", "controller-type-not-known", WARNING, formats=("
 NO_TYPE = declare("MF825", "spawned-controller-without-type", NOTE, formats=("fleet",))
 NOBODY = declare("MF858", "section-of-an-unknown-node", NOTE, formats=("params",))
 ALWAYS: Mapping[str, str] = {}
+_DESCRIBE = "describe it in a file of nodes (docs/node-sets.md)"
 
 
 class RobotNodes(NamedTuple):
@@ -47,7 +50,7 @@ class RobotNodes(NamedTuple):
 
 
 def nodes_of(
-    stack: Sequence[NodeFacts],
+    node_set: Sequence[NodeFacts],
     given: Sequence[Run],
     known: Mapping[str, NodeFacts],
     spawned: Mapping[str, str] = ALWAYS,
@@ -57,18 +60,18 @@ def nodes_of(
     which launch files say whether they run."""
     # No supported release has a node that is called as before: nothing reads its section.
     given = [it for it in given if it.node.rpartition("/")[2] not in plugin_bases()[NODE].older]
-    sections = {it.name: _section_of(it, given) for it in stack}
-    left, kept = _left_out(stack, given, sections, known)
+    sections = {it.name: _section_of(it, given) for it in node_set}
+    left, kept = _left_out(node_set, given, sections, known)
     either = {**alternatives(given, known), **spawned}
-    nodes = [_of_stack(it, sections[it.name], known, either, spawned) for it in kept]
+    nodes = [_of_set(it, sections[it.name], known, either, spawned) for it in kept]
     names = {it.node for it in filter(None, sections.values())}
-    of_stack = {it.place.file for it in given if it.node in names}
+    of_set = {it.place.file for it in given if it.node in names}
     sent = {child for node in kept for child in children_of(node)}
     # Controllers that files declare, and known nodes with a process of their own.
     others = ((it, known.get(it.fact.known)) for it in given if it.node not in names)
     more = [it for it, entry in others if it.host_name or (entry is not None and not entry.host)]
     meant: dict[str, NodeFacts] = {}
-    for node in (it for it in stack if it not in kept):
+    for node in (it for it in node_set if it not in kept):
         alike = [it.node for it in more if not it.host_name and _stands_for(it, node, known)]
         # Of several, as two filters with rules of their own, it is not known which stands for it.
         meant |= {alike[0]: node} if len(alike) == 1 else {}
@@ -78,7 +81,7 @@ def nodes_of(
             nodes.append(filled(entry, it)._replace(when=meant[it.node].when, known=entry.kind))
             continue
         node = _added(it, known, either.get(it.node, ""))
-        doubtful = not it.host_name and (it.place.file in of_stack or sent & {*children_of(node)})
+        doubtful = not it.host_name and (it.place.file in of_set or sent & {*children_of(node)})
         nodes.append(node._replace(sends=()) if doubtful else node)
     nobody = _nobody(
         it for it in given if it.node not in names and not (it.host_name or it.fact.known)
@@ -96,7 +99,7 @@ def _section_of(node: NodeFacts, given: Sequence[Run]) -> Run | None:
 
 
 def _left_out(
-    stack: Sequence[NodeFacts],
+    node_set: Sequence[NodeFacts],
     given: Sequence[Run],
     sections: Mapping[str, Run | None],
     known: Mapping[str, NodeFacts],
@@ -105,7 +108,7 @@ def _left_out(
     controllers = [it for it in given if it.host_name]
     findings: list[Finding] = []
     kept = []
-    for node in stack:
+    for node in node_set:
         if sections[node.name] is None and node.host == MANAGER and controllers:
             beside = controllers[0]
             file, line, _ = beside.place
@@ -134,7 +137,7 @@ def children_of(node: NodeFacts) -> Iterator[str]:
     yield from (frames[it.child] for it in node.sends)
 
 
-def _of_stack(
+def _of_set(
     node: NodeFacts,
     section: Run | None,
     known: Mapping[str, NodeFacts],
@@ -175,9 +178,7 @@ def _nobody(given: Iterable[Run]) -> Iterator[Finding]:
         first, *rest = nodes
         own = shorten([it.node for it in (first, *rest)])
         message = f"no launch file and no node set starts {own}; the plan has no such node"
-        hint = (
-            "name its launch file under launch:, or describe it in a file of nodes (docs/stacks.md)"
-        )
+        hint = f"name its launch file under launch:, or {_DESCRIBE}"
         yield NOBODY.finding(message, hint, file=file, line=first.place.line, column=1)
 
 
@@ -190,13 +191,12 @@ def _unknown(given: Sequence[Run]) -> Iterator[Finding]:
             yield NO_TYPE.finding(message, hint, file=place.file, line=place.line, column=1)
         if it.host_name and it.unknown_type:
             message = f"controller {it.node} is of type {it.program}, which is not known"
-            described = "describe it in a file of nodes (docs/stacks.md)"
             meant = it.fact.known
             taken = f"the plan takes it for a {meant}" if meant else "the plan has its name alone"
             # What it claims, if its parameters have their usual names.
             names = list(dict.fromkeys(one.name for one in claims_of(GUESSED, it)))
             claims = f"; by its parameters it seems to claim {shorten(names)}" if names else ""
-            hint = f"{described}; {taken}{claims}"
+            hint = f"{_DESCRIBE}; {taken}{claims}"
             hint = f"did you mean {it.like}?" if it.like else hint
             yield UNKNOWN_TYPE.finding(message, hint, file=place.file, line=place.line, column=1)
 
@@ -239,8 +239,7 @@ def alternatives(given: Iterable[Run], known: Mapping[str, NodeFacts]) -> dict[s
 
 
 def remapped(node: NodeFacts, rules: Iterable[tuple[str, str]], namespace: str) -> NodeFacts:
-    """Return the node with the remap rules of its launch file, started in a namespace; those of tf
-    belong to the layout."""
+    """Return the node with its launch file's remap rules and namespace; tf rules are the layout's."""
     above = namespace.rstrip("/")
     below, _, name = node.name.rpartition("/")
     home = above.removesuffix(f"/{below}") if below else above
@@ -265,8 +264,7 @@ def under_plugin(node: NodeFacts, rules: Iterable[RemapRule], release: str) -> N
 
 
 def _target(new: str, above: str, home: str) -> str:
-    """Return the target of a rule as its robot has it, for a node in the namespace ``above`` whose
-    robot is in ``home``."""
+    """Return a rule's target for a robot in ``home``, for a node in the namespace ``above``."""
     inner = above != home and not new.startswith(("/", "~"))
     full = f"{above}/{new}" if inner else new
     mine = full.removeprefix(f"{home}/") if home else full

@@ -6,8 +6,6 @@ ros2_control controller_manager.cpp (a controller manager's ``NAME.type`` makes 
 controller_manager/spawner.py (``type`` of a controller's own section is set as that).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import suppress
 from functools import lru_cache
@@ -146,7 +144,7 @@ def _controllers(
     for section in sections:
         above, _, last = section.name.rpartition("/")
         # A renamed one is called controller_manager_robot1, for example.
-        if MANAGER not in last and section.name not in managers:
+        if MANAGER not in last and not any(is_for(section.raw.path, it) for it in managers):
             continue
         # What is for every node is for the manager, too; those of MoveIt are below a name there.
         own = f"/{section.name}"
@@ -169,8 +167,7 @@ def _typed(sections: Sequence[_Section], known: KnownNodes) -> Iterator[tuple[st
 
 
 def _by_name(sections: Sequence[_Section]) -> Callable[[str], list[_Section]]:
-    """Return what finds the sections that may be a node's, in their order: those of its name, and all
-    with wildcards."""
+    """Return a look-up of a node's possible sections, in order: by its name, and all with wildcards."""
     wild: list[tuple[int, _Section]] = []
     named: dict[str, list[tuple[int, _Section]]] = {}
     for number, it in enumerate(sections):

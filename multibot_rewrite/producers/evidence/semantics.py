@@ -9,8 +9,6 @@ in tf), trajectory_execution_manager.cpp (a trajectory's controllers have to mov
 moveit_simple_controller_manager_plugin.cpp has ``controller_names``, and of each a map.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 

@@ -9,8 +9,6 @@ then files; ``--from`` and ``--to`` hold for all topics), parse_domain_bridge_ya
 of a file), domain_bridge.cpp (``get_node_for_domain``, ``bridge_topic``, ``add_bridges``).
 """
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -54,7 +52,7 @@ def bridge_rows(node: LaunchedNode, words: Collection[str]) -> tuple[Endpoint, .
     names the topic in Gazebo. With one of ``words`` in it, it is that of one robot: then its remap
     rule counts, and without a rule the name is left out."""
     rules = {f"/{old.lstrip('/')}": new for old, new in node.remappings}
-    rows = _told(f"{node.package}/{node.executable}", node.arguments)
+    rows = _argument_rows(f"{node.package}/{node.executable}", node.arguments)
     return tuple(end for it in rows for end in _for_any_robot(it.end, rules, words))
 
 
@@ -96,7 +94,7 @@ def bridged_by(it: Run) -> Iterator[Row]:
     given = it.values.get("config_file")
     path = str(given.value) if given else ""
     own = [read_file(path).decode("utf-8", "replace")] if os.path.isfile(path) else []
-    rows = [*_told(it.program, it.arguments)]
+    rows = [*_argument_rows(it.program, it.arguments)]
     for text in (*own, *it.texts):
         rows += _of_text(text)
     yield from (Row(row.end, expand(row.inside, below, it.name)) for row in rows)
@@ -107,7 +105,7 @@ def expands(it: Run) -> bool:
     return it.value("expand_gz_topic_names") is True
 
 
-def told_rows(it: Run) -> str:
+def rows_in_arguments(it: Run) -> str:
     """Return the topics in the arguments of a bridge, as its file would have them; empty without."""
     return rows_in_words(it.program, it.arguments) if it.program in _BRIDGES else ""
 
@@ -142,7 +140,7 @@ def refused_rows(it: Run) -> Iterator[str]:
             yield word
 
 
-def _told(program: str, words: Sequence[str]) -> Iterator[Row]:
+def _argument_rows(program: str, words: Sequence[str]) -> Iterator[Row]:
     for word in words:
         row = _ROW.fullmatch(word)
         if program in _BRIDGES and row is not None:
@@ -226,7 +224,7 @@ def bridged_domains(running: Sequence[Run]) -> BridgedDomains:
 
 def _ends(it: Run, notes: list[LaunchNote]) -> Iterator[End]:
     """Yield the ends of one bridge. All its files are for one name: the last that has one."""
-    options, paths = _words(it.arguments)
+    options, paths = _domains_and_files(it.arguments)
     files: list[Mapping[str, Any]] = []
     for path in paths:
         try:
@@ -243,7 +241,7 @@ def _ends(it: Run, notes: list[LaunchNote]) -> Iterator[End]:
                 yield from _of_topic(it, name, str(topic), {**file, **row, **options})
 
 
-def _words(words: Sequence[str]) -> tuple[dict[str, object], list[str]]:
+def _domains_and_files(words: Sequence[str]) -> tuple[dict[str, object], list[str]]:
     """Split the arguments of a bridge: the domains that options give, as a file has them; the files."""
     options: dict[str, object] = {}
     paths, left = [], list(words)

@@ -120,8 +120,7 @@ _INSIDE = "MULTIBOT_READS_LAUNCH"
 
 
 def launch_graph(order: LaunchOrder) -> LaunchGraph:
-    """Return what a launch file or system_model.yaml starts. Raises InputError for a file that
-    cannot be read."""
+    """Return what a launch file or system_model.yaml starts. Raises InputError if it is unreadable."""
     refuse_others(read_file(order.file), order.file, LAUNCH)
     # A launch file in YAML has ``launch:`` in place of what a system model begins with.
     if order.file.endswith((".yaml", ".yml")) and _HEAD.search(read_file(order.file)) is not None:
@@ -162,8 +161,10 @@ def _read(order: LaunchOrder, answer: Mapping[str, Any]) -> LaunchGraph | InputE
             why = f"it starts {len(graph.nodes)} processes; of a robot {MOST} are read at most"
     except (ValueError, TypeError, LookupError, AttributeError):
         why = "its process gave a wrong answer; a file that tampers with it is not read"
-    with suppress(OSError):
+    try:
         why = f"{why}{started_by(read_file(order.file).decode('utf-8', 'replace'))}"
+    except InputError as error:  # a link to nothing, or a folder
+        why = f"{error}".partition("cannot be read: ")[2]
     return InputError(f"{order.file}: the launch file cannot be read: {why}")
 
 

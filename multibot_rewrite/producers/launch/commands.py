@@ -8,8 +8,6 @@ Other programs are not started: their output is empty. Source: launch jazzy,
 substitutions/command.py (the line is split as a shell does), find_executable.py.
 """
 
-from __future__ import annotations
-
 import io
 import os
 import pathlib
@@ -91,7 +89,7 @@ class _Program:
         self.stdout: Any = io.StringIO(found.text) if as_text else io.BytesIO(found.text.encode())
         self.stderr = type(self.stdout)()
 
-    def __enter__(self) -> _Program:
+    def __enter__(self) -> "_Program":
         return self
 
     def __exit__(self, *_: object) -> None:

@@ -5,8 +5,6 @@ Source: launch_ros jazzy, actions/node.py, actions/load_composable_nodes.py (hum
 is given to them under the same names).
 """
 
-from __future__ import annotations
-
 import os
 import pathlib
 import re
@@ -169,23 +167,23 @@ def _left_out(what: str, here: Visit) -> None:
 def node(action: Any, here: Visit) -> LaunchedNode:
     """Return the node of launch_ros's Node, or of an action that extends it."""
     package, executable = (
-        text(_kept(action, it), here.context) for it in ("package", "node_executable")
+        text(_node_attribute(action, it), here.context) for it in ("package", "node_executable")
     )
     who = f"of {package} {executable}"
-    given = ros_arguments([*_words(action, who, here)])
-    rules = [*_rules(_kept(action, "remappings"), here), *given.rules]
-    own = _kept(action, "parameters") or ()
+    given = ros_arguments([*_command_line(action, who, here)])
+    rules = [*_rules(_node_attribute(action, "remappings"), here), *given.rules]
+    own = _node_attribute(action, "parameters") or ()
     files = (*given.files, *controller_files(f"{package}/{executable}", given.own))
     return LaunchedNode(
         package,
         executable,
-        _known(_kept(action, "node_name"), here, f"the name {who}") or given.name,
-        given.namespace or _namespace(_kept(action, "node_namespace"), who, here),
+        _known(_node_attribute(action, "node_name"), here, f"the name {who}") or given.name,
+        given.namespace or _namespace(_node_attribute(action, "node_namespace"), who, here),
         tuple(rules),
         (
             *_described(package, given.own),
             *_parameters(own, here),
-            *_given(given.values, files, here),
+            *_parameter_texts(given.values, files, here),
         ),
         "",
         _kept_words(package, executable, given.own),
@@ -205,7 +203,7 @@ def _environment(action: Any, here: Visit) -> tuple[tuple[str, str], ...]:
     told = {name: _added(value, here.before.get(name, "")) for name, value in own.items()}
     for name in (it for it, value in own.items() if value == GONE):
         _left_out(f"a part of the environment variable {name}", here)
-    return tuple({**changed_environment(here), **_there(told)}.items())
+    return tuple({**changed_environment(here), **_variables_after(told)}.items())
 
 
 def changed_environment(here: Visit) -> dict[str, str]:
@@ -215,11 +213,11 @@ def changed_environment(here: Visit) -> dict[str, str]:
     found = {name: _added(value, here.before.get(name, "")) for name, value in changed.items()}
     # Another machine may have some of it.
     lists = {it for it in found if it.endswith("PATH") and not here.before.get(it)}
-    every = _there(found).items()
+    every = _variables_after(found).items()
     return {name: f":{value.strip(':')}" if name in lists else value for name, value in every}
 
 
-def _there(found: Mapping[str, str]) -> dict[str, str]:
+def _variables_after(found: Mapping[str, str]) -> dict[str, str]:
     """Return variables that still have a value after the launch, or are meant to be empty."""
     return {name: value for name, value in found.items() if value.strip(":") or not value}
 
@@ -250,7 +248,7 @@ def how_it_runs(action: Any, here: Visit) -> Process:
         given = getattr(action, f"_ExecuteLocal__{name}", None)
         return getattr(action, name, None) if given is None else given
 
-    prefix, cwd = (_told(getattr(told, it, None), here) for it in ("prefix", "cwd"))
+    prefix, cwd = (_known_text(getattr(told, it, None), here) for it in ("prefix", "cwd"))
     return here.waits._replace(
         prefix=prefix,
         respawn=_is_true(own("respawn"), here),
@@ -260,7 +258,7 @@ def how_it_runs(action: Any, here: Visit) -> Process:
     )
 
 
-def _told(value: Any, here: Visit) -> str:
+def _known_text(value: Any, here: Visit) -> str:
     """Return a text of an action; empty where only a run shows it."""
     with suppress(Exception):
         return str(value) if isinstance(value, bool | int | float) else _known(value, here)
@@ -268,13 +266,13 @@ def _told(value: Any, here: Visit) -> str:
 
 
 def _is_true(value: Any, here: Visit) -> bool:
-    return _told(value, here).strip().lower() in ("true", "1")
+    return _known_text(value, here).strip().lower() in ("true", "1")
 
 
 def seconds(value: Any, here: Visit) -> float:
     """Return a time in seconds; 0 for none, and where only a run shows it."""
     try:
-        return float(_told(value, here) or 0)
+        return float(_known_text(value, here) or 0)
     except ValueError:
         return 0.0
 
@@ -308,7 +306,7 @@ def component(it: Any, container: str, here: Visit) -> LaunchedNode:
 
 def process(action: Any, here: Visit) -> Iterator[LaunchedNode]:
     """Yield the node of a ``ros2 run`` line, a simulator, or else the command."""
-    line = [*_told_words(getattr(action, "cmd", ()), "of a command", here)]
+    line = [*_known_arguments(getattr(action, "cmd", ()), "of a command", here)]
     words = [word for it in line for word in it.split()]
     run = ros2_run(words)
     if package := _GAZEBO.get(os.path.basename(words[0]) if words else ""):
@@ -320,7 +318,7 @@ def process(action: Any, here: Visit) -> Iterator[LaunchedNode]:
             yield LaunchedNode("", program, "", "/", (), (), "", tuple(own), *more)
         return
     given = ros_arguments(run[2])
-    values = tuple(_given(given.values, given.files, here))
+    values = tuple(_parameter_texts(given.values, given.files, here))
     namespace = given.namespace or "/"
     names = (run[0], run[1], given.name, namespace)
     kept = _kept_words(run[0], run[1], given.own)
@@ -328,8 +326,7 @@ def process(action: Any, here: Visit) -> Iterator[LaunchedNode]:
 
 
 def _kept_words(package: str, executable: str, words: Iterable[str]) -> tuple[str, ...]:
-    """Return the own arguments of a program; those of a spawner one by one, with one dash (gflags
-    takes ``--name=a``, too)."""
+    """Return a program's own arguments; a spawner's one by one with one dash (gflags)."""
     kept: list[str] = []
     for word in words:
         flag = _FLAG.fullmatch(word) if f"{package}/{executable}" in programs().spawners else None
@@ -339,19 +336,20 @@ def _kept_words(package: str, executable: str, words: Iterable[str]) -> tuple[st
     return (*kept,)
 
 
-def _kept(action: Any, name: str) -> Any:
+def _node_attribute(action: Any, name: str) -> Any:
     """Return what launch_ros's Node was made with."""
     return getattr(action, f"_Node__{name}", None)
 
 
-def _words(action: Any, who: str, here: Visit) -> Iterator[str]:
+def _command_line(action: Any, who: str, here: Visit) -> Iterator[str]:
     own, ros = (
-        [*_told_words(_kept(action, it) or (), who, here)] for it in ("arguments", "ros_arguments")
+        [*_known_arguments(_node_attribute(action, it) or (), who, here)]
+        for it in ("arguments", "ros_arguments")
     )
     yield from (*own, "--ros-args", *ros) if ros else own
 
 
-def _told_words(given: Iterable[Any], who: str, here: Visit) -> Iterator[str]:
+def _known_arguments(given: Iterable[Any], who: str, here: Visit) -> Iterator[str]:
     """Yield the known arguments of a program; the flag before an unknown one is left out, too."""
     words, lost = known_words(lasting(_text(it, here) for it in given))
     for flag in lost:
@@ -389,7 +387,7 @@ def _rules(rules: Iterable[Any], here: Visit) -> Iterator[tuple[str, str]]:
 def _parameters(own: Iterable[Any], here: Visit) -> Iterator[ParameterText]:
     for it in here.context.launch_configurations.get("global_params", ()):
         if isinstance(it, tuple):
-            yield from _given([(str(it[0]), str(it[1]))], (), here)
+            yield from _parameter_texts([(str(it[0]), str(it[1]))], (), here)
         else:
             yield from _file(str(it), here)
     for given in own:
@@ -473,7 +471,7 @@ def _plain(value: Any) -> Any:
     return [_plain(it) for it in value]
 
 
-def _given(
+def _parameter_texts(
     values: Iterable[tuple[str, str]], files: Iterable[str], here: Visit
 ) -> Iterator[ParameterText]:
     for path in files:

@@ -56,7 +56,7 @@ def launch_findings(
             yield NOT_WHOLE.finding(message, _WITHOUT_VALUES, **_place(node.place))
     for name, it in unknown.items():
         message = f"node {name} ({it.package} {it.executable}) is not known"
-        hint = f"describe it in a file of nodes (docs/stacks.md){or_read()}"
+        hint = f"describe it in a file of nodes (docs/node-sets.md){or_read()}"
         hint = f"{hint}; the plan has its name alone"
         if handed[name].names:
             hint = f"{hint}, build hands on {shorten(handed[name].names)}"

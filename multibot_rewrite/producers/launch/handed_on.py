@@ -2,8 +2,6 @@
 """What a launch file itself gives a process, in texts as parameter files have them: what is built
 gives it the same, for each robot."""
 
-from __future__ import annotations
-
 import os
 import re
 import shlex

@@ -108,8 +108,7 @@ def simulator(error: BaseException, include: Any, here: Visit) -> list[LaunchedN
 
 
 def not_here(error: BaseException, include: Any, here: Visit) -> list[LaunchedNode]:
-    """Return a launch file of a package that is missing here, with its arguments; an unknown one
-    has no lasting value."""
+    """Return a launch file of a package that is missing here, with its arguments."""
     it, package = included(include, here), missing_package(error)
     if not package or not it.file.startswith(f"{package}/"):
         return []

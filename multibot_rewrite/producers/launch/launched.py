@@ -2,8 +2,6 @@
 """What a launch starts, with all that is known of it, which the rules for launch files ask; and what of
 the models in a simulator is not known."""
 
-from __future__ import annotations
-
 import os
 import shlex
 from collections.abc import Iterable, Iterator, Mapping

@@ -6,8 +6,6 @@ is an argument ``--params-file``, rules of ``<ros>`` are arguments, too; ``use_s
 ros_gz_sim create.cpp and gazebo_ros spawn_entity.py: a model by ``-topic``, ``-file`` or ``-string``.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import pairwise
@@ -43,8 +41,7 @@ _TF, _CLASSIC_TF = "tf_topic", "/tf"
 
 
 class Published(NamedTuple):
-    """A description that a node of the launch publishes, on which topic, and where the launch file says
-    it."""
+    """A description that a launched node publishes, its topic, and the place in the launch file."""
 
     text: str
     topic: str
@@ -81,7 +78,7 @@ def models_of(
         said = (*it.arguments, *_of_parameters(it))
         words = dict(pairwise(said))
         topic = expand(words.get("-topic", ""), it.namespace, "") if "-topic" in words else ""
-        text = texts[topic].text if topic in texts else _given(words)
+        text = texts[topic].text if topic in texts else _model_text(words)
         name = words.get("-name", words.get("-entity", ""))
         moved = _moved(text, words.get("-robot_namespace", ""))
         model = _read(name, moved, it.place, release, spawned=True)
@@ -120,7 +117,7 @@ def _moved(text: str, namespace: str) -> str:
     return tostring(root, encoding="unicode")
 
 
-def _given(words: Mapping[str, str]) -> str:
+def _model_text(words: Mapping[str, str]) -> str:
     path = words.get("-file", "")
     return read_file(path).decode() if os.path.isfile(path) else words.get("-string", "")
 

@@ -4,8 +4,6 @@
 A node that is launched runs: that is the surest evidence there is. What a node set has and no
 launch file starts is left out, if all of the launch files is known."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import count
@@ -16,9 +14,9 @@ from multibot_rewrite.base.naming import TF_TOPICS
 from multibot_rewrite.base.rosnames import check_topic_name, expand
 from multibot_rewrite.base.wording import shorten, unique
 from multibot_rewrite.knowledge.controller_ways import controller_way
+from multibot_rewrite.knowledge.node_sets import built_in
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import UNKNOWN, Endpoint, NodeFacts
-from multibot_rewrite.knowledge.stacks import built_in
 from multibot_rewrite.planning.records import Run
 from multibot_rewrite.planning.transforms import STATE_PUBLISHER, state_publisher_of
 from multibot_rewrite.producers.evidence.nodes import MANAGER, remapped
@@ -106,7 +104,7 @@ class _Pair(NamedTuple):
 
 
 def with_launched(
-    stack: Sequence[NodeFacts],
+    node_set: Sequence[NodeFacts],
     graph: LaunchGraph,
     known: Mapping[str, NodeFacts],
     words: Collection[str],
@@ -120,21 +118,21 @@ def with_launched(
     each = [(number, it) for number, it in enumerate(graph.nodes) if not passes(it)]
     # The robot's own state publisher is the first one.
     each.sort(key=lambda row: _publishes_another(row[1]))
-    pairs, twice = _each_once(_pair(number, it, stack, known, words) for number, it in each)
+    pairs, twice = _each_once(_pair(number, it, node_set, known, words) for number, it in each)
     managers = unique(_full_name(it.node, it.facts) for it in pairs if it.facts.known == MANAGER)
     under, lost = under_managers(spawned, managers if graph.whole else ())
     nodes = {it.facts.name: it.facts for it in pairs}
-    left = [it for it in stack if _is_left(it, nodes)] if graph.whole else []
+    left = [it for it in node_set if _is_left(it, nodes)] if graph.whole else []
     gone = {it.name for it in left}
     # A node that every robot has, such as robot_state_publisher, may be launched under another name.
     gone |= {it.known for it in nodes.values() if it.known} - {
-        it.name for it in stack if it.origin != NO_ORIGIN
+        it.name for it in node_set if it.origin != NO_ORIGIN
     }
-    kept = [it for it in stack if it.name not in nodes and not {it.name, it.host} & gone]
+    kept = [it for it in node_set if it.name not in nodes and not {it.name, it.host} & gone]
     hosted = list(_hosted(pairs, known, {it.name for it in kept}))
     inside = [*hosted, *(it for it in kept if it.host)]
     given = list(_controllers(under, pairs, words, parameters))
-    given += [it for pair in pairs for it in _given(pair, inside, words, parameters)]
+    given += [it for pair in pairs for it in _launched_values(pair, inside, words, parameters)]
     unknown = {it.facts.name: it.node for it in pairs if not it.facts.is_known}
     of_all = graph.environment
     own = state_publisher_of([it.facts for it in pairs])
@@ -254,10 +252,10 @@ def _is_spawner_of_robot(it: LaunchedNode) -> bool:
     return program_of(it) in programs().spawners and not it.process.is_extra
 
 
-def _stands(include: LaunchedNode, stack: Iterable[NodeFacts]) -> bool:
+def _stands(include: LaunchedNode, node_set: Iterable[NodeFacts]) -> bool:
     """Return whether the robot's node set has the nodes of a missing launch file."""
     family = _FAMILIES.get(include.package, include.package)
-    own = (it.package for it in stack if it.origin != NO_ORIGIN)
+    own = (it.package for it in node_set if it.origin != NO_ORIGIN)
     return any(it == family or (family[-1] == "_" and it.startswith(family)) for it in own)
 
 
@@ -321,18 +319,18 @@ def as_launched(nodes: Iterable[NodeFacts], launched: Launched) -> Iterator[Node
 def _pair(
     number: int,
     it: LaunchedNode,
-    stack: Sequence[NodeFacts],
+    node_set: Sequence[NodeFacts],
     known: Mapping[str, NodeFacts],
     words: Collection[str],
 ) -> _Pair:
-    base = known_node(it, stack, known)
+    base = known_node(it, node_set, known)
     own = own_name(it, base)
     check_names(it)
     name = it.name or own or guessed_name(it)
     facts = base or _unknown(it, name)
     unnamed = "" if it.name or own else NO_NAME
     rows = bridge_rows(it, words)
-    # The rules of a stack do not count: those of the launch do.
+    # The rules of a node set do not count: those of the launch do.
     ends = (end._replace(remapped="") for end in facts.endpoints)
     found = facts._replace(
         name=_below(it.namespace, name, words),
@@ -427,7 +425,7 @@ def _full_name(node: LaunchedNode, facts: NodeFacts) -> str:
     return expand(facts.name.rpartition("/")[2], node.namespace, "")
 
 
-def _given(
+def _launched_values(
     pair: _Pair, inside: Iterable[NodeFacts], words: Collection[str], parameters: KnownNodes
 ) -> Iterator[Run]:
     """Yield what the launch file's parameters set for a node, the nodes in it and its controllers."""

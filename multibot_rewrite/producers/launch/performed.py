@@ -6,8 +6,6 @@ arguments. Nothing is started, and every value is kept: what is printed can be c
 planned.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path, PurePath
 from types import ModuleType
@@ -44,8 +42,7 @@ _OF_COMPONENT = ("package", "node_plugin", "node_name", "node_namespace")
 
 
 class Launching(NamedTuple):
-    """How a launch file is launched: its arguments, the installed packages of those that it asks for,
-    and the environment."""
+    """How a launch file is launched: arguments, installed packages that it needs, environment."""
 
     arguments: Mapping[str, str]
     installed: frozenset[str] = frozenset()

@@ -2,8 +2,6 @@
 """What is known of the programs that launch files start (``programs.yaml``), and which run once for all
 robots: simulators, map servers, windows, tools."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping
 from fnmatch import fnmatchcase
 from functools import cache
@@ -59,8 +57,7 @@ def once_for_all(node: LaunchedNode) -> str:
 
 
 def passes(it: LaunchedNode) -> bool:
-    """Return whether it is no node of a robot: a program that ends, a simulator, a command or a
-    launch file."""
+    """Return whether it is no robot's node: a program that ends, a simulator, a launch file."""
     is_none = not it.package or it.process.is_include
     return is_none or is_spawner(it) or program_of(it) in programs().passing
 

@@ -219,8 +219,7 @@ def _lost_variables(seen: Visit, path: str) -> tuple[LaunchNote, ...]:
 
 
 def _declared(description: Any) -> tuple[LaunchArgument, ...]:
-    """Return the arguments of a launch file and of what it includes, each once; a default made from
-    others is unknown."""
+    """Return the arguments of a launch file and its includes, once; computed defaults: unknown."""
     found: dict[str, LaunchArgument] = {}
     for it, _ in getattr(description, ASKED)():
         given = it.default_value

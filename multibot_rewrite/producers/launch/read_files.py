@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The files that a launch file reads: of a description that a node gets, the file is known."""
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator
@@ -25,8 +23,7 @@ _OWN = os.path.abspath(__file__).removesuffix(os.path.join("producers", "launch"
 
 
 class Reads(NamedTuple):
-    """What is read in this process: files of a robot that are opened, and xacros that are expanded with
-    values of arguments."""
+    """What is read in this process: a robot's files, and xacros expanded with arguments."""
 
     paths: list[str]
     xacros: list[FileRead]

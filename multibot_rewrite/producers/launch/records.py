@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What launch files start, as records; how they pass from the process that reads them."""
 
-from __future__ import annotations
-
 import json
 import os
 import shlex
@@ -141,8 +139,7 @@ class LaunchArgument(NamedTuple):
 
 
 class FileRead(NamedTuple):
-    """A description, an SRDF or a YAML file that a launch file reads, with the arguments that it gives
-    to a xacro."""
+    """A description, SRDF or YAML file that a launch file reads, with its xacro arguments."""
 
     file: str
     arguments: tuple[tuple[str, str], ...] = ()

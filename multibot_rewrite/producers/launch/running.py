@@ -4,8 +4,6 @@
 Every launched node is taken as it is: nothing is known here of robots, node sets and layouts. A
 launch file that is wrong is to be seen as it is."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -211,8 +209,7 @@ def _described(manager: Run, published: Mapping[str, str]) -> str:
 
 
 def _clock(graph: LaunchGraph) -> Iterator[Run]:
-    """Yield Gazebo Classic as a node that has the clock (gazebo_ros src/gazebo_ros_init.cpp); with
-    gz a bridge passes it on."""
+    """Yield Gazebo Classic as a node that sends the clock (gazebo_ros_init.cpp); gz has a bridge."""
     classic = [it for it in graph.nodes if it.package == CLASSIC]
     # Who spawns has the simulator running, if in another launch file.
     started = [it for it in classic if it.executable == SIMULATOR]

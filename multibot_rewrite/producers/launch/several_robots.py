@@ -17,8 +17,7 @@ _NUMBER, _WORDS = re.compile(r"[0-9]+"), re.compile(r"[^\s/:=]+")
 
 
 def of_first_robot(graph: LaunchGraph) -> LaunchGraph:
-    """Return what launch files start for the first of several robots, without its name; of one robot
-    the same."""
+    """Return what launch files start for one robot, or the first of several without its name."""
     robots = _robots(graph.nodes)
     if not robots:
         return graph

@@ -5,8 +5,6 @@ Names are those that rcl makes of the rules, transforms those that parameters na
 condition that nobody knows may be there.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import NamedTuple
@@ -92,8 +90,7 @@ class _Part(NamedTuple):
 
 
 def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
-    """Return all that the launch starts, and the resulting system; what is unknown makes its view
-    incomplete."""
+    """Return all that the launch starts, and its system, incomplete if something is unknown."""
     nodes, notes, models, published, spawned = running_nodes(graph, known)
     inside = sent_in_simulator(models.found)
     parts, refused = _parts(nodes, inside)
@@ -216,7 +213,7 @@ def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[Run]) -> Iterator[Cave
     ]
     if unknown:
         listed = shorten(unknown, SEVERAL)
-        hint = f"describe them in a file of nodes (--nodes, docs/stacks.md){or_read()}"
+        hint = f"describe them in a file of nodes (--nodes, docs/node-sets.md){or_read()}"
         text = f"{plural(len(unknown), 'node')} not known, with all topics and frames: {listed}"
         yield Caveat(NOT_KNOWN, True, f"{text}; {hint}")
     partly = [it for it in nodes if it.is_known and it.fact.untold]

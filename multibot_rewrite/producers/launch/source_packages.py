@@ -41,8 +41,7 @@ NOT_INSTALLED = "not_installed"
 
 
 def link_sources(file: str, roots: Iterable[str], folder: str) -> None:
-    """Fill a folder with links to the packages below ``roots``, and to those next to the one of the
-    launch ``file``."""
+    """Link the packages below ``roots``, and those next to the launch ``file``'s, into a folder."""
     for name, path in packages_for(file, roots).items():
         link_share(name, path, _shared(name, os.path.join(folder, SOURCES)))
         _has_python(name, path)  # known to the forks that ask for it
@@ -70,16 +69,14 @@ def _has_python(name: str, folder: str) -> bool:
 
 
 def add_empty(name: str, folder: str) -> None:
-    """Make a package known that is nowhere: its share folder is empty, and has NOT_INSTALLED in its
-    path."""
+    """Add a package that is not installed: its empty share folder has NOT_INSTALLED in its path."""
     prefix = os.path.join(folder, NOT_INSTALLED)
     os.makedirs(_shared(name, prefix))
     _search(prefix)
 
 
 def add_file(error: BaseException, folder: str) -> bool:
-    """Make the file empty that could not be read of such a package: what is in it is not known. False
-    for another error."""
+    """Add an empty file of an added package for one that was not found; False for other errors."""
     # launch has its own error around what a launch file raises (jazzy invalid_launch_file_error.py).
     lost: BaseException | None = error
     while lost is not None and not isinstance(lost, FileNotFoundError):

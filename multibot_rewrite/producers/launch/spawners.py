@@ -8,8 +8,6 @@ options of its own; the name of a manager is relative to the spawner's namespace
 
 Source: rcl arguments.c (what is between ``--ros-args`` and ``--`` is ROS's own)."""
 
-from __future__ import annotations
-
 import argparse
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
@@ -26,8 +24,7 @@ _RULE, _VALUE, _FILE = ("-r", "--remap"), ("-p", "--param"), "--params-file"
 
 
 class RosArguments(NamedTuple):
-    """Name and namespace (empty for none), remap rules, parameter values and files, and the words
-    that are not ROS's own."""
+    """Name, namespace, remap rules, parameter values and files, and the words that are not ROS's."""
 
     name: str
     namespace: str

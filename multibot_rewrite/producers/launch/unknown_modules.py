@@ -69,6 +69,7 @@ class Unknown:
         return Unknown(self._multibot_module)
 
     def __call__(self, *_: object, **__: object) -> Unknown:
+        """Return another unknown value of the module."""
         return Unknown(self._multibot_module)
 
     def __getitem__(self, _: object) -> Unknown:

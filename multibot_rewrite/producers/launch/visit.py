@@ -5,8 +5,6 @@ What only sets something up is executed, what would start something is described
 by the names of its classes, so that this works in every release. Source: launch, launch_ros jazzy.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from functools import cache
@@ -292,8 +290,7 @@ def _later(entity: Any, seen: Visit) -> Iterable[Any] | None:
 
 
 def _wait(actions: Iterable[Any], word: str, seen: Visit, timer: bool = False) -> None:
-    """Keep actions with their context's locals: all for a timer, ours for an event handler, too
-    (launch/context.py)."""
+    """Keep actions with their context's locals: all for a timer, ours for an event handler."""
     actions, known = [*actions], seen.context.get_locals_as_dict()
     kept = {key: it for key, it in known.items() if timer or key.startswith(_OURS)}
     if actions and seen.events >= _MOST_EVENTS:

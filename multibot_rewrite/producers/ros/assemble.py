@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The pure part of a snapshot: when the graph is settled, what to query, how answers are joined."""
 
-from __future__ import annotations
-
 import math
 import time
 from collections import Counter
@@ -14,6 +12,7 @@ from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.system.record_values import FARTHEST
 from multibot_rewrite.system.records import (
+    BUSY_MACHINE,
     EXPECTED,
     PUBLISHES,
     QUIET,
@@ -36,7 +35,6 @@ ALL_KNOWN_SECONDS = 1.5
 DELAY_SECONDS = 0.5
 # So much of its time a look may wait for a processor.
 STARVED = 1 / 3
-BUSY_MACHINE = "busy-machine"
 # The endpoints of one participant arrive together; a busy machine may pause in between.
 BURST_SECONDS = 0.5
 # The second replaces the first in a rehearsal on a machine without tf2_msgs.
@@ -83,21 +81,20 @@ class ObservationClock(NamedTuple):
     last: float = 0.0
     delayed: float = 0.0
 
-    def after(self, now: float, planned: float) -> ObservationClock:
+    def after(self, now: float, planned: float) -> "ObservationClock":
         """Return the clock at a poll that was planned for ``planned`` seconds after the last one."""
         passed = now - self.last
         late = min(max(0.0, passed - planned), DELAY_SECONDS)
         return ObservationClock(self.observed + min(passed, planned), now, self.delayed + late)
 
-    def since(self, other: ObservationClock) -> ObservationClock:
+    def since(self, other: "ObservationClock") -> "ObservationClock":
         """Return what was observed, and delayed, after ``other``."""
         return ObservationClock(
             self.observed - other.observed, self.last, self.delayed - other.delayed
         )
 
     def starved(self) -> Iterator[Caveat]:
-        """Yield a limitation if a snapshot waited for a processor so long that nodes may have come
-        too late."""
+        """Yield a limitation if a snapshot lacked processor time so long that nodes may be missing."""
         part = self.delayed / max(self.observed + self.delayed, DELAY_SECONDS)
         if part > STARVED:
             text = (

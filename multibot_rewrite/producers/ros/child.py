@@ -4,8 +4,6 @@
 rcl may end its process, so the command never loads it.
 """
 
-from __future__ import annotations
-
 import json
 import subprocess
 import tempfile

@@ -5,8 +5,6 @@ latched descriptions; the function that subscribes is passed in.
 Images are large: of a message only the frame is kept, and their topic is left at once.
 """
 
-from __future__ import annotations
-
 import math
 import time
 from collections import defaultdict
@@ -198,8 +196,7 @@ class HeaderSamples:
         return not span.rate() and span.messages < MOST_MESSAGES
 
     def keep_waiting(self, seconds: float) -> bool:
-        """Return whether to wait for silent topics, until ``seconds`` after the last subscription,
-        or for a second message."""
+        """Return whether to wait for silent topics or second messages, up to ``seconds``."""
         now, silent = time.monotonic(), self.silent()
         longer = seconds * (BODY_FACTOR if silent & self._bodies else 1)
         if silent and now - self._began < longer:

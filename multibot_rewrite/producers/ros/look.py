@@ -2,8 +2,6 @@
 """A node in the graph, what it can ask at once (the nodes with their ends), and what it receives
 meanwhile: transforms, and headers if they are asked for."""
 
-from __future__ import annotations
-
 import threading
 import time
 from collections.abc import Callable, Sequence
@@ -117,8 +115,7 @@ def overview(session: GraphSession) -> tuple[list[str], list[End]]:
 
 
 def complete_view(session: GraphSession, cache: queries.TopicCache) -> tuple[list[str], list[End]]:
-    """Return names and endpoints; repeated for a while if nodes lack endpoints or a name, or
-    participants lack nodes."""
+    """Return names and endpoints, read again for a while if nodes lack endpoints, or a name."""
     limit = min(session.request.timeout, session.now() + assemble.QUIET_SECONDS)
     while True:
         names, endpoints = view(session, cache)

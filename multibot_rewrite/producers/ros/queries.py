@@ -4,8 +4,6 @@
 The node is passed in: only ``graph.live.ros`` imports rclpy.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import suppress
 from functools import lru_cache

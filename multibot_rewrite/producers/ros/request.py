@@ -8,8 +8,6 @@ graph for 20 s. Its messages go to standard output, each with its length before 
 print goes to standard error.
 """
 
-from __future__ import annotations
-
 import json
 import os
 import signal

@@ -4,8 +4,6 @@
 It runs in child processes (``live.observe``, ``live.stub_nodes``), since rcl may end its process.
 """
 
-from __future__ import annotations
-
 import re
 import sys
 import time
@@ -34,8 +32,8 @@ _FIRST_FIELD = re.compile(r"_fields_and_field_types\b[^={]*=\s*\{\s*'\w+':\s*'([
 class Session(NamedTuple):
     """An own rclpy context, without arguments or remap rules from the process's command line."""
 
-    context: Context
-    executor: SingleThreadedExecutor
+    context: "Context"
+    executor: "SingleThreadedExecutor"
 
 
 def missing() -> str:
@@ -72,7 +70,7 @@ def opened() -> Iterator[Session]:
 
 def add_node(
     session: Session, name: str, namespace: str = "/", arguments: Sequence[str] = ()
-) -> Node:
+) -> "Node":
     """Add a node without services; ``arguments`` are those of its command line."""
     from rclpy.node import Node
     from rclpy.parameter import Parameter
@@ -107,18 +105,18 @@ def node_gone_error() -> type[Exception]:
     return error
 
 
-def action_servers(node: Node, name: str, namespace: str) -> Any:
+def action_servers(node: "Node", name: str, namespace: str) -> Any:
     """Return names and types of the actions that a node serves."""
     return _actions(node, node.handle.get_action_server_names_and_types_by_node, name, namespace)
 
 
-def action_clients(node: Node, name: str, namespace: str) -> Any:
+def action_clients(node: "Node", name: str, namespace: str) -> Any:
     """Return names and types of the actions that a node calls."""
     return _actions(node, node.handle.get_action_client_names_and_types_by_node, name, namespace)
 
 
 # rclpy.action.graph asks the same, and imports all of rclpy.action, which needs numpy.
-def _actions(node: Node, query: Callable[..., Any], name: str, namespace: str) -> Any:
+def _actions(node: "Node", query: Callable[..., Any], name: str, namespace: str) -> Any:
     """Return a query's answer about actions; raises ``node_gone_error`` if the node left the graph."""
     from rclpy.impl.implementation_singleton import rclpy_implementation
 
@@ -188,7 +186,7 @@ def begins_with_header(type_: str) -> bool:
 
 
 def subscribe(
-    node: Node,
+    node: "Node",
     type_: Any,
     topic: str,
     latched: bool,
@@ -201,7 +199,6 @@ def subscribe(
 
     The callback gets a message and its number, by which its publisher counts; None if that is unknown.
     """
-
     from rclpy.impl.implementation_singleton import rclpy_implementation
 
     def numbered(message: bytes, info: Any) -> None:
@@ -219,7 +216,7 @@ def subscribe(
     return None
 
 
-def receive(node: Node) -> None:
+def receive(node: "Node") -> None:
     """Hand out what the subscriptions of a node have received.
 
     An executor waits for all of them anew for each message: a millisecond and more in a fleet.
@@ -245,24 +242,24 @@ def _take(subscription: Any) -> tuple[bytes, Any] | None:
     return taken
 
 
-def publish(node: Node, type_: Any, topic: str, latched: bool) -> Any:
+def publish(node: "Node", type_: Any, topic: str, latched: bool) -> Any:
     """Return a reliable publisher; with ``latched`` later subscribers receive its messages too."""
     return node.create_publisher(type_, topic, _qos(latched, True))
 
 
-def subscribe_and_drop(node: Node, type_: Any, topic: str) -> None:
+def subscribe_and_drop(node: "Node", type_: Any, topic: str) -> None:
     """Subscribe with the usual QoS and ignore the messages."""
     node.create_subscription(type_, topic, lambda _: None, _qos(False, True))
 
 
-def serve_action(node: Node, type_: Any, name: str) -> None:
+def serve_action(node: "Node", type_: Any, name: str) -> None:
     """Make an action server whose goals never succeed."""
     from rclpy.action import ActionServer
 
     ActionServer(node, type_, name, lambda goal: type_.Result())
 
 
-def call_action(node: Node, type_: Any, name: str) -> None:
+def call_action(node: "Node", type_: Any, name: str) -> None:
     """Make a client of an action."""
     from rclpy.action import ActionClient
 

@@ -2,8 +2,6 @@
 """Subscriptions to the tf topics of a graph, and how often each publisher is heard there; the
 function that subscribes is passed in."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
@@ -24,7 +22,7 @@ class Pace(NamedTuple):
     between: tuple[float, ...] = ()
     back: float = 0.0
 
-    def after(self, stamp: float) -> Pace:
+    def after(self, stamp: float) -> "Pace":
         """Return the pace with one message more."""
         if self.last < 0 or stamp == self.last:
             return self._replace(last=stamp)
@@ -52,7 +50,7 @@ class Voices(NamedTuple):
     last: Mark = None
     back: int = 0
 
-    def after(self, mark: Mark) -> Voices:
+    def after(self, mark: Mark) -> "Voices":
         """Return the senders' order with one message more."""
         if mark is None:
             return self

@@ -5,8 +5,6 @@ The messages are those of ros2/rcl_interfaces, rosgraph_msgs/msg: since 1.2.3 in
 and 2.4.4 in Rolling. A graph is a list of nodes with their endpoints, without transforms and processes.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from collections.abc import Iterator
@@ -105,7 +103,7 @@ def _full(name: str, file: str) -> str:
     return name
 
 
-def _endpoints(node: NodeMessage, file: str) -> Iterator[End]:
+def _endpoints(node: "NodeMessage", file: str) -> Iterator[End]:
     for role, topics in ((PUBLISHES, node.publishers), (SUBSCRIBES, node.subscriptions)):
         yield from (_topic(it, role, node.name, file) for it in topics)
     for role, services in ((SERVES, node.service_servers), (CALLS, node.service_clients)):
@@ -115,7 +113,7 @@ def _endpoints(node: NodeMessage, file: str) -> Iterator[End]:
             yield from _action(action, role, node.name, file)
 
 
-def _topic(topic: Topic, role: str, node: str, file: str) -> End:
+def _topic(topic: "Topic", role: str, node: str, file: str) -> End:
     version, value = topic.type.hash
     if not all(0 <= it < 256 for it in (version, *value)):
         raise InputError(f"{file}: {topic.name}: a byte of the type's hash is not 0 to 255")
@@ -124,12 +122,12 @@ def _topic(topic: Topic, role: str, node: str, file: str) -> End:
     return End(TOPIC, role, topic.name, topic.type.name, hash_, node, qos, "")
 
 
-def _service(service: Service, role: str, node: str) -> End:
+def _service(service: "Service", role: str, node: str) -> End:
     type_ = service.request_type.name.removesuffix(_REQUEST)
     return End(SERVICE, role, service.name, type_, "", node, None, "")
 
 
-def _action(action: Action, role: str, node: str, file: str) -> Iterator[End]:
+def _action(action: "Action", role: str, node: str, file: str) -> Iterator[End]:
     """Yield the action, and the services and topics that it is made of, as a snapshot has them."""
     parts = [_service(it, role, node) for it in action[1:4] if isinstance(it, Service) and it.name]
     sent = PUBLISHES if role == SERVES else SUBSCRIBES
@@ -141,7 +139,7 @@ def _action(action: Action, role: str, node: str, file: str) -> Iterator[End]:
     yield from parts
 
 
-def _qos(topic: Topic, file: str) -> Qos | None:
+def _qos(topic: "Topic", file: str) -> Qos | None:
     qos = topic.qos
     given = (
         (HISTORY, qos.history),
@@ -167,7 +165,7 @@ def _qos(topic: Topic, file: str) -> Qos | None:
     )
 
 
-def _seconds(duration: Duration) -> float:
+def _seconds(duration: "Duration") -> float:
     if duration.sec == _NO_LIMIT or duration == (0, 0):
         return math.inf
     return duration.sec + duration.nanosec / 1e9

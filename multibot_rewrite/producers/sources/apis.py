@@ -2,8 +2,6 @@
 """``calls.txt``: which calls declare an endpoint, one line, one way to declare one;
 ``harmless.txt``: which calls are given a node and declare none."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import cache
 from typing import NamedTuple

@@ -117,7 +117,7 @@ def _condition(node: Node) -> str:
     return ""
 
 
-def _asked(node: Node) -> str:
+def _conditions_before(node: Node) -> str:
     """Return all conditions before it in its function: around it, and where the function may end."""
     found, above = [], node
     while above.parent is not None and above.parent.type != "function_definition":
@@ -212,7 +212,8 @@ def _call(node: Node, place: Place) -> Iterator[Call | Value]:
         return
     owner, inside = _around(node)
     call = Call(
-        *(owner, inside, name, types, given, on, _condition(node), _at(node, place)), _asked(node)
+        *(owner, inside, name, types, given, on, _condition(node), _at(node, place)),
+        _conditions_before(node),
     )
     yield call
     if NAMES_PARAMETER.fullmatch(name):
@@ -223,7 +224,7 @@ def _made(node: Node, type_: str, given: tuple[str, ...], place: Place) -> Call:
     owner, inside = _around(node)
     name = "" if MESSAGE.search(type_.partition("<")[0]) else last(type_)
     own = (name, template_arguments(type_), given, "", _condition(node), _at(node, place))
-    return Call(owner, inside, *own, _asked(node))
+    return Call(owner, inside, *own, _conditions_before(node))
 
 
 def _parameter(call: Call) -> Iterator[Value]:

@@ -4,8 +4,6 @@
 Only what is sure is said without a condition. What is not known before it runs is listed in ``untold``.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import combinations
 from typing import NamedTuple
@@ -205,7 +203,7 @@ def _endpoints(names: Names, it: Declared, release: str) -> Iterator[Endpoint]:
         return
     images = it.api.function in _CAMERAS and type_ == IMAGE
     for name, parameter, more in (
-        one for word in _each(it.name) for one in _spelled(names, it.spot, word)
+        one for word in _each(it.name) for one in _names_by_setting(names, it.spot, word)
     ):
         both = joined(when, more) if when and more else when or more
         end = bare._replace(name=name, parameter=parameter, when=both, transport=images)
@@ -228,7 +226,7 @@ def _each(text: str) -> Iterator[str]:
         yield from _each(text.replace(f"<{EACH}{LIST}{words}>", it))
 
 
-def _spelled(names: Names, spot: Spot, text: str) -> Iterator[tuple[str, str, str]]:
+def _names_by_setting(names: Names, spot: Spot, text: str) -> Iterator[tuple[str, str, str]]:
     """Yield a name, the parameter that sets it, and a condition: by the default, and as it is set."""
     parts = text.split("<")
     params = [it.partition(">")[0] for it in parts[1:]]

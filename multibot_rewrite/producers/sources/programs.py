@@ -3,8 +3,6 @@
 CMakeLists.txt, or as a file that is installed; and its files: what it imports or includes, as far as
 that is here."""
 
-from __future__ import annotations
-
 import ast
 import os
 import re
@@ -182,13 +180,15 @@ def _of_file(folder: str, known: dict[str, str], depth: int) -> Iterator[CmakeCa
         at += 1
         if name == "foreach":
             end = next((it for it in range(at, len(calls)) if calls[it][0] == "endforeach"), at)
-            variable, *values = (*_words(raw, known), "")[:-1] or ("",)
+            variable, *values = (*_argument_words(raw, known), "")[:-1] or ("",)
             for value in values if values[:1] != ["IN"] else values[2:]:
                 inner = {**known, variable: value}
-                yield from (CmakeCall(it, _words(one, inner), folder) for it, one in calls[at:end])
+                yield from (
+                    CmakeCall(it, _argument_words(one, inner), folder) for it, one in calls[at:end]
+                )
             at = end
             continue
-        call = CmakeCall(name, _words(raw, known), folder)
+        call = CmakeCall(name, _argument_words(raw, known), folder)
         known |= dict(_set_by(call))
         yield call
         if name == "add_subdirectory" and call.words and depth < DEEPEST:
@@ -213,7 +213,7 @@ def _set_by(call: CmakeCall) -> Iterator[tuple[str, str]]:
         yield words[1], ";".join(files)
 
 
-def _words(raw: str, known: dict[str, str]) -> tuple[str, ...]:
+def _argument_words(raw: str, known: dict[str, str]) -> tuple[str, ...]:
     text = raw
     for _ in range(DEEPEST if "$" in raw else 0):
         text = _VARIABLE.sub(lambda it: known.get(it[1], it[0]), text)[:MOST_CALLS]
@@ -276,21 +276,21 @@ def _strings(text: str) -> Iterator[str]:
         tree = ast.parse(text)
         sets = [it for it in ast.walk(tree) if isinstance(it, ast.Assign)]
         names = [(it.targets[0], it.value) for it in sets]
-        known = {it.id: _said(value, {}) for it, value in names if isinstance(it, ast.Name)}
-        yield from [_said(it, known) for it in ast.walk(tree)]
+        known = {it.id: _constant(value, {}) for it, value in names if isinstance(it, ast.Name)}
+        yield from [_constant(it, known) for it in ast.walk(tree)]
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return
 
 
-def _said(node: ast.AST, known: dict[str, str]) -> str:
+def _constant(node: ast.AST, known: dict[str, str]) -> str:
     if isinstance(node, ast.Constant):
         return node.value if isinstance(node.value, str) else ""
     if isinstance(node, ast.JoinedStr):
-        return "".join(_said(it, known) for it in node.values)
+        return "".join(_constant(it, known) for it in node.values)
     if isinstance(node, ast.FormattedValue):
-        return _said(node.value, known)
+        return _constant(node.value, known)
     if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add):
-        return _said(node.left, known) + _said(node.right, known)
+        return _constant(node.left, known) + _constant(node.right, known)
     return known.get(node.id, "") if isinstance(node, ast.Name) else ""
 
 

@@ -4,8 +4,6 @@
 A member of an object is written with it: ``self.topic``; what a class has itself, too.
 """
 
-from __future__ import annotations
-
 import ast
 import re
 import warnings
@@ -53,8 +51,7 @@ _SOMETIMES: dict[type, tuple[str, ...]] = {
 
 
 class _Part(NamedTuple):
-    """A piece of the tree: the function that it is in, the text of the nearest condition around it, and
-    all conditions."""
+    """A piece of a syntax tree: its function, the nearest condition's text, and all conditions."""
 
     node: ast.AST
     function: str
@@ -92,8 +89,7 @@ def _imported(tree: ast.AST) -> Iterator[tuple[str, str]]:
 
 
 def _modules(tree: ast.AST) -> Iterator[str]:
-    """Yield what is imported, also the parts of a module, which may be modules. What is next to the
-    file starts with a dot."""
+    """Yield imported modules, and parts that may be modules; relative ones start with a dot."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             yield from (it.name for it in node.names)
@@ -195,29 +191,29 @@ def _walk(part: _Part) -> Iterator[_Part]:
     yield part
     node = part.node
     if isinstance(node, ast.Lambda):
-        part = part._replace(asked=_and(part.asked, OTHERWISE))
+        part = part._replace(asked=_both_conditions(part.asked, OTHERWISE))
     if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
         # What calls it decides when it runs.
         part = _Part(node, part.function)
     for name, value in ast.iter_fields(node):
         below = part
         if isinstance(node, (ast.If, ast.IfExp)) and name != "test":
-            below = _under(part, node.test, name == "orelse")
+            below = _part_under(part, node.test, name == "orelse")
         elif isinstance(node, ast.For) and name == "body" and not any(map(_may_leave, node.body)):
-            below = part._replace(asked=_and(part.asked, _over(node.iter)))
+            below = part._replace(asked=_both_conditions(part.asked, _over(node.iter)))
         elif name in _SOMETIMES.get(type(node), ()):
-            below = part._replace(asked=_and(part.asked, OTHERWISE))
+            below = part._replace(asked=_both_conditions(part.asked, OTHERWISE))
         yield from _each(value if isinstance(value, list) else [value], below)
 
 
-def _under(part: _Part, test: ast.expr, wrong: bool) -> _Part:
+def _part_under(part: _Part, test: ast.expr, wrong: bool) -> _Part:
     text = ast.unparse(test)
-    asked = _asked(test)
+    asked = _condition(test)
     if text.replace('"', "'") == "__name__ == '__main__'":
         return part
     return part._replace(
         condition=f"not ({text})" if wrong else text,
-        asked=_and(part.asked, negated(asked) if wrong else asked),
+        asked=_both_conditions(part.asked, negated(asked) if wrong else asked),
     )
 
 
@@ -233,7 +229,7 @@ def _each(nodes: list[Any], part: _Part) -> Iterator[_Part]:
             inside = f"{part.function}.{it.name}.".lstrip(".")
         yield from _walk(part._replace(node=it, function=inside))
         if isinstance(it, ast.If) and _may_leave(it):
-            part = part._replace(asked=_and(part.asked, OTHERWISE))
+            part = part._replace(asked=_both_conditions(part.asked, OTHERWISE))
 
 
 def _may_leave(node: ast.AST) -> bool:
@@ -244,14 +240,14 @@ def _may_leave(node: ast.AST) -> bool:
     return any(_may_leave(it) for it in ast.iter_child_nodes(node) if not isinstance(it, inner))
 
 
-def _asked(node: ast.expr) -> str:
+def _condition(node: ast.expr) -> str:
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
-        return negated(_asked(node.operand))
+        return negated(_condition(node.operand))
     is_plain = isinstance(node, (ast.Name, ast.Attribute, ast.Call))
     return _text(node) if is_plain and _text(node) != ANY else OTHERWISE
 
 
-def _and(one: str, other: str) -> str:
+def _both_conditions(one: str, other: str) -> str:
     return "&".join(dict.fromkeys(filter(None, (*one.split("&"), *other.split("&")))))
 
 
@@ -346,7 +342,7 @@ def _put_in(text: str, words: list[ast.expr]) -> str:
     )
 
 
-def _called(node: ast.Call) -> str:
+def _called_type(node: ast.Call) -> str:
     name = _called_name(node)
     if name in ("get_parameter", "declare_parameter", "get_parameter_or"):
         named = (it.value for it in node.keywords if it.arg == "name")
@@ -394,7 +390,7 @@ TEXTS: dict[type, Callable[[Any], str]] = {
     ast.FormattedValue: lambda node: ANY if node.format_spec else _text(node.value),
     ast.Attribute: _attribute,
     ast.Name: lambda node: "<this>" if node.id == "self" else f"<{node.id}>",
-    ast.Call: _called,
+    ast.Call: _called_type,
     ast.List: _list,
     ast.Tuple: _list,
 }

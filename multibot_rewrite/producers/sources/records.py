@@ -6,8 +6,6 @@ value of a parameter starts with @: ``<@odom_topic>``, ``<@{plugin}.topic>``; a 
 colon: ``<Node:name>``.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import NamedTuple
 

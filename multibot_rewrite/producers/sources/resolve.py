@@ -4,8 +4,6 @@
 What is left in <> is not known; ``<@topic>`` is the value of a parameter.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from typing import NamedTuple, TypeVar

@@ -4,8 +4,6 @@
 What is called is followed as far as its text is here. What nothing calls by name (a callback) may run.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
@@ -79,8 +77,7 @@ class Parameter(NamedTuple):
 
 
 class Looked(NamedTuple):
-    """A frame that a program asks tf for, or writes: ``role`` is "looked up" or the end of the
-    ``variable``."""
+    """A frame that a program asks tf for or writes; ``role``: "looked up", or its end's."""
 
     role: str
     text: str
@@ -138,7 +135,7 @@ def events_of(names: Names, starts: Sequence[Spot | Class]) -> Iterator[Event]:
             yield from _function(walk, it)
     # What no name has called: callbacks, threads.
     for made in [one for every in [*walk.objects.values()] for one in every]:
-        yield from _rest(walk, made)
+        yield from _uncalled_parts(walk, made)
     # What would declare an endpoint, in a part that no call was followed to. A node of its own that
     # this program does not make is none of its parts.
     for (owner, function), rows in names.calls.items():
@@ -152,7 +149,7 @@ def events_of(names: Names, starts: Sequence[Spot | Class]) -> Iterator[Event]:
         yield Unread("more than is followed", Place("", "", path, 1))
 
 
-def _rest(walk: _Walk, made: Made) -> Iterator[Event]:
+def _uncalled_parts(walk: _Walk, made: Made) -> Iterator[Event]:
     # Has it the states of a life cycle?
     cycled = any(last(it) == "LifecycleNode" for it in made.beyond)
     for it in made.chain:
@@ -184,7 +181,7 @@ def _function(walk: _Walk, spot: Spot) -> Iterator[Event]:
             yield Looked(frame_in(it), text, it.variable, spot.asked, it.place, spot)
 
 
-def _asked(names: Names, spot: Spot, call: Call) -> str:
+def _conditions_of(names: Names, spot: Spot, call: Call) -> str:
     """Return all conditions of a call, with the values of their names."""
     own = []
     for it in filter(None, call.asked.split("&")):
@@ -195,7 +192,7 @@ def _asked(names: Names, spot: Spot, call: Call) -> str:
 
 
 def _call(walk: _Walk, spot: Spot, call: Call) -> Iterator[Event]:
-    names, asked = walk.names, _asked(walk.names, spot, call)
+    names, asked = walk.names, _conditions_of(walk.names, spot, call)
     here = spot._replace(asked=asked)
     name, types = _behind_aliases(names, spot, call)
     own = next((it for key, it in OF_TF.items() if name in key), None)
@@ -212,7 +209,7 @@ def _call(walk: _Walk, spot: Spot, call: Call) -> Iterator[Event]:
         yield from _object(walk, found, call.given, types, here, call.named)
     elif name in apis() and not (on.startswith("<new ") and (on[5:-1], name) in names.takers):
         walk.seen.add(call.place)
-        yield from _declared(names, here, call, name, types)
+        yield from _declared_ends(names, here, call, name, types)
     elif followed := _followed(walk, here, call, name, on):
         for it in followed:
             yield from _function(walk, it)
@@ -232,18 +229,18 @@ def _is_new_node(names: Names, text: str) -> bool:
     return any(last(it) in NODES for one in rows for it in _chain(names, one)[1])
 
 
-def _looked(names: Names, spot: Spot, call: Call) -> Iterator[Looked]:
+def _lookups(names: Names, spot: Spot, call: Call) -> Iterator[Looked]:
     for it in call.given[:2]:
         yield Looked("looked up", text_in(names, spot, it), "", spot.asked, call.place, spot)
 
 
-def _sent(names: Names, spot: Spot, call: Call) -> Iterator[Sent]:
+def _sent_transforms(names: Names, spot: Spot, call: Call) -> Iterator[Sent]:
     yield from (Sent(it.strip("<>"), spot.asked, call.place, spot) for it in call.given)
 
 
 OF_TF: dict[tuple[str, ...], Callable[[Names, Spot, Call], Iterator[Event]]] = {
-    _LOOKS_UP: _looked,
-    ("sendTransform", "send_transform"): _sent,
+    _LOOKS_UP: _lookups,
+    ("sendTransform", "send_transform"): _sent_transforms,
 }
 
 
@@ -295,10 +292,10 @@ def _object(
         return
     walk.seen.add(key)
     walk.objects.setdefault(found.name, []).append(made)
-    yield from _constructed(walk, made, found, own, spot)
+    yield from _construction(walk, made, found, own, spot)
 
 
-def _constructed(
+def _construction(
     walk: _Walk, made: Made, found: Class, own: Mapping[str, str], spot: Spot
 ) -> Iterator[Event]:
     for function in ("__init__", found.name, ""):
@@ -314,7 +311,7 @@ def _constructed(
     for it in made.chain[1:]:
         if it.name not in made.given:
             made.given[it.name] = _taken(walk.names, it.name, it.name, (), ())  # type: ignore[index]
-            yield from _constructed(walk, made, it, made.given[it.name], spot)
+            yield from _construction(walk, made, it, made.given[it.name], spot)
 
 
 def _chain(names: Names, found: Class) -> tuple[tuple[Class, ...], tuple[str, ...]]:
@@ -367,7 +364,7 @@ def _base(walk: _Walk, spot: Spot, call: Call, name: str) -> Iterator[Event]:
     if above:
         own = _taken(names, above.name, above.name, words, named)
         made.given[above.name] = own  # type: ignore[index]
-        yield from _constructed(walk, made, above, own, spot)
+        yield from _construction(walk, made, above, own, spot)
         return
     base, beyond = name, made.beyond
     if name not in (*NODES, "create_node"):
@@ -405,7 +402,7 @@ def _parameters(names: Names, spot: Spot, call: Call) -> Iterator[Parameter]:
             yield Parameter(text, call.place, spot)
 
 
-def _declared(
+def _declared_ends(
     names: Names, spot: Spot, call: Call, name: str, types: tuple[str, ...]
 ) -> Iterator[Declared]:
     given = [(it, text_in(names, spot, it)) for it in (*call.given, *(it for _, it in call.named))]

@@ -6,8 +6,6 @@ encapsulation, then each number at a multiple of its size. TFMessage is a list o
 stamp (int32, uint32), frame_id, child_frame_id, and seven doubles, translation and rotation.
 """
 
-from __future__ import annotations
-
 import struct
 from collections.abc import Callable
 from typing import NamedTuple, TypeVar
@@ -98,7 +96,7 @@ def read_joint_names(data: bytes) -> tuple[str, ...]:
     return _read(data, names, ())
 
 
-def _read(data: bytes, read: Callable[[_Reader], _T], without: _T) -> _T:
+def _read(data: bytes, read: "Callable[[_Reader], _T]", without: _T) -> _T:
     mark = _ENDS.get(data[:2])
     if mark is None:
         return without
@@ -108,7 +106,7 @@ def _read(data: bytes, read: Callable[[_Reader], _T], without: _T) -> _T:
         return without
 
 
-def _texts(reader: _Reader, many: int) -> list[str]:
+def _texts(reader: "_Reader", many: int) -> list[str]:
     """Return the first texts after the stamp."""
     reader.skip(_STAMP)
     return [reader.text() for _ in range(many)]
@@ -123,13 +121,13 @@ def read_stamp(data: bytes) -> float | None:
     return float(seconds + parts / 1e9)
 
 
-def _stamped(reader: _Reader) -> _Stamped:
+def _stamped(reader: "_Reader") -> _Stamped:
     stamp = reader.number() + reader.number() / 1e9
     parent, child = reader.text(), reader.text()
     return _Stamped(_Header(parent, stamp), child, _transform(reader))
 
 
-def _transform(reader: _Reader) -> Transform:
+def _transform(reader: "_Reader") -> Transform:
     reader.align(8)
     return Transform(_Vector(*reader.doubles(3)), _Quaternion(*reader.doubles(4)))
 

@@ -4,8 +4,6 @@
 The tokens are all there at once, so there is nothing to wait for but samples of tf.
 """
 
-from __future__ import annotations
-
 import time
 from collections import Counter, defaultdict
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
@@ -66,8 +64,7 @@ def look(request: Request, router: Router) -> System:
 def watch(
     request: Request, routers: Mapping[int, Router]
 ) -> Generator[tuple[int, System], None, None]:
-    """Yield snapshots of each for ``request.timeout`` seconds, one after each change, with its
-    number; raises as ``look``."""
+    """Yield numbered snapshots after each change, for ``timeout`` seconds; raises as ``look``."""
     with ExitStack() as stack:
         views = [stack.enter_context(closing(_views(request, it))) for it in routers.values()]
         for seen in zip_longest(*views):

@@ -4,8 +4,6 @@
 It comes with the extra ``zenoh`` (eclipse-zenoh on PyPI), and is imported when a router is asked.
 """
 
-from __future__ import annotations
-
 import json
 from collections import deque
 from collections.abc import Callable, Iterator

@@ -9,8 +9,6 @@ format is one for all releases: what differs is the session id, whose bytes had 
 first, and the hash, which is ``TypeHashNotSupported`` in Humble. Neither is taken apart here.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from math import inf
@@ -74,12 +72,12 @@ def read_token(key: str) -> Token | None:
         if len(parts) < _NODE_PARTS or parts[0] != SPACE or "" in parts:
             raise _Malformed
         domain, session, node_id, _, kind, enclave, namespace, name = parts[1:_NODE_PARTS]
-        space = _plain(namespace)
-        node = f"{'' if space == '/' else space}/{_plain(name)}"
+        space = _with_slashes(namespace)
+        node = f"{'' if space == '/' else space}/{_with_slashes(name)}"
         if not node.startswith("/"):
             raise _Malformed
         end = None if kind == NODE else _end(kind, node, session, parts[_NODE_PARTS:])
-        return Token(_number(domain), session, node_id, node, _plain(enclave), end)
+        return Token(_number(domain), session, node_id, node, _with_slashes(enclave), end)
     except _Malformed:
         return None
 
@@ -87,7 +85,7 @@ def read_token(key: str) -> Token | None:
 def _end(kind: str, node: str, session: str, rest: Sequence[str]) -> End:
     if kind not in _ENDS or len(rest) < _END_PARTS - _NODE_PARTS:
         raise _Malformed
-    name, type_, hash_ = (_plain(part) for part in rest[:3])
+    name, type_, hash_ = (_with_slashes(part) for part in rest[:3])
     if not name.startswith("/"):
         raise _Malformed
     role = _ENDS[kind]
@@ -95,7 +93,7 @@ def _end(kind: str, node: str, session: str, rest: Sequence[str]) -> End:
     return End(*role, name, ros_type(type_), known, node, read_qos(rest[3]), session)
 
 
-def _plain(part: str) -> str:
+def _with_slashes(part: str) -> str:
     return part.replace("%", "/")
 
 
@@ -119,18 +117,18 @@ def read_qos(text: str) -> Qos:
         raise _Malformed
     reliability, durability, history, deadline, lifespan, liveliness = parts[:6]
     return Qos(
-        _word(HISTORY, history[0], "KEEP_LAST"),
+        _text_of_number(HISTORY, history[0], "KEEP_LAST"),
         _number(history[1], _DEFAULT_DEPTH),
-        _word(RELIABILITY, reliability[0], "RELIABLE"),
-        _word(DURABILITY, durability[0], "VOLATILE"),
+        _text_of_number(RELIABILITY, reliability[0], "RELIABLE"),
+        _text_of_number(DURABILITY, durability[0], "VOLATILE"),
         _seconds(*deadline),
         _seconds(*lifespan),
-        _word(LIVELINESS, liveliness[0], "AUTOMATIC"),
+        _text_of_number(LIVELINESS, liveliness[0], "AUTOMATIC"),
         _seconds(*liveliness[1:]),
     )
 
 
-def _word(known: Sequence[str], text: str, default: str) -> str:
+def _text_of_number(known: Sequence[str], text: str, default: str) -> str:
     number = _number(text, known.index(default))
     if number >= len(known):
         raise _Malformed

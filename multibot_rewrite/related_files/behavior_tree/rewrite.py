@@ -5,8 +5,6 @@ rcl remaps a name in a port like any other name of the BT navigator. ``{entry}``
 entry and stays; a value put into an entry is renamed like the ports of the subtrees that read it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -40,7 +38,7 @@ _MODEL = "TreeNodesModel"
 class _Trees(NamedTuple):
     """The trees of a file by id; ``braces`` is true if only ``{entry}`` is an entry (BT.CPP 4)."""
 
-    by_id: Mapping[str, _Element]
+    by_id: "Mapping[str, _Element]"
     braces: bool
 
 
@@ -50,7 +48,7 @@ def port_data() -> Mapping[str, Any]:
     return dict(load_own_yaml(__file__, "behavior_tree.yaml"))
 
 
-def ports_of(document: Document) -> Iterator[tuple[_Element, Site]]:
+def ports_of(document: Document) -> "Iterator[tuple[_Element, Site]]":
     """Yield every literal with the kind of its name; models for editors are left out."""
     found = {str(it.get("ID", "")): it for it in document.root.iter("BehaviorTree")}
     trees = _Trees(found, str(document.root.get("BTCPP_format", "3")).startswith("4"))
@@ -80,13 +78,14 @@ def character(document: Document, at: int) -> int:
     return at if source.isascii() else len(source[:at].decode())
 
 
-def is_model(element: _Element) -> bool:
+def is_model(element: "_Element") -> bool:
+    """Return whether the element is in the tree's declarations of nodes."""
     return element.tag == _MODEL or any(it.tag == _MODEL for it in element.iterancestors())
 
 
 def _model_default(
-    document: Document, element: _Element, start: int, trees: _Trees
-) -> Iterator[tuple[_Element, Site]]:
+    document: Document, element: "_Element", start: int, trees: _Trees
+) -> "Iterator[tuple[_Element, Site]]":
     """Yield the default of a subtree's model, which BT.CPP reads; other models are for editors."""
     above = element.getparent()
     if above is None or above.tag not in _SUBTREES or "default" not in element.attrib:
@@ -98,7 +97,7 @@ def _model_default(
     yield element, _site_of(document, start, "default", value, kind or "")
 
 
-def _kind(element: _Element, attribute: str, trees: _Trees) -> str:
+def _kind(element: "_Element", attribute: str, trees: _Trees) -> str:
     """Return the kind of name that a literal is; empty if that is not known."""
     if element.tag == "SetBlackboard" and attribute == "value":
         tree = next((it for it in element.iterancestors("BehaviorTree")), None)
@@ -109,7 +108,7 @@ def _kind(element: _Element, attribute: str, trees: _Trees) -> str:
     return _port_kind(element, attribute, trees, ())
 
 
-def _port_kind(element: _Element, attribute: str, trees: _Trees, above: tuple[str, ...]) -> str:
+def _port_kind(element: "_Element", attribute: str, trees: _Trees, above: tuple[str, ...]) -> str:
     if element.tag in _SUBTREES:
         inside = _entry_kinds(trees, str(element.get("ID", "")), above).get(attribute)
         return inside or port_data()["ports"].get(attribute, "")
@@ -117,11 +116,12 @@ def _port_kind(element: _Element, attribute: str, trees: _Trees, above: tuple[st
     return str(own.get(attribute) or port_data()["ports"].get(attribute, ""))
 
 
-def node_name(element: _Element) -> str:
+def node_name(element: "_Element") -> str:
+    """Return the name of the behavior tree node that an element is."""
     return str(element.get("ID", "")) if element.tag in _FORMS else str(element.tag)
 
 
-def _blackboard_entry(element: _Element, value: str, trees: _Trees) -> str:
+def _blackboard_entry(element: "_Element", value: str, trees: _Trees) -> str:
     """Return the blackboard entry that a value refers to; empty for a literal."""
     if value.startswith("{") and value.endswith("}"):
         return value[1:-1]

@@ -3,8 +3,6 @@
 names: read from ``moveit.yaml``, which explains its own form.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator, Mapping
 from functools import cache

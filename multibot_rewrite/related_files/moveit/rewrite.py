@@ -77,7 +77,7 @@ def asks_below_root(document: YamlText) -> yaml.ScalarNode | None:
     return key if str(value.value).startswith(_ROS_CONTROL) else None
 
 
-# The nodes that read these files, as the stacks call them.
+# The nodes that read these files, as the node sets call them.
 MOVE_GROUP, SERVO = "move_group", "servo_node"
 
 

@@ -9,7 +9,7 @@ from functools import partial
 from multibot_rewrite.base.conventions import PLACEHOLDER
 from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.naming import FRAME_KINDS, NAMESPACE, NOT_PLAIN, PREFIX, spelled
-from multibot_rewrite.knowledge.stacks import is_apart
+from multibot_rewrite.knowledge.node_sets import is_apart
 from multibot_rewrite.related_files.context import NAMESPACE_SLOT, TAG_SLOT, Context, number_slot
 from multibot_rewrite.related_files.names.rename_map import is_declared, spell
 
@@ -129,11 +129,10 @@ def before_frames(between: str) -> Speller:
 
 def words(context: Context, value: str) -> str:
     """Return a text with names of the description renamed: ``joints(shoulder,elbow)``."""
+    return _WORD.sub(lambda found: _renamed_word(context, found[0]), value)
 
-    return _WORD.sub(lambda found: _word(context, found[0]), value)
 
-
-def _word(context: Context, value: str) -> str:
+def _renamed_word(context: Context, value: str) -> str:
     kinds = (kind for kind in ("joint", "link") if is_declared(context.names, kind, value))
     kind = next(kinds, "")
     return spell(context.names, kind, value) if kind else value
@@ -179,7 +178,7 @@ def output(_: Context, value: str) -> str:
     return f"{head}{slash}{named}"
 
 
-def _declared(word: str) -> Speller:
+def _speller(word: str) -> Speller:
     return lambda context, value: spell(context.names, word, value)
 
 
@@ -199,7 +198,7 @@ SPELLERS: Mapping[str, Speller] = {
     "words": words,
     "port": port,
     "output": output,
-    **{word: _declared(word) for word in ("frame", "link", "sensor", "gpio", "hardware", "group")},
+    **{word: _speller(word) for word in ("frame", "link", "sensor", "gpio", "hardware", "group")},
 }
 
 

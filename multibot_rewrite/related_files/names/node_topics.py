@@ -6,16 +6,14 @@ A name read from a parameter is remapped like any other. So the new value must r
 robot's remap rules, to the robot's version of the name that the old value resolves to without rules.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from typing import NamedTuple
 
 from multibot_rewrite.base.naming import NAMESPACE, NOT_PLAIN
 from multibot_rewrite.base.rosnames import bind, check_name_in_code, expand, resolve_bound
+from multibot_rewrite.knowledge.node_sets import built_in, is_apart
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.knowledge.stacks import built_in, is_apart
 from multibot_rewrite.planning.of_runs import asked_alone, parsed, placed, target_of
 from multibot_rewrite.planning.records import Table
 from multibot_rewrite.planning.table import run_of
@@ -41,7 +39,7 @@ class TopicText(NamedTuple):
 def built_in_facts(release: str) -> Facts:
     """Return facts by node, as in the node sets; nodes with their own remap rules first."""
     library = built_in(release)
-    facts = [node for stack in library.stacks.values() for node in stack.nodes]
+    facts = [node for node_set in library.node_sets.values() for node in node_set.nodes]
     facts.sort(key=lambda it: not any(endpoint.remapped for endpoint in it.endpoints))
     found: dict[str, NodeFacts] = {}
     for node in (*facts, *library.nodes.values()):
@@ -66,7 +64,7 @@ def spell_topic(
     apart = facts[node].apart if node in facts else is_apart(node, context.distro)
     if (reach == FROM_PARENT or apart) and context.topics.naming.topics != NAMESPACE:
         meant = expand(value, f"/{node.rpartition('/')[0]}" if reach == FROM_NODE else "/", "")
-    text = _spelled(context, kind, meant, reach == IN_FULL)
+    text = _name_for_robot(context, kind, meant, reach == IN_FULL)
     made_absolute = reach == IN_FULL and not value.startswith("/")
     is_started = node in context.nodes or facts is not built_in_facts(context.distro)
     ruled = _ruled_node(facts.get(node), value, context) if is_started else None
@@ -77,7 +75,7 @@ def spell_topic(
     )
 
 
-def _spelled(context: Context, kind: str, value: str, absolute: bool) -> str:
+def _name_for_robot(context: Context, kind: str, value: str, absolute: bool) -> str:
     """Return the name for a robot; ``absolute`` if it is not resolved in the robot's namespace."""
     naming = context.topics.naming
     lead = "" if value.startswith("/") else "/"
@@ -112,10 +110,10 @@ def _ruled_text(
     naming = context.topics.naming
     table = run_of(NAMESPACE_SLOT, node, naming, context.nodes)
     bound = bind(table.name, table.namespace, parsed(table.rules))
-    # The robot's name for the topic that the text means for a single robot with the stack's rules.
+    # The robot's name for the topic that the text means for a single robot with the node set's rules.
     meant = expand(texts[1], "/", "")
     remapped = {expand(it.name, "/", ""): it.remapped for it in node.endpoints}.get(meant, "")
-    wanted = _spelled(context, kind, expand(remapped or meant, "/", ""), True)
+    wanted = _name_for_robot(context, kind, expand(remapped or meant, "/", ""), True)
     wanted = wanted if wanted.startswith("/") else f"/{wanted}"
     parent = placed(NAMESPACE_SLOT, "node", naming, node.apart)[0]
     root = parent if reach == FROM_PARENT else table.namespace
@@ -157,15 +155,15 @@ def robot_topic(names: RelatedNames, value: str, known: Mapping[str, str] = NOTH
 def fleet_topics(table: Table, facts: Iterable[NodeFacts], robot: str) -> dict[str, str]:
     """Return by the topics of a single robot's nodes those of ``robot`` in a fleet's table."""
     ours = {node.name for node in facts if not node.shared}
-    stack = {
+    node_set = {
         node.full_name: node.node
         for node in table.runs
         if node.robot == robot and node.node in ours
     }
     found: dict[str, str] = {}
     for run, end, name in table.ends:
-        if run.robot == robot and run.full_name in stack and end.kind in (TOPIC, ACTION):
-            above, _, node = stack[run.full_name].rpartition("/")
+        if run.robot == robot and run.full_name in node_set and end.kind in (TOPIC, ACTION):
+            above, _, node = node_set[run.full_name].rpartition("/")
             asked = end.remapped or asked_alone(run.fact, end)
             found.setdefault(expand(asked, above, node), name)
     return found

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The rename map of one robot, for names in other files than its description."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator, Mapping
 from typing import NamedTuple
 

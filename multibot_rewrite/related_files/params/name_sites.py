@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every parameter of a section -> the names in its key and value, and the kind of each."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import yaml

@@ -53,14 +53,14 @@ def node_parameters(document: YamlText, full: str) -> dict[str, Value]:
     sections: dict[str, dict[str, Value]] = {}
     for found in raw_sections(document):
         if is_for(found.path, full):
-            sections.setdefault(found.path, {}).update(_flat(document, found.body))
+            sections.setdefault(found.path, {}).update(_flat_settings(document, found.body))
     return {name: value for section in sections.values() for name, value in section.items()}
 
 
 def check_values(document: YamlText) -> None:
     """Read every value of a parameter file; InputError for one that rcl rejects."""
     for found in raw_sections(document):
-        for _ in _flat(document, found.body):
+        for _ in _flat_settings(document, found.body):
             pass
 
 
@@ -70,11 +70,12 @@ def exact_nodes(document: YamlText) -> list[str]:
     return [f"/{path}" for path in paths if "*" not in path]
 
 
-def _flat(document: YamlText, body: yaml.Node) -> Iterator[tuple[str, Value]]:
+def _flat_settings(document: YamlText, body: yaml.Node) -> Iterator[tuple[str, Value]]:
     return ((name, value_of(document, node)) for name, _, node in settings(body))
 
 
 def value_of(document: YamlText, node: yaml.Node) -> Value:
+    """Return the value that rcl reads from a YAML node."""
     if isinstance(node, yaml.ScalarNode):
         return _scalar(document, node)
     assert isinstance(node, yaml.SequenceNode)

@@ -5,8 +5,6 @@ As rcl_yaml_param_parser reads them: nested keys before ``ros__parameters`` are 
 ``*`` is one token of a node's full name, ``**`` any number of them.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
@@ -16,9 +14,9 @@ import yaml
 from multibot_rewrite.base.conventions import PLACEHOLDER, ROWS, WORLD_NODES
 from multibot_rewrite.base.model import FOR_ROS_1, InputError
 from multibot_rewrite.base.naming import spelled
+from multibot_rewrite.knowledge.node_sets import apart_nodes, is_apart
 from multibot_rewrite.knowledge.parameters import KnownNodes
 from multibot_rewrite.knowledge.records import NodeParameters
-from multibot_rewrite.knowledge.stacks import apart_nodes, is_apart
 from multibot_rewrite.related_files.context import NAMESPACE_SLOT, Context, full_name
 from multibot_rewrite.related_files.names.placeholders import without_robot
 from multibot_rewrite.related_files.yaml_text import YamlText, anchors, names_below, pairs, refused
@@ -70,7 +68,7 @@ def raw_sections(document: YamlText) -> list[RawSection]:
     for line, text in marks:
         place = f"{document.file}:{line}"
         raise InputError(f"{place}: rcl takes no anchors or aliases ({text}); write the value out")
-    found = list(_below(document, document.root, ())) if has_parameters and is_map else []
+    found = list(_sections_below(document, document.root, ())) if has_parameters and is_map else []
     if not found:
         raise _other_kind(document)
     return found
@@ -118,7 +116,7 @@ def _looks_like(root: yaml.Node | None) -> str:
     return found
 
 
-def _below(
+def _sections_below(
     document: YamlText, node: yaml.Node | None, above: tuple[yaml.ScalarNode, ...]
 ) -> Iterator[RawSection]:
     for key, _ in node.value if isinstance(node, yaml.MappingNode) else ():
@@ -126,7 +124,7 @@ def _below(
             raise refused(document, key, NO_NAME)
     for key, value in pairs(node):
         if key.value != PARAMETERS:
-            yield from _below(document, value, (*above, key))
+            yield from _sections_below(document, value, (*above, key))
             continue
         if not above:
             what = f"{PARAMETERS} has no node name above it; write /**: above it"

@@ -12,8 +12,6 @@ node that gets the file as it is, and only if the file has a key of that name (H
 Sources: nav2_bringup launch/slam_launch.py, nav2_common rewritten_yaml.py and has_node_params.py, all
 releases from humble (1.1.20) to rolling (a3a97043e)."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
@@ -260,7 +258,7 @@ OUTSIDE = declare(
     "section-outside-of-bringup",
     ERROR,
     formats=("params",),
-    options={"stack": ["nav2", "rviz"], "params_style": "bringup", "layout": "both"},
+    options={"node_sets": ["nav2", "rviz"], "params_style": "bringup", "layout": "both"},
 )
 
 

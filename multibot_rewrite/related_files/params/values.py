@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The names in a section -> splices that rename them for a robot, and findings about them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -97,7 +95,7 @@ def name_splices(
     doubt = in_doubt(job.context, section, names)
     found = [it for it in names.sites if it.kind not in doubt]
     sites = [it for it in found if it.in_key or is_filled(it) or it.kind in _SPELLED]
-    made = [(it, _spelled(job, it, stay)) for it in sites]
+    made = [(it, _new_name(job, it, stay)) for it in sites]
     document = job.document
     yield from splices_of(document.text, document.file, ((it, new.text) for it, new in made))
     for site, new in made:
@@ -117,7 +115,7 @@ def is_filled(site: Site) -> bool:
     return is_robot(site.text) and site.kind not in SWITCH_KINDS
 
 
-def _spelled(job: ParamsJob, site: Site, stays: bool) -> TopicText:
+def _new_name(job: ParamsJob, site: Site, stays: bool) -> TopicText:
     """Return the new name; ``stays`` if the node puts the robot's name before its frames."""
     if stays and site.kind == "frame":
         return TopicText(site.text)
@@ -158,7 +156,7 @@ WRONG_TARGET = declare(
     "parameter-topic-remapped",
     WARNING,
     formats=("params",),
-    options={"stack": "own", "nodes": "nodes.yaml"},
+    options={"node_sets": "own", "nodes": "nodes.yaml"},
 )
 
 MADE_ABSOLUTE = declare(

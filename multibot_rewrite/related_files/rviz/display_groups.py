@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """One RViz config for all robots: shared displays once, and a group of displays for each robot."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import NamedTuple
@@ -112,13 +110,13 @@ def robot_groups(job: RvizJob) -> Iterator[Splice]:
         return one.block.start not in job.own and not for_one_process(one)
 
     for one in shown:
-        yield from _kept(one, shared, lambda leaf: entries(document, leaf, job.robots))
+        yield from _kept_parts(one, shared, lambda leaf: entries(document, leaf, job.robots))
     rows = [remark(document, one) for one in leaves(shown) if for_one_process(one)]
     rows += [_group(job, at) for at in range(len(job.robots))]
     yield inserted(document, shown[-1].block.end, "".join(rows))
 
 
-def _kept(
+def _kept_parts(
     one: RvizItem, wanted: Wanted, made: Callable[[RvizItem], Iterable[Splice]]
 ) -> Iterator[Splice]:
     """Yield the splices that keep the wanted parts of a display and change them."""
@@ -126,7 +124,7 @@ def _kept(
         yield Splice(one.block.start, one.block.end, "")
     elif one.children:
         for child in one.children:
-            yield from _kept(child, wanted, made)
+            yield from _kept_parts(child, wanted, made)
     else:
         yield from made(one)
 
@@ -148,7 +146,7 @@ def _group(job: RvizJob, at: int) -> str:
             yield Splice(visible.start_mark.index, end_of(visible), "{}")
 
     copies = [
-        cut_out(document, one.block.start, one.block.end, _kept(one, own, made))
+        cut_out(document, one.block.start, one.block.end, _kept_parts(one, own, made))
         for one in job.config.displays
         if any(map(own, leaves([one])))
     ]

@@ -2,8 +2,6 @@
 """An RViz config as records: displays, tools and panels, where each holds a name, and the value of
 that name for a robot."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from colorsys import hls_to_rgb
 from functools import lru_cache
@@ -51,7 +49,7 @@ class RvizItem(NamedTuple):
     flag: str
     known: bool
     places: tuple[Site, ...]
-    children: tuple[RvizItem, ...] = ()
+    children: "tuple[RvizItem, ...]" = ()
 
 
 class RvizConfig(NamedTuple):
@@ -88,9 +86,9 @@ def read_config(document: YamlText) -> RvizConfig:
     return RvizConfig(
         document,
         manager,
-        tuple(_shown(document, displays, "displays")),
-        tuple(_shown(document, value(manager, "Tools"), "tools")),
-        tuple(_shown(document, value(document.root, "Panels"), "panels")),
+        tuple(_items_of_list(document, displays, "displays")),
+        tuple(_items_of_list(document, value(manager, "Tools"), "tools")),
+        tuple(_items_of_list(document, value(document.root, "Panels"), "panels")),
     )
 
 
@@ -101,7 +99,7 @@ def _maps(node: yaml.Node | None) -> Iterator[yaml.Node]:
         yield from _maps(item[1] if isinstance(item, tuple) else item)
 
 
-def _shown(document: YamlText, node: yaml.Node | None, what: str) -> Iterator[RvizItem]:
+def _items_of_list(document: YamlText, node: yaml.Node | None, what: str) -> Iterator[RvizItem]:
     if not isinstance(node, yaml.SequenceNode) or not node.value:
         return
     if not is_block(node):
@@ -110,13 +108,13 @@ def _shown(document: YamlText, node: yaml.Node | None, what: str) -> Iterator[Rv
     data = rviz_data()
     for block, item in zip(blocks(document, node), node.value, strict=True):
         cls = text_of(item, "Class")
-        below = _shown(document, value(item, "Displays"), what) if cls == GROUP else ()
+        below = _items_of_list(document, value(item, "Displays"), what) if cls == GROUP else ()
         names = data["displays"].get(cls, data["any"])
         places = []
         # RViz keeps links and frames that it has seen once: those are keys.
         for path, kind in names.items() if cls != GROUP else ():
             lead = "/" if kind in (TOPIC, GRAPH_NAMESPACE) else ""
-            for at in _found(item, path.split(".")):
+            for at in _scalars_at(item, path.split(".")):
                 text = without_robot(str(at.value), lead)
                 places.append(site_at(at, kind, text, path, "*" in path))
         known = what != "displays" or cls == GROUP or cls in data["displays"]
@@ -125,7 +123,7 @@ def _shown(document: YamlText, node: yaml.Node | None, what: str) -> Iterator[Rv
         yield RvizItem(block, item, cls, name, flag, known, tuple(places), tuple(below))
 
 
-def _found(node: yaml.Node | None, path: Sequence[str]) -> Iterator[yaml.ScalarNode]:
+def _scalars_at(node: yaml.Node | None, path: Sequence[str]) -> Iterator[yaml.ScalarNode]:
     """Yield the scalars at a path; ``*`` gives keys."""
     if not path:
         node = value(node, "Value") if isinstance(node, yaml.MappingNode) else node
@@ -136,9 +134,9 @@ def _found(node: yaml.Node | None, path: Sequence[str]) -> Iterator[yaml.ScalarN
             if key.value not in rviz_data()["fixed_keys"]:
                 yield key
             if path[0] == "**":
-                yield from _found(below, path)
+                yield from _scalars_at(below, path)
     else:
-        yield from _found(value(node, path[0]), path[1:])
+        yield from _scalars_at(value(node, path[0]), path[1:])
 
 
 def value(node: yaml.Node | None, key: str) -> yaml.Node | None:

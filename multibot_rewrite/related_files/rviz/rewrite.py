@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """An RViz config for one robot -> one for all robots, or one for each robot with its own tf topic."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
@@ -207,7 +205,7 @@ def _views(config: RvizConfig, robots: Sequence[RvizRobot]) -> Iterator[Splice]:
     document = config.document
     current, saved = views_of(config)
     copies = ""
-    if current is not None and _follows(current, robots):
+    if current is not None and _follows_robot(current, robots):
         yield from frame_splices(value(current, "Target Frame"), robots[0])
         views, listed = value(config.manager, "Views"), isinstance(saved, yaml.SequenceNode)
         column = views.start_mark.column + 2 if views is not None else 2
@@ -215,12 +213,12 @@ def _views(config: RvizConfig, robots: Sequence[RvizRobot]) -> Iterator[Splice]:
         lines = blocks(document, current)
         start, end = lines[0].start, lines[-1].end
         for robot in robots:
-            text = _named(document, current, robot, start, end)
+            text = _named_view(document, current, robot, start, end)
             copies += as_item(text, lines[0].column, column)
     if isinstance(saved, yaml.SequenceNode) and saved.value and is_block(saved):
         for view, (start, end, _) in zip(saved.value, blocks(document, saved), strict=True):
-            if _follows(view, robots):
-                made = [_named(document, view, robot, start, end) for robot in robots]
+            if _follows_robot(view, robots):
+                made = [_named_view(document, view, robot, start, end) for robot in robots]
                 yield Splice(start, end, "".join(made))
         yield inserted(document, blocks(document, saved)[-1].end, copies)
     elif copies and isinstance(saved, yaml.ScalarNode):
@@ -228,14 +226,14 @@ def _views(config: RvizConfig, robots: Sequence[RvizRobot]) -> Iterator[Splice]:
         yield Splice(saved.start_mark.index, saved.end_mark.index, text)
 
 
-def _follows(view: yaml.Node | None, robots: Sequence[RvizRobot]) -> bool:
+def _follows_robot(view: yaml.Node | None, robots: Sequence[RvizRobot]) -> bool:
     target = value(view, "Target Frame")
     if not isinstance(target, yaml.ScalarNode) or not is_block(view):
         return False
     return any(frame_of(target, robot) != target.value for robot in robots)
 
 
-def _named(document: YamlText, view: yaml.Node, robot: RvizRobot, start: int, end: int) -> str:
+def _named_view(document: YamlText, view: yaml.Node, robot: RvizRobot, start: int, end: int) -> str:
     splices = frame_splices(value(view, "Target Frame"), robot)
     name = value(view, "Name")
     if isinstance(name, yaml.ScalarNode):

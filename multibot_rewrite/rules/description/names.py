@@ -95,7 +95,7 @@ def world_link(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB308", "link-and-joint-alike", WARNING)
 def link_and_joint_alike(subject: Subject) -> Iterator[Problem]:
-    """Report it only if both remain: Gazebo merges the links of a fixed joint into one."""
+    """Report a link and a joint of one name, unless Gazebo merges the link away."""
     robot = subject.robot
     for joint in robot.joints:
         if joint.name not in robot.link or joint.type == "fixed" or not joint.name.strip():
@@ -227,7 +227,7 @@ def _hardware_without_node(subject: Subject) -> Iterator[Problem]:
         fault = check_node_name(name.replace("/", "_")) if name else None
         if fault is None or SUBSTITUTION in name or system in in_simulator:
             continue
-        from multibot_rewrite.knowledge.stacks import built_in  # hardly any name is wrong
+        from multibot_rewrite.knowledge.node_sets import built_in  # hardly any name is wrong
 
         if HARDWARE_NODE in built_in(subject.settings.distro).nodes:
             message = (

@@ -7,8 +7,6 @@ gazebo_plugins/src/gazebo_ros_diff_drive.cpp (ros2: the same), gazebo_ros_skid_s
 (noetic-devel).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import sqrt
 from typing import Any, NamedTuple

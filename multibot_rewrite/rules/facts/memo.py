@@ -5,8 +5,6 @@ sensors; and what an error may rest on: that nothing elsewhere and no other rele
 What may be right all the same is a warning, or a note.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import wraps
 from typing import NamedTuple, TypeVar
@@ -42,8 +40,7 @@ def memoized(make: Callable[[Subject], _Made]) -> Callable[[Subject], _Made]:
 
 @memoized
 def link_poses(subject: Subject) -> Mapping[str, Pose]:
-    """Return each link's pose in the root of its tree; those below an origin that is no number are
-    left out."""
+    """Return each link's pose in the root of its tree, without those below an invalid origin."""
     return poses.link_poses(subject.robot)
 
 

@@ -5,8 +5,6 @@ Source: sdformat.org, joint.sdf and "Pose Frame Semantics": an axis is in the fr
 the one that it is ``expressed_in``; up to SDF 1.6 in that of the model if it says so.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from lxml import etree

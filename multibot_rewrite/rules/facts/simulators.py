@@ -1,47 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a description has for a simulator: hardware, plugins that load it, plugins that drive joints.
-
-Sources: gz_hardware_plugins.xml and gz_system.cpp:326 of gz_ros2_control (jazzy), the same of
-ign_ros2_control (humble), gazebo_hardware_plugins.xml and gazebo_system.cpp of gazebo_ros2_control;
-for the plugins the plugin definitions."""
+"""What a description has for a simulator: hardware, plugins that load it, plugins that drive joints."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from typing import NamedTuple
+from collections.abc import Iterator
 
 from lxml.etree import _Element
 
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.rewriters.tree import library_key
-from multibot_rewrite.knowledge.worlds import DRIVES, SYSTEMS
+from multibot_rewrite.knowledge.worlds import CLASSIC, DRIVES, GAZEBO, SIMULATORS, Simulator
 from multibot_rewrite.rules.facts.memo import memoized
 from multibot_rewrite.rules.subject import Subject
-
-
-class Simulator(NamedTuple):
-    """A simulator: the hardware classes that its plugins load, and the plugins.
-
-    ``takes`` are the interfaces of a joint that its hardware exports, the others it leaves out.
-    """
-
-    name: str
-    hardware: tuple[str, ...]
-    plugins: tuple[str, ...]
-    takes: tuple[str, ...]
-
-
-_TAKES = ("position", "velocity", "effort")
-GAZEBO = Simulator(
-    "Gazebo",
-    ("gz_ros2_control/GazeboSimSystem", "ign_ros2_control/IgnitionSystem"),
-    ("gz_ros2_control-system", "ign_ros2_control-system"),
-    _TAKES,
-)
-CLASSIC = Simulator(
-    "Gazebo Classic", ("gazebo_ros2_control/GazeboSystem",), ("gazebo_ros2_control",), _TAKES
-)
-SIMULATORS = (GAZEBO, CLASSIC)
 
 
 @memoized
@@ -102,25 +72,3 @@ def simulator_of(plugin: _Element) -> Simulator:
 def library_of(plugin: _Element) -> str:
     """Return the library of a plugin without version and ending."""
     return library_key(plugin.get("filename", "").strip().rpartition("/")[2])
-
-
-def needed_systems(models: Iterable[tuple[str, _Element]]) -> Iterator[tuple[str, str]]:
-    """Yield the systems that a Gazebo world needs for these models, each once, with the reason.
-    Source: user_commands of gz-sim8 spawns entities."""
-    every = list(models)
-    if every:
-        yield "user-commands", f"{every[0][0]} is not spawned"
-    libraries = [
-        (name, library_key(one.get("filename", "")))
-        for name, root in every
-        for one in root.iter("plugin")
-    ]
-    if moved := next((name for name, it in libraries if it in DRIVES), ""):
-        yield "physics", f"{moved} does not move"
-    first: dict[str, str] = {}
-    for name, root in every:
-        for sensor in root.iter("sensor"):
-            system, _ = SYSTEMS.get(sensor.get("type", ""), ("", ""))
-            if system:
-                first.setdefault(system, f"{sensor.get('name')} of {name} sends nothing")
-    yield from first.items()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How a value was written before xacro expanded it: can a caller set another one for each robot?"""
+"""How a value was written before xacro expanded it, and whether a caller can set it for each robot."""
 
 from __future__ import annotations
 
@@ -49,19 +49,19 @@ def is_fixed(subject: Subject, start: int, attribute: str, *, constants: bool = 
     origin = subject.origins.of(bisect_left(subject.document.starts, start))
     if origin is None:
         return False
-    raw = _raw(subject.sources[origin.file], origin.start, attribute)
+    raw = _raw_value(subject.sources[origin.file], origin.start, attribute)
     if raw is not None and constants:
         raw = _CONSTANT.sub(b"", raw)
     for call in origin.calls:
         if raw is None or b"$" not in raw:
             break
-        raw = _given(raw, _attributes(subject.sources[call.file], call.start))
+        raw = _passed_value(raw, _attributes(subject.sources[call.file], call.start))
     return raw is not None and b"$" not in raw
 
 
 def is_argument(sources: Mapping[str, bytes], origin: WrittenAt, attribute: str) -> bool:
     """Return whether a value comes in part from a caller of xacro, as $(arg ...)."""
-    raw = _raw(sources[origin.file], origin.start, attribute) or b""
+    raw = _raw_value(sources[origin.file], origin.start, attribute) or b""
     for call in origin.calls:
         if b"$(arg" in raw:
             return True
@@ -76,14 +76,14 @@ def _names_in(raw: bytes) -> list[bytes]:
     return [name for word in words for name in _NAME.findall(word)]
 
 
-def _raw(source: bytes, start: int, attribute: str) -> bytes | None:
+def _raw_value(source: bytes, start: int, attribute: str) -> bytes | None:
     if attribute:
         return _attributes(source, start).get(attribute.encode())
     end = tag_end(source, start)
     return source[end : source.find(b"<", end)]
 
 
-def _given(raw: bytes, call: Mapping[bytes, bytes]) -> bytes | None:
+def _passed_value(raw: bytes, call: Mapping[bytes, bytes]) -> bytes | None:
     """Return what a macro's call passes for the names in ``raw``; None if it does not pass one."""
     if b"$(" in raw:
         return None

@@ -43,14 +43,14 @@ def contacts(subject: Subject) -> list[Point] | None:
             own = origin_of(element)
             if own is None or link.name not in poses or shape.tag not in _SIMPLE:
                 return None
-            found += _touching(shape, placed(poses[link.name], own), ground + LIFTED)
+            found += _touching_points(shape, placed(poses[link.name], own), ground + LIFTED)
     return found
 
 
 _SIMPLE = ("box", "cylinder", "sphere")
 
 
-def _touching(shape: _Element, pose: Pose, height: float) -> Iterator[Point]:
+def _touching_points(shape: _Element, pose: Pose, height: float) -> Iterator[Point]:
     extent = extent_of(shape, pose)
     if extent is None or extent.low[2] > height:
         return

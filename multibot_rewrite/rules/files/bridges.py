@@ -4,8 +4,6 @@
 Source: gazebosim/ros_gz ros_gz_bridge/src/bridge_config.cpp (parseEntry, and its messages).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
@@ -113,15 +111,13 @@ _WORLD = "/world/"
 
 
 class GzTopics(NamedTuple):
-    """The topics of the sensors and plugins of the robot that a bridge is for, and of its world, by
-    name."""
+    """The gz topics of the robot's sensors and plugins, and of its world, by name."""
 
-    topics: Mapping[str, GzTopic]
+    topics: "Mapping[str, GzTopic]"
 
 
 class GzTopic(NamedTuple):
-    """A topic of a sensor or plugin: its type, the direction of a row for it, and its line; empty where
-    they are not known."""
+    """A sensor's or plugin's topic: type, direction of its row, line; empty where unknown."""
 
     type: str
     direction: str

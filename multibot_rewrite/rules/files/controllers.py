@@ -27,7 +27,7 @@ from multibot_rewrite.rules.declaration import remark, remark_at
 from multibot_rewrite.rules.description.references.controllers import missing_in
 from multibot_rewrite.rules.files.section_facts import beside, did_you_mean_at, is_in, shown
 from multibot_rewrite.rules.subject import Robots
-from multibot_rewrite.rules.system.states import said_of_missing
+from multibot_rewrite.rules.system.states import missing_message
 from multibot_rewrite.system.records import ACTION, SERVES, Place
 
 
@@ -110,7 +110,7 @@ def not_exported(file: NamedFile) -> Iterator[Finding]:
         for it in missing_in(robot, claimed):
             if is_in(file, it.claims[0].place):
                 place = it.claims[0].place._replace(column=1)
-                yield remark(place, *said_of_missing(it, None if robot.origins else shown))
+                yield remark(place, *missing_message(it, None if robot.origins else shown))
 
 
 @rule("MB878", "section-of-no-controller", WARNING, formats=(PARAMS,))

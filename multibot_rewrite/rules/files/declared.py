@@ -77,7 +77,7 @@ def _meant_by(
         inner = [it.removeprefix(ID) for it in paths if it.startswith(ID)]
         there += (f"{block}.{it}" for block in blocks for it in inner if "<" not in it)
     above = sorted({it.name.rpartition(".")[0] for it in unknown})
-    there += dict.fromkeys(name for group in above for name in _beside(group, paths))
+    there += dict.fromkeys(name for group in above for name in _names_in_group(group, paths))
     said = {it.name for it in section.given}
     free = [it for it in there if it not in said]
     # Group -> last word -> parameter.
@@ -85,7 +85,10 @@ def _meant_by(
     groups = dicts_by_key((group, last, name) for (group, _, last), name in parts)
     guesses = Guesses()
     for it in unknown:
-        yield it, "" if _renamed(it.name) in said else _meant(it.name, free, groups, guesses)
+        yield (
+            it,
+            "" if _renamed(it.name) in said else _near_parameter(it.name, free, groups, guesses),
+        )
 
 
 def _renamed(name: str) -> str:
@@ -94,7 +97,7 @@ def _renamed(name: str) -> str:
     return ".".join((*above, RENAMED[last])) if last in RENAMED else ""
 
 
-def _beside(above: str, paths: Sequence[str]) -> Iterator[str]:
+def _names_in_group(above: str, paths: Sequence[str]) -> Iterator[str]:
     """Yield the names that a pattern (``joint_limits.<joint>.max_velocity``) allows in a group."""
     for path in paths:
         pattern, _, last = path.rpartition(".")
@@ -109,7 +112,7 @@ def _is_known(section: Section, it: Setting) -> bool:
     return of_node or _EVERYWHERE.fullmatch(it.name) is not None
 
 
-def _meant(
+def _near_parameter(
     name: str, known: Sequence[str], groups: Mapping[str, Mapping[str, str]], guesses: Guesses
 ) -> str:
     """Return the known parameter that was meant: a near name in its place, or the same elsewhere."""

@@ -4,8 +4,6 @@
 ``knowledge/demanded.schema`` has the demands, ``knowledge/plugin_classes.schema`` the classes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
@@ -14,8 +12,8 @@ from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.nearest import differ_in_numbers, slip_of
 from multibot_rewrite.knowledge.conditions import holds, word_of
 from multibot_rewrite.knowledge.declared import DEMANDED
+from multibot_rewrite.knowledge.node_sets import load_nodes
 from multibot_rewrite.knowledge.records import NodeFacts
-from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.related_files.named_file import MOVEIT, PARAMS, NamedFile
 from multibot_rewrite.rules.declaration import remark_at
 from multibot_rewrite.rules.files.parameter_files import is_number, of_release

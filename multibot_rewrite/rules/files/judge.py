@@ -71,16 +71,16 @@ _COMMENT = lazy_compile(r"(?:#|--)\s*urdf-lint:\s*ignore\s+((?:MB\d+[,\s]*)+)(?:
 @cache
 def rules_for(kind: str) -> tuple[Rule, ...]:
     """Return the rules for files of a kind, by their codes."""
-    return tuple(sorted((it for it in _every() if kind in it.formats), key=lambda it: it.code))
+    return tuple(sorted((it for it in _all_rules() if kind in it.formats), key=lambda it: it.code))
 
 
 @cache
 def codes() -> frozenset[str]:
     """Return the codes of all rules for files."""
-    return frozenset(it.code for it in _every())
+    return frozenset(it.code for it in _all_rules())
 
 
-def _every() -> Iterator[Rule]:
+def _all_rules() -> Iterator[Rule]:
     yield from (*rules_in("files"), *SHARED)
 
 

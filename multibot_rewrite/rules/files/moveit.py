@@ -67,8 +67,7 @@ def limits_beyond_the_joint(file: NamedFile) -> Iterator[Finding]:
 
 
 def _of_none(file: NamedFile, section: Section, subjects: Sequence[Subject]) -> Iterator[Finding]:
-    """Report joints that the only robot of a package lacks, as does the SRDF of the file's folder,
-    which is for that robot."""
+    """Report joints that a package's only robot lacks, as does the SRDF in the file's folder."""
     srdfs = _srdfs(file.file)
     names = {_ROBOT.search(data) for data in srdfs}
     robots = {subject.document.root.get("name", "").encode() for subject in subjects}

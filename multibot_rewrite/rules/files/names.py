@@ -54,16 +54,16 @@ WORLD = "world"
 @rule("MB853", "undeclared-frame-in-file", WARNING, formats=EVERY)
 def undeclared_frame(file: NamedFile) -> Iterator[Finding]:
     """Report frames and links."""
-    return _undeclared(file, _FRAMES)
+    return _undeclared_names(file, _FRAMES)
 
 
 @rule("MB854", "undeclared-joint-in-file", NOTE, formats=EVERY)
 def undeclared_joint(file: NamedFile) -> Iterator[Finding]:
     """Report joints, sensors and groups."""
-    return _undeclared(file, _PARTS)
+    return _undeclared_names(file, _PARTS)
 
 
-def _undeclared(file: NamedFile, kinds: tuple[str, ...]) -> Iterator[Finding]:
+def _undeclared_names(file: NamedFile, kinds: tuple[str, ...]) -> Iterator[Finding]:
     joints = (it for it in file.names if it.kind == "joint")
     there = {it.together for it in joints if it.text in file.declared.get("joint", ())}
     foreign = set(_foreign(file)[0])
@@ -74,7 +74,7 @@ def _undeclared(file: NamedFile, kinds: tuple[str, ...]) -> Iterator[Finding]:
             continue
         known = file.declared.get("link" if site.kind in _FRAMES else _kind_of(site), {})
         if name not in hinted and len(hinted) < HINTED:
-            hinted[name] = _near(file, site, name, known)
+            hinted[name] = _near_hint(file, site, name, known)
         near = hinted.get(name, "")
         alone = site.kind == "joint" and file.is_whole and site.together in there
         if not near and not (_is_sure(file, site) or (not file.is_certain and alone)):
@@ -93,7 +93,7 @@ def _is_sure(file: NamedFile, site: Site) -> bool:
     return file.is_certain and not (file.kind == RVIZ and site.kind == "frame")
 
 
-def _near(file: NamedFile, site: Site, name: str, known: Iterable[str]) -> str:
+def _near_hint(file: NamedFile, site: Site, name: str, known: Iterable[str]) -> str:
     if not file.is_certain:
         near = meant_name(name, known)
         return f"did you mean {near!r}?" if near else ""
@@ -132,7 +132,7 @@ def _missing(file: NamedFile, site: Site) -> str:
 
 @rule("MB875", "file-of-another-robot", ERROR, formats=(MOVEIT,), options={"build": True})
 def of_another_robot(file: NamedFile) -> Iterator[Finding]:
-    """Report one finding for all names, at the first."""
+    """Report a file that names another robot's joints or links, once, at the first."""
     missing, count, first = _foreign(file)
     if missing and first:
         few = ", ".join(text for _, text in missing[:2])
@@ -273,7 +273,7 @@ def included_file(file: NamedFile) -> Iterator[Finding]:
 
 @robots_rule("MB888", "lua-frame-not-plain", WARNING, LUA)
 def computed_frame(file: NamedFile) -> Iterator[Finding]:
-    """Report each such frame, if robots have frames of their own."""
+    """Report each computed frame of a Lua file, if robots have frames of their own."""
     for site in file.computed if frames_differ(file.context) else ():
         message = f"{site.key} is not a plain string, so it stays unchanged"
         yield remark(site, message, "each robot needs its own frame here; write the name in quotes")

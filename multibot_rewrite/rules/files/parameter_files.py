@@ -8,8 +8,6 @@ Source: https://github.com/PickNikRobotics/generate_parameter_library (README, "
 Source: PickNikRobotics/rsl and generate_parameter_library, parameter_validators (README, "Built-In
 Validators"); control_filters of ros2_controllers take nan as well."""
 
-from __future__ import annotations
-
 import math
 import os
 from collections.abc import Callable, Iterator, Sequence
@@ -116,8 +114,7 @@ _CALLED = lazy_compile(r".*param(?!.*?param)\w*\.ya?ml")
 def facts_of_node(
     node: NodeParameters | None, type_: str, file: str, roots: tuple[str, ...]
 ) -> tuple[Declared, ...]:
-    """Return what the packages of a node declare, from its own sources if they are there. ``type_``
-    is that of a controller."""
+    """Return what a node's packages declare, by its sources if present; ``type_``: a controller's."""
     named = type_.partition("/")[0] if "/" in type_ else ""
     package = node.package if node else named
     own = _in_sources(package, file, roots) if package else ()

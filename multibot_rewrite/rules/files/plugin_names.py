@@ -37,7 +37,12 @@ from multibot_rewrite.related_files.yaml_text import pairs
 from multibot_rewrite.rules.declaration import remark_at
 from multibot_rewrite.rules.files.demands import Demand, demands, value_of
 from multibot_rewrite.rules.files.parameter_files import of_release
-from multibot_rewrite.rules.files.section_facts import Section, Setting, is_set_beside, sections
+from multibot_rewrite.rules.files.section_facts import (
+    Section,
+    Setting,
+    is_set_in_other_file,
+    sections,
+)
 
 _CONTROLLER = "controller_interface::ControllerInterface"
 _DWB, _CRITIC = "dwb_critics", "Critic"
@@ -120,7 +125,7 @@ def _class_fault(name: str, base: str, known: Base, release: str) -> tuple[str, 
     same = next((it for it in known.classes if canonical(it) == canonical(name)), "")
     if same:
         others = ", ".join(releases_with(known.classes[same]))
-        return f"which is not in {release}, only in {others}", _near(name, there), WARNING
+        return f"which is not in {release}, only in {others}", _near_hint(name, there), WARNING
     other = next((it for it, of in plugin_bases().items() if name in of.classes), "")
     if other:
         return f"which is a {other}, not a {base}", "name a class of that kind", ERROR
@@ -139,7 +144,7 @@ def _class_fault(name: str, base: str, known: Base, release: str) -> tuple[str, 
     return (unknown, f"did you mean {alike}?", NOTE) if alike else ("", "", "")
 
 
-def _near(name: str, there: Sequence[str]) -> str:
+def _near_hint(name: str, there: Sequence[str]) -> str:
     by_name = {canonical(it): it for it in there}
     near = by_name.get(nearest(canonical(name), by_name))
     return f"did you mean {near}?" if near else "see the plugins of its package"
@@ -167,8 +172,7 @@ def _critics(it: Demand) -> Iterator[Finding]:
 
 
 def without_plugin(file: NamedFile) -> Iterator[Finding]:
-    """Report words of a list of plugins without NAME.plugin, sources without parameters,
-    controllers without a type."""
+    """Report plugin names without NAME.plugin, unset sources, and controllers without a type."""
     for it in demands(file, "classes", "blocks"):
         ids, words, whole = it.words[1:], words_of(it.given), it.section.whole
         blocks = it.check == "blocks"
@@ -180,7 +184,7 @@ def without_plugin(file: NamedFile) -> Iterator[Finding]:
             below = f"{above}{word}."
             given = blocks and any(name.startswith(below) for name in whole)
             found = given or f"{below}plugin" in whole
-            elsewhere = not found and is_set_beside(file, it.section.title, f"{below}plugin")
+            elsewhere = not found and is_set_in_other_file(file, it.section.title, f"{below}plugin")
             if not found and not elsewhere and not _is_misspelt(it, word, words):
                 what = "parameters" if blocks else "plugin"
                 message = f"{it.section.title}: {it.given.name} has {word}, which has no {what}"
@@ -240,7 +244,7 @@ def missing_parameters(file: NamedFile) -> Iterator[Finding]:
     for section in sections(file):
         facts = of_release(section.facts, file.context.distro)
         needed = [(it, words) for it in facts for check, words in it.checks if check == "required"]
-        found = [it for fact, words in needed for it in _required(file, section, fact, words)]
+        found = [it for fact, words in needed for it in _missing(file, section, fact, words)]
         # What a controller has under another name is misspelt, or it is of another class that is called
         # the same; a section with nothing of it adds to one of another file.
         unknown = [it for it, known in section.known if not known and it.name != TYPE]
@@ -251,7 +255,8 @@ def missing_parameters(file: NamedFile) -> Iterator[Finding]:
             for words in (words for check, words in fact.checks if check == "required_or"):
                 names = (fact.path, *words.split())
                 there = (
-                    it in section.whole or is_set_beside(file, section.title, it) for it in names
+                    it in section.whole or is_set_in_other_file(file, section.title, it)
+                    for it in names
                 )
                 if section.given and not any(there):
                     message = f"{section.title}: none of these is set: {', '.join(names)}"
@@ -264,21 +269,20 @@ def missing_parameters(file: NamedFile) -> Iterator[Finding]:
             yield remark_at(it.given.key, message, f"add it, or set this to false; see {it.source}")
 
 
-def _required(file: NamedFile, section: Section, fact: Declared, words: str) -> Iterator[Finding]:
+def _missing(file: NamedFile, section: Section, fact: Declared, words: str) -> Iterator[Finding]:
     listed = value_of(section, words) if words else None
     for block, first in _blocks(section, fact.path):
         _, _, word = block.rpartition(".")
         name = f"{block}.{fact.path.rpartition('.')[2]}" if block else fact.path
         there = f"{section.at}{name}" in section.whole
-        there = there or is_set_beside(file, section.title, f"{section.at}{name}")
+        there = there or is_set_in_other_file(file, section.title, f"{section.at}{name}")
         if not there and (listed is None or (isinstance(listed, list) and word in listed)):
             message = f"{section.title}: {name} is missing"
             yield remark_at(first, message, f"the node asks for it; see {fact.source}", WARNING)
 
 
 def _blocks(section: Section, path: str) -> Iterator[tuple[str, yaml.ScalarNode]]:
-    """Yield each block of a file that a path is in, with a key; for a path of the node itself one
-    without a name."""
+    """Yield each block of a file for a path, with a key; one without a name for the node itself."""
     above = path.rpartition(".")[0]
     if "<" not in path:
         if section.given:

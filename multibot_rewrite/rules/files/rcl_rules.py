@@ -211,13 +211,13 @@ def listed_without_parameters(file: NamedFile) -> Iterator[Finding]:
             for depth in range(len(parts) - 1):
                 above = ".".join(parts[:depth])
                 bodies.setdefault(above, {}).setdefault(parts[depth], given.place)
-        used = {word for it in node.values.values() for word in _words(it)}
+        used = {word for it in node.values.values() for word in _names_of_list(it)}
         for parameter, value in node.values.items() if bodies else ():
             # A text is a list in ``observation_sources``, a joint of a controller is not.
             is_list = isinstance(value.value, list) or parameter.endswith(("s", "plugin"))
             own = bodies.get(parameter.rpartition(".")[0], {}) if is_list else {}
             left = [it for it in own if it not in used]
-            for word in _words(value) if left and is_in(file, value.place) else ():
+            for word in _names_of_list(value) if left and is_in(file, value.place) else ():
                 # A word with a dot has its parameters below several names.
                 near = nearest(word, left) if word.partition(".")[0] not in own else ""
                 if near and near.translate(_DIGITS) != word.translate(_DIGITS):
@@ -226,7 +226,7 @@ def listed_without_parameters(file: NamedFile) -> Iterator[Finding]:
                     yield remark(value.place._replace(column=1), message, hint)
 
 
-def _words(given: Given) -> list[str]:
+def _names_of_list(given: Given) -> list[str]:
     """Return the names of a list; some lists are texts of words."""
     value = given.value
     words = value if isinstance(value, list) else [value]

@@ -81,14 +81,14 @@ def elsewhere(file: NamedFile) -> Iterator[Finding]:
         if node is None:
             continue
         if not has_release(node.releases, release):
-            yield _elsewhere(section.keys[-1], f"node {node.name}", node, release)
+            yield _of_other_release(section.keys[-1], f"node {node.name}", node, release)
             continue
         for name, key in flattened(section.body):
             found = params_at(node, name, key)
             # What is called deprecated is told there.
             told = any(it.deprecated and has_release(it.deprecated, release) for it in found)
             if found and not told and not any(has_release(it.releases, release) for it in found):
-                yield _elsewhere(key, name, found[0], release)
+                yield _of_other_release(key, name, found[0], release)
     yield from of_other_releases(file)
 
 
@@ -97,7 +97,7 @@ def _source(places: Sequence[str]) -> str:
     return f"; source: {places[0]}" if places else ""
 
 
-def _elsewhere(
+def _of_other_release(
     key: yaml.ScalarNode, what: str, known: NodeParameters | Param, release: str
 ) -> Finding:
     others = ", ".join(releases_with(known.releases))

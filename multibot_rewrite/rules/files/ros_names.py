@@ -46,8 +46,7 @@ def invalid_names(file: NamedFile) -> Iterator[Finding]:
 
 
 def _section_fault(site: Site) -> str:
-    """Return what is wrong with the key of a section, which may be a pattern; ``in_key``: it is
-    below another key."""
+    """Return what is wrong with a section's key or pattern; ``in_key``: it is below another key."""
     if _IN_VALUE.search(site.text) or "<" in site.text or "$" in site.text or "{" in site.text:
         return ""
     if site.in_key and site.text.startswith("/"):

@@ -44,7 +44,7 @@ def _exclusive(file: NamedFile) -> Iterator[Finding]:
     kinds = ("exclusive",) if file.is_certain else ("exclusive", PORT)
     for site in file.names:
         if site.kind in kinds and site.text and site.text.lower() not in ("false", "no", "off"):
-            yield remark(site, _same(site.key, site.text), _OWN_VALUE)
+            yield remark(site, _same_message(site.key, site.text), _OWN_VALUE)
     known = {site.slot.start for site in file.names if site.kind in OWN_KINDS}
     for section, _ in file.pages:
         for key, value in () if section.shared else scalars(section.body):
@@ -52,13 +52,13 @@ def _exclusive(file: NamedFile) -> Iterator[Finding]:
             kind = "" if value.start_mark.index in known else held_by(key.value, text)
             if kind == COMPUTER:
                 hint = f"fine if each robot has a computer of its own; else {_OWN_VALUE}"
-                yield remark_at(value, _same(key.value, text), hint, NOTE)
+                yield remark_at(value, _same_message(key.value, text), hint, NOTE)
             elif kind:
                 hint = f"one device has one driver: {_OWN_VALUE}"
-                yield remark_at(value, _same(key.value, text), hint)
+                yield remark_at(value, _same_message(key.value, text), hint)
 
 
-def _same(key: str, text: str) -> str:
+def _same_message(key: str, text: str) -> str:
     return f"{key} {text} is the same for all robots"
 
 
@@ -177,10 +177,10 @@ def section_of_one_robot(file: NamedFile) -> Iterator[Finding]:
         if section.path != "/".join(it.value.strip("/") for it in section.keys):
             continue  # what is below the robot's own namespace is meant to be there
         tails = ["/".join(tokens[at:]) for at in range(1, len(tokens))]
-        stack = next((tail for tail in tails if tail in context.nodes), "")
-        if stack or (tokens[-1] in ANY and tokens[0] not in ANY):
+        node_set = next((tail for tail in tails if tail in context.nodes), "")
+        if node_set or (tokens[-1] in ANY and tokens[0] not in ANY):
             message = f"section {section.path} is for one robot only: its name includes a namespace"
-            hint = f"write {stack or '/**'}: instead; the build adds each robot's namespace"
+            hint = f"write {node_set or '/**'}: instead; the build adds each robot's namespace"
             yield remark_at(key, message, hint)
         elif tails and not section.wild and not tokens[-1].startswith(tokens[0]):
             what = "has a namespace; it is placed below each robot's namespace"
@@ -193,7 +193,7 @@ def section_of_one_robot(file: NamedFile) -> Iterator[Finding]:
     "section-of-shared-node",
     WARNING,
     formats=(PARAMS,),
-    options={"build": True, "stack": "own", "nodes": "nodes.yaml"},
+    options={"build": True, "node_sets": "own", "nodes": "nodes.yaml"},
 )
 def shared_section(file: NamedFile) -> Iterator[Finding]:
     """Report each node that serves all robots, at its first section."""

@@ -2,8 +2,6 @@
 """What a file, and the parameter files of the same robot, set for each node and plugin, and what
 declares it: of a parameter file, and of a file of MoveIt as the parameters that it becomes."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple, cast
@@ -18,14 +16,20 @@ from multibot_rewrite.description.sources.packages import entries, is_for_ros_1
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.sources.trace import alike
 from multibot_rewrite.knowledge.declared import EVERY_NODE, Declared, declared_by, stands_for
+from multibot_rewrite.knowledge.node_sets import load_nodes
 from multibot_rewrite.knowledge.parameters import built_in_nodes
 from multibot_rewrite.knowledge.records import NodeFacts, NodeParameters
-from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.planning.records import Run
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes
 from multibot_rewrite.related_files.moveit.file_kind import find_kind, parameter_above
 from multibot_rewrite.related_files.moveit.rewrite import node_of
-from multibot_rewrite.related_files.named_file import MOVEIT, PARAMS, NamedFile, is_beside, kind_of
+from multibot_rewrite.related_files.named_file import (
+    MOVEIT,
+    PARAMS,
+    NamedFile,
+    is_related_file,
+    kind_of,
+)
 from multibot_rewrite.related_files.params.rcl_parameters import value_of
 from multibot_rewrite.related_files.params.sections import (
     ANY,
@@ -64,7 +68,7 @@ def given_in(file: NamedFile) -> tuple[Run, ...]:
     return _given_by(file, [file.document] if file.document else [])
 
 
-def is_set_beside(file: NamedFile, title: str, name: str) -> bool:
+def is_set_in_other_file(file: NamedFile, title: str, name: str) -> bool:
     """Return whether a parameter file of the robot sets a name for the node of a section or plugin."""
     node = last_word(title.partition(":")[0])
     return any(name in it.values for it in beside(file).given if last_word(it.node) == node)
@@ -99,7 +103,7 @@ def _in_folder(file: NamedFile) -> Iterator[YamlText]:
     own = os.path.abspath(file.file)
     folder = os.path.dirname(own)
     for path in (os.path.join(folder, it) for it in sorted(entries(folder))):
-        data = read_file(path) if is_beside(path) else b""
+        data = read_file(path) if is_related_file(path) else b""
         if kind_of(data) == PARAMS:
             yield file.document if file.document and path == own else read_yaml(data, path)
 
@@ -145,7 +149,7 @@ def _sections(file: NamedFile) -> Iterator[Section]:
         name = it.path.rpartition("/")[2]
         if file.document is None:
             return
-        given = _given(file.document, it.body)
+        given = _settings_below(file.document, it.body)
         if name in ANY or PLACEHOLDER.search(it.path):
             yield _section(it.path, None, given, declared_by(EVERY_NODE), _by_name(given))
             continue
@@ -167,7 +171,7 @@ def _of_moveit(file: NamedFile) -> Iterator[Section]:
     node = built_in_nodes(file.context.distro).nodes[node_of(kind)]
     above = parameter_above(kind, file.document)
     root = file.document.root
-    read = _given(file.document, root, above) if root is not None else ()
+    read = _settings_below(file.document, root, above) if root is not None else ()
     given = tuple(it._replace(value=_tagged(it.node, it.value)) for it in read)
     facts = facts_of_node(node, "", file.file, file.roots)
     yield _section(node.name, node, given, facts, _by_name(given))
@@ -247,7 +251,7 @@ def _is_surely(node: NodeParameters, name: str, type_: str, given: Sequence[Sett
     return "/" not in type_ and (name == node.name or by_words)
 
 
-def _given(document: YamlText, body: yaml.Node, above: str = "") -> tuple[Setting, ...]:
+def _settings_below(document: YamlText, body: yaml.Node, above: str = "") -> tuple[Setting, ...]:
     every = settings(body, above)
     return tuple(Setting(name, key, node, _value(document, node)) for name, key, node in every)
 

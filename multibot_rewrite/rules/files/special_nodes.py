@@ -116,7 +116,7 @@ def broken_chains(file: NamedFile) -> Iterator[Finding]:
                 message = f"{section.title}: filter{number} is not loaded: {there}"
                 hint = "filters are called filter1, filter2 and so on, without a gap"
                 yield remark_at(next(iter(parts.values())).key, message, hint)
-        yield from _incomplete(section, filters)
+        yield from _incomplete_filters(section, filters)
 
 
 def _chains(section: Section) -> Mapping[str, _Filters]:
@@ -128,7 +128,7 @@ def _chains(section: Section) -> Mapping[str, _Filters]:
     return found
 
 
-def _incomplete(section: Section, filters: _Filters) -> Iterator[Finding]:
+def _incomplete_filters(section: Section, filters: _Filters) -> Iterator[Finding]:
     names: dict[str, str] = {}
     for number, parts in filters.items():
         first = next(iter(parts.values()))

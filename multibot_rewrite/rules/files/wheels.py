@@ -9,8 +9,6 @@ inscribed radius'); ros2_controllers diff_drive_controller/src/diff_drive_contro
 the multipliers on both).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from math import hypot
 from typing import NamedTuple

@@ -68,7 +68,7 @@ def _moves(model: Model, launched: Launched, seen: Index) -> bool:
 def as_one_of_several(found: Iterable[Finding], plan: System, seen: System) -> Iterator[Finding]:
     """Yield the findings; a missing node is inconclusive if the launch file starts no node of its
     node set or parameter file, which another launch file may do."""
-    sources = {it.name: it.stack or it.place.file for it in plan.nodes}
+    sources = {it.name: it.node_set or it.place.file for it in plan.nodes}
     begun = {"", *(sources.get(it.name, "") for it in seen.nodes)}
     for it in found:
         is_left = it.code == missing_node.code and _source(it.node, sources) not in begun
@@ -84,11 +84,11 @@ def _source(node: str, sources: Mapping[str, str]) -> str:
     return sources.get(max(makers, key=len, default=""), "")
 
 
-def placed(findings: Iterable[Finding], launched: Launched) -> Iterator[Finding]:
+def placed(findings: Iterable[Finding], launched: Launched, seen: Index) -> Iterator[Finding]:
     """Yield findings about a system where the launch file starts the nodes that they are about."""
     system, nodes = launched.system, {it.full_name: it.place for it in launched.nodes}
     for it in findings:
-        robots = [name for name in nodes if it.robot and it.robot in name.split("/")]
+        robots = [name for name in nodes if it.robot and it.robot == seen.robot(name)]
         ends = (end.node for end in system.ends if end.name in it.names)
         edges = (edge.publishers for edge in system.edges if edge.child in it.names)
         about = chain((it.node,), ends, *edges, robots)

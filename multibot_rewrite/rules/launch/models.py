@@ -9,8 +9,6 @@ server.config: physics, user commands, scene broadcaster); src/systems/sensors a
 other sensors.
 """
 
-from __future__ import annotations
-
 from collections import Counter, defaultdict
 from collections.abc import Iterator
 from contextlib import suppress
@@ -24,6 +22,7 @@ from multibot_rewrite.base.rosnames import resolve_bound
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.checks.shapes import filled_by
 from multibot_rewrite.description.rewriters.tree import library_key
+from multibot_rewrite.description.sources.world_systems import needed_systems
 from multibot_rewrite.knowledge.worlds import DEFAULTS
 from multibot_rewrite.planning.bridged_topics import DIRECTIONS, TF_TYPE
 from multibot_rewrite.planning.records import Run
@@ -31,7 +30,6 @@ from multibot_rewrite.producers.launch.bridges import bridged_by
 from multibot_rewrite.producers.launch.launched import InSimulator, Launched, worlds
 from multibot_rewrite.producers.launch.running import bound_of
 from multibot_rewrite.rules.declaration import at, launch_rule
-from multibot_rewrite.rules.facts.simulators import needed_systems
 from multibot_rewrite.system.records import SUBSCRIBES, TOPIC
 
 _POSE = ("-x", "-y", "-z")
@@ -173,7 +171,7 @@ def _rows(launched: Launched) -> Iterator[_Row]:
 
 @launch_rule("MG705", "bridge-to-another-robot")
 def to_another_robot(launched: Launched) -> Iterator[Finding]:
-    """Report it by the names of the models, if their topics contain them."""
+    """Report bridges to another robot's topics, by the models' names in the topics."""
     models = launched.simulated
     called = {it.name: {it.name, *it.words.get("-topic", "").split("/")} - {""} for it in models}
     sent = {(f"/{one.gz.lstrip('/')}", it.name) for it in models for one in it.topics}

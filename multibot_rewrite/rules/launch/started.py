@@ -70,7 +70,7 @@ def _no_manager(launched: Launched) -> Iterator[Finding]:
     """Yield the spawners whose manager nothing starts: an error if another manager is there, or if
     nodes and description are known. ``names`` are the missing manager and the one that may be
     meant."""
-    there = [it.full_name for it in launched.nodes if _is(it, MANAGER)]
+    there = [it.full_name for it in launched.nodes if _is_known_as(it, MANAGER)]
     described = bool(launched.models.found) and not launched.models.lost
     for manager in dict.fromkeys(it.manager for it in launched.spawned):
         if manager in there:
@@ -121,7 +121,7 @@ def no_container(launched: Launched) -> Iterator[Finding]:
             yield at(no_container, it.place, message, hint, level=level)
 
 
-def _is(it: Run, known: str) -> bool:
+def _is_known_as(it: Run, known: str) -> bool:
     return it.fact.known == known
 
 
@@ -158,11 +158,11 @@ def no_description(launched: Launched) -> Iterator[Finding]:
 
 @launch_rule("MG728", "controller-without-type")
 def no_type(launched: Launched) -> Iterator[Finding]:
-    """Report it if all parameter files are known; a plugin's manager reads its file elsewhere."""
+    """Report controllers without a type, if all parameter files are known."""
     if any(it.parameters for it in launched.graph.notes):
         return
     own = (it for it in launched.nodes if it.process != SIMULATED)
-    managers = {it.full_name for it in own if _is(it, MANAGER)}
+    managers = {it.full_name for it in own if _is_known_as(it, MANAGER)}
     spawned = {(it.full_name, it.place): it.manager for it in launched.spawned}
     for it in launched.nodes:
         manager = spawned.get((it.full_name, it.place), "")
@@ -196,8 +196,8 @@ def moves_nothing(facts: NodeFacts, given: Run) -> bool:
 
 @launch_rule("MG726", "not-activated")
 def not_listed(launched: Launched) -> Iterator[Finding]:
-    """Report it by full names: a manager is for the nodes of its namespace."""
-    managers = [it for it in launched.nodes if _is(it, LIFECYCLE_MANAGER)]
+    """Report lifecycle nodes that no manager lists under their full name."""
+    managers = [it for it in launched.nodes if _is_known_as(it, LIFECYCLE_MANAGER)]
     listed = {name: it for it in managers for name in _listed(it)}
     known = all(isinstance(it.value("node_names"), list) for it in managers)
     started = {it.full_name: it for it in launched.nodes}
@@ -211,7 +211,7 @@ def not_listed(launched: Launched) -> Iterator[Finding]:
     for name, manager in listed.items() if _is_known(launched) else ():
         runs = started.get(name)
         if runs and keeps_no_bond(runs.fact) and manager.value("bond_timeout") != 0:
-            yield at(not_listed, manager.place, *said_of_bond(manager.full_name, name))
+            yield at(not_listed, manager.place, *bond_message(manager.full_name, name))
         if name not in started:
             near = nearest(name, started).rpartition("/")[2]
             hint = f"did you mean {near}?" if near else "start it, or leave it out"
@@ -227,7 +227,7 @@ def keeps_no_bond(node: NodeFacts) -> bool:
     return f"~{_CHANGE}" in names and _BOND not in names
 
 
-def said_of_bond(manager: str, name: str) -> tuple[str, str]:
+def bond_message(manager: str, name: str) -> tuple[str, str]:
     """Return the message that a manager waits for the bond of a node, and the hint."""
     hint = "set use_lifecycle_manager: true for the node, or bond_timeout: 0.0 for the manager"
     return f"{manager} waits for a bond with {name}, which keeps none", hint
@@ -256,7 +256,7 @@ def waits(launched: Launched) -> Iterator[Finding]:
     """Report managers without autostart, which is false by default."""
     for it in launched.nodes:
         given = it.values.get("autostart")
-        if _is(it, LIFECYCLE_MANAGER) and (given is None or given.value is False):
+        if _is_known_as(it, LIFECYCLE_MANAGER) and (given is None or given.value is False):
             message = f"{it.full_name} activates no node by itself: autostart is not true"
             yield at(waits, it.place, message, "set autostart to true")
 

@@ -24,7 +24,7 @@ from multibot_rewrite.base.nearest import SLIP, differ_in_numbers, nearest
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.checks.numbers import number
 from multibot_rewrite.description.sources.packages import packages_below, sources_around
-from multibot_rewrite.knowledge.stacks import built_in
+from multibot_rewrite.knowledge.node_sets import built_in
 from multibot_rewrite.planning.records import Run
 from multibot_rewrite.planning.way_checks import RULE_WITHOUT_NAME
 from multibot_rewrite.producers.launch.handed_on import document_of
@@ -34,7 +34,7 @@ from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import LaunchedNode
 from multibot_rewrite.related_files.params.sections import is_for, meant_for, raw_sections
 from multibot_rewrite.related_files.yaml_text import line_of
-from multibot_rewrite.rules.declaration import LAUNCH, OF_NO_NODE, at, launch_rule, said_of_section
+from multibot_rewrite.rules.declaration import LAUNCH, OF_NO_NODE, at, launch_rule, section_message
 from multibot_rewrite.rules.description.files import reading
 from multibot_rewrite.system.records import Place
 from multibot_rewrite.system.words import last_word
@@ -47,7 +47,7 @@ _TURN = 2 * pi
 
 @launch_rule("MG711", "static-transform-implausible")
 def implausible(launched: Launched) -> Iterator[Finding]:
-    """Report each fault of each publisher."""
+    """Report each implausible transform of each static publisher."""
     for it in launched.nodes:
         if it.fact.known != STATIC:
             continue
@@ -167,7 +167,7 @@ def _of_no_node(launched: Launched) -> Iterator[Finding]:
                     place = Place(file, line_of(section.keys[0]))
                     found.setdefault(place, (section.path, []))[1].append(reader)
     for place, (path, names) in found.items():
-        yield at(of_no_node, place, *said_of_section(path, names))
+        yield at(of_no_node, place, *section_message(path, names))
 
 
 of_no_node = OF_NO_NODE._replace(check=_of_no_node)

@@ -4,8 +4,6 @@
 It is made from the sources by ``tools.interfaces``; its first lines have its grammar.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Mapping
 from functools import lru_cache

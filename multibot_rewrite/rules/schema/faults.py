@@ -281,8 +281,8 @@ def _is_unread(element: etree._Element) -> bool:
 
 def _stray_texts(root: etree._Element, known: Schema) -> Iterator[Problem]:
     """Yield text where no parser expects any, mostly a stray ``>``."""
-    tops = _found(_TOPS, root)
-    inside = ([top] if top.tag == ROBOT else _found(_TEXTS, top) for top in tops)
+    tops = _elements_at(_TOPS, root)
+    inside = ([top] if top.tag == ROBOT else _elements_at(_TEXTS, top) for top in tops)
     for element in chain.from_iterable(inside):
         section = section_of(element, known)
         if section is None or section.text:
@@ -294,7 +294,7 @@ def _stray_texts(root: etree._Element, known: Schema) -> Iterator[Problem]:
         yield fault("not-read", element, at, message)
 
 
-def _found(path: etree.XPath, element: etree._Element) -> list[etree._Element]:
+def _elements_at(path: etree.XPath, element: etree._Element) -> list[etree._Element]:
     return path(element)  # type: ignore[return-value]
 
 

@@ -36,7 +36,7 @@ def plugin_faults(
         return
     yield from _children(element, "", section, definitions)
     given = {str(it.tag) for it in element}
-    yield from _missing(element, section, given, definitions.release)
+    yield from _missing_values(element, section, given, definitions.release)
 
 
 def _children(
@@ -62,7 +62,7 @@ def hardware_faults(hardware: _Element, definitions: Definitions) -> Iterator[Pr
         name = child.get("name", "")
         given.setdefault(name, child)
         yield from _parameter(child, name, text_of(child), section, definitions)
-    yield from _missing(hardware, section, given, definitions.release)
+    yield from _missing_values(hardware, section, given, definitions.release)
 
 
 def _parameter(
@@ -160,8 +160,7 @@ def _of_another(name: str, section: Values, definitions: Definitions) -> str:
 def _counterparts(
     library: str, of_ros_1: bool, definitions: Definitions
 ) -> tuple[tuple[str, bool], ...]:
-    """Return those of the same name or subject: in the other ROS, in Gazebo for one of Classic, and
-    the reverse."""
+    """Return plugins of the same name or subject: in the other ROS, or the other Gazebo."""
     own = _topic_of_library(library)
     of_gz = library.startswith(GZ)
     start = GAZEBO_ROS if of_gz else GZ
@@ -180,7 +179,7 @@ def _topic_of_library(library: str) -> str:
     return bare.removesuffix(CLASSIC.casefold()).removesuffix("_sensor").replace("_", "")
 
 
-def _missing(
+def _missing_values(
     element: _Element, section: Values, given: Iterable[str], release: str
 ) -> Iterator[Problem]:
     for name, row in section.rows.items():

@@ -18,6 +18,7 @@ from lxml.etree import _Element
 from multibot_rewrite.base.conventions import ROWS
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.base.nearest import MISTYPED, nearest, slip_of
+from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.checks.links_and_joints import Robot
 from multibot_rewrite.description.checks.problem import Problem, fault
 from multibot_rewrite.description.rewriters.text import text_of
@@ -98,7 +99,7 @@ def _taken(child: _Element, row: SdfRow, home: str) -> Iterator[Problem]:
     text = child.get("value") or text_of(child)
     if not text or "$" in text:
         return
-    belongs = _belongs(row.name)
+    belongs = _parents_of(row.name)
     if home not in belongs:
         message = f"<{row.name}> in the <gazebo> of a {home} has no effect"
         hint = f"it is read in that of a {' or '.join(belongs)}: name it with reference="
@@ -109,7 +110,7 @@ def _taken(child: _Element, row: SdfRow, home: str) -> Iterator[Problem]:
         yield fault("value", child, at, message, "", level)
 
 
-def _belongs(tag: str) -> tuple[str, ...]:
+def _parents_of(tag: str) -> tuple[str, ...]:
     if tag in OF_MODELS:
         return ("model", "link", "joint")
     if tag in OF_BOTH:
@@ -182,7 +183,7 @@ def _value(
     if not text or "$" in text:
         return
     if row.type == "string":
-        yield from _word(element, at, f"{known.name}/{row.name}", text, version)
+        yield from _unknown_word(element, at, f"{known.name}/{row.name}", text, version)
         return
     turned = row.type == "pose" and element.get("rotation_format") == QUATERNION
     if wrong := misread(QUATERNION if turned else row.type, text):
@@ -196,10 +197,10 @@ def _value(
 
 def _where(element: _Element, at: str, text: str) -> str:
     """Return how a message names a value."""
-    return f"{_named(element, at)} {shortened(text)!r}"
+    return f"{_element_in_words(element, at)} {shortened(text)!r}"
 
 
-def _named(element: _Element, at: str) -> str:
+def _element_in_words(element: _Element, at: str) -> str:
     return f"{element.tag}@{at}" if at else f"<{element.tag}>"
 
 
@@ -229,7 +230,9 @@ def _range(element: _Element, at: str, row: SdfRow, text: str) -> Iterator[Probl
         yield fault("range", element, at, f"{_where(element, at, text)} {message}", hint)
 
 
-def _word(element: _Element, at: str, name: str, text: str, version: Version) -> Iterator[Problem]:
+def _unknown_word(
+    element: _Element, at: str, name: str, text: str, version: Version
+) -> Iterator[Problem]:
     """Yield a fault for a word that the library does not know."""
     known, row = words(name), described(f"{WORDS} {name}")
     folded = row is not None and "folded" in row.words
@@ -240,8 +243,8 @@ def _word(element: _Element, at: str, name: str, text: str, version: Version) ->
     near = nearest(text, known)
     if not near and version <= CLASSIC and name == "sensor/@type":
         return  # Gazebo Classic lets plugins add types of sensors
-    hint = f"did you mean {near!r}?" if near else ""
-    message = f"{_named(element, at)} is {shortened(text)!r}, which SDF does not know"
+    hint = f"did you mean {near!r}?" if near else f"SDF knows {shorten(sorted(known))}"
+    message = f"{_element_in_words(element, at)} is {shortened(text)!r}, which SDF does not know"
     yield fault("word", element, at, message, hint)
 
 
@@ -273,12 +276,12 @@ def _unknown(
     if near:
         yield fault("misspelt", child, None, message, f"did you mean <{near}>?")
     else:
-        homes = [it for it in _homes(tag) if it != home] or _beside(child, known)
+        homes = [it for it in _homes(tag) if it != home] or _siblings_with(child, known)
         hint = f"move it into <{'> or <'.join(homes)}>" if homes else ""
         yield fault("misplaced" if homes else "not-read", child, None, message, hint)
 
 
-def _beside(child: _Element, known: SdfPart) -> tuple[str, ...]:
+def _siblings_with(child: _Element, known: SdfPart) -> tuple[str, ...]:
     """Return the sibling elements that have such a child."""
     parent, found = child.getparent(), []
     for it in parent.iterchildren("*") if parent is not None else ():

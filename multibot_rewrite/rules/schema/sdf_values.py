@@ -7,8 +7,6 @@ which stop at what is none, vectors by a stream. What cannot be read ends the lo
 in a plugin it counts as 0 or false.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from functools import lru_cache, partial
@@ -68,7 +66,7 @@ def _is_too_large(digits: str, whole: bool) -> bool:
     return len(digits) > _DIGITS if whole else isinf(float(digits))
 
 
-def _unsigned(text: str) -> Misread | None:
+def _unsigned_number(text: str) -> Misread | None:
     if text.startswith("-") and text != "-1":
         return Misread("is below 0, and is read as a number above 4 billion", False)
     return _number(text, whole=True)
@@ -114,7 +112,7 @@ def _color(text: str) -> Misread | None:
 CHECKS: dict[str, Callable[[str], Misread | None]] = {
     **dict.fromkeys(("double", "float", "number"), _number),
     **dict.fromkeys(("int", "integer"), partial(_number, whole=True)),
-    "unsigned_int": _unsigned,
+    "unsigned_int": _unsigned_number,
     **dict.fromkeys(("bool", "boolean"), _boolean),
     "truth": _truth,
     "vector2d": partial(_numbers, count=2),

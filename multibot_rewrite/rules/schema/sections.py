@@ -7,8 +7,6 @@ elements have the same attributes and children, so what a schema says about a co
 computed once and then looked up.
 """
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -67,8 +65,7 @@ class UrdfPart(NamedTuple):
 
 
 class Schema(NamedTuple):
-    """All of ``urdf.schema`` for a version: every tag in it, and the sections that must have a
-    child (``parents``)."""
+    """All of ``urdf.schema`` for a version: every tag, and ``parents``, which must have a child."""
 
     version: Version
     sections: Mapping[str, UrdfPart]

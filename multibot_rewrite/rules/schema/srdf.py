@@ -41,9 +41,11 @@ def srdf_faults(root: _Element, robot: Robot | None) -> Iterator[Problem]:
                 yield fault("missing", it, None, message, f"add {attribute}")
         yield from _misspelt(it, children, (*required, *others))
     for it in root.iterchildren("joint_property"):
-        yield from _word(it, "property_name", text_of(it, "property_name"), _PROPERTIES, WARNING)
+        yield from _unknown_word(
+            it, "property_name", text_of(it, "property_name"), _PROPERTIES, WARNING
+        )
     for it in root.iterchildren("virtual_joint"):
-        yield from _word(it, "type", text_of(it, "type").lower(), tuple(_SIZES), ERROR)
+        yield from _unknown_word(it, "type", text_of(it, "type").lower(), tuple(_SIZES), ERROR)
     types = {text_of(it): text_of(it, "type").lower() for it in root.iterchildren("virtual_joint")}
     types |= {name: joint.type for name, joint in robot.joint.items()} if robot else {}
     for it in root.iterfind("group_state/joint[@value]"):
@@ -82,7 +84,7 @@ def _misspelt(
             yield fault("misspelt", parent, name, message, f"did you mean {near}?")
 
 
-def _word(
+def _unknown_word(
     it: _Element, attribute: str, word: str, known: tuple[str, ...], level: str
 ) -> Iterator[Problem]:
     """Yield a fault for a word unknown to MoveIt, which takes a type as fixed and skips a property."""

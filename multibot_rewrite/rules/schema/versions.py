@@ -5,8 +5,6 @@ release (``readers.schema``).
 Source: urdfdom 6.0.0, class ``URDFVersion`` in urdf_parser.h; without an attribute it is 1.0.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 from typing import NamedTuple
 

@@ -3,8 +3,6 @@
 and what to do about it.
 """
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import lru_cache
@@ -167,7 +165,8 @@ def why_other_name(plan: Index, node: str, match: str) -> Cause:
     robot = plan.robot_of[node]
     plugin, place = plugin_of(plan, node)
     plain = plan.of_names.without_robot(node, robot)
-    namespaced = node == f"/{robot}{plain}"
+    space = plan.of_names.tag(robot)
+    namespaced = node == f"/{space}{plain}"
     if match not in (plain, f"/{plain.rpartition('/')[2]}"):
         return Cause(f"{match} is running; is it this node under another name?")
     if plugin:
@@ -178,12 +177,12 @@ def why_other_name(plan: Index, node: str, match: str) -> Cause:
         return Cause(f"{match} is running in the process of {taker}: start {taker} as planned")
     missing, rule = "name", Remap(match, "__node", node.rpartition("/")[2])
     if namespaced:
-        missing, rule = "namespace", Remap(match, "__ns", f"/{robot}")
+        missing, rule = "namespace", Remap(match, "__ns", f"/{space}")
     option = f"--ros-args -r {rule.old}:={rule.new}"
     if way == COMPONENT:
         option = f"{missing}={rule.new!r} of its ComposableNode"
     elif namespaced:
-        option = f"namespace={robot!r} in the launch file, or {option}"
+        option = f"namespace={space!r} in the launch file, or {option}"
     why = f"{match} is running: it was started without the robot's {missing}"
     return Cause(f"{why}; use {option}", remaps=(rule,))
 
@@ -203,7 +202,7 @@ class Spelled:
             self.by_letters[letters(name)].append(name)
             parts = name.split("/")
             for at in {1, len(parts) - 1}:
-                words = self.beside.setdefault(_rest(parts, at), defaultdict(list))
+                words = self.beside.setdefault(_other_parts(parts, at), defaultdict(list))
                 words[_DIGITS.sub("", parts[at])].append((parts[at], name))
 
 
@@ -234,12 +233,12 @@ def alike(
 
 def _with_other_word(parts: list[str], at: int, known: Spelled) -> Iterator[tuple[str, str]]:
     """Yield known names that differ in the word at one place alone, with it; not in its number."""
-    own, words = _DIGITS.sub("", parts[at]), known.beside.get(_rest(parts, at), {})
+    own, words = _DIGITS.sub("", parts[at]), known.beside.get(_other_parts(parts, at), {})
     found = (it for bare, others in words.items() if bare != own for it in others)
     return islice(found, COMPARED)
 
 
-def _rest(parts: list[str], at: int) -> _Rest:
+def _other_parts(parts: list[str], at: int) -> _Rest:
     return at, *parts[:at], *parts[at + 1 :]
 
 

@@ -2,13 +2,16 @@
 """A system compared with an earlier snapshot of it: what is new, gone or other in ends, transforms,
 frames of messages and parameters. Which nodes came and went is asked by the rules of a plan."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from multibot_rewrite.base.conventions import OF_EVERY_NODE
+from multibot_rewrite.base.conventions import (
+    EVERYBODYS,
+    OF_EVERY_NODE,
+    chooses,
+    is_from_outside,
+)
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.wording import only, shorten
@@ -18,7 +21,7 @@ from multibot_rewrite.rules.system.matching import qos_words
 from multibot_rewrite.rules.system.planned_nodes import missing_node, missing_robot, unplanned_node
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import TF, Index, at_work
-from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, Edge, End, System
+from multibot_rewrite.system.records import ACTION, CALLS, PUBLISHES, SERVES, Edge, End, System
 
 # In metres and parts of a quaternion.
 _SAME = 1e-3
@@ -83,19 +86,26 @@ def _changes(before: System, seen: Index) -> Iterator[_Change]:
     old, new = _by_key(before.ends), _by_key(seen.system.ends)
     nodes = {it.name for it in before.nodes}
     for key, end in new.items():
+        tool, did_not = seen.is_tool(end.node), f"{DOES[end.role]} {end.name}, and did not"
         if key in old:
-            if (was := _said(old[key])) != (now := _said(end)) and not seen.is_tool(end.node):
+            if (was := _type_and_qos(old[key])) != (now := _type_and_qos(end)) and not seen.is_tool(
+                end.node
+            ):
                 what = f"{DOES[end.role]} {end.name} as {now}, and did as {was}"
                 yield _Change(end.node, what, (end.name,))
         elif heeded := _heeded(seen, end):
-            what = f"{DOES[end.role]} {end.name}, and did not; {heeded}"
-            yield _Change(end.node, what, (end.name,), ERROR)
-        elif end.node in nodes and not seen.is_tool(end.node):
-            yield _Change(end.node, f"{DOES[end.role]} {end.name}, and did not", (end.name,))
-    for key, end in old.items():
-        if key not in new and end.node in seen.nodes and not seen.is_tool(end.node):
-            what = f"{DOES[end.role]} {end.name} no more"
-            yield _Change(end.node, what, (end.name,))
+            yield _Change(end.node, f"{did_not}; {heeded}", (end.name,), ERROR)
+        elif end.role == PUBLISHES and (user := _user(seen, end)):
+            yield _Change(end.node, f"{did_not}; {user} reads it", (end.name,))
+        elif end.node in nodes and not tool:
+            yield _Change(end.node, did_not, (end.name,))
+    # What the robots' own nodes gave is in the plan that is made of the earlier snapshot.
+    lost = (it for it in old.values() if seen.is_tool(it.node))
+    missed = ((it.node, (it.name, user)) for it in lost if (user := _lost_by(seen, it)))
+    for node, pairs in lists_by_key(missed).items():
+        names = tuple(dict(pairs))
+        what = f"no longer gives {shorten(names)}, which {pairs[0][1]} uses"
+        yield _Change(node, what, names, ERROR)
     yield from _transforms(before, seen)
     yield from _frames(before, seen)
     yield from _parameters(before, seen)
@@ -113,13 +123,12 @@ def _by_key(ends: Iterable[End]) -> Mapping[tuple[str, str, str, str], End]:
     }
 
 
-def _said(end: End) -> str:
+def _type_and_qos(end: End) -> str:
     return " ".join((end.type, *qos_words(end)))
 
 
 def _heeded(seen: Index, end: End) -> str:
-    """Return who does what a new sender orders, or takes its data for those of another one, tools as
-    well; empty for nobody."""
+    """Return who obeys a new sender, or takes its data for those of another; empty for nobody."""
     ends = seen.ends_at(end.kind, end.name)
     readers, others = (
         [it.node for it in at_work(own) if it.node != end.node]
@@ -133,9 +142,24 @@ def _heeded(seen: Index, end: End) -> str:
     return f"{readers[0]} reads it, and {others[0]} sends it as well" if twice else ""
 
 
+def _lost_by(seen: Index, end: End) -> str:
+    """Return who still uses what a tool gave, such as a simulator's bridge, and nothing gives now;
+    empty for nobody, and for what a person may send."""
+    ends = seen.ends_at(end.kind, end.name)
+    by_hand = is_from_outside(end.name) or end.name in {*seen.orders, *EVERYBODYS}
+    return "" if by_hand or ends.publishers or ends.servers else _user(seen, end)
+
+
+def _user(seen: Index, end: End) -> str:
+    """Return a node that uses what an end gives, no tool and none that chooses; empty for none."""
+    ends = seen.ends_at(end.kind, end.name)
+    given = {PUBLISHES: ends.subscribers, SERVES: ends.clients}.get(end.role, ())
+    nodes = (it.node for it in at_work(given))
+    return next((it for it in nodes if not (seen.is_tool(it) or chooses(it))), "")
+
+
 def _sender(seen: Index, edge: Edge) -> str:
-    """Return the node of the robot of a transform among those that send on its topic, or the only one;
-    else an empty string."""
+    """Return the transform's sender: the robot's node on its topic, or the only one; else ""."""
     robot = seen.frame_robot(edge.child) or seen.robot(edge.topic)
     own = [it for it in edge.publishers if seen.robot(it) == robot]
     return only(own) or only(edge.publishers)

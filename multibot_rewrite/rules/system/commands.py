@@ -43,7 +43,7 @@ _OFFERED = ("goal_pose", "initialpose", "clicked_point")
 
 @system_rule("MG310", "command-for-several-robots", ERROR, drawn="leak", meant=(SUBSCRIBES,))
 def command_for_several_robots(seen: Index) -> Iterator[Finding]:
-    """Report it whether or not anybody sends at the moment."""
+    """Report a command topic of several robots, whether or not anybody sends on it."""
     orders = seen.orders
     for (kind, name), ends in seen.by_name.items():
         joystick = ends.type == words.JOYSTICK
@@ -79,10 +79,10 @@ def command_to_nobody(seen: Index) -> Iterator[Finding]:
     for name, it in seen.orders.items():
         # What only may be sent is not missed.
         sent = tuple(one for one in it.publishers if one.sure == RUNS)
-        if sent and not _obeyed(it):
+        if sent and not _is_obeyed(it):
             unread[name] = it._replace(publishers=sent)
     for (kind, name), ends in seen.by_name.items() if unread else ():
-        if kind == TOPIC and ends.publishers and _obeyed(ends):
+        if kind == TOPIC and ends.publishers and _is_obeyed(ends):
             obeyed[ends.type].append(name)
             plainly[ends.type, seen.plain(name)].append(name)
     spelled: dict[str, Spelled] = {}
@@ -93,7 +93,7 @@ def command_to_nobody(seen: Index) -> Iterator[Finding]:
         near = next(iter(robots), "") or _alike(seen, ends, spelled[ends.type])
         meant = near or _of_a_mux(seen, ends) or _of_a_person(seen, ends, same)
         if meant:
-            yield _unread(seen, ends, meant, len(robots))
+            yield _unread_command(seen, ends, meant, len(robots))
         elif absent := nobody_in(seen, name, same):
             for node in nodes_of(at_work(ends.publishers)):
                 yield command_to_nobody.finding(
@@ -109,7 +109,7 @@ def _of_whom(seen: Index, ends: Ends, names: Sequence[str]) -> Sequence[str]:
     if not mine:
         return names
     own = seen.of_robot(mine, TOPIC, seen.plain(ends.name))
-    return [own.name] if own and own.name != ends.name and _obeyed(own) else []
+    return [own.name] if own and own.name != ends.name and _is_obeyed(own) else []
 
 
 def _alike(seen: Index, ends: Ends, known: Spelled) -> str:
@@ -164,7 +164,7 @@ def _moving(seen: Index) -> tuple[set[str], set[str], Mapping[str, Sequence[Ends
 def _goals(seen: Index) -> Mapping[tuple[str, str], Sequence[str]]:
     """Return the obeyed commands by type and robot."""
     return lists_by_key(
-        ((it.type, seen.robot(it.name)), it.name) for it in seen.orders.values() if _obeyed(it)
+        ((it.type, seen.robot(it.name)), it.name) for it in seen.orders.values() if _is_obeyed(it)
     )
 
 
@@ -188,11 +188,11 @@ def _of_a_person(seen: Index, ends: Ends, same: Sequence[str]) -> str:
     return own[0] if len(own) == 1 else ""
 
 
-def _obeyed(ends: Ends) -> bool:
+def _is_obeyed(ends: Ends) -> bool:
     return bool(at_work(ends.subscribers))
 
 
-def _unread(seen: Index, ends: Ends, meant: str, robots: int) -> Finding:
+def _unread_command(seen: Index, ends: Ends, meant: str, robots: int) -> Finding:
     node = nodes_of(ends.publishers)[0]
     reader = nodes_of(at_work(seen.by_name[TOPIC, meant].subscribers))[0]
     message = f"publishes {ends.name}, which no node reads; {reader} reads {meant}"
@@ -243,7 +243,7 @@ def command_from_another_robot(seen: Index) -> Iterator[Finding]:
             does = "publishes" if kind == TOPIC else "sends goals to" if kind == ACTION else "calls"
             message = f"{does} {name}, a name of {owner}"
             # Where somebody sends to its own robot already, a rule would make two senders.
-            free = own and (own.servers or (_obeyed(own) and not _sends_already(seen, own.name)))
+            free = own and (own.servers or (_is_obeyed(own) and not _sends_already(seen, own.name)))
             free = free and kind != ACTION
             rules = [Remap(node, name, own.name)] if own and free and own.type == ends.type else []
             yield command_from_another_robot.finding(
@@ -305,7 +305,7 @@ def several_command_senders(seen: Index) -> Iterator[Finding]:
 
 
 @system_rule("MG313", "bag-beside-a-robot", ERROR)
-def bag_beside_a_robot(seen: Index) -> Iterator[Finding]:
+def bag_played_to_robot(seen: Index) -> Iterator[Finding]:
     """Yield bags that are played to topics with other senders, or that a robot obeys."""
     mixed: dict[str, list[str]] = defaultdict(list)
     played = {end.name for end in seen.system.ends if words.PLAYER in end.node}
@@ -314,14 +314,14 @@ def bag_beside_a_robot(seen: Index) -> Iterator[Finding]:
             continue
         players = [it for it in nodes_of(ends.publishers) if last_word(it).startswith(words.PLAYER)]
         others = [it for it in nodes_of(at_work(ends.publishers)) if it not in players]
-        obeyed = words.moves(seen.plain(ends.name), ends.type) and _obeyed(ends)
+        obeyed = words.moves(seen.plain(ends.name), ends.type) and _is_obeyed(ends)
         if players and ends.name not in OF_EVERY_NODE and (others or obeyed):
             mixed[players[0]].append(ends.name)
     for player, names in mixed.items():
         message = f"plays {shorten(sorted(names))} into the running system"
         rules = [Remap(player, it, f"{it}_of_bag") for it in sorted(names)]
         listed = " ".join(f"{it.old}:={it.new}" for it in rules)
-        yield bag_beside_a_robot.finding(
+        yield bag_played_to_robot.finding(
             message, f"play it in another ROS_DOMAIN_ID, or with --remap {listed}",
             robot=only(robots_of(seen, names)), node=player, names=tuple(sorted(names)),
             remaps=tuple(rules),

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Robots with the same nodes compared with each other: parameters, types, QoS and fixed transforms."""
 
-from __future__ import annotations
-
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence, Set
 from typing import NamedTuple
@@ -52,7 +50,7 @@ def differs_from_its_likes(seen: Index) -> Iterator[Finding]:
     """Report what one robot has otherwise than those built alike, once a node; so its transforms."""
     for likes in alike(nodes_of_each(seen)):
         for values in (_parameters(seen), _types(seen), _qualities(seen)):
-            yield from _told(_odd(values, likes), len(likes) == _TWO)
+            yield from _differences(_odd(values, likes), len(likes) == _TWO)
         yield from _moved_parts(seen, _odd(_parts(seen), likes))
         yield from _lost_parts(seen, likes)
 
@@ -97,7 +95,7 @@ def _odd(values: _Values, likes: Sequence[str]) -> Iterator[tuple[str, _Told, _T
             yield robot, there[robot], next(it for it in there.values() if it.plain == usual)
 
 
-def _told(odd: Iterator[tuple[str, _Told, _Told]], of_two: bool) -> Iterator[Finding]:
+def _differences(odd: Iterator[tuple[str, _Told, _Told]], of_two: bool) -> Iterator[Finding]:
     """Report differences; of two robots for both: either may be the one that is wrong."""
     by_node: dict[tuple[str, str, str], list[tuple[_Told, _Told]]] = defaultdict(list)
     for robot, own, other in odd:

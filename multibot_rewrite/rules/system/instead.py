@@ -63,7 +63,7 @@ def _orphan(seen: Index, end: End) -> Ends | None:
         for it in seen.by_node[end.node]
         if it.role == SUBSCRIBES and it.name in seen.published
     )
-    if merges or seen.robot(end.node) not in ("", robot):
+    if seen.robot(end.node) not in ("", robot):
         return None
     given = [
         it
@@ -72,8 +72,11 @@ def _orphan(seen: Index, end: End) -> Ends | None:
         and _DIGITS.sub("", it.name) != _DIGITS.sub("", end.name)
         and not _waits_itself(seen, it, end)
     ]
-    akin = [it for it in given if _words(seen, it.name) & _words(seen, end.name)]
-    akin = akin or [it for it in given if _begin_alike(seen.plain(it.name), seen.plain(end.name))]
+    begins = [it for it in given if _begin_alike(seen.plain(it.name), seen.plain(end.name))]
+    if merges:
+        return _only(begins)
+    akin = [it for it in given if _telling_words(seen, it.name) & _telling_words(seen, end.name)]
+    akin = akin or begins
     plain = end.type.startswith(_PLAIN_DATA) or end.name.startswith(f"{end.node}/")
     plain = plain or is_from_outside(end.name)
     return _only(akin) or (None if plain else _only(given))
@@ -127,7 +130,7 @@ def _begin_alike(one: str, other: str) -> bool:
     return long.startswith(short)
 
 
-def _words(seen: Index, name: str) -> set[str]:
+def _telling_words(seen: Index, name: str) -> set[str]:
     """Return the words of a name that say what it is."""
     return {it for it in re.split(r"[/_]", seen.plain(name)) if len(it) >= _SAYING} - _OF_ALL
 
@@ -151,8 +154,8 @@ def _data(seen: Index, end: End) -> Ends | None:
     given = [it for it in given if _DIGITS.sub("", it.name) != _DIGITS.sub("", end.name)]
     unread = [it for it in given if not at_work(it.subscribers)]
     # Joints come from several nodes, and a node that merges them need not have all.
-    several = words.JOINTS in (kind, end.type)
-    akin = [it for it in unread if _words(seen, it.name) & _words(seen, end.name)]
+    several = words.JOINTS in (kind, end.type) and not seen.publishes_description(end.node)
+    akin = [it for it in unread if _telling_words(seen, it.name) & _telling_words(seen, end.name)]
     unread = akin if len(akin) == 1 else unread
     same = [it for it in given if it.type == end.type and words.is_of_a_body(end.type)]
     return _only(given if several and unread else unread or ([] if several else same))
@@ -211,7 +214,9 @@ def _served(seen: Index, end: End) -> Iterator[Ends]:
     for it in _servers(seen).get((end.kind, end.type, robot), ()):
         own = any(one.node != end.node and seen.robot(one.node) == robot for one in it.servers)
         common = end.type.startswith(COMMON)
-        same = last == last_word(it.name) or _words(seen, it.name) == _words(seen, end.name)
+        same = last == last_word(it.name) or _telling_words(seen, it.name) == _telling_words(
+            seen, end.name
+        )
         alike = end.type.startswith(_TRIGGERS) and same
         if own and not at_work(it.clients) and (alike or not common):
             yield it
@@ -270,7 +275,7 @@ def meant(seen: Index, end: End) -> Ends | None:
     mux = end.role == SUBSCRIBES and chooses(end.node)
     if not (is_needed(end) or (mux and end.code_name)) or not end.type:
         return None
-    given = _given(seen)
+    given = _sent_or_served(seen)
     own = {"", seen.robot(end.node)}
     same = {at: it for one in own for at, it in given.get((end.kind, end.type, one), ())}
     ranked = (same[at] for at in sorted(same) if not _is_costmap(same[at]))
@@ -286,13 +291,13 @@ def meant(seen: Index, end: End) -> Ends | None:
         near = nearest(last_word(seen.plain(end.name)), words_of, alike=_SLIP)
         return alike.get(words_of.get(near, ""))
     if end.type.startswith(_PLAIN_DATA) and not last:
-        own_words = _words(seen, end.name)
-        alike = {name: it for name, it in alike.items() if own_words & _words(seen, name)}
+        own_words = _telling_words(seen, end.name)
+        alike = {name: it for name, it in alike.items() if own_words & _telling_words(seen, name)}
     return alike.get(nearest(end.name, last or alike, alike=0.0))
 
 
 @once
-def _given(seen: Index) -> Mapping[tuple[str, str, str], list[tuple[int, Ends]]]:
+def _sent_or_served(seen: Index) -> Mapping[tuple[str, str, str], list[tuple[int, Ends]]]:
     """Return what is sent or served, with its position, by kind, type and sending robot: a search
     for each end would take the square of the robots."""
     found: dict[tuple[str, str, str], list[tuple[int, Ends]]] = defaultdict(list)

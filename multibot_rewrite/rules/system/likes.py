@@ -3,8 +3,6 @@
 one and not, or less often, from another.
 """
 
-from __future__ import annotations
-
 import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
@@ -91,7 +89,7 @@ def _lost_descriptions(seen: Index) -> Iterator[Finding]:
 @once
 def made_of(seen: Index) -> Mapping[str, MadeOf]:
     """Return the nodes and their endpoints of each robot."""
-    return {robot: MadeOf(own, _ends(seen, own)) for robot, own in nodes_of_each(seen).items()}
+    return {robot: MadeOf(own, _uses(seen, own)) for robot, own in nodes_of_each(seen).items()}
 
 
 @once
@@ -106,7 +104,7 @@ def nodes_of_each(seen: Index) -> Mapping[str, Mapping[str, str]]:
     return own
 
 
-def _ends(seen: Index, nodes: Mapping[str, str]) -> Mapping[_Key, End]:
+def _uses(seen: Index, nodes: Mapping[str, str]) -> Mapping[_Key, End]:
     ends = {}
     by_node, plain_of = seen.by_node, seen.plain
     for plain, name in nodes.items():
@@ -207,7 +205,7 @@ ENOUGH = 10
 
 @system_rule("MG326", "less-than-another-robot", WARNING)
 def less_than_another_robot(seen: Index) -> Iterator[Finding]:
-    """Report it compared with the robot that has the most messages on the topic."""
+    """Report robots with fewer messages than the one with the most on such a topic."""
     yield from _silent_or_slow(seen)
     yield from _slow_transforms(seen)
     # Name without the robot's -> robot -> name, of the topics whose messages were counted.
@@ -352,8 +350,7 @@ def has_likes_of(seen: Index, robot: str, node: str) -> bool:
 
 @once
 def _first_to_do(seen: Index) -> Mapping[tuple[str, str, str, str], str]:
-    """Return the first node for what is done with a name of its own robot: by kind, name without
-    the robot's, type and role."""
+    """Return the first node for each use of its robot's names, by kind, plain name, type and role."""
     first: dict[tuple[str, str, str, str], str] = {}
     for ends in seen.by_name.values():
         robot = seen.robot(ends.name) if ends.kind in (TOPIC, ACTION) else ""

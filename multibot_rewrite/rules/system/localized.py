@@ -3,8 +3,6 @@
 tf2 drops transforms as they come.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Set
 from math import inf, isfinite
 from typing import NamedTuple
@@ -37,7 +35,7 @@ class _Body(NamedTuple):
 
 @system_rule("MG415", "map-not-joined", ERROR, absence=True)
 def map_not_joined(seen: Index) -> Iterator[Finding]:
-    """Report it unless the tree is in pieces below the odometry, which is another finding."""
+    """Report a map that no transform joins to the robot; pieces below the odometry are MG406."""
     for tree in seen.trees:
         silent = (it for it in tree.listeners if switch(TF_SWITCHES, it))
         localizers = [it for it in (*tree.senders, *silent) if _starts_at(seen, it)]
@@ -45,7 +43,7 @@ def map_not_joined(seen: Index) -> Iterator[Finding]:
             continue
         for node in unique(localizers):
             body, start = _body(seen, tree, seen.robot(node)), _starts_at(seen, node)
-            if body and node not in _told_not_to(seen):
+            if body and node not in _forbidden_senders(seen):
                 yield map_not_joined.finding(
                     f"sends no {_MAP} -> {body.root} on {tree.topic}, and no other node does",
                     **_why(seen, tree, node, body, start.name if start else "")._asdict(),
@@ -80,7 +78,7 @@ def _is_of(seen: Index, frame: str, robot: str) -> bool:
 
 
 @once
-def _told_not_to(seen: Index) -> Set[str]:
+def _forbidden_senders(seen: Index) -> Set[str]:
     """Return the nodes that a parameter forbids to send a transform."""
     return {node for it in seen.system.edges if it.sure == OFF for node in it.publishers}
 
@@ -130,7 +128,7 @@ _TOLERANCE = 10e-3
 
 @system_rule("MG416", "transform-refused", ERROR)
 def transform_refused(seen: Index) -> Iterator[Finding]:
-    """Report it by the checks of BufferCore::setTransformImpl, once per topic and reason."""
+    """Report transforms that BufferCore::setTransformImpl refuses, once per topic and reason."""
     edges = [it for tree in seen.trees for it in tree.edges]
     found = lists_by_key(((it.topic, why), it) for it in edges if (why := _why_dropped(it)))
     for (topic, why), edges in found.items():
@@ -178,7 +176,7 @@ _FAR = 20.0
 
 @system_rule("MG418", "part-far-away", WARNING)
 def part_far_away(seen: Index) -> Iterator[Finding]:
-    """Report it by the length alone: what is below the map is as far away as a building is long."""
+    """Report parts that are implausibly far from their parent; below the map distance is no fault."""
     for tree in seen.trees:
         above = {it.child: it.parent for it in tree.edges}
         for it in tree.edges:

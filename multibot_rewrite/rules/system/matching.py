@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Dangers of connections: both sides of a name are there and do not connect, by type or QoS."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from functools import lru_cache
@@ -13,7 +11,7 @@ from multibot_rewrite.base.conventions import EVERYBODYS, STAMP_SWITCHES, switch
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Setting
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import shorten
-from multibot_rewrite.knowledge.stacks import older_node
+from multibot_rewrite.knowledge.node_sets import older_node
 from multibot_rewrite.rules.declaration import see, system_rule, where
 from multibot_rewrite.rules.system.causes import Cause, caused, plugin_of, to_set
 from multibot_rewrite.system import words
@@ -32,7 +30,7 @@ STAMPED = "Stamped"
 
 @system_rule("MG306", "types-differ", ERROR, all_ends=True)
 def types_differ(seen: Index) -> Iterator[Finding]:
-    """Report it unless one of a node's ends connects with the type of the other side, or the plan."""
+    """Report ends of one topic with other types, unless one of the node's ends connects."""
     by_plan = planned_types(seen)
     for ends in seen.by_name.values():
         every = (*ends.publishers, *ends.subscribers, *ends.servers, *ends.clients)
@@ -54,7 +52,7 @@ def types_differ(seen: Index) -> Iterator[Finding]:
         if takers and not apart:
             # Every reader hears somebody; a sender may be heard by nobody.
             others, apart = takers, _apart(givers, _all_types(takers))
-        yield from (_differs(seen, ends, own, others) for own in apart.values())
+        yield from (_types_differ(seen, ends, own, others) for own in apart.values())
 
 
 @once
@@ -70,7 +68,7 @@ def planned_types(seen: Index) -> Mapping[tuple[str, str], Set[str]]:
     return found
 
 
-def _differs(seen: Index, ends: Ends, own: Sequence[End], others: Sequence[End]) -> Finding:
+def _types_differ(seen: Index, ends: Ends, own: Sequence[End], others: Sequence[End]) -> Finding:
     asked, given = dict(_all_types(own)), dict(_all_types(others))
     message, cause = _difference(ends.name, others[0].node, asked, given)
     stamped = _by_a_switch(asked.keys(), given.keys())
@@ -232,7 +230,7 @@ def _never_meets(seen: Index, first: _Refused, *more: _Refused) -> Finding:
 
 @system_rule("MG309", "not-latched", ERROR)
 def not_latched(seen: Index) -> Iterator[Finding]:
-    """Report it unless a subscriber asks for it, or a plan has another QoS: those are findings."""
+    """Report latched topics with a volatile sender or reader, or with another QoS than planned."""
     topics = seen.expected.system.topics if seen.expected else ()
     planned = {it.name: it.qos for it in topics if it.qos}
     for name, qos in planned.items():

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Dangers of names: a subscriber or client whose other side has nearly the same name, two servers."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence, Set
 from typing import NamedTuple
@@ -84,8 +82,7 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
 
 
 def _of_robots(seen: Index, end: End) -> Sequence[str]:
-    """Return the robots' topics of a name that a node outside of them reads: sensor data, odometry,
-    a map."""
+    """Return the robots' topics that a node outside of them reads: sensors, odometry, a map."""
     kind = words.kind_of_data(end.name, end.type)
     outside = not (seen.robot(end.node) or seen.robot(end.name) or seen.is_tool(end.node))
     if not (outside and kind) or is_from_outside(end.name) or words.moves(end.name, end.type):
@@ -146,7 +143,7 @@ def _published_instead(
     same = (it for it in hidden if it in unheard and unheard[it].type == end.type)
     if found := next(filter(is_of_another, same), ""):
         return found
-    return alike(end.name, _spelled(seen).get(end.type, NONE), end.type, is_of_another)
+    return alike(end.name, _topics_by_type(seen).get(end.type, NONE), end.type, is_of_another)
 
 
 def _is_of_other_robot(seen: Index, name: str, other: str) -> bool:
@@ -156,7 +153,7 @@ def _is_of_other_robot(seen: Index, name: str, other: str) -> bool:
 
 
 @once
-def _spelled(seen: Index) -> Mapping[str, Spelled]:
+def _topics_by_type(seen: Index) -> Mapping[str, Spelled]:
     """Return the published topics by type, for a search by similar name."""
     return {type_: Spelled(it.name for it in own) for type_, own in _published(seen).items()}
 
@@ -278,7 +275,9 @@ def server_names_miss(seen: Index) -> Iterator[Finding]:
     for ends in seen.by_name.values():
         if ends.kind != TOPIC and not ends.servers:
             for end in filter(_runs, _each_node(ends.clients)):
-                yield from _unserved(seen, end, _served(seen).get((end.kind, end.type), _NOBODY))
+                yield from _unserved(
+                    seen, end, _served_names(seen).get((end.kind, end.type), _NOBODY)
+                )
 
 
 def not_managed(seen: Index, manager: str, nodes: Sequence[str], else_: str = "") -> Cause:
@@ -303,7 +302,7 @@ _NOBODY = _Served({}, {}, NONE)
 
 
 @once
-def _served(seen: Index) -> Mapping[tuple[str, str], _Served]:
+def _served_names(seen: Index) -> Mapping[tuple[str, str], _Served]:
     found: dict[tuple[str, str], dict[str, Ends]] = defaultdict(dict)
     for (kind, name), ends in seen.by_name.items():
         if ends.servers:
@@ -391,8 +390,8 @@ def _missed_server(seen: Index, end: End, lost: str, other: str, level: str) -> 
     parts = f"{ACTION_PARTS}," if end.kind == ACTION else ""
     cause = f"pass the rule {end.name}:={other},{parts} or start it in the namespace of the robot"
     remaps: tuple[Remap, ...] = (Remap(end.node, end.name, other),)
-    managed = [it.node for it in seen.by_name[end.kind, other].clients if _manages(it.node)]
-    if _manages(end.node) and managed:
+    managed = [it.node for it in seen.by_name[end.kind, other].clients if _is_manager(it.node)]
+    if _is_manager(end.node) and managed:
         cause, remaps = f"{managed[0]} manages that node already: do not start {end.node}", ()
     clicked = is_viewer(end.node) and not is_spawner(end.node)
     return server_names_miss.finding(
@@ -402,7 +401,7 @@ def _missed_server(seen: Index, end: End, lost: str, other: str, level: str) -> 
     )  # fmt: skip
 
 
-def _manages(node: str) -> bool:
+def _is_manager(node: str) -> bool:
     return last_word(node).startswith(MANAGER)
 
 

@@ -212,14 +212,15 @@ def _why_besides(plan: Index, end: End, other: str) -> Cause:
         return Cause(f"a remap rule or parameter of {robot} names {other}")
     if plugin:
         return caused(f"{plugin} has no namespace or remap rule for it, see {place}", place)
-    target = f"{name}/{robot}" if plan.of_names.robot_is_last else f"/{robot}{name}"
+    word = plan.of_names.tag(robot)
+    target = f"{name}/{word}" if plan.of_names.robot_is_last else f"/{word}{name}"
     rule = how_to_pass(plan, node, f"{name}:={target}")
     hint = f"an absolute name in its code or parameters; pass {rule}"
     return Cause(hint, remaps=(Remap(node, name, target),))
 
 
 def _why_missing(plan: Index, seen: Index, planned: End, used: str) -> Cause:
-    """Return the answer to the most common question: why does /robot1/cmd_vel never appear?"""
+    """Return the likely cause why a planned name, such as /robot1/cmd_vel, never appears."""
     if not used:
         managed = (planned.node, SERVICE, SERVES, f"{planned.node}/get_state") in plan.by_key
         state = f"; is it configured? ros2 lifecycle get {planned.node}" if managed else ""

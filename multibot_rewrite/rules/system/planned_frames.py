@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rules about tf frames by a plan: those under other names, those besides, and those not sent."""
 
-from __future__ import annotations
-
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence, Set
 from typing import NamedTuple
@@ -49,7 +47,7 @@ Strays = Mapping[str, Sequence[Stray]]
 
 @planned_rule("MG207", "frame-without-robot-name", ERROR, nodes=False, absence=True)
 def frame_without_robot_name(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Report it for one robot only; otherwise it is a frame of several robots."""
+    """Report a planned frame that is sent without the robot's name, for one robot only."""
     for tree, robot, found in _of_each(plan, seen):
         if bare := [it for it in found if it.bare]:
             bare.sort(key=lambda it: robot.frames.index(it.meant))
@@ -177,7 +175,7 @@ def _strays_of(plan: Index, tree: Tree, present: Set[str]) -> Strays:
     # A moving frame on a robot's own topic may be anything that it detects.
     own, robots = home_of(plan, tree), {*robots_on(plan, tree)}
     fixed = {it.child for it in tree.edges if it.static}
-    for name in (it for it in frames_in(tree) if it not in _known(plan)):
+    for name in (it for it in frames_in(tree) if it not in _planned_frame_names(plan)):
         robot = plan.frame_robot(name)
         meant = _meant_by(plan).get(name, {}) if not robot else {}
         plain = {one: it for one, it in meant.items() if one in robots}
@@ -200,7 +198,7 @@ def _strays_of(plan: Index, tree: Tree, present: Set[str]) -> Strays:
 
 
 @once
-def _known(plan: Index) -> Set[str]:
+def _planned_frame_names(plan: Index) -> Set[str]:
     return {*plan.system.shared_frames}.union(*plan.frames_of.values())
 
 

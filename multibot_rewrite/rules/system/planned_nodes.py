@@ -28,6 +28,7 @@ from multibot_rewrite.system.records import (
     Topic,
     alternatives,
 )
+from multibot_rewrite.system.words import is_viewer
 
 
 @planned_rule("MG101", "missing-node", ERROR, absence=True, drawn="missing")
@@ -71,12 +72,11 @@ def _waiting(plan: Index, seen: Index, node: str) -> str:
 
 
 def _missing(plan: Index, seen: Index, robot: Robot) -> list[str]:
-    """Return the missing nodes; an optional one is missing only if it runs under another name."""
-    return [
-        node
-        for node in plan.own[robot.name]
-        if node not in seen.nodes and (node not in plan.may_miss or node in matches(plan, seen))
-    ]
+    """Return the missing nodes; an optional one is missing only if it runs under another name.
+    A viewer is not: one outside the robot shows all robots."""
+    moved = {it for it in matches(plan, seen) if not is_viewer(it)}
+    due = (it for it in plan.own[robot.name] if it in moved or it not in plan.may_miss)
+    return [it for it in due if it not in seen.nodes]
 
 
 def is_absent(plan: Index, seen: Index, robot: str) -> bool:
@@ -98,7 +98,7 @@ def _not_started(plan: Index, node: str) -> Cause:
 
 @planned_rule("MG108", "unplanned-node", WARNING, drawn="unexpected")
 def unplanned_node(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Report it only if the plan has nodes of its robot."""
+    """Report nodes that are not in the plan, if the plan has nodes of their robot."""
     if not unplanned_nodes(plan, seen):
         return
     meant = set(matches(plan, seen).values())
@@ -116,7 +116,7 @@ def unplanned_node(plan: Index, seen: Index) -> Iterator[Finding]:
             foreign = [it for it in names if it not in shared and plan.robot(it) != robot]
             uses = f"; it uses {shorten(foreign)}, without the name of {robot}" if foreign else ""
             message = f"is a node of {robot}, but not in the plan{uses}"
-            cause = "add it to the plan: with --stack or --nodes, or by hand"
+            cause = "add it to the plan: with --node-set or --nodes, or by hand"
         else:
             message = "is of no robot, and not in shared_nodes of the plan"
             cause = "add it there if it serves all robots; otherwise give it its robot's namespace"
@@ -127,7 +127,7 @@ def unplanned_node(plan: Index, seen: Index) -> Iterator[Finding]:
 
 @planned_rule("MG109", "missing-robot", ERROR, absence=True, drawn="missing")
 def missing_robot(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Report one finding instead of one for each node."""
+    """Report a robot none of whose planned nodes runs, in one finding."""
     for robot in plan.system.robots:
         if _is_missing(plan, seen, robot):
             count = len(plan.own[robot.name])
@@ -153,7 +153,7 @@ def _machines(seen: Index) -> Machines:
 
 @planned_rule("MG125", "several-alternatives-run", ERROR)
 def several_alternatives_run(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Report one finding a group."""
+    """Report alternatives that run at the same time, one finding a group."""
     for group, robot in _groups(plan):
         running = tuple(node for node in group if node in seen.nodes)
         if len(running) > 1:
@@ -166,7 +166,7 @@ def several_alternatives_run(plan: Index, seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG112", "enclave-of-another-robot", ERROR, drawn="cross-talk")
 def enclave_of_another_robot(seen: Index) -> Iterator[Finding]:
-    """Report it by the robots' names in the path of the enclave."""
+    """Report nodes in another robot's enclave, by the robots' names in its path."""
     robots = {*seen.robots}
     for name, enclave in dict.fromkeys((it.name, it.enclave) for it in seen.system.nodes):
         robot = seen.robot(name) if enclave else ""
@@ -209,8 +209,7 @@ _BRIDGES = ("bridge", "parameter_bridge")
 
 @planned_rule("MG121", "sender-not-planned", ERROR, drawn="cross-talk", nodes=False)
 def sender_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Report each node that may not send; of too many senders one a topic, at one that is not
-    planned if there is one."""
+    """Report each node that may not send; of too many senders of a topic one, an unplanned one."""
     if not seen.nodes:
         yield from _too_many_recorded(plan, seen)
         return
@@ -252,7 +251,7 @@ def _too_many_recorded(plan: Index, seen: Index) -> Iterator[Finding]:
 
 @planned_rule("MG126", "bridged-topic-missing", ERROR, absence=True, drawn="missing")
 def bridged_topic_missing(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Report one finding for a robot; one for all if nothing is bridged."""
+    """Report topics that a bridge should bring, one finding for a robot, or for all."""
     rows = [(topic, role) for topic in plan.system.topics for role in topic.bridge]
     missing = [(topic, role) for topic, role in rows if not _is_carried(seen, topic, role)]
     if missing and len(missing) == len(rows):

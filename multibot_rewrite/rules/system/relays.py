@@ -78,17 +78,17 @@ def _mux_left_out(seen: Index) -> Iterator[Finding]:
         for mux in filter(chooses, nodes_of(ends.publishers)):
             for given in _velocities(seen):
                 readers = nodes_of(at_work(given.subscribers))
-                drivers = [it for it in readers if it != mux and _word(seen, it) not in LIMITS]
+                drivers = [it for it in readers if it != mux and _base(seen, it) not in LIMITS]
                 if mux in readers and drivers and given.publishers:
                     yield limits_left_out.finding(
                         f"obeys {given.name}, an input of {mux}; no node reads its output {ends.name}",
-                        f"pass it the rule {_word(seen, given.name)}:={_word(seen, ends.name)}",
+                        f"pass it the rule {_base(seen, given.name)}:={_base(seen, ends.name)}",
                         robot=seen.robot(drivers[0]), node=drivers[0], names=(given.name, ends.name),
                         remaps=tuple(Remap(it, given.name, ends.name) for it in drivers),
                     )  # fmt: skip
 
 
-def _word(seen: Index, name: str) -> str:
+def _base(seen: Index, name: str) -> str:
     return last_word(seen.plain(name))
 
 
@@ -106,7 +106,7 @@ def data_in_a_circle(seen: Index) -> Iterator[Finding]:
         for ends in both if len(both) == 1 else ():
             yield data_in_a_circle.finding(
                 f"reads {ends.name}, on which it sends",
-                "let it read, or send, on another topic",
+                "remap its input or its output to another topic",
                 robot=seen.robot(node), node=node, names=(ends.name,),
             )  # fmt: skip
         if len(read) == len(sent) == 1 and not both:
@@ -135,5 +135,5 @@ def _passing(seen: Index) -> Mapping[str, tuple[list[Ends], list[Ends]]]:
     return {
         it: (read, sent)
         for it, (read, sent) in own.items()
-        if read[0].type == sent[0].type and not _BRIDGE.search(_word(seen, it))
+        if read[0].type == sent[0].type and not _BRIDGE.search(_base(seen, it))
     }

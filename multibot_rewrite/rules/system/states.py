@@ -8,8 +8,6 @@ activated; a command interface has one owner) and its chaining: a controller's o
 called ``CONTROLLER/...``.
 """
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import NamedTuple
@@ -267,7 +265,7 @@ def missing(known: Sequence[Interface]) -> Iterator[Missing]:
         yield Missing((first, *more), meant or next(beside, None), near)
 
 
-def said_of_missing(it: Missing, shown: Callable[..., str] | None) -> tuple[str, str]:
+def missing_message(it: Missing, shown: Callable[..., str] | None) -> tuple[str, str]:
     """Return message and hint about a claim of one robot. Known places are ``shown`` so."""
     first, *more = it.claims
     also = f" and {len(more)} more" if more else ""
@@ -306,7 +304,7 @@ def claims_any(known: Iterable[Interface]) -> bool:
 
 
 def _claimed_twice(seen: Index) -> Iterator[Finding]:
-    """Report it of one controller; two controllers are reported if both are active."""
+    """Report command interfaces that one controller claims by two parameters."""
     for other, it in claimed_twice(seen.system.interfaces):
         yield interface_claimed_twice.finding(
             f"claims {it.name} by two parameters", f"name another joint{see((other, it))}",

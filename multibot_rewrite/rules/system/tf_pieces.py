@@ -35,6 +35,7 @@ from multibot_rewrite.system.index import Index, Tree, robots_of
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import NOWHERE, OFF, Edge
 from multibot_rewrite.system.tf_copies import tree_topic
+from multibot_rewrite.system.words import START_POSE, last_word
 
 # So many pairs of frames of a robot are compared.
 _COMPARED = 20_000
@@ -58,7 +59,7 @@ def tf_tree_in_pieces(seen: Index) -> Iterator[Finding]:
 
 def _by_usual_names(seen: Index) -> Iterator[Finding]:
     """Report trees in pieces by usual names, unless an unknown node may join the pieces."""
-    yield from told_not_to(seen)
+    yield from forbidden_transforms(seen)
     if seen.in_doubt:
         for tree in seen.trees:
             yield from _senders_apart(seen, tree)
@@ -112,12 +113,12 @@ def _misspelled(seen: Index) -> Iterator[Finding]:
             near = near_sent(it.parent, it.child) if bare else ""
             if near:
                 why = f"{it.child} is sent below {it.parent}, and nothing sends {it.parent}"
-                yield _slipped(seen, tree, it, near, (it.parent, root_of(near, above)), why)
+                yield _misspelt_frame(seen, tree, it, near, (it.parent, root_of(near, above)), why)
             leaf = it.child not in parents and not is_of_description(seen, it)
             near = near_root(it.child, it.parent) if leaf else ""
             if near:
                 why = f"{it.child} is sent below {it.parent}, and has nothing below it"
-                yield _slipped(seen, tree, it, near, (root_of(it.child, above), near), why)
+                yield _misspelt_frame(seen, tree, it, near, (root_of(it.child, above), near), why)
 
 
 def _near(seen: Index, frames: Collection[str]) -> Callable[[str, str], str]:
@@ -131,7 +132,7 @@ def _near(seen: Index, frames: Collection[str]) -> Callable[[str, str], str]:
         robot = seen.frame_robot(frame)
         known = (own[robot] | own[""] if robot else {*frames}) - {but}
         left[robot] -= len(known)
-        return _meant(frame, known) if left[robot] > 0 else ""
+        return _near_frame(frame, known) if left[robot] > 0 else ""
 
     def near(frame: str, but: str) -> str:
         found = nearest_of(frame)
@@ -140,7 +141,7 @@ def _near(seen: Index, frames: Collection[str]) -> Callable[[str, str], str]:
     return near
 
 
-def _meant(name: str, others: Collection[str]) -> str:
+def _near_frame(name: str, others: Collection[str]) -> str:
     """Return the frame with nearly this name; names that differ in numbers alone are two things."""
     near = nearest(name, sorted(others), MISTYPED)
     slip = near and near not in name and name not in near and not differ_in_numbers(name, near)
@@ -157,7 +158,7 @@ def _unlike(name: str, other: str) -> tuple[str, list[str]]:
     return "_".join(one), ["_".join(two)]
 
 
-def _slipped(
+def _misspelt_frame(
     seen: Index, tree: Tree, it: Edge, near: str, roots: Sequence[str], why: str
 ) -> Finding:
     robot = seen.frame_robot(it.child) or only(robots_of(seen, tree.senders))
@@ -172,7 +173,7 @@ def in_pieces(robot: str, topic: str, roots: Sequence[str]) -> str:
     return f"{whose} on {topic} has {len(roots)} roots: {', '.join(roots)}"
 
 
-def told_not_to(seen: Index) -> Iterator[Finding]:
+def forbidden_transforms(seen: Index) -> Iterator[Finding]:
     """Yield transforms that no node sends, because parameters of those that could forbid it."""
     sent = {(tree.topic, edge.child) for tree in seen.trees for edge in tree.edges}
     off: dict[tuple[str, str], list[Edge]] = defaultdict(list)
@@ -228,12 +229,15 @@ def is_sure(seen: Index, found: Finding, moved: bool) -> bool:
     """Return whether all of a tree in pieces is in the launch file. For a robot that is not
     ``moved`` by a plugin in a simulator a driver that is started apart may send the odometry, and
     what is sent on another topic of the robot somebody may bring to its tree; pieces without the
-    usual frames may be meant."""
+    usual frames may be meant. Where a build's start pose places the robot, nothing localizes it."""
     loose = [it for it in loose_odometry(seen) if {*found.names} & {*it}]
+    own = (it for it in seen.nodes if seen.robot(it) == found.robot)
+    if any(last_word(seen.plain(it)) == START_POSE for it in own):
+        return False
     lacking = [(odom, it) for odom, root in loose for it in found.names if it not in (odom, root)]
     if (loose and not moved) or any(sent_elsewhere(seen, found.robot, *it) for it in lacking):
         return False
-    return any(it.robot == found.robot for it in (*told_not_to(seen), *_by_frames(seen)))
+    return any(it.robot == found.robot for it in (*forbidden_transforms(seen), *_by_frames(seen)))
 
 
 def is_of_description(seen: Index, edge: Edge) -> bool:

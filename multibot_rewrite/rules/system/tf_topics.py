@@ -46,16 +46,16 @@ def tf_on_two_topics(seen: Index) -> Iterator[Finding]:
         topics = senders.get(robot, {})
         home = _home(seen, robot, topics)
         others = (it for it in topics if it != home and it not in mixed)
-        odd = [it for it in others if not _is_beside(seen, robot, topics, it)]
-        yield from (_elsewhere(seen, robot, home, it, topics[it], "send") for it in odd)
+        odd = [it for it in others if not _is_own_topic(seen, robot, topics, it)]
+        yield from (_tf_on_other_topic(seen, robot, home, it, topics[it], "send") for it in odd)
         heard = listeners.get(robot, {})
         lost = [it for it in heard if it not in topics and it != home]
         for topic in lost:
             deaf = [it for it in heard[topic] if it not in heard.get(home, ())]
             if deaf:
-                yield _elsewhere(seen, robot, home, topic, deaf, "hear")
+                yield _tf_on_other_topic(seen, robot, home, topic, deaf, "hear")
     yield from _frames_of_another(seen, senders)
-    yield from _frames_beside(seen, senders)
+    yield from _frames_on_foreign_topic(seen, senders)
     yield from _rviz_hears_nothing(seen)
 
 
@@ -152,7 +152,7 @@ def _has_names_of(
     return any(not there >= {*plan.declared[it].frames} for it in owners)
 
 
-def _frames_beside(
+def _frames_on_foreign_topic(
     seen: Index, senders: Mapping[str, Mapping[str, Sequence[str]]]
 ) -> Iterator[Finding]:
     """Yield a robot's frames on a topic of none of its nodes, from a node of no robot. A node that
@@ -207,7 +207,7 @@ def _is_copy(seen: Index, tree: Tree, children: Container[str], edge: Edge, whol
     return hears or named
 
 
-def _is_beside(seen: Index, robot: str, topics: Mapping[str, Sequence[str]], topic: str) -> bool:
+def _is_own_topic(seen: Index, robot: str, topics: Mapping[str, Sequence[str]], topic: str) -> bool:
     """Return whether it is in the robot's namespace, and only nodes send there that send to its
     tree as well, or bridges of a simulator. A row of these names the topic, so it is meant."""
     at_home = topics.get(_home(seen, robot, topics), ())
@@ -242,14 +242,14 @@ def _named_on_shared(seen: Index) -> Mapping[str, Set[str]]:
     return {it.topic: {seen.frame_robot(edge.child) for edge in it.edges} for it in shared}
 
 
-def _elsewhere(
+def _tf_on_other_topic(
     seen: Index, robot: str, home: str, topic: str, nodes: Sequence[str], verb: str
 ) -> Finding:
     does = f"{verb}s" if len(nodes) == 1 else verb
     message = f"{shorten(nodes)} {does} tf on {topic}, but the tf of {robot} is on {home}"
     other = seen.robot(topic)
     # tf2 asks for /tf: a rule for the name that another rule made is none.
-    target = "tf" if home.startswith(f"/{robot}/") else home
+    target = "tf" if home.startswith(f"/{seen.of_names.tag(robot)}/") else home
     rules = f"-r /{TF}:={target} -r {static_topic(f'/{TF}')}:={static_topic(target)}"
     hint = f"pass {rules}: to the whole process, where the node shares one"
     if home == f"/{TF}":

@@ -66,8 +66,7 @@ def _senders(tree: Tree, edges: Iterable[Edge]) -> Sequence[str]:
 def _who_sends(
     seen: Index, tree: Tree, edges: Sequence[tuple[str, str]], senders: Sequence[str]
 ) -> str:
-    """Return which of the senders may have sent these: known ones first, then those of the frame's
-    robot."""
+    """Return the possible senders of these transforms: known ones first, then the frame's robot."""
     frame = edges[0][1]
     robots = robots_of(seen, senders)
     owner = seen.frame_robot(frame) or seen.robot(tree.topic)
@@ -84,12 +83,12 @@ def _who_sends(
         return f"{and_then(robots)} need frames of their own, or tf topics of their own; {sent}"
     if len(robots) > 1:
         return f"{sent}; a node of another robot that has the names of {owner}?"
-    return sent or "two nodes send it: stop one"
+    return sent or "two nodes send parts of it: stop one"
 
 
 @system_rule("MG402", "robots-frames-collide", ERROR)
 def robots_frames_collide(seen: Index) -> Iterator[Finding]:
-    """Report it also if one robot has no name in its frames and all others have."""
+    """Report robots with the same frames on one topic, also if one robot's frames have no name."""
     for tree in seen.trees:
         who = collide(seen, tree)
         if who:
@@ -155,8 +154,7 @@ def _named_frames(seen: Index, tree: Tree) -> Iterator[str]:
 
 
 def _apart(seen: Index, tree: Tree, robots: Sequence[str]) -> Cause:
-    """Return how frames of several robots on one topic get apart: by their names where some have them,
-    else by topics, too."""
+    """Return how robots' frames on one topic get apart: by names if some have them, else by topics."""
     senders = f"the senders are {shorten(tree.senders, SEVERAL)}"
     named = "put the robot's name into these frames (urdf-postfix; a node's in its parameters)"
     if any(_named_frames(seen, tree)):
@@ -221,8 +219,7 @@ def _circles(parents: Mapping[str, Iterable[str]]) -> Iterator[tuple[str, ...]]:
 def _take_away(
     left: dict[str, set[str]], below: Mapping[str, Iterable[str]], gone: list[str]
 ) -> None:
-    """Take frames away, and those above which no way goes on without them: each way that is ``left``
-    has no end."""
+    """Remove frames and those that only lead to them: each way that is ``left`` has no end."""
     out = {*gone}
     for parent in gone:  # grows
         del left[parent]

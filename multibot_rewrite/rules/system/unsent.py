@@ -51,7 +51,7 @@ def nothing_known_sends(seen: Index) -> Iterator[Finding]:
         # That another robot has it from a node of the same system is not for a driver outside of it.
         elsewhere: dict[str, str] = {}
         for name in sorted(names) if robot else ():
-            given = _given(seen).get(seen.plain(name), ())
+            given = _names_without_robot(seen).get(seen.plain(name), ())
             if other := next((it for it in given if _of_its_kind(seen, it, robot)), ""):
                 elsewhere[name] = other
         if lacked := tuple(elsewhere):
@@ -88,7 +88,7 @@ def _frames(seen: Index) -> Mapping[str, Mapping[str, Set[str]]]:
 
 
 @once
-def _given(seen: Index) -> Mapping[str, Sequence[str]]:
+def _names_without_robot(seen: Index) -> Mapping[str, Sequence[str]]:
     """Return the names that are sent or served by their name without a robot's, the last one first."""
     return lists_by_key(
         (seen.plain(name), name)
@@ -122,8 +122,7 @@ def open_ends(seen: Index) -> list[End]:
 
 @system_rule("MG413", "frame-not-sent", WARNING, absence=True)
 def frame_not_sent(seen: Index) -> Iterator[Finding]:
-    """Report each frame once a robot, with all that read it; other names than the usual ones may be
-    those of a driver."""
+    """Report each unsent frame once a robot, with its readers; unusual names may be a driver's."""
     readers: dict[tuple[str, str, str], dict[str, Lookup]] = {}
     robots = dict.fromkeys(seen.robot(it.node) for it in seen.system.lookups)
     sent = {name: [it for tree in trees_of(seen, name) for it in tree.edges] for name in robots}

@@ -13,7 +13,7 @@ NAMES = {robot: robot for robot in ROBOTS}
 
 
 def lost(robot: str, topic: str = "cmd_vel", **more: str) -> Finding:
-    """A node of the robot that does not subscribe its topic."""
+    """Return a node of the robot that does not subscribe its topic."""
     message = f"it should subscribe topic /{robot}/{topic}, and does not"
     cause = f"its rule /{topic}:=/{robot}/{topic} did not reach it"
     node = f"/{robot}/driver"

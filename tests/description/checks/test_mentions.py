@@ -93,6 +93,8 @@ def test_text_of_a_link_is_read_by_nobody(element: str, warned: bool) -> None:
         # gazebo_ros node.cpp reads namespace, remapping, argument, parameter and qos of a <ros>.
         ("gazebo_ros_imu_sensor", "<ros><frame_name>wl</frame_name></ros>", False),
         ("acme", "<ros><frame_name>wl</frame_name></ros>", True),
+        # ROS 2's plugin reads <left_joint> (gazebo_ros_diff_drive.cpp), ROS 1's <leftJoint>.
+        ("gazebo_ros_diff_drive", "<leftJoint>j</leftJoint>", False),
         # Of another library nobody knows what it reads.
         ("acme", "<odometry_frame>odom</odometry_frame>", True),
         ("acme", "<extra>wl</extra>", True),

@@ -27,7 +27,7 @@ MARKER = re.compile(r"\s*<!-- multibot .*?-->")
 
 
 def options(layout: str, side: str, separators: tuple[str, str, str]) -> dict[str, object]:
-    """The words of a rewrite."""
+    """Return the words of a rewrite."""
     link, joint, topic = separators
     given = {"link": link, "joint": joint, "topic": topic}
     return {"layout": layout, "affix": side, "separators": given}
@@ -37,7 +37,7 @@ WAYS = [options(*way) for way in product(LAYOUTS, SIDES, SEPARATORS)]
 
 
 def without_traces(text: str) -> str:
-    """The text without the comments that tell of added elements."""
+    """Return the text without the comments that tell of added elements."""
     return MARKER.sub("", text)
 
 
@@ -51,7 +51,7 @@ def words(text: str | bytes, robot: str) -> list[str]:
 
 
 def outcome(text: str | bytes, robot: str, way: dict[str, object]) -> str:
-    """What a rewrite comes to: a code, nothing, or the names that it has doubled."""
+    """Return what a rewrite comes to: a code, nothing, or the names that it has doubled."""
     try:
         made = rewrite(text, robot, **way)  # type: ignore[arg-type]
     except RewriteRefused as error:

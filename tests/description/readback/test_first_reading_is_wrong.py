@@ -57,24 +57,24 @@ def none(*_: object) -> None:
 
 
 def own_text(element: Any) -> str:
-    """The text before anything else, comments too."""
+    """Return the text before anything else, comments too."""
     return (element.text or "").strip()
 
 
 def majority(found: Any, element: Any) -> Any:
-    """The release with more of the tags, whatever <ros> says."""
+    """Return the release with more of the tags, whatever <ros> says."""
     tags = {child.tag for child in element}
     return max(found, key=lambda section: (len(section.tags & tags), section.ros))
 
 
 def without(*kinds: str) -> Callable[..., dict[str, str]]:
-    """The kinds that are renamed, without some."""
+    """Return the kinds that are renamed, without some."""
     right = naming._active
     return lambda *given: {k: it for k, it in right(*given).items() if k not in kinds}
 
 
 def unseen(path: str) -> Callable[[TreeNode, Any], None]:
-    """A tree that has no place for the sites at a path."""
+    """Return a tree that has no place for the sites at a path."""
     right = TreeNode._add
     return lambda node, site: None if site.path == path else right(node, site)
 
@@ -179,7 +179,7 @@ FAULTS = {
 
 
 def found(fault: Fault) -> tuple[set[str], tuple[str, ...]]:
-    """What is shared by the words of the findings, and why the rewrite is not verified."""
+    """Return what is shared by the words of the findings, and why the rewrite is not verified."""
     result = rewrite(ROVER % fault.source, "robot1", layout=fault.layout)
     said = (re.search(r"would have the (\w+ '[^']*')", it.message) for it in result.findings)
     return {it[1] for it in said if it}, result.not_verified

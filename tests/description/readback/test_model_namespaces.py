@@ -35,7 +35,7 @@ def arm(namespace: str) -> str:
 
 
 def included(namespace: str) -> str:
-    """A model that is included, with a plugin for it."""
+    """Return a model that is included, with a plugin for it."""
     return f"<include><uri>x</uri><name>hand</name>{namespace}{DRIVE.format('turn')}</include>"
 
 

@@ -19,7 +19,7 @@ LAYOUTS = ("postfix", "tf-per-robot", "frames-per-robot")
 
 
 def both(text: bytes, layout: str, known: set[str]) -> tuple[set[Opened], set[Opened]] | None:
-    """What two robots open; None where the rewrite is refused or not verified."""
+    """Return what two robots open; None where the rewrite is refused or not verified."""
     try:
         one, other = rewrite_all(text, ["robot1", "robot2"], layout=layout)
     except MultibotError:

@@ -20,6 +20,10 @@ DRIVE = """<robot name="r"><link name="a"/><gazebo>
 </plugin></gazebo></robot>"""
 
 
+INCLUDED = "<gazebo><include><uri>model://x</uri></include></gazebo>"
+NO_LINK = ("1 robot without a link",)
+
+
 def of(*codes: str) -> tuple[str, ...]:
     return not_verified(Finding(code, "warning", "x") for code in codes)
 
@@ -87,6 +91,15 @@ def test_every_reason_is_a_warning_of_a_rewrite() -> None:
     [
         (LIDAR.format("scan"), ()),
         (LIDAR.format("{name}/scan"), ("1 topic shared by all robots",)),
+        # gz-sim Contact.cc and Classic's ContactSensor.cc read the topic in <contact> alone.
+        (
+            LIDAR.format("{name}/scan").replace("gpu_lidar", "contact"),
+            ("1 description the same for all robots",),
+        ),
+        # A <link> of a plugin is no link of the robot.
+        (LIDAR.format("x").replace('<link name="a"/>', "<own><link>a</link></own>"), NO_LINK),
+        # Its links are those of the model that it includes (x500 of PX4).
+        (LIDAR.format("x").replace('<link name="a"/>', INCLUDED), ("1 included model not read",)),
         (DRIVE.format("demo"), ()),
         (DRIVE.format(""), ()),
         (DRIVE.format("<!-- c -->demo"), ()),

@@ -27,7 +27,7 @@ def named(kind: str, name: str) -> str:
 
 
 def shared(text: bytes, layout: str) -> set[str]:
-    """What all robots would have of one robot's text."""
+    """Return what all robots would have of one robot's text."""
     reading = read(text, "rover", load_definitions((), NEWEST_LTS))
     found = same_for_all(reading.names, "robot1", make_naming(layout))
     return {named(it.kind, it.name) for it in found}

@@ -54,7 +54,7 @@ def text_for(body: str) -> str:
 
 
 def line_for(body: str) -> str:
-    """The one row or comment that a plugin with this grandchild gets, without its note.
+    """Return the one row or comment that a plugin with this grandchild gets, without its note.
 
     Of a grandchild, because some tags are known right below any plugin.
     """

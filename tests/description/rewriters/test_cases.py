@@ -65,7 +65,7 @@ Row = tuple[str, str, int]
 
 
 def run(case: Case, source: bytes | None = None) -> Rewrite:
-    """The rewrite of the case's input, or of another ``source``, for the first robot."""
+    """Return the rewrite of the case's input, or of another ``source``, for the first robot."""
     return _run(case.name, case.source if source is None else source)
 
 
@@ -75,30 +75,30 @@ def _run(name: str, source: bytes) -> Rewrite:
 
 
 def policy(case: Case) -> Policy:
-    """The options of the case that say how names are made."""
+    """Return the options of the case that say how names are made."""
     return cast(Policy, {key: it for key, it in case.options.items() if key not in NO_POLICY})
 
 
 def release(case: Case) -> str:
-    """The release that the case is about; empty where it is none."""
+    """Return the release that the case is about; empty where it is none."""
     return str(case.options.get("distro", ""))
 
 
 def beside(case: Case) -> dict[str, bytes]:
-    """The rewritten URDF that the rewritten SRDF of a case belongs to, as an option of ``strip``."""
+    """Return the rewritten URDF that a case's rewritten SRDF belongs to, as an option of ``strip``."""
     options = dict(case.options)
     urdf = options.pop("urdf", None)
     return {} if urdf is None else {"urdf": rewrite(urdf, ROBOTS[0], **options).data}
 
 
 def outside(case: Case) -> Declared:
-    """What the URDF beside an SRDF declares."""
+    """Return what the URDF beside an SRDF declares."""
     urdf = case.options.get("urdf")
     return {} if urdf is None else declarations(urdf.read_bytes(), "", builtin_tree((), NEWEST_LTS))
 
 
 def places(findings: tuple[Finding, ...]) -> list[str]:
-    """Findings the way case files write them."""
+    """Return findings the way case files write them."""
     return sorted(f"{finding.code}@{finding.line}" for finding in findings)
 
 
@@ -166,7 +166,7 @@ def line_ends_stay_crlf(case: Case) -> None:
 
 
 def crlf(data: bytes) -> bytes:
-    """The text with every line end written as Windows does."""
+    """Return the text with every line end written as Windows does."""
     return data.replace(b"\r\n", b"\n").replace(b"\n", b"\r\n")
 
 
@@ -244,12 +244,12 @@ def test_the_laws_hold(case: Case) -> None:
 
 
 def faults(checks: Iterable[Callable[[Case], None]], case: Case) -> list[str]:
-    """What each check finds wrong; thousands of cases make one test a check too dear."""
+    """Return what each check finds wrong; thousands of cases make one test a check too dear."""
     return [f"{check.__name__}: {problem}" for check in checks if (problem := fault(check, case))]
 
 
 def fault(check: Callable[[Case], None], case: Case) -> str:
-    """What a check finds wrong; empty for nothing."""
+    """Return what a check finds wrong; empty for nothing."""
     try:
         check(case)
     except AssertionError as error:
@@ -299,8 +299,9 @@ def inserted(rewriter: PluginDefinition) -> set[str]:
 
 
 def literals(rewriter: PluginDefinition) -> set[str]:
-    """What the consumer falls back to or hard-wires, but for private topics, frames of the world, and
-    what stands in front of names: no postfix reaches that, and it is reported (MB422)."""
+    """Return what the consumer falls back to or hard-wires, but for private topics, frames of
+    the world, and what stands in front of names: no postfix reaches that, and it is reported
+    (MB422)."""
     said = (it for it in rewriter.sites if it.form not in IN_FRONT)
     stated = {site.default.rpartition("?")[2] for site in said} - {*WORLD_FRAMES}
     defaults = {default for default in stated if "/../" not in default}
@@ -319,13 +320,13 @@ def test_every_row_of_the_definitions_renames_something() -> None:
 
 
 def rows(rewriter: PluginDefinition) -> list[SiteRow]:
-    """The rows of its own section at which something may be renamed."""
+    """Return the rows of its own section at which something may be renamed."""
     own = f"{rewriter.type} {rewriter.names[0]}"
     return [site for site in rewriter.sites if site.role != "keep" and site.section == own]
 
 
 def touched_rows(case: Case) -> Iterator[Row]:
-    """The rows at which the case renames a value."""
+    """Yield the rows at which the case renames a value."""
     _, plan, *_ = template = run(case).template
     for claim, spelling in zip(template.inventory.claims, plan.renames.values, strict=True):
         if spelling:
@@ -381,6 +382,6 @@ def test_a_wrong_folder_is_refused(tmp_path: Path, other: str) -> None:
 
 
 def write(path: Path, data: bytes) -> None:
-    """A file, and the folder it stands in."""
+    """Write a file, and make the folder that it is in."""
     path.parent.mkdir(exist_ok=True)
     path.write_bytes(data)

@@ -50,7 +50,7 @@ def contact(collision: str) -> str:
 def names(
     links: Sequence[Link], more: str = "", respell: Respell = lambda _, name: name
 ) -> list[str]:
-    """The made-up names, in document order of the collisions."""
+    """Return the made-up names, in document order of the collisions."""
     return list(collision_map(etree.fromstring(robot(links, more)), respell).values())
 
 

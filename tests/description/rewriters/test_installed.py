@@ -39,7 +39,7 @@ Make = Callable[..., Path]
 
 @pytest.fixture(scope="module")
 def acme(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder that pip installed the third-party package into."""
+    """Return the folder that pip installed the third-party package into."""
     source = tmp_path_factory.mktemp("source") / "acme"
     shutil.copytree(ACME, source)
     # Reading its plugin definitions must not run its code.
@@ -53,7 +53,7 @@ def acme(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def broken(acme: Path, tmp_path: Path) -> Path:
-    """A copy of what pip installed, to break."""
+    """Return a copy of what pip installed, to break."""
     return shutil.copytree(acme, tmp_path / "site")
 
 
@@ -110,7 +110,7 @@ def _path() -> list[str]:
 
 
 def complaint() -> str:
-    """What every call says now; always one line."""
+    """Return what every call says now; always one line."""
     with pytest.raises(DefinitionsError) as caught:
         rewrite('<robot name="a"><link name="none of it is needed"/></robot>', "r1")
     assert "\n" not in str(caught.value)
@@ -362,11 +362,8 @@ def test_a_mistake_of_the_user_is_not_blamed_on_a_package(make: Make, tmp_path: 
 
 
 @pytest.mark.slow
-def test_a_user_file_called_like_a_built_in_one_hides_nothing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (tmp_path / "hardware.vocab").write_text(SECTION.format(name="aa"))
-    monkeypatch.chdir(tmp_path)
+def test_a_user_file_called_like_a_built_in_one_hides_nothing(here: Path) -> None:
+    (here / "hardware.vocab").write_text(SECTION.format(name="aa"))
     builtin = list(load_definitions((), NEWEST_LTS, packages=False).names("hardware"))
     definitions = load_definitions(("hardware.vocab",), NEWEST_LTS, packages=False)
     assert list(definitions.names("hardware")) == builtin

@@ -42,7 +42,7 @@ Spot = tuple[str, int]
 
 
 def cold() -> Tree:
-    """A tree that nothing has asked for anything yet."""
+    """Return a tree that nothing has asked for anything yet."""
     return Tree(Definitions({"test.vocab": TEXT}, NEWEST_LTS))
 
 
@@ -61,7 +61,7 @@ def rewritten(tree: Tree) -> bytes:
 
 
 def stopping(spot: Spot, turn: int, then: Callable[[], None]) -> Callable[..., Any]:
-    """A trace that calls ``then`` when a line runs for the given time."""
+    """Return a trace that calls ``then`` when a line runs for the given time."""
     seen: Counter[Spot] = Counter()
 
     def trace(frame: FrameType, event: str, _: object) -> Any:
@@ -100,8 +100,8 @@ def lines_run() -> Counter[Spot]:
 
 
 def both(spot: Spot, turn: int) -> list[bytes]:
-    """What two threads make of a cold tree: the second reads its description while the first is at
-    that line, and proves its text when the first is done."""
+    """Return what two threads make of a cold tree: the second reads its description while the
+    first is at that line, and proves its text when the first is done."""
     tree = cold()
     read: list[Template] = []
 
@@ -115,7 +115,7 @@ def both(spot: Spot, turn: int) -> list[bytes]:
 
 
 def missed(turns: Callable[[int], range], every: int = 1) -> list[tuple[str, int]]:
-    """The lines at which two threads do not both make the right text."""
+    """Return the lines at which two threads do not both make the right text."""
     return [
         (Path(spot[0]).stem, spot[1])
         for spot, times in [*lines_run().items()][::every]

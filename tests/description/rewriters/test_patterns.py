@@ -132,7 +132,7 @@ COUNTS = ("", "", "", "", "*", "+", "?", "{2}", "{1,}", "{0,2}", "*?", "{2}?", "
 
 
 def made(rng: random.Random, depth: int = 1) -> str:
-    """A pattern, perhaps a faulty one."""
+    """Return a pattern, perhaps a faulty one."""
 
     def piece() -> str:
         way = rng.random()

@@ -13,7 +13,7 @@ from itertools import product
 import pytest
 
 from multibot_rewrite import rewrite, strip
-from multibot_rewrite.base.rosnames import parse_remap, resolve_name
+from multibot_rewrite.base.rosnames import bind, parse_remap, resolve_bound
 
 ROBOT = '<robot name="rover"><link name="base"/><gazebo>{}</gazebo></robot>'
 LEFT = (
@@ -43,11 +43,11 @@ def rule_texts(text: str) -> list[str]:
 
 
 def name_in_graph(text: str, name: str, kind: str = "topic") -> str:
-    """What rcl makes of a name in the code of the one plugin of a description."""
+    """Return what rcl makes of a name in the code of the one plugin of a description."""
     node = re.findall(r'<plugin name="([^"]*)"', text)[0]
     namespace = (re.findall(r"<namespace>([^<]*)<", text) or ["/"])[0]
     found = [it for it in map(parse_remap, rule_texts(text)) if it is not None]
-    return resolve_name(name, kind, node, namespace, found)
+    return resolve_bound(name, kind, bind(node, namespace, found))
 
 
 @pytest.mark.sample(1)

@@ -23,7 +23,7 @@ PART = XACRO.format('<link name="part"/>')
 
 @pytest.fixture
 def repository(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A repository of two packages; ROS is not sourced."""
+    """Return a repository of two packages; ROS is not sourced."""
     for variable in ("AMENT_PREFIX_PATH", "ROS_PACKAGE_PATH"):
         monkeypatch.delenv(variable, raising=False)
     for package in ("arm", "tool"):
@@ -34,7 +34,7 @@ def repository(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def including(file: Path, name: str, reach: Reach = BOUNDED) -> str:
-    """The text, or the message, of a file that includes ``name``."""
+    """Return the text, or the message, of a file that includes ``name``."""
     file.write_text(XACRO.format(f'<xacro:include filename="{name}"/>'))
     try:
         return expand(str(file), {}, reach=reach).decode()
@@ -137,7 +137,7 @@ def test_a_link_to_the_file_itself_reads_where_both_are(tmp_path: Path, reposito
 
 
 def sourced(tmp_path: Path, repository: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The package tool, installed as ``colcon build --symlink-install`` does."""
+    """Install the package tool as ``colcon build --symlink-install`` does."""
     prefix = tmp_path / "install" / "tool"
     share = prefix / "share" / "tool"
     share.mkdir(parents=True)

@@ -24,7 +24,7 @@ ROBOT = (
 
 @pytest.fixture
 def project(tmp_path: Path) -> Path:
-    """A project with one definition file and a robot two folders down."""
+    """Return a project with one definition file and a robot two folders down."""
     (tmp_path / "data").mkdir()
     (tmp_path / "data" / "mine.vocab").write_text(SECTION)
     (tmp_path / "pyproject.toml").write_text(TABLE)
@@ -34,7 +34,7 @@ def project(tmp_path: Path) -> Path:
 
 
 def complaint(project: Path, text: str | bytes) -> str:
-    """What is said about such a pyproject.toml, without its name."""
+    """Return what is said about such a pyproject.toml, without its name."""
     path = project / "pyproject.toml"
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
     with pytest.raises(UsageError) as caught:

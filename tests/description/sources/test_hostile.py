@@ -137,7 +137,7 @@ class Scene(NamedTuple):
         return str(self.robot / "urdf" / f"{name}.xacro")
 
     def said(self, name: str, fences: tuple[str, ...] = FENCES) -> str:
-        """The message for a file, or its text."""
+        """Return the message for a file, or its text."""
         try:
             reach = Reach(seconds=BRIEF if name in ENDLESS else 60.0, fences=fences)
             return expand(self.file(name), self.arguments, reach=reach).decode()
@@ -205,7 +205,7 @@ def received(listener: socket.socket) -> None:
 
 
 def one_port() -> tuple[socket.socket, socket.socket]:
-    """A socket of TCP and one of UDP on the same port; nodes of other tests may have the second."""
+    """Return sockets of TCP and UDP on one port; nodes of other tests may have the second."""
     for _ in range(50):
         tcp, udp = socket.socket(), socket.socket(type=socket.SOCK_DGRAM)
         tcp.bind(("127.0.0.1", 0))

@@ -171,7 +171,7 @@ PLUGIN = '<plugin name="p" filename="f"/>'
 
 
 def put_in(folder: Path, include: str, inner: str = INNER) -> str:
-    """What stands in the place of an include, without lines."""
+    """Return what stands in the place of an include, without lines."""
     (folder / "in.sdf").write_text(inner)
     file = folder / "out.sdf"
     file.write_text(OUTER.format(include))

@@ -21,7 +21,7 @@ PREFIX = {"tf_prefix": "{robot}_"}
 
 
 def names(text: str, tag: str) -> list[str]:
-    """The names of the elements of that tag, below the root."""
+    """Return the names of the elements of that tag, below the root."""
     return [str(it.get("name")) for it in etree.fromstring(text.encode()).findall(tag)]
 
 
@@ -30,7 +30,7 @@ def texts(text: str, tag: str) -> list[str]:
 
 
 def made(head: str, body: str, folder: Path) -> Path:
-    """A xacro file."""
+    """Return a xacro file."""
     path = folder / "made.urdf.xacro"
     space = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
     path.write_text(f'<robot name="made" {space}>{head}{body}</robot>')

@@ -32,7 +32,7 @@ class Tree(NamedTuple):
     reached: frozenset[tuple[str, str]]
 
     def text(self, names: Names, model: str) -> bytes:
-        """The description with these names."""
+        """Return the description with these names."""
         rows = [f'  <link name="{names("link", it)}"/>' for it in self.links]
         for at, joint in enumerate(self.joints):
             parent, child = self.links[self.parents[at]], self.links[at + 1]
@@ -43,7 +43,7 @@ class Tree(NamedTuple):
         return "\n".join([f'<robot name="{model}">', *rows, "</robot>"]).encode()
 
     def source(self, value: str) -> bytes:
-        """What xacro makes of it."""
+        """Return what xacro makes of it."""
         return self.text(lambda kind, it: value * ((kind, it) in self.reached) + it, "m")
 
 
@@ -71,7 +71,7 @@ policies = st.fixed_dictionaries(
 
 
 def by_hand(policy: Mapping[str, Any], robot: str, kind: str, name: str) -> str:
-    """A name as the rewrite spells it."""
+    """Return a name as the rewrite spells it."""
     if policy["layout"] == "tf-per-robot":
         return name
     mark = policy["separators"]["link"] if kind == "link" else "_"
@@ -133,5 +133,5 @@ def _plain(tree: Tree) -> list[tuple[str, str]]:
 
 
 def _met(source: list[str], links: list[str]) -> bool:
-    """A name of the source that another one becomes."""
+    """Return whether another name becomes a name of the source."""
     return any(new != old and new in source for old, new in zip(source, links, strict=True))

@@ -22,7 +22,7 @@ AMENT, CATKIN = "<depend>ament_cmake</depend>", "<buildtool_depend>catkin</build
 
 @pytest.fixture
 def tree(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder in which nothing is installed, and no package of this machine."""
+    """Return a folder in which nothing is installed, and no package of this machine."""
     for name in ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH"):
         monkeypatch.delenv(name, raising=False)
     return tmp_path

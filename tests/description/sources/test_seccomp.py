@@ -50,7 +50,7 @@ def decide(
     files: bool = False,
     second: int = 0,
 ) -> int:
-    """What the filter answers to a call; ``protection`` is its third argument."""
+    """Return what the filter answers to a call; ``protection`` is its third argument."""
     words = 0, second, protection, 0, 0, 0
     record = struct.pack("<IIQ6Q", number, audit or machine.audit, 0, *words)
     program = [step[:4] for step in struct.iter_unpack("<HBBI", filter_program(machine, files))]

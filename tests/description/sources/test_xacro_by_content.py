@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite.base.model import InputError
+from multibot_rewrite.checks.judged_plan import plan_fleet
 from multibot_rewrite.description.sources.read import has_xacro, is_xacro
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
 
 SPACE = 'xmlns:xacro="http://ros.org/wiki/xacro"'
 TURTLEBOT = f"""\

@@ -40,7 +40,7 @@ FEW, MANY = 150, 3_000
 
 
 def damaged(chance: random.Random, data: bytes) -> bytes:
-    """The file with a value, an attribute, a tag or a text that is another one."""
+    """Return the file with a value, an attribute, a tag or a text that is another one."""
     root = etree.fromstring(data)
     elements = list(root.iter("*"))
     for _ in range(chance.randint(1, 3)):

@@ -205,7 +205,7 @@ def test_starts_are_those_of_the_elements(source: bytes) -> None:
 
 
 def marked(text: str) -> tuple[bytes, tuple[int, int]]:
-    """The text without its «» and where they stood, in bytes."""
+    """Return the text without its «» and where they stood, in bytes."""
     head, _, rest = text.partition("«")
     inside, _, tail = rest.partition("»")
     begin = len(head.encode())

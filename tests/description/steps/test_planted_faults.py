@@ -41,7 +41,7 @@ options = st.fixed_dictionaries(
 
 
 def template(case: Case) -> Template:
-    """The case, ready for any robot."""
+    """Return the case, ready for any robot."""
     words = {key: it for key, it in case.options.items() if key not in NO_POLICY}
     urdf = case.options.get("urdf")
     tree = builtin_tree((), str(case.options.get("distro", NEWEST_LTS)))
@@ -63,14 +63,14 @@ def passes(wrong: Template, text: bytes | None = None) -> bool:
 
 
 def proved_texts(right: Template, seed: str, times: int) -> list[str]:
-    """The wrong texts of a template that are verified."""
+    """Return the wrong texts of a template that are verified."""
     text = fill(right.pieces, "robot1")
     found = wrong_texts(text, random.Random(seed), times)
     return [about for about, wrong in found if passes(right, wrong)]
 
 
 def proved_plans(right: Template) -> list[str]:
-    """The wrong plans of a template that are verified."""
+    """Return the wrong plans of a template that are verified."""
     return [about for about, wrong in wrong_plans(right) if passes(wrong)]
 
 
@@ -97,7 +97,7 @@ def test_a_wrong_text_or_plan_of_many_cases_is_refused(part: int) -> None:
 
 
 def prepared(robot: Robot, words: dict[str, str]) -> Template | None:
-    """A random robot, ready; None where its names are refused."""
+    """Return a random robot, ready; None where its names are refused."""
     try:
         naming = make_naming(**words)  # type: ignore[arg-type]
         right = pipeline.prepare(robot.text, "robot", naming, builtin_tree((), NEWEST_LTS))

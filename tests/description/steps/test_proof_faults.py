@@ -51,7 +51,7 @@ def is_refused(
 
 
 def refusing(monkeypatch: pytest.MonkeyPatch, fault: Fault | Step) -> Iterator[str]:
-    """The checks that refuse a fault, each by itself, in their order."""
+    """Yield the checks that refuse a fault, each by itself, in their order."""
     planted(monkeypatch, fault)
     if is_refused(monkeypatch, fault.source, fault.layout, ()):
         yield UNREADABLE

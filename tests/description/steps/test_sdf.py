@@ -43,7 +43,7 @@ KINDS = ("link", "joint", "frame", "model")
 
 @pytest.fixture(scope="session")
 def models() -> dict[str, Path]:
-    """The real SDF files beside the repository, by their relative path."""
+    """Return the real SDF files beside the repository, by their relative path."""
     found = {str(path.relative_to(HOME)): path for path in sorted(HOME.rglob("*.sdf"))}
     if not found:
         pytest.skip(f"no corpus of real SDF files: looked for {HOME}/**/*.sdf")
@@ -61,18 +61,18 @@ class Place(NamedTuple):
 
 
 def model_above(element: etree._Element) -> etree._Element | None:
-    """The model that an element stands in."""
+    """Return the model that an element stands in."""
     return next(element.iterancestors("model"), None)
 
 
 def name_of(element: etree._Element) -> str:
-    """The name of a link, joint, frame, model or include."""
+    """Return the name of a link, joint, frame, model or include."""
     own = element.findtext("name") if element.tag == "include" else element.get("name")
     return (own or "").strip()
 
 
 def inside(scope: etree._Element, name: str) -> etree._Element | None:
-    """What a model holds under that name."""
+    """Return what a model holds under that name."""
     for kind in (*KINDS, "include"):
         for child in scope.iterchildren(kind):
             if name_of(child) == name:
@@ -81,7 +81,7 @@ def inside(scope: etree._Element, name: str) -> etree._Element | None:
 
 
 def target(place: Place) -> etree._Element | None:
-    """What a reference leads to: an element of this file, or the include it goes into."""
+    """Return what a reference leads to: an element of this file, or the include it goes into."""
     found, rest = place.scope, place.text
     while rest and found is not None and found.tag == "model":
         # Before SDF 1.8 a link may be called a::b.
@@ -111,7 +111,7 @@ def references(root: etree._Element) -> Iterator[Place]:
 
 
 def new_name(kind: str, name: str, options: Options) -> str:
-    """A declared name as the options ask for."""
+    """Return a declared name as the options ask for."""
     if kind in ("link", "frame"):
         return frame_spelled(name, options, ROBOT)
     return spelled(name, "_", options, ROBOT)
@@ -135,7 +135,7 @@ def problems(data: bytes, output: bytes, options: Options) -> Iterator[str]:
 
 
 def is_declared(element: etree._Element) -> bool:
-    """Does it stand where SDF has models, links, joints and frames, and not in a plugin?"""
+    """Return whether it is where SDF has models, links, joints and frames, and not in a plugin."""
     parent = element.getparent()
     return bool(name_of(element)) and parent is not None and parent.tag in ("sdf", "model")
 
@@ -170,7 +170,7 @@ def test_every_model_is_rewritten_or_refused(models: dict[str, Path], options: O
 
 
 def on_record() -> dict[str, str]:
-    """The committed refusals."""
+    """Return the committed refusals."""
     table: dict[str, str] = json.loads(REFUSALS.read_text())
     return table
 
@@ -185,7 +185,7 @@ def test_every_refusal_is_true(models: dict[str, Path]) -> None:
 
 
 def is_true(why: str, data: bytes) -> bool:
-    """The reason, seen by other means than the package's; False for a reason not known here."""
+    """Return whether the reason holds, by other means than the package's; False if unknown."""
     if found := re.fullmatch(r"MB109 world '(.*)' cannot be rewritten for one robot", why):
         worlds = parsed(data).findall("world")
         return found[1] in [world.get("name", "") for world in worlds]
@@ -281,7 +281,7 @@ Tool = Callable[..., str]
 
 @pytest.fixture(scope="session")
 def sdf_tool(tmp_path_factory: pytest.TempPathFactory) -> Tool:
-    """Runs ``gz sdf`` or ``ign sdf`` and returns what it prints to standard output."""
+    """Return a function that runs ``gz sdf`` or ``ign sdf`` and returns its standard output."""
     path = tmp_path_factory.mktemp("sdf") / "nested.sdf"
     path.write_bytes(NESTED)
     for command in filter(None, map(shutil.which, ("gz", "ign"))):
@@ -292,18 +292,18 @@ def sdf_tool(tmp_path_factory: pytest.TempPathFactory) -> Tool:
 
 
 def printed(command: str, *arguments: str) -> str:
-    """Standard output of one call."""
+    """Return the standard output of one call."""
     run = [command, "sdf", *arguments]
     return subprocess.run(run, capture_output=True, text=True, check=False, timeout=60).stdout
 
 
 def is_valid(tool: Tool, path: Path) -> bool:
-    """Does libsdformat take the file without an error?"""
+    """Return whether libsdformat takes the file without an error."""
     return "Valid." in tool("-k", str(path))
 
 
 def graph(tool: Tool, kind: str, path: Path) -> Graph:
-    """The graph of that kind."""
+    """Return the graph of that kind."""
     text = tool("-g", kind, str(path))
     names = dict(re.findall(r'^ *(\d+) \[label="(.*) \(\d+\)"\];', text, re.MULTILINE))
     edges = re.findall(r"^ *(\d+) -> (\d+) \[label=(.*)\];", text, re.MULTILINE)
@@ -326,7 +326,7 @@ def scoped_names(data: bytes, options: Options) -> dict[str, str]:
 
 
 def renamed(old: Graph, names: Mapping[str, str]) -> Graph:
-    """The graph under the new names; what the model does not declare (``__root__``) stays."""
+    """Return the graph under the new names; what the model does not declare (``__root__``) stays."""
 
     def new(name: str) -> str:
         return names.get(name, name)
@@ -375,7 +375,7 @@ def judge(tool: Tool, trials: list[Trial], home: Path) -> None:
 
 
 def trials(models: Mapping[str, Path], *options: Options) -> list[Trial]:
-    """The models that are not refused."""
+    """Return the models that are not refused."""
     names = [name for name in models if name not in on_record()]
     return [Trial(name, models[name].read_bytes(), each) for name in names for each in options]
 
@@ -398,7 +398,7 @@ def test_libsdformat_sees_the_same_in_many(
 
 @cache
 def valid_cases() -> list[Trial]:
-    """The case files of SDF that are models, with nothing but an affix to choose."""
+    """Return the case files of SDF that are models, with nothing but an affix to choose."""
     return [
         Trial(case.name, case.source, case.options)
         for case in load_cases()

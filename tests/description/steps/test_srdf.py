@@ -110,7 +110,7 @@ def _declarations(urdf: bytes) -> list[tuple[str, str]]:
 
 
 def new_names(srdf: etree._Element, urdf: Names, options: Options) -> Names:
-    """The names of the URDF and those the SRDF itself declares."""
+    """Return the names of the URDF and those the SRDF itself declares."""
     names = dict(urdf)
     for value in values(srdf):
         if value.declares:
@@ -124,7 +124,7 @@ def new_names(srdf: etree._Element, urdf: Names, options: Options) -> Names:
 def expected(
     data: bytes, urdf: Names, options: Options
 ) -> tuple[list[tuple[Slot, str]], Counter[str]]:
-    """The slots that change, and how often each name is reported for not being declared."""
+    """Return the slots that change, and how often each name is reported for not being declared."""
     root = etree.fromstring(data)
     names = new_names(root, urdf, options)
     changes, missing = [], Counter[str]()
@@ -141,18 +141,18 @@ def expected(
 
 
 def reported(findings: tuple[Finding, ...]) -> Counter[str]:
-    """The names that a rewrite reports as declared nowhere, with their lines."""
+    """Return the names that a rewrite reports as declared nowhere, with their lines."""
     texts = [(re.findall(r"names the [a-z ]+ '(.*)', which", f.message), f) for f in findings]
     return Counter(f"{names[0]}@{f.line}" for names, f in texts if names)
 
 
 def without_values(data: bytes) -> bytes:
-    """The text with every quoted value emptied."""
+    """Return the text with every quoted value emptied."""
     return re.sub(rb"\"[^\"]*\"|'[^']*'", b"''", re.sub(rb"<!--.*?-->", b"", data, flags=re.DOTALL))
 
 
 def comments(data: bytes) -> list[bytes]:
-    """The comments of a text."""
+    """Return the comments of a text."""
     return re.findall(rb"<!--.*?-->", data, re.DOTALL)
 
 
@@ -194,7 +194,7 @@ def pairs(corpus: dict[str, Path]) -> dict[str, Pair]:
 
 
 def readable(corpus: dict[str, Path]) -> Iterator[tuple[Path, bytes]]:
-    """The URDFs that are well-formed and need no xacro."""
+    """Yield the URDFs that are well-formed and need no xacro."""
     for path in corpus.values():
         data = path.read_bytes()
         try:
@@ -206,7 +206,7 @@ def readable(corpus: dict[str, Path]) -> Iterator[tuple[Path, bytes]]:
 
 
 def paired(data: bytes, known: dict[Path, set[tuple[str, str]]]) -> Pair:
-    """The SRDF with the URDF that declares most of it, and of those the smallest."""
+    """Return the SRDF with the URDF that declares most of it, and of those the smallest."""
     used = {
         (value.kind, value.slot.value)
         for value in values(etree.fromstring(data))
@@ -313,7 +313,7 @@ def test_two_robots_share_one_urdf() -> None:
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A folder with an arm's URDF and SRDF."""
+    """Return a folder with an arm's URDF and SRDF."""
     (tmp_path / "arm.urdf").write_bytes(ARM.read_bytes())
     (tmp_path / "arm.srdf").write_bytes(SRDF)
     return tmp_path

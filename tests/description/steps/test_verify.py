@@ -40,7 +40,7 @@ def made(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[Wrong], None]]:
 
 
 def change(old: str, new: str) -> Wrong:
-    """The text with one thing in the place of another, at its first place."""
+    """Return the text with one thing in the place of another, at its first place."""
 
     def wrong(text: bytes) -> bytes:
         assert old.encode() in text, "the test looks for what is not there"

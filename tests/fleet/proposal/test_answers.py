@@ -11,14 +11,15 @@ from typing import Any
 import pytest
 
 from multibot_rewrite.cli import init
-from multibot_rewrite.fleet.proposal.looking import Looked
-from multibot_rewrite.fleet.proposal.propose import Choice, release_of_files
-from multibot_rewrite.fleet.proposal.seeing import Wanted
+from multibot_rewrite.proposal.looking import Looked
+from multibot_rewrite.proposal.propose import Choice, release_of_files
+from multibot_rewrite.proposal.seeing import Wanted
 
 
 @pytest.fixture
 def asked(monkeypatch: pytest.MonkeyPatch) -> Callable[..., list[tuple[str, str]]]:
-    """Sets the answers; what was asked, with its default. An empty answer takes the default."""
+    """Return a function that sets the answers and returns what was asked, with its default. An
+    empty answer takes the default."""
 
     def answering(*answers: str) -> list[tuple[str, str]]:
         left, questions = [*answers], list[tuple[str, str]]()

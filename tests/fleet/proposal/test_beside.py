@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.proposal.looking import NO_SIMULATOR, Looked
-from multibot_rewrite.fleet.proposal.related_files import related_files_of
-from multibot_rewrite.fleet.proposal.searching import Found
+from multibot_rewrite.proposal.looking import NO_SIMULATOR, Looked
+from multibot_rewrite.proposal.related_files import related_files_of
+from multibot_rewrite.proposal.searching import Found
 
 
 def params(folder: Path, name: str, *nodes: str) -> str:
@@ -37,7 +37,7 @@ EKF = ("ekf_filter_node_odom", "ekf_filter_node_map", "navsat_transform")
 
 
 @pytest.mark.parametrize(
-    ("nodes", "stacks"),
+    ("nodes", "node_sets"),
     [
         ("amcl controller_server", ["nav2: amcl and controller_server"]),
         ("/a/amcl /a/controller_server", ["nav2: amcl and controller_server"]),
@@ -55,13 +55,13 @@ EKF = ("ekf_filter_node_odom", "ekf_filter_node_map", "navsat_transform")
         ("driver", []),
     ],
 )  # fmt: skip
-def test_sections_say_the_stacks(nodes: str, stacks: list[str], tmp_path: Path) -> None:
+def test_sections_say_the_node_sets(nodes: str, node_sets: list[str], tmp_path: Path) -> None:
     file = params(tmp_path, "p.yaml", *nodes.split())
     made = related_files_of(looked(tmp_path), Found(params=(file,)), "jazzy")
     # Besides those that the description itself says.
-    bare = related_files_of(looked(tmp_path), Found(), "jazzy").stacks
-    said = {it: f"p.yaml has parameters of {by}" for it, by in (it.split(": ") for it in stacks)}
-    assert {it: why for it, why in made.stacks.items() if it not in bare} == said
+    bare = related_files_of(looked(tmp_path), Found(), "jazzy").node_sets
+    said = {it: f"p.yaml has parameters of {by}" for it, by in (it.split(": ") for it in node_sets)}
+    assert {it: why for it, why in made.node_sets.items() if it not in bare} == said
 
 
 @pytest.mark.parametrize(
@@ -107,7 +107,7 @@ def generate_launch_description():
 
 
 def workspace(folder: Path, files: dict[str, str]) -> Path:
-    """A folder of packages, each file in one of them."""
+    """Return a folder of packages, each file in one of them."""
     for name, text in files.items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -149,7 +149,7 @@ def test_what_another_robot_is_made_with_is_behind_it(names: str, tmp_path: Path
 
 
 def written(folder: Path) -> str:
-    """The fleet file that init writes for a folder."""
+    """Return the fleet file that init writes for a folder."""
     file = folder / "fleet.yaml"
     assert main(["init", str(folder), "-n", "2", "--yes", "--force", "-o", str(file), "-q"]) == 0
     lines = file.read_text().splitlines()

@@ -13,8 +13,8 @@ import yaml
 from rule_examples import DESCRIPTION
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.proposal.bringup import Robot, bringup_of
 from multibot_rewrite.producers.launch import child
+from multibot_rewrite.proposal.bringup import Robot, bringup_of
 
 IMPORTS = "; ".join(
     f"from {it} import *"
@@ -41,7 +41,7 @@ FAILS = "1 / 0"
 
 
 def include(name: str, given: str = "") -> str:
-    """An include of a launch file beside this one."""
+    """Return an include of a launch file beside this one."""
     return f"IncludeLaunchDescription('FOLDER/{name}.launch.py', launch_arguments=[{given}])"
 
 
@@ -166,7 +166,7 @@ GIVEN = "sim:=true wheel:=big prefix:=front_ file:={}/config/control.yaml"
 
 @pytest.fixture
 def package(tmp_path: Path) -> Path:
-    """A package with a xacro."""
+    """Return a package with a xacro."""
     folder = tmp_path / "rover"
     for name, text in {
         "package.xml": "<package><name>rover</name></package>",
@@ -185,7 +185,7 @@ def package(tmp_path: Path) -> Path:
 
 
 def fleet_of(folder: Path, *words: str, code: int = 0) -> Any:
-    """The fleet file of a folder, which builds."""
+    """Return the fleet file of a folder, which builds."""
     file = folder.parent / "fleet.yaml"
     assert main(["init", str(folder), "--yes", "-q", "--force", "-o", str(file), *words]) == code
     if code == 0:
@@ -286,7 +286,7 @@ def test_only_files_that_a_node_reads_are_taken(package: Path) -> None:
         package / "launch", {"up": f"{PUBLISHER}; {GZ}; {SHOWN}; {BRIDGED}; {CONTROLLED}; {SCRIPT}"}
     )
     fleet = fleet_of(package)
-    assert "stack" not in fleet
+    assert "node_sets" not in fleet
     assert fleet["related_files"] == {
         "rviz": "rover/rviz/rover.rviz",
         "bridge": ["rover/config/bridge.yaml"],
@@ -363,10 +363,10 @@ NAV2 = (
 
 
 def test_a_file_that_goes_to_what_is_not_installed_is_taken(package: Path) -> None:
-    """The vendor's include is started as it is: no stack stands for it."""
+    """The vendor's include is started as it is: no node set stands for it."""
     write(package / "launch", {"up": f"{PUBLISHER}; {DRIVER}; {NAV2}"})
     fleet = fleet_of(package, "--simulator", "none")
-    assert "stack" not in fleet
+    assert "node_sets" not in fleet
     assert fleet["related_files"] == {"params": ["rover/config/unread.yaml"]}
 
 
@@ -375,24 +375,26 @@ MAKES = "__import__('moveit_configs_utils').launches.generate_move_group_launch(
 MOVES = "Node(package='moveit_ros_move_group', executable='move_group')"
 
 
-@pytest.mark.parametrize(("starts", "stack"), [(MAKES, ["moveit"]), (MOVES, None), (LIDAR, None)])
+@pytest.mark.parametrize(
+    ("starts", "node_set"), [(MAKES, ["moveit"]), (MOVES, None), (LIDAR, None)]
+)
 def test_moveit_has_its_files_where_it_is_started(
-    starts: str, stack: list[str] | None, package: Path
+    starts: str, node_set: list[str] | None, package: Path
 ) -> None:
     (package / "config/rover.srdf").write_text(SRDF)
     (package / "config/kinematics.yaml").write_text("arm: {kinematics_solver: a/A}\n")
     write(package / "launch", {"up": f"{PUBLISHER}; {DRIVER}; {starts}"})
     fleet = fleet_of(package, "--simulator", "none")
-    assert fleet.get("stack") == stack
+    assert fleet.get("node_sets") == node_set
     files = {"moveit": ["rover/config/kinematics.yaml"]} if starts != LIDAR else None
     assert fleet.get("related_files") == files
     assert fleet.get("srdf") == (files and "rover/config/rover.srdf")
 
 
-def test_a_stack_that_is_asked_for_is_beside_the_launch_file(package: Path) -> None:
+def test_a_node_set_that_is_asked_for_is_beside_the_launch_file(package: Path) -> None:
     write(package / "launch", {"up": f"{PUBLISHER}; {DRIVER}"})
-    fleet = fleet_of(package, "--stack", "localization")
-    assert fleet["launch"] and fleet["stack"] == ["localization"]
+    fleet = fleet_of(package, "--node-set", "localization")
+    assert fleet["launch"] and fleet["node_sets"] == ["localization"]
     assert fleet["related_files"]["params"] == ["rover/config/unread.yaml"]
     assert "simulator: none" in (package.parent / "fleet.yaml").read_text()
 
@@ -553,7 +555,7 @@ PLAYS = "ExecuteProcess(cmd=['gz', 'sim', " + PATH.format("worlds/yard.sdf") + "
 
 @pytest.fixture
 def robots(package: Path) -> Path:
-    """A workspace of several robots, of which nothing but a launch file says which is meant."""
+    """Return a workspace of several robots, of which nothing but a launch file says which is meant."""
     for name, text in {
         "rover/dolly/model.sdf": MODEL.format("dolly"),
         "rover/cart/model.sdf": MODEL.format("cart"),

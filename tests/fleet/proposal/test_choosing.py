@@ -14,13 +14,13 @@ from lxml import etree
 from small_robots import PACKAGE, init, loads, robot, taken
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.proposal import owners
-from multibot_rewrite.fleet.proposal.choosing import may_be_partners
-from multibot_rewrite.fleet.proposal.looking import Looked
-from multibot_rewrite.fleet.proposal.owners import Fitting, fitting
-from multibot_rewrite.fleet.proposal.searching import Found
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.planning.records import Given
+from multibot_rewrite.proposal import owners
+from multibot_rewrite.proposal.choosing import may_be_partners
+from multibot_rewrite.proposal.looking import Looked
+from multibot_rewrite.proposal.owners import Fitting, fitting
+from multibot_rewrite.proposal.searching import Found
 from multibot_rewrite.system.records import NOWHERE
 
 
@@ -409,4 +409,4 @@ def test_a_file_with_clearly_more_strange_names_is_no_rival() -> None:
 
 @pytest.mark.parametrize(("names", "shown"), [("ba", "a, b"), ("cab", "a, b ..."), ("a", "a")])
 def test_of_many_strange_names_two_are_shown(names: str, shown: str) -> None:
-    assert owners._shown(names) == shown
+    assert owners._first_names(names) == shown

@@ -6,8 +6,8 @@ from __future__ import annotations
 import pytest
 from lxml import etree
 
-from multibot_rewrite.fleet.proposal import choosing
-from multibot_rewrite.fleet.proposal.looking import Looked
+from multibot_rewrite.proposal import choosing
+from multibot_rewrite.proposal.looking import Looked
 
 
 @pytest.mark.parametrize(

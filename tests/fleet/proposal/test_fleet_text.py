@@ -9,10 +9,10 @@ import pytest
 import yaml
 
 from multibot_rewrite.base.naming import LAYOUTS
-from multibot_rewrite.fleet.proposal.fleet_text import text_of
-from multibot_rewrite.fleet.proposal.looking import Looked
-from multibot_rewrite.fleet.proposal.propose import Choice, Member, Proposal
-from multibot_rewrite.fleet.proposal.related_files import RelatedFiles
+from multibot_rewrite.proposal.fleet_text import text_of
+from multibot_rewrite.proposal.looking import Looked
+from multibot_rewrite.proposal.propose import Choice, Member, Proposal
+from multibot_rewrite.proposal.related_files import RelatedFiles
 
 BESIDE = RelatedFiles(
     {"params": ("w/p.yaml", "w/q.yaml"), "rviz": ("w/v.rviz",)},
@@ -43,7 +43,7 @@ COMMON: dict[str, Any] = {
     "simulated": "r.sdf",
     "arguments": {"prefix": "{robot}_", "x": "1", "sim": "on"},
     "srdf": "r.srdf",
-    "stack": ["nav2", "moveit"],
+    "node_sets": ["nav2", "moveit"],
     "related_files": {"params": ["p.yaml", "q.yaml"], "rviz": "v.rviz"},
 }
 OTHERS = "".join(f"#   {it.name}: {it.about}\n" for it in LAYOUTS if it.name != "tf-per-robot")
@@ -80,7 +80,7 @@ srdf: r.srdf
 # nav2: p.yaml has parameters of amcl
 # moveit: there is r.srdf
 # Nav2 waits for a map: write its yaml_filename for map_server into a parameter file
-stack: [nav2, moveit]
+node_sets: [nav2, moveit]
 
 # Files for one robot; the build writes one of each for every robot
 related_files:

@@ -16,7 +16,7 @@ from paths import ROBOTS, ROOT
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.file.fleet_data import FleetText
-from multibot_rewrite.fleet.proposal import trying
+from multibot_rewrite.proposal import trying
 
 TOOL = '<robot name="tool" xmlns:xacro="http://www.ros.org/wiki/xacro"/>'
 
@@ -26,7 +26,7 @@ def init(*words: object) -> int:
 
 
 def made(folder: Path, *words: object, code: int = 0) -> Mapping[str, Any]:
-    """The fleet file for these words, which also builds."""
+    """Return the fleet file for these words, which also builds."""
     file = folder / "fleet.yaml"
     assert init(*words, "-o", file) == code
     found = yaml.safe_load(file.read_text())
@@ -75,13 +75,13 @@ def test_a_robot_of_the_examples_has_the_files_of_its_folder(name: str, tmp_path
         for it in ([its] if isinstance(its, str) else its)
     ]
     assert files and all(f"examples/{Path(name).parent}/" in it for it in files)
-    assert "srdf" not in fleet and "stack" not in fleet
+    assert "srdf" not in fleet and "node_sets" not in fleet
 
 
 @pytest.mark.more
 def test_ros2_control_and_a_real_robot(tmp_path: Path) -> None:
     shutil.copy(ROBOTS / "rover_gz.urdf", tmp_path)
-    assert made(tmp_path, tmp_path)["stack"] == ["gz_ros2_control"]
+    assert made(tmp_path, tmp_path)["node_sets"] == ["gz_ros2_control"]
 
 
 @pytest.mark.slow
@@ -241,7 +241,7 @@ def test_classic_is_of_humble_and_its_plugin_has_the_manager(
     text = text.replace("gz_ros2_control/GazeboSimSystem", "gazebo_ros2_control/GazeboSystem")
     (tmp_path / "rover.urdf").write_text(text)
     fleet = made(tmp_path, tmp_path / "rover.urdf")
-    assert fleet["stack"] == ["gazebo_ros2_control"]
+    assert fleet["node_sets"] == ["gazebo_ros2_control"]
     assert fleet["distro"] == "humble"
     assert fleet["layout"] == "tf-per-robot", "its plugin sends tf on a topic of each robot"
     assert "ros2_control_node" not in (tmp_path / "out" / "fleet.launch.py").read_text()
@@ -264,7 +264,7 @@ def test_the_hardware_of_the_real_robot_needs_no_manager_in_a_simulator(
         "    joint_state_broadcaster: {type: joint_state_broadcaster/JointStateBroadcaster}\n"
     )
     fleet = made(tmp_path, tmp_path)
-    assert "gazebo_ros2_control" not in fleet.get("stack", [])
+    assert "gazebo_ros2_control" not in fleet.get("node_sets", [])
     assert "ros2_control_node" not in (tmp_path / "out" / "fleet.launch.py").read_text()
 
 
@@ -296,20 +296,17 @@ def test_names_of_the_robots_are_given(tmp_path: Path, capsys: Any) -> None:
         (["--layout", "L9"], "--layout"),
     ],
 )
-def test_mistakes_are_one_line(
-    words: list[str], says: str, tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (tmp_path / "empty").mkdir()
-    (tmp_path / "src" / "kap").mkdir(parents=True)
-    (tmp_path / "src" / "kap" / "package.xml").write_text("<package><name>kap</name></package>")
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "notes.yaml").write_text("a: 1\n")
-    (tmp_path / "bad.urdf").write_text("<robot")
-    (tmp_path / "part.xacro").write_text(TOOL)
-    (tmp_path / "need.xacro").write_text(TOOL.replace("/>", '><link name="$(arg size)"/></robot>'))
-    there = tmp_path / "fleet.yaml"
+def test_mistakes_are_one_line(words: list[str], says: str, here: Path, capsys: Any) -> None:
+    (here / "empty").mkdir()
+    (here / "src" / "kap").mkdir(parents=True)
+    (here / "src" / "kap" / "package.xml").write_text("<package><name>kap</name></package>")
+    (here / "notes.yaml").write_text("a: 1\n")
+    (here / "bad.urdf").write_text("<robot")
+    (here / "part.xacro").write_text(TOOL)
+    (here / "need.xacro").write_text(TOOL.replace("/>", '><link name="$(arg size)"/></robot>'))
+    there = here / "fleet.yaml"
     there.write_text("mine")
-    given = [it.format(folder=tmp_path, there=ROBOTS / "rover.urdf") for it in words]
+    given = [it.format(folder=here, there=ROBOTS / "rover.urdf") for it in words]
     more = [] if "-o" in given else ["-o", str(there)]
     try:
         code = init(*given, *more)
@@ -339,7 +336,7 @@ CRANE = """\
 
 @pytest.fixture
 def yard(tmp_path: Path) -> Path:
-    """A rover and a crane in one folder, with files for each in another one."""
+    """Return a rover and a crane in one folder, with files for each in another one."""
     (tmp_path / "package.xml").write_text("<package><name>yard</name></package>")
     (tmp_path / "urdf").mkdir()
     (tmp_path / "config").mkdir()
@@ -433,7 +430,7 @@ bicycle_steering_controller:
 
 
 def steered(folder: Path, rule: str = "") -> dict[str, Any]:
-    """A fleet of two cars on Humble; ``rule`` is in the tag of the plugin."""
+    """Return a fleet of two cars on Humble; ``rule`` is in the tag of the plugin."""
     tag = f"<ros><remapping>{rule}</remapping></ros></plugin>" if rule else "</plugin>"
     text = STEERED.replace("</parameters>\n  </plugin>", f"</parameters>\n  {tag}").replace(
         "MASS", MASS
@@ -444,7 +441,7 @@ def steered(folder: Path, rule: str = "") -> dict[str, Any]:
         "layout": "tf-per-robot",
         "distro": "humble",
         "simulator": "gazebo",
-        "stack": "gz_ros2_control",
+        "node_sets": "gz_ros2_control",
         "description": str(folder / "car.urdf"),
         "related_files": {"params": [str(folder / "control.yaml")]},
         "robots": [{"name": "robot1"}, {"name": "robot2"}],

@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 from lxml import etree
 
-from multibot_rewrite.fleet.proposal.choosing import (
+from multibot_rewrite.proposal.choosing import (
     chosen,
 )
-from multibot_rewrite.fleet.proposal.looking import Looked
-from multibot_rewrite.fleet.proposal.searching import Found
+from multibot_rewrite.proposal.looking import Looked
+from multibot_rewrite.proposal.searching import Found
 
 LINK, JOINT = '<link name="{}"/>', '<joint name="{}" type="{}"/>'
 Made = Callable[..., Looked]
@@ -26,7 +26,7 @@ def text(links: str, moving: str = "", name: str = "r", tag: str = "robot") -> s
 
 @pytest.fixture
 def made(tmp_path: Path) -> Made:
-    """A description in a file: its links and moving joints are letters."""
+    """Return a description in a file: its links and moving joints are letters."""
 
     def looked(
         path: str, links: str = "ab", moving: str = "j", name: str = "", **more: object

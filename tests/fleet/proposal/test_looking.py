@@ -9,15 +9,15 @@ import pytest
 from lxml import etree
 
 from multibot_rewrite.description.sources.access import Reach
-from multibot_rewrite.fleet.proposal import looking
-from multibot_rewrite.fleet.proposal.launches import Reading
-from multibot_rewrite.fleet.proposal.looking import Looked, NeededValues
 from multibot_rewrite.producers.launch.records import (
     FileRead,
     LaunchArgument,
     LaunchGraph,
     LaunchOrder,
 )
+from multibot_rewrite.proposal import looking
+from multibot_rewrite.proposal.launches import Reading
+from multibot_rewrite.proposal.looking import Looked, NeededValues
 
 CONTROL = '<ros2_control name="c" type="system"/>'
 LINKS = '<link name="a"/><link name="b"/><link/>'
@@ -48,7 +48,7 @@ def plugin(file: str, inside: str = "") -> str:
 )  # fmt: skip
 def test_what_is_in_a_urdf(inside: str, simulator: str, control: bool, own_tf: bool) -> None:
     text = f'<robot name="r">{LINKS}{inside}</robot>'
-    found = looking._looked("p/r.urdf", text.encode(), (("x", "1"),))
+    found = looking._description_in("p/r.urdf", text.encode(), (("x", "1"),))
     assert found._replace(root=None) == Looked(
         "p/r.urdf", "r", "robot", 2, simulator, control, (("x", "1"),), own_tf=own_tf
     )

@@ -12,10 +12,10 @@ from small_robots import PACKAGE, init, loads, robot, taken
 
 from multibot_rewrite.base.editors import FLEET, schema_name, schema_text
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleet.proposal.choosing import is_srdf_launched, names_its_package
-from multibot_rewrite.fleet.proposal.looking import Looked
-from multibot_rewrite.fleet.proposal.related_files import srdf_of
-from multibot_rewrite.fleet.proposal.searching import search, text_of
+from multibot_rewrite.proposal.choosing import is_srdf_launched, names_its_package
+from multibot_rewrite.proposal.looking import Looked
+from multibot_rewrite.proposal.related_files import srdf_of
+from multibot_rewrite.proposal.searching import search, text_of
 
 WIKI = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 GZ = (
@@ -26,7 +26,7 @@ GZ = (
 
 @pytest.fixture
 def tetra(tmp_path: Path) -> Path:
-    """A bare base that can be read, and the simulated robot, which cannot."""
+    """Return a bare base that can be read, and the simulated robot, which cannot."""
     (tmp_path / "package.xml").write_text(PACKAGE.format("acme_tetra"))
     (tmp_path / "base.urdf").write_text(robot("tetra", "left", "right"))
     (tmp_path / "tetra_gz.xacro").write_text(GZ)

@@ -11,18 +11,20 @@ import pytest
 from lxml import etree
 
 from multibot_rewrite.base.model import UsageError
-from multibot_rewrite.fleet.proposal import launches, propose, seeing, trying
-from multibot_rewrite.fleet.proposal.looking import Looked
-from multibot_rewrite.fleet.proposal.propose import Member, Proposal
-from multibot_rewrite.fleet.proposal.related_files import RelatedFiles
-from multibot_rewrite.fleet.proposal.searching import search
-from multibot_rewrite.fleet.proposal.seeing import Wanted
+from multibot_rewrite.proposal import launches, propose, seeing, trying
+from multibot_rewrite.proposal.looking import Looked
+from multibot_rewrite.proposal.propose import Member, Proposal
+from multibot_rewrite.proposal.related_files import RelatedFiles
+from multibot_rewrite.proposal.searching import search
+from multibot_rewrite.proposal.seeing import Wanted
 
 OF_NAV2 = ("nav2", "nav2_slam", "navigation", "localization", "slam_toolbox")
 
 
-def member(*stacks: str, radius: float = 0.5, names: tuple[str, ...] = (), **looked: Any) -> Member:
-    beside = RelatedFiles({}, "", dict.fromkeys(stacks, ""), {})
+def member(
+    *node_sets: str, radius: float = 0.5, names: tuple[str, ...] = (), **looked: Any
+) -> Member:
+    beside = RelatedFiles({}, "", dict.fromkeys(node_sets, ""), {})
     return Member(Looked("/p/a.urdf", **looked), beside, names, radius)
 
 

@@ -30,7 +30,7 @@ ARM = """\
 
 
 def talked(folder: Path, answers: Sequence[str], *words: str) -> tuple[str, Mapping[str, Any]]:
-    """What a terminal shows, and the fleet file; every answer ends with Enter."""
+    """Return what a terminal shows, and the fleet file; every answer ends with Enter."""
     ours, theirs = pty.openpty()
     command = [sys.executable, "-m", "multibot_rewrite", "init", *words]
     environ = {**os.environ, "TERM": "dumb", "COLUMNS": "200"}

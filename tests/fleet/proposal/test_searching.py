@@ -10,8 +10,9 @@ import pytest
 from paths import CORPUS, FIXTURES
 
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.fleet.proposal import searching
-from multibot_rewrite.fleet.proposal.searching import Found, search
+from multibot_rewrite.cli import urdf_postfix
+from multibot_rewrite.proposal import searching
+from multibot_rewrite.proposal.searching import Found, search
 
 ROBOT = '<robot name="r"/>'
 PARAMS = "a:\n  ros__parameters: {b: 1}\n"
@@ -79,6 +80,38 @@ def put(folder: Path, **files: str) -> None:
         path.write_text(text)
 
 
+CART = """\
+<robot name="cart"><link name="base_link"/><link name="laser"/><joint name="j" type="fixed">
+<parent link="base_link"/><child link="laser"/></joint></robot>
+"""
+NAV2 = (
+    "amcl:\n  ros__parameters: {odom_frame_id: odom, base_frame_id: base_link, scan_topic: scan}\n"
+)
+
+
+@pytest.mark.parametrize("layout", ["postfix", "frames-per-robot"])
+def test_what_urdf_postfix_wrote_beside_its_source_is_none(layout: str, tmp_path: Path) -> None:
+    put(tmp_path, cart_dot_urdf=CART, nav2_dot_yaml=NAV2)
+    urdf, nav2 = (str(tmp_path / it) for it in ("cart.urdf", "nav2.yaml"))
+    named = ("robot1", "--layout", layout, "-q", "-o")
+    assert urdf_postfix.main([urdf, *named, str(tmp_path / "a_cart.urdf")]) == 0
+    assert urdf_postfix.main([nav2, *named, str(tmp_path / "z.yaml"), "--urdf", urdf]) == 0
+    found = search([str(tmp_path)])
+    assert (found.every, found.params) == ((urdf,), (nav2,))
+    # One that is named is meant.
+    assert str(tmp_path / "z.yaml") in search([urdf, str(tmp_path / "z.yaml")]).params
+
+
+def test_a_variant_of_a_file_is_not_taken_for_a_robots_copy(tmp_path: Path) -> None:
+    """It has another name at one link, or as its own; a frame of it is called otherwise."""
+    texts = [CART, CART.replace('"cart"', '"cart_two"'), CART.replace("laser", "laser_two")]
+    texts += [CART.replace('"b', '"b1').replace('"l', '"l1')]
+    put(tmp_path, **{f"cart{at}_dot_urdf": text for at, text in enumerate(texts)})
+    put(tmp_path, a_dot_yaml=NAV2, b_dot_yaml=NAV2.replace("base_link", "base_link_two"))
+    found = search([str(tmp_path)])
+    assert (len(found.every), len(found.params)) == (4, 2)
+
+
 @pytest.mark.parametrize(
     ("included", "left"),
     [
@@ -109,7 +142,7 @@ def test_a_folder_with_too_many_files_is_refused(
 
 
 def _refusal(path: str) -> str:
-    """What a file is refused with that is named alone; empty for one that is taken."""
+    """Return what a file is refused with that is named alone; empty for one that is taken."""
     try:
         taken = search([path]).descriptions
     except InputError as error:

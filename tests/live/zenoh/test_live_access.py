@@ -59,7 +59,7 @@ def written(folder: Path, plan: System, setup: Setup) -> dict[str, Path]:
 
 @contextmanager
 def opened(file: Path, **changes: Any) -> Iterator[Any]:
-    """A session with the configuration of a file, as rmw_zenoh opens it."""
+    """Yield a session with the configuration of a file, as rmw_zenoh opens it."""
     made = zenoh.Config.from_file(str(file))
     for name, value in changes.items():
         made.insert_json5(name.replace("__", "/"), json.dumps(value))
@@ -71,7 +71,8 @@ def opened(file: Path, **changes: Any) -> Iterator[Any]:
 
 
 def arrives(sender: Any, listener: Any, name: str, witness: str) -> bool:
-    """Does what is sent on ``name`` arrive, by the time that ``witness`` has?
+    """Return whether what is sent on ``name`` arrives, by the time that ``witness`` has it. The
+    witness is allowed, so a refusal is told from a slow machine.
 
     The witness is allowed, so a refusal is told from a slow machine.
     """
@@ -94,7 +95,8 @@ def arrives(sender: Any, listener: Any, name: str, witness: str) -> bool:
 
 
 def reaches(sender: Any, listener: Any, name: str, witness: str) -> None:
-    """What is sent on ``name`` arrives, once the sender knows who listens.
+    """Assert that what is sent on ``name`` arrives, once the sender knows who listens. The first
+    time it may not: the sender may still know the witness of the time before.
 
     Not always the first time: it may still know the witness of the time before.
     """
@@ -241,7 +243,7 @@ def test_a_router_on_the_robot_lets_out_what_is_its_own(
 
 
 def _as(file: Path, keystore: Path, enclave: str) -> Any:
-    """The same session with another certificate and without rules of its own."""
+    """Return the same session with another certificate and without rules of its own."""
     folder = keystore / "enclaves" / enclave
     changes = {
         "transport__link__tls__connect_private_key": str(folder / "key.pem"),

@@ -26,7 +26,7 @@ def endpoint(host: Host) -> str:
 
 @contextmanager
 def machine(host: Host, robot: str, *others: Host) -> Iterator[None]:
-    """A router and a robot on this host; the router connects to those of the others."""
+    """Yield a router and a robot on this host; the router connects to those of the others."""
     program = str(ROOT / "tests" / "support" / "zenoh_robots.py")
     more = [f"+{endpoint(other)}" for other in others]
     command = [*host.inside, sys.executable, program, endpoint(host), robot, *more]

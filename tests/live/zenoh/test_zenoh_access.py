@@ -252,7 +252,7 @@ def test_without_certificates_the_router_lets_all_in() -> None:
 FLEET = """\
 layout: frames-per-robot
 description: rover.urdf
-stack: [nav2]
+node_sets: [nav2]
 robots: [{name: robot1}, {name: robot2}]
 zenoh:
 """

@@ -21,7 +21,7 @@ from multibot_rewrite.system.json import to_json
 
 @pytest.fixture
 def files(tmp_path: Path) -> dict[str, str]:
-    """A fleet file, its plan and a graph as planned."""
+    """Return a fleet file, its plan and a graph as planned."""
     fleet = tmp_path / "fleet.yaml"
     fleet.write_text(
         f"description: {ROBOTS / 'rover.urdf'}\nrobots:\n"

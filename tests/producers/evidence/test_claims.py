@@ -7,8 +7,8 @@ from __future__ import annotations
 import pytest
 from given_parameters import given_in
 
+from multibot_rewrite.knowledge.node_sets import load_nodes
 from multibot_rewrite.knowledge.records import Claim
-from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.planning.records import Given
 from multibot_rewrite.producers.evidence.hardware import Claimed, claimed, claimed_twice, claims_of
 from multibot_rewrite.system.records import Place

@@ -15,10 +15,11 @@ from fleet_folder import built_fleet, planned_fleet
 from given_parameters import given_in
 from lxml import etree
 from named_ends import named_ends
+from paths import fixture_text
 
 from multibot_rewrite.base.model import InputError
-from multibot_rewrite.fleet.build import Outputs
-from multibot_rewrite.knowledge.stacks import load_nodes, load_stack
+from multibot_rewrite.checks.build import Outputs
+from multibot_rewrite.knowledge.node_sets import load_node_set, load_nodes
 from multibot_rewrite.planning.records import Table
 from multibot_rewrite.planning.transforms import sent_by
 from multibot_rewrite.planning.ways import HOST, deliveries, started
@@ -26,32 +27,7 @@ from multibot_rewrite.producers.evidence.hardware import exported
 from multibot_rewrite.producers.evidence.nodes import nodes_of
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
-ARM = """\
-<robot name="fr3">
-  <link name="base_link"/>
-  <link name="hand"/>
-  <joint name="fr3_joint1" type="revolute">
-    <parent link="base_link"/><child link="hand"/>
-    <limit lower="-1" upper="1" effort="1" velocity="1"/>
-  </joint>
-  <ros2_control name="arm" type="system">
-    <hardware>
-      <plugin>{plugin}</plugin>
-      {param}
-    </hardware>
-    <joint name="fr3_joint1">
-      <command_interface name="position"/>
-      <command_interface name="velocity"/>
-      <state_interface name="position"/>
-    </joint>
-    <gpio name="speed_scaling"><state_interface name="speed_scaling_factor"/></gpio>
-    <gpio name="gravity">
-      <command_interface name="x"/><command_interface name="y"/><command_interface name="z"/>
-      <command_interface name="gravity_async_success"/>
-    </gpio>
-  </ros2_control>
-</robot>
-"""
+ARM = fixture_text("controllers_arm.urdf")
 FRANKA = ARM.format(
     plugin="franka_hardware/FrankaHardwareInterface",
     param='<param name="prefix"></param><param name="robot_type">fr3</param>',
@@ -95,7 +71,7 @@ def found(outputs: Outputs, *codes: str) -> list[tuple[str, str]]:
 
 
 def parameters(outputs: Outputs, robot: str) -> dict[str, dict[str, object]]:
-    """Controller -> its parameters, by the names without the robot."""
+    """Return the parameters of each controller, by the names without the robot."""
     path = f"{robot}/controllers.yaml"
     (text,) = (it.data.decode() for it in outputs.files if it.path == path)
     words = yaml.safe_load(text)
@@ -152,7 +128,7 @@ def test_code_of_hardware_exports_what_no_description_names() -> None:
 
 def planned(text: str) -> dict[str, str]:
     given = given_in(text, file="c.yaml")
-    nodes = nodes_of(load_stack("ros2_control", "jazzy"), given, load_nodes("jazzy")).nodes
+    nodes = nodes_of(load_node_set("ros2_control", "jazzy"), given, load_nodes("jazzy")).nodes
     return {it.name: it.when for it in nodes}
 
 
@@ -262,7 +238,7 @@ def nodes_with(folder: Path, arm: str, layout: str, more: str = "") -> Table:
     return planned_fleet(fleet).fleet.table
 
 
-MANAGED = "stack: ros2_control\nrelated_files: {params: [controllers.yaml]}\n"
+MANAGED = "node_sets: ros2_control\nrelated_files: {params: [controllers.yaml]}\n"
 
 
 def test_nodes_that_hardware_makes(tmp_path: Path) -> None:

@@ -6,11 +6,12 @@ from __future__ import annotations
 
 import pytest
 from given_parameters import given_in
+from paths import fixture_text
 
 from multibot_rewrite.base.model import InputError
+from multibot_rewrite.knowledge.node_sets import load_node_set, load_nodes
 from multibot_rewrite.knowledge.programs import program_of
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
-from multibot_rewrite.knowledge.stacks import load_nodes, load_stack
 from multibot_rewrite.producers.evidence.filling import filled
 from multibot_rewrite.producers.evidence.nodes import nodes_of
 
@@ -57,27 +58,7 @@ def test_a_filter_that_sends_nothing() -> None:
     assert node.sends == ()
 
 
-COSTMAP = """\
-local_costmap:
-  local_costmap:
-    ros__parameters:
-      plugins: [obstacles, bubble, inflation]
-      filters: [keepout]
-      global_frame: odom
-      obstacles:
-        plugin: nav2_costmap_2d::ObstacleLayer
-        observation_sources: front back
-        front: {topic: /front/scan}
-        back: {topic: scan_back}
-      bubble: {plugin: "nav2_costmap_2d::VoxelLayer", observation_sources: "", publish_voxel_map: true}
-      inflation: {plugin: "nav2_costmap_2d::InflationLayer"}
-      keepout: {plugin: "nav2_costmap_2d::KeepoutFilter", filter_info_topic: keepout_info}
-      # No layer of this costmap.
-      old_layer:
-        plugin: nav2_costmap_2d::ObstacleLayer
-        observation_sources: old
-        old: {topic: /old}
-"""
+COSTMAP = fixture_text("filling_costmap.txt")
 
 
 def test_a_costmap_has_the_layers_of_its_list() -> None:
@@ -131,7 +112,7 @@ CONTROLLERS = """\
 
 def test_controllers_are_those_that_the_files_declare() -> None:
     found = nodes_of(
-        load_stack("ros2_control", "jazzy"),
+        load_node_set("ros2_control", "jazzy"),
         given_in(CONTROLLERS, file="c.yaml"),
         load_nodes("jazzy"),
     )
@@ -144,10 +125,10 @@ def test_controllers_are_those_that_the_files_declare() -> None:
     assert [(it.code, it.line) for it in found.findings] == [("MF802", 7)]
 
 
-def test_a_controller_that_a_file_declares_needs_no_hardware_of_a_stack() -> None:
+def test_a_controller_that_a_file_declares_needs_no_hardware_of_a_node_set() -> None:
     text = "controller_manager:\n  ros__parameters:\n    joint_trajectory_controller:\n"
     text += "      type: joint_trajectory_controller/JointTrajectoryController\n"
-    found = nodes_of(load_stack("ros2_control", "jazzy"), given_in(text), load_nodes("jazzy"))
+    found = nodes_of(load_node_set("ros2_control", "jazzy"), given_in(text), load_nodes("jazzy"))
     assert {it.name: it.when for it in found.nodes}["joint_trajectory_controller"] == ""
 
 
@@ -161,14 +142,14 @@ def test_a_helper_of_a_navigator_serves_no_action() -> None:
 
 def test_a_node_of_a_file_may_run_and_then_sends_only_what_no_other_sends() -> None:
     amcl = "amcl:\n  ros__parameters: {base_frame_id: base_link}\n"
-    beside = nodes_of(load_stack("slam_toolbox", "jazzy"), given_in(amcl), load_nodes("jazzy"))
+    beside = nodes_of(load_node_set("slam_toolbox", "jazzy"), given_in(amcl), load_nodes("jazzy"))
     assert next(it for it in beside.nodes if it.name == "amcl").sends == ()
     alone = nodes_of((), given_in(amcl), load_nodes("jazzy"))
     assert len(next(it for it in alone.nodes if it.name == "amcl").sends) == 1
     assert all(it.when for it in alone.nodes)
 
 
-def test_a_node_of_the_stack_under_another_name_is_not_there_twice() -> None:
+def test_a_node_of_the_node_set_under_another_name_is_not_there_twice() -> None:
     found = nodes_of((load_nodes("jazzy")["ekf_filter_node"],), given_in(EKF), load_nodes("jazzy"))
     assert [it.name for it in found.nodes] == ["ekf_node"]
     assert [it.when for it in found.nodes] == [""]
@@ -181,20 +162,20 @@ def test_a_node_of_the_stack_under_another_name_is_not_there_twice() -> None:
     }
 
 
-def test_another_filter_of_the_package_is_the_one_of_the_stack() -> None:
+def test_another_filter_of_the_package_is_the_one_of_the_node_set() -> None:
     """ukf_node of robot_localization sends what ekf_node sends (ros_filter.cpp is of both)."""
     known = load_nodes("jazzy")
-    stack = (known["ekf_filter_node"],)
+    node_set = (known["ekf_filter_node"],)
     for name in ("ukf_filter_node", "ukf_node"):
-        (node,) = nodes_of(stack, given_in(EKF.replace("ekf_node", name)), known).nodes
+        (node,) = nodes_of(node_set, given_in(EKF.replace("ekf_node", name)), known).nodes
         program = program_of(node, "jazzy")
         assert program and (node.name, program.executable, node.when) == (name, "ukf_node", "")
     beside = EKF + EKF.replace("ekf_node", "ukf_node")
-    # Which of two is not known: with both there are rules that the stack does not have.
-    both = nodes_of(stack, given_in(beside), known).nodes
+    # Which of two is not known: with both there are rules that the node set does not have.
+    both = nodes_of(node_set, given_in(beside), known).nodes
     assert {it.name for it in both if it.when} == {"ekf_node", "ukf_node"}
     # navsat_transform_node is of the package, and no filter.
-    other = nodes_of(stack, given_in("navsat_transform_node:\n  ros__parameters: {}\n"), known)
+    other = nodes_of(node_set, given_in("navsat_transform_node:\n  ros__parameters: {}\n"), known)
     assert {it.name: bool(it.when) for it in other.nodes} == {
         "ekf_filter_node": False,
         "navsat_transform_node": True,
@@ -209,9 +190,9 @@ def test_a_name_of_before_humble_is_of_no_node() -> None:
     assert [(it.name, it.when) for it in found.nodes] == [("behavior_server", "")]
 
 
-def test_a_section_below_a_namespace_is_for_the_node_of_the_stack() -> None:
+def test_a_section_below_a_namespace_is_for_the_node_of_the_node_set() -> None:
     text = "/r1/amcl:\n  ros__parameters: {scan_topic: front}\n"
-    found = nodes_of(load_stack("localization", "jazzy"), given_in(text), load_nodes("jazzy"))
+    found = nodes_of(load_node_set("localization", "jazzy"), given_in(text), load_nodes("jazzy"))
     (amcl,) = (it for it in found.nodes if it.name.endswith("amcl"))
     assert amcl.name == "amcl"
     assert "front" in names(amcl, "subscribes")
@@ -338,6 +319,6 @@ def test_a_route_server_has_the_names_of_its_plugins() -> None:
 def test_a_section_with_a_name_of_before_is_of_no_node() -> None:
     """nav2_behaviors' server is called behavior_server since Humble, whatever a file has."""
     text = "recoveries_server: {ros__parameters: {costmap_topic: local_costmap/costmap_raw}}\n"
-    stack = load_stack("nav2", "jazzy")
-    found = nodes_of(stack, given_in(text), load_nodes("jazzy"))
-    assert [it.name for it in found.nodes] == [it.name for it in stack]
+    node_set = load_node_set("nav2", "jazzy")
+    found = nodes_of(node_set, given_in(text), load_nodes("jazzy"))
+    assert [it.name for it in found.nodes] == [it.name for it in node_set]

@@ -14,7 +14,7 @@ import yaml
 from fleet_folder import built_fleet
 from plans import ends_of
 
-from multibot_rewrite.fleet.build import Outputs
+from multibot_rewrite.checks.build import Outputs
 
 REPUBLISHER = """\
 /**:
@@ -32,7 +32,7 @@ def made(folder: Path, layout: str, params: str = REPUBLISHER) -> Outputs:
     (folder / "p.yaml").write_text(params)
     (folder / "r.urdf").write_text('<robot name="r"><link name="base_link"/></robot>')
     (folder / "fleet.yaml").write_text(
-        f"layout: {layout}\naffix: prefix\ndescription: r.urdf\nstack: create3_repub\n"
+        f"layout: {layout}\naffix: prefix\ndescription: r.urdf\nnode_sets: create3_repub\n"
         "robots: [{name: robot1}, {name: robot2}]\nrelated_files: {params: p.yaml}\n"
     )
     return built_fleet(folder / "fleet.yaml")

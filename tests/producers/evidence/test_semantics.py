@@ -10,9 +10,9 @@ from fleet_folder import planned_fleet
 from lxml import etree
 
 from multibot_rewrite.base.findings.finding import Finding
-from multibot_rewrite.fleet.build import make_outputs
-from multibot_rewrite.fleet.checks.closed_plan import left_open
-from multibot_rewrite.fleet.checks.robot_system import of_sources, with_controllers
+from multibot_rewrite.checks.build import make_outputs
+from multibot_rewrite.checks.closed_plan import left_open
+from multibot_rewrite.checks.robot_system import of_sources, with_controllers
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.output_file import OutputFile
 from multibot_rewrite.fleet.robots.robot_nodes import node_sources
@@ -115,10 +115,10 @@ def test_an_srdf_is_read_by_a_move_group_that_may_run(tmp_path: Path) -> None:
     plan, _ = planned(tmp_path, "shoulder, elbow")
     (found,) = (it for it in plan.fleet.facts if it.name == "move_group")
     assert found.when == "its SRDF is arm.srdf"
-    assert (found.origin.place.line, found.origin.stack) == (1, "")
-    more, _ = planned(tmp_path, "shoulder, elbow", more="stack: moveit\n")
+    assert (found.origin.place.line, found.origin.node_set) == (1, "")
+    more, _ = planned(tmp_path, "shoulder, elbow", more="node_sets: moveit\n")
     (found,) = (it for it in more.fleet.facts if it.name == "move_group")
-    assert found.origin.stack == "moveit"
+    assert found.origin.node_set == "moveit"
 
 
 def test_a_joint_that_the_rewrite_takes_from_its_controller_is_an_error(tmp_path: Path) -> None:

@@ -117,7 +117,7 @@ def test_claimed_interfaces_are_exported(
     fleet.write_text(
         f"layout: {layout}\naffix: prefix\ndistro: jazzy\ndescription: {sources / it.description}\n"
         f"arguments: {{{arguments}}}\nrobots: [{{name: left}}, {{name: right}}]\n"
-        "related_files: {params: [controllers.yaml]}\nstack: ros2_control\n"
+        "related_files: {params: [controllers.yaml]}\nnode_sets: ros2_control\n"
     )
     outputs = built_fleet(fleet)
     found = [it for it in outputs.findings if it.code in ("MB229", "MF802")]

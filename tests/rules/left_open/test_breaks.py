@@ -10,8 +10,7 @@ import re
 from pathlib import Path
 
 import pytest
-from closed_arm import ARM_FILES, MASS
-from closed_robot import FILES
+from closed_robot import ARM_FILES, FILES, MASS
 from open_findings import found
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
@@ -261,6 +260,6 @@ def test_a_break_is_found_with_its_lines(
         assert first, broken
         assert first.line == int(line)
         assert other.strip() in first.hint
-        # What only a stack has is in no file.
+        # What only a node set has is in no file.
         one_line = code.startswith(ONE_LINE) or other.startswith("/")
         assert one_line or PLACE.search(f"{first.message} {first.hint}"), first

@@ -9,15 +9,15 @@ import open_findings
 import pytest
 from closed_robot import FILES
 from given_parameters import run_given
-from paths import fixture_text
+from paths import fixture_text, write_files
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.releases import NEWEST_LTS
-from multibot_rewrite.fleet.checks.closed_plan import gaps_of
-from multibot_rewrite.fleet.checks.robot_system import DRIVERS
+from multibot_rewrite.checks.closed_plan import gaps_of
+from multibot_rewrite.checks.judged_plan import plan_fleet
+from multibot_rewrite.checks.robot_system import DRIVERS
 from multibot_rewrite.fleet.file.fleet_file import read_fleet
-from multibot_rewrite.fleet.fleet_plan import plan_fleet
-from multibot_rewrite.knowledge.stacks import load_nodes
+from multibot_rewrite.knowledge.node_sets import load_nodes
 from multibot_rewrite.planning.records import Given, Run
 from multibot_rewrite.producers.ends import edge, edges_off
 from multibot_rewrite.rules.system.tf_pieces import tf_tree_in_pieces
@@ -63,8 +63,7 @@ def test_nodes_whose_transforms_are_apart(
 
 @pytest.mark.more
 def test_a_tree_that_the_rewrite_has_cut_is_an_error(tmp_path: Path) -> None:
-    for name, text in FILES.items():
-        (tmp_path / name).write_text(text)
+    write_files(tmp_path, FILES)
     plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {}))
     key = ("robot1", "ekf_filter_node")
     assert plan.fleet.edges[key]
@@ -112,7 +111,7 @@ AMCL = (
 SIMULATED = """\
 description: r.urdf
 simulator: gazebo
-stack: [navigation]
+node_sets: [navigation]
 related_files: {params: [p.yaml]}
 robots: [{name: r1}, {name: r2}]
 """

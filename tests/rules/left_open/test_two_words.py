@@ -10,8 +10,8 @@ from open_findings import found
 from paths import fixture_text
 
 from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.knowledge.node_sets import load_nodes
 from multibot_rewrite.knowledge.parameters import built_in_nodes
-from multibot_rewrite.knowledge.stacks import load_nodes
 from multibot_rewrite.planning.records import Run
 from multibot_rewrite.producers.evidence.hardware import Exported, control_system
 from multibot_rewrite.producers.evidence.parameter_files import given_nodes

@@ -5,8 +5,6 @@ Each format is a function of findings and the report. Its text can always be enc
 with a line feed, or is empty.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from importlib import import_module
 from types import MappingProxyType

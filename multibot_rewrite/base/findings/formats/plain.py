@@ -2,8 +2,6 @@
 """The formats that are text or JSON, and what all formats need: text that no reader stumbles over,
 paths, identities that last."""
 
-from __future__ import annotations
-
 import os
 import re
 from collections import Counter
@@ -241,7 +239,7 @@ def as_markdown(findings: Sequence[Finding], report: Report) -> str:
     """Return counts, then a table for each file with findings, as many as a comment holds."""
     found = in_words(counts(findings)) or "no findings"
     files = plural(len(report.files), "file")
-    held = f" ({_escaped(str(report.coverage['text']))})" if report.coverage else ""
+    held = f" ({_without_markup(str(report.coverage['text']))})" if report.coverage else ""
     text = f"**{report.tool}**: {found} in {files}{held}\n"
     shown = 0
     for is_row, part in _markdown_parts(findings, report):
@@ -258,14 +256,14 @@ def _markdown_parts(findings: Sequence[Finding], report: Report) -> Iterator[tup
         if not found:
             continue
         head = "| line | level | code | finding |\n| ---: | --- | --- | --- |\n"
-        yield False, f"\n#### {_escaped(path_below(file))}\n\n{head}"
+        yield False, f"\n#### {_without_markup(path_below(file))}\n\n{head}"
         for it in found:
-            calls_of = "".join(f"<br>{_escaped(line)}" for line in via(it, path_below))
-            what = f"{_escaped(said_of(it) + circumstances(it))}{calls_of}"
+            calls_of = "".join(f"<br>{_without_markup(line)}" for line in via(it, path_below))
+            what = f"{_without_markup(said_of(it) + circumstances(it))}{calls_of}"
             yield True, f"| {it.line or ''} | {it.level} | {title(it, report)} | {what} |\n"
 
 
-def _escaped(text: str) -> str:
+def _without_markup(text: str) -> str:
     return _MARKUP.sub(r"\\\1", one_line(text))
 
 

@@ -4,8 +4,6 @@
 ``README.md`` has the grammar.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from typing import NamedTuple

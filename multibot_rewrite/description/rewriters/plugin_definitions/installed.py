@@ -4,8 +4,6 @@
 An entry point names a package whose ``*.vocab`` files are read; its code is not imported.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import sys
@@ -129,7 +127,7 @@ def definitions_files(package: str) -> list[str]:
     folders = [place for place in places if os.path.isdir(place)]
     if not folders:
         raise DefinitionsError(f"there is no package {package!r}")
-    files = [os.path.join(f, name) for f in folders for name in _listed(f)]
+    files = [os.path.join(f, name) for f in folders for name in _definition_files(f)]
     if not files:
         raise DefinitionsError(f"no *.vocab file in {folders[0]}, is it in the package data?")
     return files
@@ -146,7 +144,7 @@ def _places(package: str) -> list[str]:
     return list(spec.submodule_search_locations or ()) if spec else []
 
 
-def _listed(folder: str) -> list[str]:
+def _definition_files(folder: str) -> list[str]:
     try:
         return sorted(name for name in os.listdir(folder) if name.endswith(".vocab"))
     except OSError as error:

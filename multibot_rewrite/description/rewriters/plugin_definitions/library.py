@@ -227,16 +227,16 @@ def merge(first: PluginDefinition, second: PluginDefinition) -> PluginDefinition
             raise DefinitionsError(
                 f"{second.file}:{site.line}: {site.path} is there already, in {first.file}"
             )
-    below = _either(first, second, "model_namespace")
+    below = _one_setting(first, second, "model_namespace")
     sites = first.sites + tuple(new)
     return first._replace(
         sites=tuple(site._replace(below_model=below) for site in sites),
         model_namespace=below,
         at=first.at + tuple(name for name in second.at if name not in first.at),
         blocks=first.blocks + tuple(name for name in second.blocks if name not in first.blocks),
-        select=_either(first, second, "select"),
-        unique=_either(first, second, "unique"),
-        helper=_either(first, second, "helper"),
+        select=_one_setting(first, second, "select"),
+        unique=_one_setting(first, second, "unique"),
+        helper=_one_setting(first, second, "helper"),
         wired=first.wired + second.wired,
         switches=first.switches + second.switches,
         hardwired=first.hardwired + second.hardwired,
@@ -247,7 +247,7 @@ def merge(first: PluginDefinition, second: PluginDefinition) -> PluginDefinition
     )
 
 
-def _either(first: PluginDefinition, second: PluginDefinition, setting: str) -> str:
+def _one_setting(first: PluginDefinition, second: PluginDefinition, setting: str) -> str:
     old, new = getattr(first, setting), getattr(second, setting)
     if old and new and old != new:
         place = f"{second.file}:{second.line}"

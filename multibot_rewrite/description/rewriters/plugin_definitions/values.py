@@ -3,8 +3,6 @@
 topics and services that it names, as a section has them: ``odom=pkg/msg/Name``.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 

@@ -6,8 +6,6 @@ Without rules nothing of what the set handles is left. Source: Linux, include/ua
 and Documentation/userspace-api/landlock.rst.
 """
 
-from __future__ import annotations
-
 import ctypes
 import os
 import resource
@@ -59,13 +57,13 @@ def enclose(readable: Iterable[str] = (), writable: Iterable[str] = ()) -> bool:
     for paths, rights in ((readable, _READ), (writable, _WRITE)):
         for path in paths:
             with suppress(OSError):  # what is not there needs no rule
-                _allow(ruleset, path, rights & files)
+                _allow_path(ruleset, path, rights & files)
     done = bool(SYSTEM.syscall(RESTRICT_SELF, ruleset, 0) == 0)
     os.close(ruleset)
     return done
 
 
-def _allow(ruleset: int, path: str, rights: int) -> None:
+def _allow_path(ruleset: int, path: str, rights: int) -> None:
     place = os.open(path, os.O_PATH | os.O_CLOEXEC)
     try:
         if not stat.S_ISDIR(os.fstat(place).st_mode):
@@ -90,8 +88,7 @@ class Files(NamedTuple):
 
 
 def put_up(wanted: Collection[str], seconds: float, files: Files | None = None) -> list[str]:
-    """Restrict this process for good; return the restrictions that this system has. Without
-    ``files`` it can open none."""
+    """Restrict this process for good; return the restrictions in force. Without ``files``: no file."""
     memory = _memory()
     ways: Mapping[str, Callable[[], bool]] = {
         frames.LIMITS: lambda: limit(seconds, memory, files is not None),
@@ -150,12 +147,12 @@ def refuse_all() -> bool:
     for module in (os, sys.modules.get("posix")):
         for name, value in list(vars(module).items()) if module else ():
             if callable(value) and name not in _KEPT and not isinstance(value, type):
-                setattr(module, name, _refusing(name))
+                setattr(module, name, _refusing_function(name))
     sys.addaudithook(_refuse)
     return True
 
 
-def _refusing(name: str) -> Callable[..., NoReturn]:
+def _refusing_function(name: str) -> Callable[..., NoReturn]:
     def refuse(*arguments: object, **_: object) -> NoReturn:
         raise PermissionError(f"refused: os.{name}{str(arguments)[:80]}")
 

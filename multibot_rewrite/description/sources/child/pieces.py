@@ -50,6 +50,7 @@ class PiecedText(str):
     pieces: tuple[Piece, ...]
 
     def __new__(cls, text: str, pieces: Iterable[Piece]) -> PiecedText:
+        """Return the text with its pieces."""
         self = super().__new__(cls, text)
         self.pieces = tuple(pieces)
         return self
@@ -73,7 +74,7 @@ class PiecedText(str):
             index = range(index, index + 1)
         if index.step != 1:
             return PiecedText(text, pieces_of(text))
-        return PiecedText(text, _cut(self.pieces, index.start, index.stop))
+        return PiecedText(text, _cut_pieces(self.pieces, index.start, index.stop))
 
 
 def pieces_of(text: str) -> tuple[Piece, ...]:
@@ -86,7 +87,7 @@ def pieces_of(text: str) -> tuple[Piece, ...]:
 def joined(texts: Sequence[str]) -> PiecedText:
     """Return several texts as one."""
     pieces = (piece for text in texts for piece in pieces_of(text))
-    return PiecedText("".join(texts), _merged(pieces))
+    return PiecedText("".join(texts), _merged_pieces(pieces))
 
 
 def placed(text: str, place: Spot) -> PiecedText:
@@ -94,7 +95,7 @@ def placed(text: str, place: Spot) -> PiecedText:
     return PiecedText(text, [Piece(len(text), place)] if text else ())
 
 
-def _cut(pieces: Iterable[Piece], start: int, end: int) -> Iterator[Piece]:
+def _cut_pieces(pieces: Iterable[Piece], start: int, end: int) -> Iterator[Piece]:
     at = 0
     for piece in pieces:
         first, last = max(at, start), min(at + piece.length, end)
@@ -108,7 +109,7 @@ def _moved(place: Spot | None, by: int) -> Spot | None:
     return place._replace(at=place.at + by) if place and not place.length else place
 
 
-def _merged(pieces: Iterable[Piece]) -> Iterator[Piece]:
+def _merged_pieces(pieces: Iterable[Piece]) -> Iterator[Piece]:
     last = None
     for piece in pieces:
         if last and piece.place == _moved(last.place, last.length):

@@ -1,12 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""
-
-What is left computes, asks for memory, and reads and writes what is open. Where Landlock says which
-files may be opened, so do the calls that open files and folders. Sources: Linux,
-Documentation/userspace-api/seccomp_filter.rst, arch/x86/entry/syscalls/syscall_64.tbl,
-include/uapi/asm-generic/unistd.h."""
-
-from __future__ import annotations
+"""A filter of system calls (seccomp) that leaves those which compute, ask for memory, and read and
+write open files. Where Landlock says which files may be opened, calls that open files and folders are
+left, too. Sources: Linux, Documentation/userspace-api/seccomp_filter.rst,
+arch/x86/entry/syscalls/syscall_64.tbl, include/uapi/asm-generic/unistd.h."""
 
 import ctypes
 import errno
@@ -79,7 +75,7 @@ class Machine(NamedTuple):
     asks: tuple[int, ...]
 
 
-def _listed(numbers: str) -> tuple[int, ...]:
+def _numbers(numbers: str) -> tuple[int, ...]:
     return tuple(map(int, numbers.split()))
 
 
@@ -113,7 +109,12 @@ _KINDS: Mapping[str, tuple[int, tuple[int, int], int, tuple[int, ...]]] = {
 }
 MACHINES: Mapping[str, Machine] = {
     name: Machine(
-        audit, _listed(_NUMBERS[name]), memory, _listed(" ".join(_FILES[name])), opens, asks
+        audit,
+        _numbers(_NUMBERS[name]),
+        memory,
+        _numbers(" ".join(_FILES[name])),
+        opens,
+        asks,
     )
     for name, (audit, memory, opens, asks) in _KINDS.items()
 }

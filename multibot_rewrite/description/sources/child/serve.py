@@ -64,13 +64,13 @@ def main() -> None:
     gc.disable()
     gc.freeze()
     children: set[int] = set()
-    while _asked(control, children):
+    while _serve_next(control, children):
         pass
     for pid in children:
         _end(pid)
 
 
-def _asked(control: socket.socket, children: set[int]) -> bool:
+def _serve_next(control: socket.socket, children: set[int]) -> bool:
     """Do what the parent asks for next; return whether there is more to come."""
     ready, _, _ = select.select([control], [], [], None if children else IDLE_SECONDS)
     if not ready:
@@ -80,7 +80,7 @@ def _asked(control: socket.socket, children: set[int]) -> bool:
         return False
     command, pid = COMMAND.unpack(message)
     if command == START:
-        answer = _forked(control, sent[0])
+        answer = _forked_child(control, sent[0])
         children.add(answer)
     else:
         answer = _ended(pid) if command == ENDED else _end(pid)
@@ -89,7 +89,7 @@ def _asked(control: socket.socket, children: set[int]) -> bool:
     return True
 
 
-def _forked(control: socket.socket, descriptor: int) -> int:
+def _forked_child(control: socket.socket, descriptor: int) -> int:
     pid = os.fork()
     if not pid:
         leave = os._exit

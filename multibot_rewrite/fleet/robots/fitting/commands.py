@@ -5,8 +5,6 @@ input of a twist_mux for each sender of them, since the drive obeys one.
 The inputs are those of the user's file, where one has the node; then what a node set adds fits
 these."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
@@ -34,8 +32,7 @@ from multibot_rewrite.system.words import PLAIN
 
 
 def driving(nodes: Sequence[NodeFacts], own: Collection[str]) -> Sequence[NodeFacts]:
-    """Return the nodes; commands of ``own`` ones that nothing hears go to the one controller that
-    drives."""
+    """Return the nodes with unheard commands of ``own`` ones sent to the one controller that drives."""
     drives = topics_of(controllers(nodes), SUBSCRIBES, COMMANDS)
     if len(drives) != 1:
         return nodes
@@ -117,7 +114,7 @@ def _choices(
     known: Mapping[str, NodeFacts],
 ) -> Iterator[_Choice]:
     for node in nodes:
-        ends = [*_either(known.get(node.kind, node)), *_either(node)]
+        ends = [*_ends_of_either_type(known.get(node.kind, node)), *_ends_of_either_type(node)]
         if ends:
             last = f"/{node.name}"
             sections = (it.values for it in given if f"/{it.node}".endswith(last))
@@ -128,7 +125,7 @@ def _choices(
             yield _Choice(node, ends, chosen, is_set, is_free)
 
 
-def _either(node: NodeFacts) -> Iterator[Endpoint]:
+def _ends_of_either_type(node: NodeFacts) -> Iterator[Endpoint]:
     """Yield the ends of a node that are of either type, as a parameter says; no open ones."""
     ends = (it for it in node.endpoints if it.types and not it.when)
     yield from (it for it in ends if {it.type, *it.also}.issuperset(COMMANDS))
@@ -144,7 +141,7 @@ def _wanted(
 ) -> str:
     """Return the type of the robot's commands: what a file sets, what its bridge or driver takes, what
     the nodes of its files have, and what all nodes have; else the plain one."""
-    topics = {topic_of(it.node, end) for it in choices for end in _either(it.node)}
+    topics = {topic_of(it.node, end) for it in choices for end in _ends_of_either_type(it.node)}
     said = [it.type for it in choices if it.is_set]
     rows = [
         end.type
@@ -174,7 +171,7 @@ def _switch(choice: _Choice, wanted: str) -> tuple[tuple[str, bool]] | None:
     return None
 
 
-# The parameters of an input, and what the stack calls the one of a planner.
+# The parameters of an input, and what the node set calls the one of a planner.
 _INPUT, _OF_PLANNER = "topics.{}.", "navigation"
 # What the output of a mux is called where a drive obeys it.
 _DRIVE = "cmd_vel"
@@ -207,7 +204,7 @@ def through_a_mux(
     others = [it for it in nodes if it.name != node.name]
     obeyed = {topic_of(it, end) for it in others for end in _commands(it, SUBSCRIBES)}
     node, apart = _with_own_inputs(node, outputs | obeyed)
-    # A file has the ids of the inputs, or the stack.
+    # A file has the ids of the inputs, or the node set.
     ids = ((_id(it.parameter), topic_of(node, it)) for it in _commands(node, SUBSCRIBES))
     inputs = {id_ if id_ != "*" else _role(topic, usual): topic for id_, topic in ids}
     heard = {*inputs.values(), *topics_of(others, SUBSCRIBES)}
@@ -249,8 +246,7 @@ def _id(parameter: str) -> str:
 
 
 def _with_own_inputs(node: NodeFacts, taken: Collection[str]) -> tuple[NodeFacts, Sequence[str]]:
-    """Return the twist_mux, its inputs that a file puts on topics that are ``taken`` on other ones, and
-    these."""
+    """Return the twist_mux with its inputs moved off topics that are ``taken``, and the moved ones."""
     apart = {
         it: f"{topic}{_APART}"
         for it in _commands(node, SUBSCRIBES)
@@ -274,8 +270,7 @@ def _name_of_topic(role: str) -> str:
 def _with_inputs(
     node: NodeFacts, roles: Iterable[str], usual: Usual, of_package: NodeFacts
 ) -> NodeFacts:
-    """Return the twist_mux with inputs that the node set has, in addition to those of the user's
-    file."""
+    """Return the twist_mux with the inputs of its node set besides those of the user's file."""
     (like,) = _commands(of_package, SUBSCRIBES)
     for role in roles:
         values = [it for it in usual.items() if it[0].startswith(_INPUT.format(role))]

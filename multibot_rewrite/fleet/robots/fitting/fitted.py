@@ -6,8 +6,6 @@ those of the robot in the place of usual ones that it has not.
 What the user's files say stays. A node that a node set adds gets the type of commands, the frames
 and the transforms with which it works with them."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
@@ -83,8 +81,7 @@ def brings_transforms(spec: RobotSpec) -> bool:
 
 
 def _led_elsewhere(spec: RobotSpec) -> set[str]:
-    """Return the last words of the simulator's topics with transforms that bridge files of the robot
-    have on no tf."""
+    """Return last words of gz topics with transforms that bridge files put on no tf topic."""
     led: dict[str, set[str]] = defaultdict(set)
     for path in spec.related_files.get("bridge", ()):
         for it in bridge_rows(own_yaml(spec, path)):
@@ -130,8 +127,7 @@ def have_two_parents(sent: Iterable[Edge]) -> bool:
 
 
 def _place(edge: Edge, bodies: Collection[str]) -> tuple[str, str]:
-    """Return what a transform places, and where: a robot has one place, whichever of its frames has
-    it."""
+    """Return what a transform places, and where; a robot has one place under any of its frames."""
     return edge.parent, "" if edge.child in bodies else edge.child
 
 
@@ -152,8 +148,7 @@ NO_FRAMES: Frames = {}
 
 
 def fitting_frames(member: Member, nodes: Iterable[NodeFacts], sent: Sequence[Edge]) -> Frames:
-    """Return the usual frames that nothing of the robot has, each with the frame that its drive has in
-    that place."""
+    """Return the usual frames that the robot lacks, each with its drive's frame for that place."""
     placed = next((it for it in sent if it.child in BODY_FRAMES or it.parent == ODOM), None)
     if placed is None:
         return NO_FRAMES
@@ -188,8 +183,7 @@ def changed_frames(
 
 
 def root_link(member: Member) -> str:
-    """Return the link that no joint holds, where another usual one of the body is below it; empty for
-    none."""
+    """Return the link that no joint holds, above another usual one of the body; empty for none."""
     children = {it.child for it in edges_in(member.source.root)}
     roots = [
         name
@@ -228,8 +222,7 @@ def described(member: Member, spec: RobotSpec) -> Described:
 
 
 def free_nodes(own: Iterable[str], given: Iterable[Run]) -> frozenset[str]:
-    """Return those of the nodes that no parameter file has a section for: what they are set to is the
-    build's to choose."""
+    """Return the nodes without a section in parameter files: the build chooses their values."""
     filed = [f"/{it.node}" for it in given]
     return frozenset(it for it in own if not any(one.endswith(f"/{it}") for one in filed))
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Topics that nodes have for certain, and parameters that their node sets set."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
@@ -41,8 +39,7 @@ def topic_of(node: NodeFacts, end: Endpoint) -> str:
 
 
 def topics_of(nodes: Iterable[NodeFacts], role: str, types: Collection[str] = ()) -> list[str]:
-    """Return the topics of this role that the nodes have for certain; only those of ``types``, where
-    these are given."""
+    """Return the topics of this role that the nodes surely have, of ``types`` if given."""
     ends = ((node, it) for node in nodes for it in node.endpoints if it.role == role)
     return [topic_of(*it) for it in ends if not it[1].when and (not types or it[1].type in types)]
 
@@ -79,8 +76,7 @@ def usual_values(node: NodeFacts) -> dict[str, Given]:
 
 
 def relays_of(ends: Iterable[CommandEnd]) -> dict[str, Sequence[CommandEnd]]:
-    """Return by name of the node the inputs of those between a sender and the drive: a mux, a smoother,
-    a monitor."""
+    """Return the inputs, by node, of those between a sender and the drive, such as muxes."""
     obeys: dict[str, list[CommandEnd]] = defaultdict(list)
     sends = set()
     for it in ends:
@@ -106,8 +102,7 @@ def entry_of(topic: str, ends: Sequence[CommandEnd]) -> str:
 
 
 def _for_a_person(inputs: Sequence[CommandEnd], sent: Collection[str]) -> str:
-    """Return the topic of the input for a person: by a word of its id or topic, else one without a
-    sender."""
+    """Return the topic of a person's input: by a word of its id or topic, else one without a sender."""
     texts = [(f"{it.parameter} {it.topic}".lower(), it.topic) for it in inputs]
     named = (topic for word in _OF_A_PERSON for text, topic in texts if word in text)
     unsent = (it.topic for it in inputs if it.topic not in sent)

@@ -40,8 +40,7 @@ _NAMING = make_naming("tf-per-robot")
 
 
 def offered_topics(member: Member, spec: RobotSpec) -> Mapping[str, Sequence[str]]:
-    """Return the topics of the sensors in the description, by what they are, as the robot alone has
-    them."""
+    """Return the topics of a description's sensors by what they are, as for a single robot."""
     sent: list[tuple[str, str]] = []
     if spec.simulator != REAL:
         topics, _ = bridged_topics({"": collect(member.source, member.tree)}, _NAMING)
@@ -109,7 +108,7 @@ def hearing_sensors(
         one = len(topics) == 1 and (kind not in OF_CAMERAS or kinds.count(kind) == 1)
         there = {*topics, *sent_as(nodes, kind)} if one else ()
         lost = one and "<" not in end.name and topic_of(node, end) not in there
-        # No file says the name that its stack has.
+        # No file says the name that its node set has.
         named = end.named_from or end.name
         ends.append(end._replace(name=named, remapped=topics[0]) if lost else end)
     return node._replace(endpoints=tuple(ends)) if offered else node

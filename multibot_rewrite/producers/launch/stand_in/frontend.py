@@ -6,8 +6,6 @@ Source: launch and launch_ros jazzy, frontend/expose.py, ``parse`` of each actio
 and of descriptions/composable_node.py; share/launch/frontend/grammar.lark,
 frontend/parse_substitution.py."""
 
-from __future__ import annotations
-
 import re
 import shlex
 from collections.abc import Callable, Mapping
@@ -83,14 +81,14 @@ def _placed(text: str, at: int, quote: str) -> tuple[Any, int]:
     at += len(name)
     words = []
     while text.startswith(" ", at):
-        word, at = _word(text, at + 1, quote)
+        word, at = _quoted_parts(text, at + 1, quote)
         words.append(word)
     if not text.startswith(")", at):
         raise ValueError(f"$({name} is not closed")
     return known()[name](*words), at + 1
 
 
-def _word(text: str, at: int, quote: str) -> tuple[Parts, int]:
+def _quoted_parts(text: str, at: int, quote: str) -> tuple[Parts, int]:
     mark = text[at : at + 1]
     if quote or mark not in ("'", '"'):
         return _parts_of_text(text, at, _WORDS[quote], quote)
@@ -118,11 +116,11 @@ class Form(NamedTuple):
 
 def description_in(path: str) -> Any:
     """Return the launch description of an XML or YAML file; raises what launch raises for a bad one."""
-    made = [_made(it) for it in root_of(read_bytes(path), path).below]
+    made = [_action_of(it) for it in root_of(read_bytes(path), path).below]
     return import_module("launch").LaunchDescription(made)
 
 
-def _made(entity: Entity) -> Any:
+def _action_of(entity: Entity) -> Any:
     """Return the action of an entity."""
     form = forms().get(entity.tag)
     if entity.tag in ("env", "machine", "param", "remap", "rosparam", "test"):
@@ -145,7 +143,7 @@ def _built(entity: Entity, form: Form) -> Any:
         if found := entity.all(tag):
             given[argument] = read(found)
     if form.actions:
-        given[form.actions] = [_made(it) for it in entity.below]
+        given[form.actions] = [_action_of(it) for it in entity.below]
         entity.below = []
     entity.check()
     made = getattr(import_module(form.module), form.name)(**given)
@@ -179,7 +177,7 @@ def _truth(value: Any) -> bool:
     return value if isinstance(value, bool) else value.lower() in ("true", "1", "on", "yes")
 
 
-def _words(line: str) -> list[Any]:
+def _command_words(line: str) -> list[Any]:
     """Return the words of a command: its own blanks separate, not those of values (ExecuteProcess)."""
     found: list[list[Any]] = [[]]
     for it in parse_substitution(line):
@@ -257,7 +255,7 @@ _MODULES = {
     "loops": f"{__package__}.processes",
 }
 _READERS: Mapping[str, Reader] = {
-    **{"": _parts, "text": str, "truth": _truth, "words": _words},
+    **{"": _parts, "text": str, "truth": _truth, "words": _command_words},
     "end": lambda _: [import_module("launch.actions").Shutdown()],
 }
 _named = _pairs("name", "value")

@@ -2,8 +2,6 @@
 """What can be imported of launch and launch_ros, and what launch files in XML and YAML are made of:
 ``launch.yaml``."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from functools import cache
 from typing import NamedTuple

@@ -248,7 +248,7 @@ class ReplaceString(_OfFile):
 
 
 class HasNodeParams(_OfFile):
-    """Has a parameter file a section of this name?"""
+    """Whether a parameter file has a section of this name."""
 
     names = ("source_file", "node_name")
 

@@ -169,17 +169,19 @@ def _substitution(
 
 def _configuration(it: Any, context: LaunchContext) -> str:
     name = text_of(context, it.variable_name)
-    return _found(context, context.launch_configurations, name, it.default, "launch configuration")
+    return _looked_up(
+        context, context.launch_configurations, name, it.default, "launch configuration"
+    )
 
 
 def _variable(it: Any, context: LaunchContext) -> str:
     name = text_of(context, it.name)
     if name not in context.environment:
         os.environ.get(name)  # raises for one that is set and hidden
-    return _found(context, context.environment, name, it.default_value, "environment variable")
+    return _looked_up(context, context.environment, name, it.default_value, "environment variable")
 
 
-def _found(
+def _looked_up(
     context: LaunchContext, known: Mapping[str, str], name: str, usual: Text, what: str
 ) -> str:
     if name not in known and usual is None:
@@ -199,7 +201,7 @@ def _expression(it: Any, context: LaunchContext) -> str:
 def _iterated(it: Any, context: LaunchContext) -> str:
     known = context.get_locals_as_dict()
     own = {key.removeprefix(ITERATED): known[key] for key in known if key.startswith(ITERATED)}
-    return _found(context, own, text_of(context, it.name), it.default_value, "value of a loop")
+    return _looked_up(context, own, text_of(context, it.name), it.default_value, "value of a loop")
 
 
 def _is(value: bool) -> str:
@@ -247,7 +249,7 @@ def _anonymous(it: Any, context: LaunchContext) -> str:
 
 
 class AllSubstitution(Substitution):
-    """Are all of them true?"""
+    """Whether all of them are true."""
 
     def __init__(self, *args: Text) -> None:
         self.args = args
@@ -260,7 +262,7 @@ class AllSubstitution(Substitution):
 
 
 class AnySubstitution(AllSubstitution):
-    """Is one of them true?"""
+    """Whether one of them is true."""
 
     def perform(self, context: LaunchContext) -> str:
         return _is(any(self.truths(context)))

@@ -15,7 +15,7 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, SRDF, URDF, WARN
 from multibot_rewrite.base.nearest import nearest, slip_of
 from multibot_rewrite.description.checks.numbers import number
 from multibot_rewrite.description.checks.problem import Problem
-from multibot_rewrite.description.checks.unknown import is_unknown
+from multibot_rewrite.description.checks.unknown import ANOTHER_RELEASE, is_unknown, not_here
 from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.rewriters.tree import library_key
 from multibot_rewrite.description.sources import packages
@@ -87,9 +87,17 @@ def unreadable_value(subject: Subject) -> Iterator[Problem]:
     yield from unreadable_numbers(subject)
 
 
-unknown_word = rule("MB124", "unknown-word", ERROR, formats=(URDF, SRDF, PARAMS, MOVEIT))(
-    partial(faults, "word")
-)
+@rule("MB124", "unknown-word", ERROR, formats=(URDF, SRDF, PARAMS, MOVEIT))
+def unknown_word(subject: Subject) -> Iterator[Problem]:
+    """Report values that are none of the allowed ones; sensor types of other releases are warnings."""
+    definitions = subject.tree.definitions
+    for it in faults("word", subject):
+        type_ = it.element.get("type", "") if it.element.tag == "sensor" else ""
+        others = definitions.releases_elsewhere("sensor", type_) if type_ else ()
+        message = f"sensor@type {type_!r} {not_here(definitions, others)}"
+        level = ERROR if subject.settings.simulated else WARNING
+        later = it._replace(message=message, hint=ANOTHER_RELEASE, level=level)
+        yield later if others else it
 
 
 @rule("MB125", "out-of-range", ERROR, formats=(URDF, PARAMS, MOVEIT))

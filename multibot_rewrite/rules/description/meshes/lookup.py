@@ -3,8 +3,6 @@
 end.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache, lru_cache
@@ -93,14 +91,14 @@ def _search_path(
     if it.scheme == "":
         here = os.path.dirname(os.path.abspath(file))
         return (here, os.path.dirname(here)), it.path
-    package, _, path = _unquoted(it.path).partition("/")
+    package, _, path = _unquoted_path(it.path).partition("/")
     if not package or not path:
         return (), ""
     path = path.lstrip("/")
     return folders_of(package, path.partition("/")[0].lower()), path
 
 
-def _unquoted(path: str) -> str:
+def _unquoted_path(path: str) -> str:
     if "%" not in path:
         return path
     from urllib.parse import unquote  # slow to import, and few names need it

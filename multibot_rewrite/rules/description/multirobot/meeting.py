@@ -49,9 +49,8 @@ def _of_code(code: str, subject: Subject) -> Iterator[Problem]:
     return (it for it in _shared(subject) if it.code == code)
 
 
-def _left(known: Rule, naming: Naming = APART) -> Rule:
-    """Return a rule of running systems for what a rewrite would leave as it is; the examples are
-    descriptions."""
+def _rule_for_left_names(known: Rule, naming: Naming = APART) -> Rule:
+    """Return a rule of running systems for names that a rewrite leaves; its examples are URDFs."""
     options = {"robots": TWO, "naming": naming}
     own = known._replace(examples=f"{known.code}-urdf", formats=(URDF,), options=options)
     return own._replace(level=WARNING, check=partial(_of_code, known.code))
@@ -63,12 +62,12 @@ def _of_descriptions(code: str, name: str, naming: Naming) -> Rule:
     return declare(code, name, WARNING, partial(_of_code, code), options=options)
 
 
-shared_topic = _left(sharing.topic_of_several_robots)
-shared_node = _left(states.nodes_of_one_name)
-shared_frame = _left(transforms.robots_frames_collide)
-shared_command = _left(commands.command_for_several_robots)
-shared_service = _left(names.service_of_two_nodes)
-controllers_apart = _left(way_checks.NOT_TAKEN, ODOMETRY_APART)
+shared_topic = _rule_for_left_names(sharing.topic_of_several_robots)
+shared_node = _rule_for_left_names(states.nodes_of_one_name)
+shared_frame = _rule_for_left_names(transforms.robots_frames_collide)
+shared_command = _rule_for_left_names(commands.command_for_several_robots)
+shared_service = _rule_for_left_names(names.service_of_two_nodes)
+controllers_apart = _rule_for_left_names(way_checks.NOT_TAKEN, ODOMETRY_APART)
 
 sensor_names_collide = _of_descriptions("MB425", "lookup-in-the-world", AS_WRITTEN)
 lost_rule = _of_descriptions("MB436", "lost-remap-rule", IN_FRONT)

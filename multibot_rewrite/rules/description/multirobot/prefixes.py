@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Prefixes that a xacro macro or file takes: names that lack them, and unused ones."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 

@@ -42,8 +42,7 @@ def claims_of(subject: Subject, kinds: tuple[str, ...]) -> list[Claim]:
 
 @memoized
 def _claims_by_kind(subject: Subject) -> Mapping[str, Sequence[tuple[int, Claim]]]:
-    """Return the numbered claims by their first kind, without those that name a link or joint. Most
-    do."""
+    """Return the numbered claims by their first kind, without those that name a link or joint."""
     claims = [(at, it.site, it) for at, it in enumerate(subject.inventory.claims)]
     left = (it for it in claims if not it[1].whole_value_kind)
     return lists_by_key((site.kinds[0], (at, claim)) for at, site, claim in left)

@@ -19,6 +19,7 @@ from multibot_rewrite.description.checks.poses import (
 )
 from multibot_rewrite.description.checks.problem import Problem
 from multibot_rewrite.description.checks.shapes import shapes_of, way_out
+from multibot_rewrite.knowledge.worlds import CLASSIC, GAZEBO
 from multibot_rewrite.rules.facts import simulators
 from multibot_rewrite.rules.facts.memo import (
     CAMERAS,
@@ -42,8 +43,7 @@ _OPTICAL = lazy_compile(r"(?:^|[_/-])optical(?:[_/-]?(?:frame|link|joint))?(?:[_
 
 @rule("MB625", "optical-frame-not-rotated", WARNING)
 def optical_frame_not_rotated(subject: Subject) -> Iterator[Problem]:
-    """Report links with optical at the end of their names that are not rotated, nor is what they
-    are fixed to."""
+    """Report optical links that are not rotated, and whose parents are not rotated either."""
     for link in subject.robot.links:
         if not _OPTICAL.search(link.name.lower()):
             continue
@@ -163,10 +163,8 @@ def lidar_without_rays(subject: Subject) -> Iterator[Problem]:
     """Yield lidars in addition to what only Gazebo loads, where nothing is for Gazebo Classic."""
     libraries = {simulators.library_of(it) for it in simulators.simulator_plugins(subject)}
     hardware = {simulator.name for _, _, simulator in simulators.simulated(subject)}
-    gazebo = simulators.GAZEBO.name in hardware or any(it.startswith(_GAZEBOS) for it in libraries)
-    classic = simulators.CLASSIC.name in hardware or any(
-        it.startswith(_CLASSICS) for it in libraries
-    )
+    gazebo = GAZEBO.name in hardware or any(it.startswith(_GAZEBOS) for it in libraries)
+    classic = CLASSIC.name in hardware or any(it.startswith(_CLASSICS) for it in libraries)
     for it in subject.elements.every("sensor") if gazebo and not classic else ():
         if it.get("type") in _RAYS and it.find("plugin") is None:
             message = f"Gazebo simulates no sensor of type {it.get('type')!r}"

@@ -21,11 +21,10 @@ from multibot_rewrite.description.rewriters.text import text_of
 from multibot_rewrite.description.sources.packages import in_sources
 from multibot_rewrite.description.sources.read import XACRO
 from multibot_rewrite.description.sources.trace import alike
+from multibot_rewrite.knowledge.worlds import GAZEBO, SIMULATORS
 from multibot_rewrite.rules.description.structure.mimic import controlled_joints, mimic_of_none
 from multibot_rewrite.rules.facts.memo import driven_joints, level_of_absence, since_jazzy
 from multibot_rewrite.rules.facts.simulators import (
-    GAZEBO,
-    SIMULATORS,
     driving,
     library_of,
     manager_plugins,
@@ -159,7 +158,7 @@ def misspelt_interfaces(subject: Subject) -> Iterator[Problem]:
     for owner in subject.elements.owners():
         for it in owner.iterchildren(COMMAND, STATE) if owner.tag == "joint" else ():
             name = name_of(it)
-            near = "" if name in STANDARD else _meant(name)
+            near = "" if name in STANDARD else _near_interface(name)
             if near:
                 message = f"no controller asks for {name!r} of a joint"
                 yield Problem(it, message, "name", f"did you mean {near!r}?")
@@ -181,7 +180,7 @@ def commanded_joint_without_state(subject: Subject) -> Iterator[Problem]:
 
 
 @lru_cache(maxsize=256)
-def _meant(name: str) -> str:
+def _near_interface(name: str) -> str:
     """Return the standard interface of ros2_control with nearly this name, or empty."""
     return slip_of(name, STANDARD)
 

@@ -38,12 +38,12 @@ _YAML = (".yaml", ".yml")
 def _not_exported(subject: Subject) -> Iterator[Problem]:
     for element, known in _claimed(subject):
         # Few descriptions need them.
-        from multibot_rewrite.rules.system.states import said_of_missing
+        from multibot_rewrite.rules.system.states import missing_message
 
         for it in missing_in(subject, known):
             # Lines of an expanded xacro are in no file.
-            message, hint = said_of_missing(it, None if subject.origins else "line {0.line}".format)
-            yield Problem(element, f"{_at(it.claims[0])}: {message}", _place(element), hint)
+            message, hint = missing_message(it, None if subject.origins else "line {0.line}".format)
+            yield Problem(element, f"{_line(it.claims[0])}: {message}", _place(element), hint)
 
 
 def missing_in(subject: Subject, known: tuple[Interface, ...]) -> Iterator[Missing]:
@@ -63,8 +63,8 @@ def _claimed_twice(subject: Subject) -> Iterator[Problem]:
         from multibot_rewrite.rules.system.states import claimed_twice
 
         for other, twice in claimed_twice(known):
-            message = f"{_at(twice)}: {twice.node} claims {twice.name} by two parameters"
-            hint = f"name another joint there, or in {_at(other)}"
+            message = f"{_line(twice)}: {twice.node} claims {twice.name} by two parameters"
+            hint = f"name another joint there, or in {_line(other)}"
             yield Problem(element, message, _place(element), hint)
 
 
@@ -98,7 +98,7 @@ def _of_no_node(subject: Subject) -> Iterator[Problem]:
         with suppress(InputError):
             sections = raw_sections(read_yaml(read_file(path), path)) if manager else ()
             if section := meant_for(sections, manager, ()):
-                message, hint = declaration.said_of_section(section.path, [manager])
+                message, hint = declaration.section_message(section.path, [manager])
                 yield Problem(element, f"{os.path.basename(path)}: {message}", "", hint)
 
 
@@ -144,8 +144,7 @@ def _joints_of(path: str, seen: set[str]) -> Iterator[tuple[_Element, str]]:
 
 @memoized
 def _claimed(subject: Subject) -> list[tuple[_Element, tuple[Interface, ...]]]:
-    """Return the exported and claimed interfaces of each controller file, with the element that
-    names it."""
+    """Return each controller file's exported and claimed interfaces, with the naming element."""
     systems = subject.elements.tops("ros2_control")
     files = _files(subject, systems[0]) if systems else ()
     found = ((element, _interfaces(subject, path, is_sure)) for element, path, is_sure in files)
@@ -169,7 +168,7 @@ def _chosen(subject: Subject) -> tuple[str, ...]:
     )
 
 
-def _at(it: Interface) -> str:
+def _line(it: Interface) -> str:
     return f"{os.path.basename(it.place.file)}:{it.place.line}"
 
 
@@ -209,8 +208,8 @@ def _resolved_path(subject: Subject, text: str) -> str:
 def _interfaces(subject: Subject, path: str, is_sure: bool) -> tuple[Interface, ...]:
     """Return the interfaces exported, and claimed by a file's controllers; none of another robot."""
     # Most descriptions have no such file, and a lint of them loads nothing of this.
+    from multibot_rewrite.knowledge.node_sets import load_nodes
     from multibot_rewrite.knowledge.parameters import load_known_nodes
-    from multibot_rewrite.knowledge.stacks import load_nodes
     from multibot_rewrite.producers.evidence.hardware import control_system, exported
     from multibot_rewrite.producers.evidence.parameter_files import given_nodes
     from multibot_rewrite.related_files.yaml_text import read_yaml

@@ -3,8 +3,6 @@
 of a description place and a plugin as well.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from functools import partial
 from typing import NamedTuple

@@ -208,7 +208,7 @@ def origins_in_degrees(subject: Subject) -> Iterator[Problem]:
     origins = subject.elements.every("origin")
     different = {it.get("rpy", "") for it in origins}
     large = filter(_LARGE.search, different)
-    turned = {rpy: odd for rpy in large if (odd := _turned(rpy)) is not None}
+    turned = {rpy: odd for rpy in large if (odd := _angle_in_degrees(rpy)) is not None}
     for origin in origins if turned else ():
         odd = turned.get(origin.get("rpy", ""))
         if odd is not None:
@@ -216,7 +216,7 @@ def origins_in_degrees(subject: Subject) -> Iterator[Problem]:
             yield Problem(origin, message, "rpy", f"{odd:g} degrees are {radians(odd):.4g}")
 
 
-def _turned(rpy: str) -> float | None:
+def _angle_in_degrees(rpy: str) -> float | None:
     found = numbers(rpy) or ()
     return next((it for it in found if abs(it) > _TURN and it % _ROUND == 0), None)
 

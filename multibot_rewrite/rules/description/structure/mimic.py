@@ -113,7 +113,7 @@ def mimic_beyond_limits(subject: Subject) -> Iterator[Problem]:
         if leader is None or own is None or its is None or ratio is None or shift is None:
             continue
         low, high = sorted(it * ratio + shift for it in its)
-        if _outside(low, own) or _outside(high, own):
+        if _is_outside(low, own) or _is_outside(high, own):
             message = (
                 f"joint {joint.name!r} goes from {low:.4g} to {high:.4g} with {leader.name!r}, its "
                 f"limits are {own[0]:.4g} to {own[1]:.4g}"
@@ -130,7 +130,7 @@ def _bounds(joint: Joint) -> Bounds | None:
     return None if lower is None or upper is None or lower >= upper else (lower, upper)
 
 
-def _outside(value: float, bounds: Bounds) -> bool:
+def _is_outside(value: float, bounds: Bounds) -> bool:
     slack = max(PART * (bounds[1] - bounds[0]), ROUNDING if bounds[1] - bounds[0] > 0.5 else 0.0)
     return not bounds[0] - slack <= value <= bounds[1] + slack
 
@@ -222,13 +222,13 @@ def command_beyond_limits(subject: Subject) -> Iterator[Problem]:
         for it in system.iterchildren("joint"):
             joint = subject.robot.joint.get(it.get("name", ""))
             for interface in it.iterchildren(_COMMAND):
-                yield from _inverted(interface)
+                yield from _inverted_bounds(interface)
                 bounds = _bounds_of(joint, interface.get("name", "")) if joint else None
                 if joint and bounds:
-                    yield from _beyond(joint, interface, *bounds)
+                    yield from _beyond_limits(joint, interface, *bounds)
 
 
-def _inverted(interface: _Element) -> Iterator[Problem]:
+def _inverted_bounds(interface: _Element) -> Iterator[Problem]:
     params = {it.get("name"): it for it in interface.iterchildren("param")}
     found = {name: number(text_of(params[name])) for name in ("min", "max") if name in params}
     low, high = found.get("min"), found.get("max")
@@ -237,7 +237,7 @@ def _inverted(interface: _Element) -> Iterator[Problem]:
         yield Problem(params["min"], message, "", "swap the two")
 
 
-def _beyond(joint: Joint, interface: _Element, low: float, high: float) -> Iterator[Problem]:
+def _beyond_limits(joint: Joint, interface: _Element, low: float, high: float) -> Iterator[Problem]:
     for param in interface.iterchildren("param"):
         value = number(text_of(param))
         if value is None or param.get("name") not in ("min", "max"):
