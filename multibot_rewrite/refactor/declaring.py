@@ -2,7 +2,7 @@
 """The new argument in the sources: a name that is free, and where it is declared.
 
 A file that is included has the argument's property as well, empty where nobody has set it: packages
-that are not looked at include it, too. Source: xacro README (``default`` of a property)."""
+that are not read include it, too. Source: xacro README (``default`` of a property)."""
 
 from __future__ import annotations
 

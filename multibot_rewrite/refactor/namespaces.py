@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A description package gets an argument for a ROS namespace, beside that for its prefix.
+"""A description package gets an argument for a ROS namespace, in addition to that for its prefix.
 
 What a rewrite below a namespace changes in plugins and sensors is asked of the rewrite: namespaces,
 absolute names, and elements that are not written. Without a namespace nothing changes. Proved by
