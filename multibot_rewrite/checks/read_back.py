@@ -124,7 +124,10 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
             if it.code not in (COMMAND, DATA) or not {*it.names} <= shared
             if it.robot not in real or not is_for_driver(it, made.planned, started)
         ]
-        wrong += _not_open(alone, made)
+        alone = _not_open(alone, made)
+        # What is an error without the plan is one line, of that level.
+        errors = {(it.code, it.robot) for it in alone if it.robot}
+        wrong = [it for it in wrong if (it.code, it.robot) not in errors] + alone
         if any(it.code == NO_MANAGER.code for it in wrong):
             remedy = _remedy(plan)
             wrong = [it._replace(hint=remedy) if it.code == NO_MANAGER.code else it for it in wrong]

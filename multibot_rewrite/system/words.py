@@ -33,6 +33,8 @@ DESCRIPTION, _TEXT = "robot_description", "std_msgs/msg/String"
 # The node of `ros2 bag play`.
 CHANGE_STATE, NODE_NAMES = "/change_state", "node_names"
 PLAYER = "rosbag2_player"
+# The node of a build that sends where its robot starts.
+START_POSE = "start_pose"
 
 
 def moves(name: str, type_: str) -> bool:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -171,5 +172,43 @@ def test_a_built_folder_says_whose_each_name_is(
     assert main(["build", str(fleet), "-o", str(tmp_path / "out"), "-q"]) == 0
     assert main(["check-launch", str(tmp_path / "out/fleet.launch.py")]) == 0
     told = capsys.readouterr().err
-    assert "2 robots by the plan beside it: left, right; layout: postfix" in told
+    assert "2 robots by the plan in its folder: left, right; layout: postfix" in told
     assert "2 robots, 1 node each: all known" in told
+
+
+BASE = """<link name="base_link">
+<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+</link>"""
+WHEEL = """<link name="{0}_link">
+<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+<joint name="{0}" type="continuous">
+<parent link="base_link"/><child link="{0}_link"/><axis xyz="0 1 0"/></joint>"""
+LOST_ODOMETRY = f"""<robot name="rover">
+{BASE}
+{WHEEL.format("l")}{WHEEL.format("r")}
+<gazebo><plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">
+<left_joint>l</left_joint><right_joint>r</right_joint><topic>cmd_vel</topic>
+<frame_id>odom</frame_id><child_frame_id>other_base</child_frame_id></plugin></gazebo></robot>"""
+
+
+@pytest.mark.parametrize(("stack", "level"), [("", "warning"), ("slam_toolbox", "error")])
+def test_a_tree_in_pieces_is_one_line_of_one_level(
+    stack: str, level: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A drive whose frame the description lacks: an error only where something localizes the robot."""
+    (tmp_path / "rover.urdf").write_text(LOST_ODOMETRY)
+    fleet, out = tmp_path / "fleet.yaml", tmp_path / "out"
+    robot = f"name: one, namespace: x/y, pose: {{x: 1.0}}, stack: [{stack}]"
+    fleet.write_text(
+        f"distro: jazzy\ndescription: rover.urdf\nlayout: both\nrobots: [{{{robot}}}]\n"
+    )
+    launched = ["check-launch", str(out / "fleet.launch.py")]
+    for command in (
+        ["build", str(fleet), "-o", str(out)], launched, [*launched, "--plan", str(out / "plan.yaml")]
+    ):  # fmt: skip
+        ended = main([*command, "--format", "json"])
+        found = json.loads(capsys.readouterr().out)["findings"]
+        told = [(it["level"], it["robot"]) for it in found if it["code"] == "MG406"]
+        assert (ended, told) == (int(level == "error"), [(level, "one")])
+        if level == "error":
+            return

@@ -546,6 +546,7 @@ def test_a_system_of_the_world_is_loaded_again_with_a_second_model(known: Knowle
 
 SENT = "running: transform {} on /tf by /a\n"
 LOOSE, BODY = SENT.format("map -> odom"), SENT.format("base_link -> laser")
+POSED = LOOSE.replace("/a", "/start_pose") + "running: /start_pose publishes /x\n"
 MISSPELLED = SENT.format("odom -> base_lnk") + SENT.format("base_link -> front")
 WHOLE = SENT.format("odom -> base_link")
 MOVED = f"<robot name='r'>{LINK}{{}}</robot>"
@@ -567,6 +568,9 @@ ODD_PLUGIN = "<gazebo><plugin name='p' filename='p'/></gazebo>"
         (LOOSE + BODY, "<robot", "warning"),
         (LOOSE + BODY, MOVED.format(GZ_DRIVE.format("")), "error"),
         (LOOSE + BODY, MOVED.format(CLASSIC_DRIVE), "error"),
+        # A build that places the robot starts nothing that localizes it.
+        (POSED + BODY, MOVED.format(CLASSIC_DRIVE), "warning"),
+        (POSED.replace("start", "other") + BODY, MOVED.format(CLASSIC_DRIVE), "error"),
         # A sensor or what tells the joints moves nothing, and what is not known may send the odometry.
         (LOOSE + BODY, MOVED.format(JOINTS), "warning"),
         (LOOSE + BODY, MOVED.format(ODD_PLUGIN), "warning"),

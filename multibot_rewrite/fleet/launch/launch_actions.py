@@ -70,6 +70,7 @@ from multibot_rewrite.producers.launch.handed_on import (
 from multibot_rewrite.producers.launch.known_node import LUA_FLAGS, STATIC, with_frames
 from multibot_rewrite.producers.launch.records import LaunchedNode
 from multibot_rewrite.system.records import PUBLISHES, TOPIC
+from multibot_rewrite.system.words import START_POSE
 
 STATE = "robot_state_publisher"
 # Their words name files of the robot.
@@ -77,7 +78,7 @@ _WORDS_OF_BUILD = (STATE, CARTOGRAPHER)
 # What launch files themselves set, by robot and node.
 Values: TypeAlias = Mapping[tuple[str, str], Mapping[str, Any]]
 # Started by hand, or once for all robots.
-_BY_HAND = (*BY_HAND, "ros_gz_bridge", start_poses.NODE)
+_BY_HAND = (*BY_HAND, "ros_gz_bridge", START_POSE)
 # What helps where a node is not started.
 _DESCRIBE = "describe it in a file of nodes, with `{}:` (docs/node-sets.md)"
 _NAME = (

@@ -27,8 +27,8 @@ from multibot_rewrite.planning.table import joined, run_of
 from multibot_rewrite.related_files.names.rename_map import spell
 from multibot_rewrite.related_files.rviz.rewrite import world_frame
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, Edge, edge_of
+from multibot_rewrite.system.words import START_POSE
 
-NODE = "start_pose"
 AMCL = "amcl"
 ORIGIN = Pose()
 # Elements of gz-sim's drive and odometry systems that hold the odometry frame.
@@ -148,7 +148,7 @@ def static_transform(
     robot: str, parent: str, child: str, pose: Pose, naming: Naming
 ) -> StaticTransform:
     """Return the transform of a robot, published by a node with the robot's own name."""
-    namespace, node = placed(robot, NODE, naming)
+    namespace, node = placed(robot, START_POSE, naming)
     target = target_of("/tf_static", TOPIC, robot, naming)
     remaps = (("/tf_static", target),) if target else ()
     return StaticTransform(robot, parent, child, pose, namespace, node, remaps)
@@ -217,7 +217,7 @@ def _finding(rule: Rule, robot: RewrittenRobot, what: str, hint: str) -> Finding
 
 
 STATIC = "/tf_static"
-POSE_NODE = NodeFacts(NODE, "tf2_ros", (Endpoint(TOPIC, PUBLISHES, STATIC, TF_TYPE),))
+POSE_NODE = NodeFacts(START_POSE, "tf2_ros", (Endpoint(TOPIC, PUBLISHES, STATIC, TF_TYPE),))
 
 
 def with_start_pose_nodes(plan: FleetPlan) -> Fleet:
@@ -231,7 +231,7 @@ def with_start_pose_nodes(plan: FleetPlan) -> Fleet:
     if not held:
         return fleet
     runs = tuple(run_of(it.robot, POSE_NODE, fleet.naming) for it in held)
-    edges = {(it.robot, NODE): [edge_of(it.parent, it.child, True)] for it in held}
+    edges = {(it.robot, START_POSE): [edge_of(it.parent, it.child, True)] for it in held}
     more = fleet.table._replace(runs=runs, problems=())
     return fleet._replace(table=joined(fleet.table, more), edges={**fleet.edges, **edges})
 

@@ -7,24 +7,26 @@ found is 7400 + 250 * domain + 10 + 2 * number.
 
 import os
 import socket
-from collections.abc import Iterable
+import sys
+from collections.abc import Callable, Iterable
 from contextlib import suppress
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 TABLES = ("/proc/net/udp", "/proc/net/udp6")
 _FIRST, _A_DOMAIN, _UNICAST = 7400, 250, 10
 OPEN_HERE = "/proc/self/fd"
 # What all nodes of a large fleet say of themselves at once; net.core.rmem_max may be less.
 ROOM_BYTES = 1 << 22
+# SO_MEMINFO of Linux (asm-generic/socket.h) and its size; the last number in it counts drops.
+_MEMORY_INFO, _DROPS = (55, 36), slice(32, 36)
+T = TypeVar("T")
 
 
 class Socket(NamedTuple):
-    """A local port, how many datagrams were lost since it is open because its buffer was full, and the
-    inode by which its process has it open."""
+    """A local port, and how many datagrams were lost since it is open because its buffer was full."""
 
     port: int
     lost: int
-    inode: str
 
 
 def participants_at(ports: Iterable[int], domain: int) -> int:
@@ -37,9 +39,7 @@ def sockets_in(table: str) -> list[Socket]:
     """Return the sockets of a table such as ``/proc/net/udp``: the last column counts drops."""
     rows = (line.split() for line in table.splitlines()[1:])
     return [
-        Socket(int(row[1].rpartition(":")[2], 16), int(row[-1]), row[9])
-        for row in rows
-        if len(row) > 9
+        Socket(int(row[1].rpartition(":")[2], 16), int(row[-1])) for row in rows if len(row) > 1
     ]
 
 
@@ -53,25 +53,6 @@ def lost_here(domain: int) -> int:
     """Return how many datagrams for a domain this machine has lost; 0 if unknown."""
     first = _FIRST + _A_DOMAIN * domain
     return sum(it.lost for it in _sockets_here() or () if first <= it.port < first + _A_DOMAIN)
-
-
-def lost_by_us() -> int:
-    """Return how many datagrams the sockets of this process have lost; 0 if unknown.
-
-    What another process lost need not be waited for: it offers its endpoints again after 1 s, and that
-    the names of its nodes have not come is noticed (``queries.without_nodes``).
-    """
-    own = set(_open_files().values())
-    return sum(it.lost for it in _sockets_here() or () if f"socket:[{it.inode}]" in own)
-
-
-def _open_files() -> dict[int, str]:
-    """Return what each open file of this process is, by its number; empty if unknown."""
-    found = {}
-    for number in os.listdir(OPEN_HERE) if os.path.isdir(OPEN_HERE) else ():
-        with suppress(OSError):
-            found[int(number)] = os.readlink(f"{OPEN_HERE}/{number}")
-    return found
 
 
 def _sockets_here() -> list[Socket] | None:
@@ -88,11 +69,28 @@ def _sockets_here() -> list[Socket] | None:
 def make_room() -> None:
     """Give the UDP sockets of this process room for what a fleet says at once: Linux has it for some
     160 datagrams, and what is lost comes again only after a heartbeat of 3 s."""
-    for number in _open_files():
+    _ask_own(lambda own: own.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, ROOM_BYTES))
+
+
+def lost_by_us() -> int:
+    """Return how many datagrams the UDP sockets of this process have lost; 0 if unknown.
+
+    What another process lost need not be waited for: it offers its endpoints again after 1 s, and that
+    the names of its nodes have not come is noticed (``queries.without_nodes``).
+    """
+    told = _ask_own(lambda own: own.getsockopt(socket.SOL_SOCKET, *_MEMORY_INFO))
+    return sum(int.from_bytes(it[_DROPS], sys.byteorder) for it in told)
+
+
+def _ask_own(ask: Callable[[socket.socket], T]) -> list[T]:
+    """Return what each UDP socket of this process answers, without those that cannot."""
+    found = []
+    for number in os.listdir(OPEN_HERE) if os.path.isdir(OPEN_HERE) else ():
         with suppress(OSError):
-            borrowed = socket.socket(fileno=number)
+            borrowed = socket.socket(fileno=int(number))
             try:
                 if borrowed.type == socket.SOCK_DGRAM:
-                    borrowed.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, ROOM_BYTES)
+                    found.append(ask(borrowed))
             finally:
                 borrowed.detach()
+    return found

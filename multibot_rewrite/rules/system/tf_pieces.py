@@ -35,6 +35,7 @@ from multibot_rewrite.system.index import Index, Tree, robots_of
 from multibot_rewrite.system.parameters import parameter_text
 from multibot_rewrite.system.records import NOWHERE, OFF, Edge
 from multibot_rewrite.system.tf_copies import tree_topic
+from multibot_rewrite.system.words import START_POSE, last_word
 
 # So many pairs of frames of a robot are compared.
 _COMPARED = 20_000
@@ -228,8 +229,11 @@ def is_sure(seen: Index, found: Finding, moved: bool) -> bool:
     """Return whether all of a tree in pieces is in the launch file. For a robot that is not
     ``moved`` by a plugin in a simulator a driver that is started apart may send the odometry, and
     what is sent on another topic of the robot somebody may bring to its tree; pieces without the
-    usual frames may be meant."""
+    usual frames may be meant. Where a build's start pose places the robot, nothing localizes it."""
     loose = [it for it in loose_odometry(seen) if {*found.names} & {*it}]
+    own = (it for it in seen.nodes if seen.robot(it) == found.robot)
+    if any(last_word(seen.plain(it)) == START_POSE for it in own):
+        return False
     lacking = [(odom, it) for odom, root in loose for it in found.names if it not in (odom, root)]
     if (loose and not moved) or any(sent_elsewhere(seen, found.robot, *it) for it in lacking):
         return False
