@@ -15,7 +15,7 @@ from typing import Any
 
 import pytest
 
-from multibot_rewrite.producers.ros import assemble, observe
+from multibot_rewrite.producers.ros import assemble, observe, participants
 from multibot_rewrite.producers.ros.participants import (
     lost_by_us,
     lost_here,
@@ -64,7 +64,12 @@ def test_a_look_gives_its_sockets_room_and_leaves_them_open(
     assert after[1] == before[1]
 
 
-def test_a_port_in_use_is_a_participant(domain_in_use: int) -> None:
+def test_a_port_in_use_is_a_participant(
+    domain_in_use: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert participants_here(domain_in_use) == 1
+    # Also where the kernel has no IPv6, and so no second table.
+    monkeypatch.setattr(participants, "TABLES", ("/proc/net/udp", "/proc/net/none"))
     assert participants_here(domain_in_use) == 1
 
 

@@ -8,9 +8,10 @@ found is 7400 + 250 * domain + 10 + 2 * number.
 import os
 import socket
 import sys
-from collections.abc import Callable, Iterable
+from collections import defaultdict
+from collections.abc import Callable, Mapping
 from contextlib import suppress
-from typing import NamedTuple, TypeVar
+from typing import TypeVar
 
 TABLES = ("/proc/net/udp", "/proc/net/udp6")
 _FIRST, _A_DOMAIN, _UNICAST = 7400, 250, 10
@@ -22,47 +23,28 @@ _MEMORY_INFO, _DROPS = (55, 36), slice(32, 36)
 T = TypeVar("T")
 
 
-class Socket(NamedTuple):
-    """A local port, and how many datagrams were lost since it is open because its buffer was full."""
-
-    port: int
-    lost: int
-
-
-def participants_at(ports: Iterable[int], domain: int) -> int:
-    """Return how many participants of a domain have some of these ports."""
-    inner = {port - _FIRST - _A_DOMAIN * domain for port in ports}
-    return len({it for it in inner if _UNICAST <= it < _A_DOMAIN and it % 2 == 0})
-
-
-def sockets_in(table: str) -> list[Socket]:
-    """Return the sockets of a table such as ``/proc/net/udp``: the last column counts drops."""
-    rows = (line.split() for line in table.splitlines()[1:])
-    return [
-        Socket(int(row[1].rpartition(":")[2], 16), int(row[-1])) for row in rows if len(row) > 1
-    ]
-
-
 def participants_here(domain: int) -> int | None:
     """Return how many participants of a domain run on this machine; None if unknown: no Linux."""
-    found = _sockets_here()
-    return None if found is None else participants_at((it.port for it in found), domain)
+    found = sum(port >= _UNICAST and port % 2 == 0 for port in _lost_at(domain))
+    return found if os.path.exists(TABLES[0]) else None
 
 
 def lost_here(domain: int) -> int:
     """Return how many datagrams for a domain this machine has lost; 0 if unknown."""
-    first = _FIRST + _A_DOMAIN * domain
-    return sum(it.lost for it in _sockets_here() or () if first <= it.port < first + _A_DOMAIN)
+    return sum(_lost_at(domain).values())
 
 
-def _sockets_here() -> list[Socket] | None:
-    found: list[Socket] = []
-    try:
-        for path in TABLES:
-            with open(path) as file:
-                found += sockets_in(file.read())
-    except (OSError, ValueError):
-        return None
+def _lost_at(domain: int) -> Mapping[int, int]:
+    """Return the open ports of a domain, counted from its first, each with the datagrams lost there
+    because a buffer was full; empty if unknown."""
+    found: dict[int, int] = defaultdict(int)
+    for path in TABLES:
+        # A machine without IPv6 has no second one.
+        with suppress(OSError, ValueError, IndexError), open(path) as table:
+            for row in map(str.split, [*table][1:]):
+                port = int(row[1].rpartition(":")[2], 16) - _FIRST - _A_DOMAIN * domain
+                if 0 <= port < _A_DOMAIN:
+                    found[port] += int(row[-1])
     return found
 
 
