@@ -5,7 +5,7 @@ of patterns that read XML, Python and substitutions, each in linear time.
 A search for something without an end would start again at the next place that looks like its start.
 What has no end therefore goes to the end of the text, or stops where the next one starts.
 
-Beside them: no garbage collection while very many records are made.
+Besides: no garbage collection while very many records are made.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 """XML that TinyXML-2 reads and a complete parser refuses or reads otherwise, made well-formed for lxml.
 
 TinyXML-2 knows no namespaces, so that a prefix is part of a name and ``xmlns`` any attribute; a
-comment ends at the first ``-->`` whatever is in it; declarations stand before all else, blanks aside.
+comment ends at the first ``-->`` whatever is in it; declarations come before all else, blanks aside.
 Source: leethomason/tinyxml2 tinyxml2.cpp (XMLComment::ParseDeep, XMLNode::ParseDeep: "all declarations
 must occur before anything else"). urdfdom, sdformat, srdfdom, ros2_control and pinocchio read with it.
 

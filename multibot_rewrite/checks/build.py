@@ -185,7 +185,7 @@ def _tables(plan: FleetPlan, fleet: Fleet, planned: System) -> Iterator[OutputFi
 
 
 def _from(folder: str, place: Place) -> Place:
-    """Return the place relative to a folder; files without a line and bare names stay as they are."""
+    """Return the place relative to a folder; names without line or folder stay as they are."""
     is_moved = place.line and os.path.dirname(place.file)
     return place._replace(file=os.path.relpath(place.file, folder)) if is_moved else place
 

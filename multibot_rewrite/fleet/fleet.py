@@ -165,7 +165,7 @@ def _plugins(member: Member) -> list[Run]:
 
 
 def _components(member: Member, known: Mapping[str, NodeFacts]) -> Iterator[Run]:
-    """Yield the nodes of a robot's hardware components, which the table puts beside their manager."""
+    """Yield the nodes of a robot's hardware components, which the table puts next to their manager."""
     source = member.source
     written = components(member.inventory.document.root, source.file, known)
     for it, before in zip(written, components(source.root, source.file, known), strict=True):

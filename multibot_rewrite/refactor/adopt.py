@@ -3,8 +3,8 @@
 
 Which values hold names of the robot is what a rewrite with ``--affix prefix`` asks, too. ``${prefix}``
 goes where a name is used, into the xacro sources; where one place makes names of the robot and others,
-it goes where the name is made. Proved by expansion: with an empty prefix nothing changes, with
-``robot1_`` the result is what the rewrite makes. The name of the robot itself stays. Beside it stands
+it goes where the name is made. Verified by expansion: with an empty prefix nothing changes, with
+``robot1_`` the result is what the rewrite makes. The name of the robot itself stays. Next to it is
 an argument for a namespace where plugins and sensors have names of ROS (``namespaces.py``)."""
 
 from __future__ import annotations

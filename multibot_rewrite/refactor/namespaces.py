@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A description package gets an argument for a ROS namespace, beside that for its prefix.
+"""A description package gets an argument for a ROS namespace, in addition to that for its prefix.
 
 What a rewrite below a namespace changes in plugins and sensors is asked of the rewrite: namespaces,
 absolute names, and elements that are not written. Without a namespace nothing changes. Proved by
@@ -253,7 +253,7 @@ def declared(
     argument: str,
 ) -> Iterator[SourceEdit]:
     """Yield the argument and its property in the descriptions' own files, and the property in other
-    files that are ``changed``: packages that are not looked at include them, too. ``texts`` are the
+    files that are ``changed``: packages that are not read include them, too. ``texts`` are the
     bytes of all, by real path. Source: xacro README (``default`` of a property)."""
     own = {os.path.realpath(it.path) for it in found}
     argued = f'\n  <xacro:arg name="{argument}" default=""/>'

@@ -2,7 +2,7 @@
 """Changes of the values of an expansion -> edits of the xacro files that make them.
 
 A value is put together from pieces (``description/sources/trace.py``). A change can be made where all
-of it is in one piece that stands in a file as it is; what an expression computes is left to its author.
+of it is in one piece that is in a file as it is; what an expression computes is left to its author.
 """
 
 from bisect import bisect_left

@@ -210,7 +210,7 @@ def _load(subject: Subject, joint: Joint) -> float:
 
 @rule("MB634", "tips-over", WARNING)
 def tips_over(subject: Subject) -> Iterator[Problem]:
-    """Report robots with a drive and simple collisions that stand on more than one point."""
+    """Report robots with a drive and simple collisions that touch the ground in more than one point."""
     points = contacts(subject) if drives(subject) else None
     corners = hull(points) if points else []
     if len(corners) < 2:
