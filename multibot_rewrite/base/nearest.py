@@ -135,13 +135,8 @@ def _one_typo(words: Sequence[str], others: Sequence[str]) -> bool:
     if len(pairs) != 1:
         return False
     one, two = pairs[0]
-    if not (one.isalpha() and two.isalpha()) or max(len(one), len(two)) < 4:
-        return False
-    while one and two and one[0] == two[0]:
-        one, two = one[1:], two[1:]
-    while one and two and one[-1] == two[-1]:
-        one, two = one[:-1], two[:-1]
-    return max(len(one), len(two)) == 1 or (len(one) == 2 and one == two[::-1])
+    are_long = one.isalpha() and two.isalpha() and max(len(one), len(two)) >= 4
+    return are_long and typing_mistakes(one, two, most=2) == 1
 
 
 def typing_mistakes(one: str, other: str, most: int = 3) -> int:

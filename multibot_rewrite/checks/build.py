@@ -2,8 +2,6 @@
 """A planned fleet -> every file that ``multibot build`` writes, in memory, and what is wrong with them:
 one step a kind of file."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator, Sequence
 from functools import cache

@@ -90,11 +90,14 @@ def _named(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence[Run
         if it.robot and not it.written:
             its = RuntimeName(NODE, it.full_name, "", 0, it.node)
             found.setdefault(it.robot, []).append(its)
-    for run, end, name in table.ends:
-        # That no rule reaches one is told of its node.
-        if run.robot and not end.fixed:
-            its = RuntimeName(end.kind, name, "", 0, run.full_name, type=end.type)
-            found.setdefault(run.robot, []).append(its)
+    for run in (it for it in table.runs if it.robot):
+        full_name = run.full_name
+        found.setdefault(run.robot, []).extend(
+            RuntimeName(end.kind, name, "", 0, full_name, type=end.type)
+            for end, name in run.names
+            # That no rule reaches one is told of its node.
+            if not end.fixed
+        )
     return found
 
 

@@ -68,7 +68,7 @@ def _mistyped(wrong: str, known: Collection[str]) -> str:
     format), or is it but for two typing mistakes, or another that begins with it or like it, but for
     one in three letters; else an own one that is much like it, or ""."""
     word, found = wrong.lstrip("-"), []
-    for option in dict.fromkeys((*known, *other_words("options"), *_commands_of())):
+    for option in dict.fromkeys((*known, *other_words("options"), *commands_of())):
         name, is_own = option.lstrip("-"), option in known
         is_begun = len(word) > _BEGUN and name.startswith(word)
         is_part = is_own and name in word.split("-")[1:]
@@ -80,7 +80,7 @@ def _mistyped(wrong: str, known: Collection[str]) -> str:
     return min(found)[2] if found else near and f"--{near}"
 
 
-def _commands_of() -> Mapping[str, Sequence[str]]:
+def commands_of() -> Mapping[str, Sequence[str]]:
     """Return the commands that have an option, by its name."""
     every = {**PROGRAMS, **{f"multibot {name}": it for name, it in COMMANDS.items()}}
     return lists_by_key(
@@ -94,6 +94,6 @@ def _commands_of() -> Mapping[str, Sequence[str]]:
 
 def _takers(option: str) -> str:
     """Return the commands that have an option, with a verb: ``multibot init takes``; "" if none has."""
-    names = _commands_of().get(option, ())
+    names = commands_of().get(option, ())
     verb = "takes" if len(names) == 1 else "take"
     return f"{shorten(names)} {verb}" if names else ""

@@ -10,7 +10,7 @@ from functools import partial
 
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.nearest import ALIKE, did_you_mean_one_of
-from multibot_rewrite.cli.declared.commands import COMMANDS
+from multibot_rewrite.cli.declared.commands import COMMANDS, PROGRAMS
 from multibot_rewrite.cli.declared.options import Command
 from multibot_rewrite.cli.output import AUTO, is_coloured, print_bytes
 from multibot_rewrite.cli.parser import painted
@@ -55,11 +55,10 @@ def find_command(word: str) -> Command:
 
 def _with_option(word: str) -> str:
     """Return a command line with the option, for the first command that has it."""
-    option = word.partition("=")[0]
-    groups = ((it, group) for it in COMMANDS.values() for group in it.groups)
-    has = (it for it, group in groups if any(option in one.names for one in group.options))
-    command = next(has, None)
-    return f"multibot {command.name} {word}" if command else "multibot check"
+    from multibot_rewrite.cli.hints import commands_of  # a mistake alone needs it
+
+    found = (it for it in commands_of().get(word.partition("=")[0], ()) if it not in PROGRAMS)
+    return next((f"{it} {word}" for it in found), "multibot check")
 
 
 def overview(colour: str) -> str:

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A fleet file -> its rewritten robots and their remap table; all output follows from these."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 

@@ -283,7 +283,10 @@ def _endpoint(role: str, name: str, item: YamlItem) -> Endpoint:
         if type_.value not in every:
             wrong(type_, f"{type_.value!r} is neither the type nor in also ({', '.join(every)})")
         types.append((condition, str(type_.value)))
-    endpoint = Endpoint(_kind(role, word_of(keys, "type")), role, name)._replace(
+    endpoint = Endpoint(
+        _kind(role, word_of(keys, "type")),
+        role,
+        name,
         **{key: word_of(keys, key) for key in keys.keys() & set(ENDPOINT_WORDS)},
         also=also,
         types=tuple(types),

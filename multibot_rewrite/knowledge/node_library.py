@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Files of nodes and node sets -> records; errors name file and line."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress

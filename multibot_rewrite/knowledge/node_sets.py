@@ -165,7 +165,7 @@ def _nodes(nodes: Iterable[NodeFacts], release: str) -> Iterator[NodeFacts]:
 def _endpoints(endpoints: Iterable[Endpoint], package: str, release: str) -> tuple[Endpoint, ...]:
     there = ((it, of_release(it.when, release)) for it in endpoints)
     return tuple(
-        _endpoint(it._replace(when=when), package, release)
+        _endpoint(it if when == it.when else it._replace(when=when), package, release)
         for it, when in there
         if when is not None and has_release(it.releases, release)
     )

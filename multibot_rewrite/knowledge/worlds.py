@@ -6,8 +6,6 @@ Sources: gz_hardware_plugins.xml and gz_system.cpp:326 of gz_ros2_control (jazzy
 ign_ros2_control (humble), gazebo_hardware_plugins.xml and gazebo_system.cpp of gazebo_ros2_control;
 for the plugins the plugin definitions."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 

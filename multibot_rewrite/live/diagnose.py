@@ -160,7 +160,7 @@ def survey(seen: Diagnosis) -> str:
     else:
         where = "what their frames have" if any(it.before for it in seen.robots) else ""
         where = "their namespaces" if any(it.namespace for it in seen.robots) else where
-        where = "the plan beside it" if seen.whose.of_names.robots else where
+        where = "the plan in its folder" if seen.whose.of_names.robots else where
         robots = f"{plural(len(names), 'robot')} by {where or 'the ends of names'}"
         said = f"{robots}: {shorten(names, SEVERAL)}; layout: {_layout(seen)}"
     return "; ".join((said, *_tf_topics(seen)))

@@ -24,13 +24,13 @@ from multibot_rewrite.planning.records import Rules, Run, Table
 from multibot_rewrite.planning.transforms import Edges
 from multibot_rewrite.planning.way_checks import bound_to, is_stand_in, running_nodes
 from multibot_rewrite.planning.ways import ros_arguments
-from multibot_rewrite.producers.ros.assemble import BUSY_MACHINE
 from multibot_rewrite.producers.ros.child import RUN_STUBS, observe, running
 from multibot_rewrite.producers.ros.participants import participants_here
 from multibot_rewrite.producers.ros.request import Request, to_text
 from multibot_rewrite.system.environment import settings
 from multibot_rewrite.system.records import (
     ACTION,
+    BUSY_MACHINE,
     CALLS,
     PUBLISHES,
     RUNS,

@@ -102,7 +102,7 @@ def each_once(ends: Iterable[End]) -> Iterator[End]:
     every = dict.fromkeys(ends)
     known = {(it.node, it.kind, it.role, it.name): it for it in every if it.sure == RUNS}
     for it in every:
-        if known.setdefault((it.node, it.kind, it.role, it.name), it) is it or it.sure == RUNS:
+        if it.sure == RUNS or known.setdefault((it.node, it.kind, it.role, it.name), it) is it:
             yield it
 
 

@@ -167,8 +167,8 @@ def _placed(nodes: Iterable[Node], table: Table) -> Iterator[Node]:
 def _private_nodes(table: Table, always: bool = False) -> dict[str, tuple[str, ...]]:
     """Return by robot patterns of the nodes that its nodes make for themselves, or ``always`` make."""
     found: dict[str, tuple[str, ...]] = {}
-    made = ((run, end) for run, end, _ in table.ends if end.by and not (always and end.when))
-    for run, end in made:
+    each = ((run, end) for run in table.runs for end, _ in run.names if end.by)
+    for run, end in (it for it in each if not (always and it[1].when)):
         full = f"{run.full_name}{end.by}"
         if full not in found.get(run.robot, ()):
             found[run.robot] = (*found.get(run.robot, ()), full)

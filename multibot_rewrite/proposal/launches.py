@@ -14,7 +14,7 @@ from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.sources.included_by import data_of_file
 from multibot_rewrite.fleet.launch.launched_robot import keep, launch_of, times_of, why_not
 from multibot_rewrite.producers.launch.child import read_launch_files
-from multibot_rewrite.producers.launch.handed_on import handed_on
+from multibot_rewrite.producers.launch.handed_on import handed_on, process_name
 from multibot_rewrite.producers.launch.programs import programs
 from multibot_rewrite.producers.launch.records import LaunchedNode, LaunchGraph, LaunchOrder
 from multibot_rewrite.producers.launch.spawners import is_spawner
@@ -143,7 +143,8 @@ def first_words(it: LaunchedNode) -> list[str]:
 def said_of(it: LaunchedNode) -> str:
     """Return what a process is: its name, what runs it, its remap rules and given parameters."""
     program = " ".join(filter(None, (it.package, it.executable, *first_words(it))))
-    who = f"{it.name} ({program})" if it.name else program
+    name = it.name or ("" if it.package else process_name(it))
+    who = f"{name} ({program})" if it.name or name not in program else program
     rules = (f"{a}:={b}" for a, b in it.remappings if _is_moved(a, b))
     values = handed_on(it, it.name or it.executable).values
     named = [name for name in values if not name.startswith(_DESCRIPTION)]

@@ -35,11 +35,16 @@ from multibot_rewrite.description.sources.included_by import robot_instead
 from multibot_rewrite.description.sources.read import read_file
 from multibot_rewrite.description.steps.collect import Inventory
 from multibot_rewrite.description.steps.renames import make_renames, respeller
-from multibot_rewrite.refactor.declaring import SPACES, declared, free_name
 from multibot_rewrite.refactor.launch_argument import Space
 from multibot_rewrite.refactor.launches import Trial, fillable, with_launches
 from multibot_rewrite.refactor.named_elsewhere import named_elsewhere, root_sections
-from multibot_rewrite.refactor.namespaces import namespaced, space_verified
+from multibot_rewrite.refactor.namespaces import (
+    SPACES,
+    declared,
+    free_name,
+    namespaced,
+    space_verified,
+)
 from multibot_rewrite.refactor.package import (
     Description,
     Expanding,

@@ -7,14 +7,14 @@ expansion: with one the description is what the rewrite makes of it."""
 
 import os
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import zip_longest
 from typing import NamedTuple
 
 from lxml import etree
 
 from multibot_rewrite.base.grouping import lists_by_key
-from multibot_rewrite.base.model import InputError
+from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import PREFIX, ROS_KINDS, Naming, make_naming
 from multibot_rewrite.description import pipeline
 from multibot_rewrite.description.joining.part import in_one_line
@@ -22,15 +22,18 @@ from multibot_rewrite.description.readback.xml import read_xml
 from multibot_rewrite.description.rewriters.renaming import ROBOT_SLOT
 from multibot_rewrite.description.rewriters.tree import Tree
 from multibot_rewrite.description.steps.apply import Template
-from multibot_rewrite.description.steps.document import tag_end
+from multibot_rewrite.description.steps.document import read_document, tag_end
 from multibot_rewrite.description.steps.inserted import elements_of, lead_of
-from multibot_rewrite.refactor.declaring import SPACES, declared, free_name
 from multibot_rewrite.refactor.package import Description, Expanding, read_text
 from multibot_rewrite.refactor.placing import Left, Spot, placed
 from multibot_rewrite.refactor.source_edits import SourceEdit, ValueEdit, change_of, place
 
 # No robot is called so: a description with robot1_ before its names can be tried with it.
 TRIED_SPACE = "ns1"
+# What the new argument may be called.
+NAMES = ("prefix", "robot_prefix", "tf_prefix", "name_prefix")
+SPACES = ("namespace", "robot_namespace", "ros_namespace")
+_SPACE = b' xmlns:xacro="http://www.ros.org/wiki/xacro"'
 
 
 class Spaced(NamedTuple):
@@ -226,3 +229,48 @@ def _edits(
         yield SourceEdit(file, end - 2, end, f">{text}</{tag}>".encode())
     else:
         yield SourceEdit(file, end, end, text.encode())
+
+
+def free_name(found: Iterable[Description], names: Sequence[str] = NAMES) -> str:
+    """Return a name that no argument, property or parameter of a macro has."""
+    taken: set[str] = set()
+    sources = {file: data for it in found for file, data in it.sources.items()}
+    # YAML that an expression loads is among them.
+    for file, data in ((file, data) for file, data in sources.items() if b"<robot" in data):
+        for element in read_document(data, file).root.iter("{*}arg", "{*}property", "{*}macro"):
+            words = element.get("params", "").replace(":=", " ").replace("=", " ").split()
+            taken |= {element.get("name", ""), *words}
+    free = next((name for name in names if name not in taken), None)
+    if free is None:
+        raise UsageError(f"{', '.join(names)} are all names of its arguments or properties")
+    return free
+
+
+def declared(
+    found: Sequence[Description],
+    texts: Mapping[str, bytes],
+    changed: Collection[str],
+    argument: str,
+) -> Iterator[SourceEdit]:
+    """Yield the argument and its property in the descriptions' own files, and the property in other
+    files that are ``changed``: packages that are not looked at include them, too. ``texts`` are the
+    bytes of all, by real path. Source: xacro README (``default`` of a property)."""
+    own = {os.path.realpath(it.path) for it in found}
+    argued = f'\n  <xacro:arg name="{argument}" default=""/>'
+    value = f'\n  <xacro:property name="{argument}" value="$(arg {argument})"/>'
+    for path in own:
+        yield from _first(path, texts[path], argued + value)
+    for path in {*changed} - own:
+        if b"<robot" in texts[path]:
+            text = f'\n  <xacro:property name="{argument}" default=""/>'
+            yield from _first(path, texts[path], text)
+
+
+def _first(path: str, source: bytes, text: str) -> Iterator[SourceEdit]:
+    """Yield the edits that put a text first in the root element."""
+    start = read_document(source, path).starts[0]
+    end = tag_end(source, start)
+    if b"xmlns:xacro" not in source[start:end]:
+        at = start + len(b"<robot")
+        yield SourceEdit(path, at, at, _SPACE)
+    yield SourceEdit(path, end, end, text.encode())

@@ -34,7 +34,13 @@ from multibot_rewrite.system.domains import (
 )
 from multibot_rewrite.system.index import NO_COUNTS, Index, beside, index
 from multibot_rewrite.system.ownership import whose_by_plan
-from multibot_rewrite.system.records import End, System, clocks as time_by_node, unseen
+from multibot_rewrite.system.records import (
+    BUSY_MACHINE,
+    End,
+    System,
+    clocks as time_by_node,
+    unseen,
+)
 from multibot_rewrite.system.tf_copies import without_bridged
 
 # What is made at run time, in names of a plan.
@@ -43,6 +49,8 @@ RULES = {it.code: it for it in sorted(rules_in("system"), key=lambda it: it.code
 _LACKS = likes.lacks_what_its_likes_have
 # Findings about something missing: an incomplete view cannot prove them.
 ABSENCE = frozenset(it.code for it in RULES.values() if it.options["absence"])
+# About rates and ages: a machine that was too busy shows messages as seldom and old.
+_TIMED = {likes.less_than_another_robot.code, clocks.stamp_of_another_time.code}
 
 
 def judge(seen: Index) -> list[Finding]:
@@ -193,10 +201,12 @@ def _compiled_pattern(pattern: str) -> re.Pattern[str]:
 def inconclusive_where_in_doubt(found: list[Finding], graph: System) -> list[Finding]:
     """Return the findings; in an incomplete view those about missing things become inconclusive.
     Clocks that a node has by its parameters are known there, too."""
-    if not unseen(graph):
+    reasons = {it.code for it in unseen(graph)}
+    if not reasons:
         return found
     told, mixed = time_by_node(graph), clocks.clocks_mixed.code
-    sure = {it for it in found if it.code not in ABSENCE or (it.code == mixed and it.node in told)}
+    doubtful = ABSENCE | _TIMED if BUSY_MACHINE in reasons else ABSENCE
+    sure = {it for it in found if it.code not in doubtful or (it.code == mixed and it.node in told)}
     hint = "the view of the graph may be incomplete: the line `incomplete:` says why"
     return [
         it

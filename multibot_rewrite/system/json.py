@@ -68,7 +68,8 @@ def _block(value: Mapping[str, Any], indent: str) -> Iterator[str]:
 def _flow(value: object) -> str:
     if isinstance(value, list):
         # Nearly all are rows of texts.
-        return f"[{', '.join(_scalar(it) if type(it) is str else _flow(it) for it in value)}]"
+        each = _scalar if {*map(type, value)} == {str} else _flow
+        return f"[{', '.join(map(each, value))}]"
     if isinstance(value, dict):
         return f"{{{', '.join(f'{_flow(key)}: {_flow(it)}' for key, it in value.items())}}}"
     return _scalar(value)

@@ -26,6 +26,8 @@ from multibot_rewrite.system.records import (
 )
 
 Reader = Callable[[Any], Any]
+# Plans of earlier versions have it.
+_OLD_KEYS = {"stack": "node_set"}
 _TYPE_NAMES = {str: "text", int: "a whole number", bool: "true or false"}
 # NaN is not below it, and every whole number below it fits into a float.
 _LARGEST = 1e300
@@ -232,7 +234,8 @@ def _read_record(
     fields: dict[str, object] = {}
     name = ""
     try:
-        for name, given in value.items():
+        for key, given in value.items():
+            name = str(_OLD_KEYS.get(key, key))
             fields[name] = readers[name](given)
     except WrongValue as wrong:
         wrong.keys.append(f".{name}")

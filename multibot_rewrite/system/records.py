@@ -117,6 +117,8 @@ NOT_KNOWN_PROCESS = "MF859"
 WAITED_FOR = "expected-not-seen"
 # That of nodes that were asked for their state and did not answer.
 SILENT = "silent-nodes"
+# That of a look that waited for a processor: what it measured in time is doubtful, too.
+BUSY_MACHINE = "busy-machine"
 
 
 class Qos(NamedTuple):

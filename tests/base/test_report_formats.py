@@ -57,10 +57,9 @@ REPORT = Report("multibot lint", ["a b.urdf", "c.urdf"], RULES, "jazzy")  # type
 
 
 @pytest.fixture(autouse=True)
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "a b.urdf").write_bytes(b"1234")
-    return tmp_path
+def folder(here: Path) -> Path:
+    (here / "a b.urdf").write_bytes(b"1234")
+    return here
 
 
 def test_json() -> None:

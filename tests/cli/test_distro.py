@@ -19,12 +19,11 @@ URDF = (
 
 
 @pytest.fixture(autouse=True)
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
+def folder(here: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.delenv("ROS_DISTRO", raising=False)
-    (tmp_path / "m.sdf").write_text(MODEL)
-    (tmp_path / "m.urdf").write_text(URDF)
-    return tmp_path
+    (here / "m.sdf").write_text(MODEL)
+    (here / "m.urdf").write_text(URDF)
+    return here
 
 
 def test_a_release_that_is_not_known(capsys: pytest.CaptureFixture[str]) -> None:

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import pytest
+from paths import write_files
 
 from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
 
@@ -50,12 +51,9 @@ WRITERS: dict[str, Command] = {
 
 
 @pytest.fixture
-def robot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    for name, text in FILES.items():
-        (tmp_path / name).parent.mkdir(exist_ok=True)
-        (tmp_path / name).write_text(text)
-    return tmp_path
+def robot(here: Path) -> Path:
+    write_files(here, FILES)
+    return here
 
 
 def there(robot: Path) -> dict[str, str]:

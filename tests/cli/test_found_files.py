@@ -9,14 +9,8 @@ import pytest
 
 from multibot_rewrite.cli.walk import find_files
 
+pytestmark = pytest.mark.usefixtures("here")
 SUFFIXES = (".urdf", ".sdf")
-
-
-@pytest.fixture(autouse=True)
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Return an empty working directory."""
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
 
 
 def found(*paths: str) -> list[str]:

@@ -22,12 +22,11 @@ robots: [{{name: a}}, {{name: b{}}}]
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "r.urdf").write_text('<robot name="r"><link name="l"/></robot>')
-    (tmp_path / "p.yaml").write_text("driver: {ros__parameters: {a: 1}}\n")
-    (tmp_path / "up.launch.py").write_text(LAUNCH.replace("FOLDER", str(tmp_path)))
-    return tmp_path
+def folder(here: Path) -> Path:
+    (here / "r.urdf").write_text('<robot name="r"><link name="l"/></robot>')
+    (here / "p.yaml").write_text("driver: {ros__parameters: {a: 1}}\n")
+    (here / "up.launch.py").write_text(LAUNCH.replace("FOLDER", str(here)))
+    return here
 
 
 def inspected(

@@ -33,19 +33,18 @@ SOURCES = ["src/arm/a.urdf", "src/arm/kept.tmp.urdf"]
 
 
 @pytest.fixture
-def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def workspace(here: Path) -> Path:
     """Return a workspace that was built, of which git ignores some files, one of them tracked."""
     for name in FILES:
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_text(ROBOT.format(Path(name).stem.replace(".", "_")))
-    (tmp_path / "old" / "COLCON_IGNORE").touch()
-    (tmp_path / "other" / "AMENT_IGNORE").touch()
-    (tmp_path / "src" / "arm" / ".gitignore").write_text("gen/\n*.tmp.urdf\n")
-    run(tmp_path, "init", "-q")
-    run(tmp_path, "add", "-f", "src/arm/a.urdf", "src/arm/kept.tmp.urdf")
-    run(tmp_path, "commit", "-qm", "first")
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
+        (here / name).parent.mkdir(parents=True, exist_ok=True)
+        (here / name).write_text(ROBOT.format(Path(name).stem.replace(".", "_")))
+    (here / "old" / "COLCON_IGNORE").touch()
+    (here / "other" / "AMENT_IGNORE").touch()
+    (here / "src" / "arm" / ".gitignore").write_text("gen/\n*.tmp.urdf\n")
+    run(here, "init", "-q")
+    run(here, "add", "-f", "src/arm/a.urdf", "src/arm/kept.tmp.urdf")
+    run(here, "commit", "-qm", "first")
+    return here
 
 
 def run(folder: Path, *words: str) -> None:

@@ -34,12 +34,11 @@ class Result(NamedTuple):
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(here: Path) -> Path:
     """Return an empty working directory; files of one name differ from test to test."""
-    monkeypatch.chdir(tmp_path)
     builtin_tree.cache_clear()
     load_definitions.cache_clear()
-    return tmp_path
+    return here
 
 
 class Multibot:

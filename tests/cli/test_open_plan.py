@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from closed_robot import FILES
 from graph_cases import as_planned
-from paths import fixture_text
+from paths import fixture_text, write_files
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.system.json import from_yaml, to_json
@@ -29,8 +29,7 @@ class Folder:
     """A fleet file, the plan made of it, and a graph that is as planned."""
 
     def __init__(self, folder: Path, ekf: str) -> None:
-        for name, text in {**FILES, "ekf.yaml": ekf}.items():
-            (folder / name).write_text(text)
+        write_files(folder, {**FILES, "ekf.yaml": ekf})
         self.fleet, self.plan = str(folder / "fleet.yaml"), str(folder / "plan.yaml")
         self.graph, self.json = str(folder / "graph.json"), str(folder / "plan.json")
         assert main(["plan", self.fleet, "-o", self.plan]) == 0
@@ -131,12 +130,11 @@ robots: [{name: robot1}, {name: robot2}]
 
 
 def test_each_command_says_the_same_of_a_parameter_file(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    here: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Expected by robot_localization (parameters), rcl (names of topics) and the links of the robot."""
     for name, text in (("rover.urdf", ROVER), ("ekf.yaml", FAULTY), ("fleet.yaml", FLEET)):
-        (tmp_path / name).write_text(text)
-    monkeypatch.chdir(tmp_path)
+        (here / name).write_text(text)
     commands = [
         # Without the frame of its base the robot's tree is in pieces.
         ["build", "fleet.yaml", "-o", "out", "--ignore=MG406"],
@@ -147,8 +145,8 @@ def test_each_command_says_the_same_of_a_parameter_file(
     said = []
     for words in commands:
         if words[0] == "check":
-            plan = from_yaml((tmp_path / words[1]).read_bytes(), words[1])
-            (tmp_path / "graph.json").write_bytes(to_json(as_planned(plan)))
+            plan = from_yaml((here / words[1]).read_bytes(), words[1])
+            (here / "graph.json").write_bytes(to_json(as_planned(plan)))
         assert main(words) == 0
         lines = "".join(capsys.readouterr()).splitlines()
         said.append([it.partition(":")[2] for it in lines if "ekf.yaml:" in it])

@@ -58,29 +58,28 @@ XACRO = f"""<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(here: Path) -> Path:
     """Files with names that no terminal should obey, in and on them."""
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / f"{EVIL}.urdf").write_text(DESCRIPTION)
-    (tmp_path / f"{EVIL}.xml").write_text("<robot")
-    (tmp_path / f"{EVIL}.xacro").write_text(XACRO)
-    (tmp_path / f"{EVIL}.lint.urdf").write_text('<robot name="r"><link name="a "/></robot>')
+    (here / f"{EVIL}.urdf").write_text(DESCRIPTION)
+    (here / f"{EVIL}.xml").write_text("<robot")
+    (here / f"{EVIL}.xacro").write_text(XACRO)
+    (here / f"{EVIL}.lint.urdf").write_text('<robot name="r"><link name="a "/></robot>')
     head = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
     argument = f'<xacro:arg name="prefix" default="{IN_XML}"/><link name="$(arg prefix)"/>'
-    (tmp_path / f"{EVIL}.xacro").write_text(f"{head}{argument}</robot>")
-    (tmp_path / "cut.urdf").write_text(DESCRIPTION[:-20])
-    fleet_folder(tmp_path, SMALL.replace("rover.urdf", json.dumps(f"{EVIL}.urdf")))
-    (tmp_path / f"{EVIL}.yaml").write_text(json.dumps({EVIL: [{EVIL: EVIL}]}))
+    (here / f"{EVIL}.xacro").write_text(f"{head}{argument}</robot>")
+    (here / "cut.urdf").write_text(DESCRIPTION[:-20])
+    fleet_folder(here, SMALL.replace("rover.urdf", json.dumps(f"{EVIL}.urdf")))
+    (here / f"{EVIL}.yaml").write_text(json.dumps({EVIL: [{EVIL: EVIL}]}))
     plan, graph = read_plan(LAYOUT), healthy(LAYOUT)
-    (tmp_path / "plan.yaml").write_text(to_yaml(plan))
-    (tmp_path / f"{EVIL}.plan").write_text(to_yaml(plan))
+    (here / "plan.yaml").write_text(to_yaml(plan))
+    (here / f"{EVIL}.plan").write_text(to_yaml(plan))
     frames = tuple(it._replace(child=f"{it.child}{EVIL}") for it in graph.edges)
     nodes = tuple(it._replace(name=f"{it.name}{EVIL}") for it in graph.nodes)
     ends = tuple(it._replace(node=f"{it.node}{EVIL}", type=EVIL) for it in graph.ends)
     evil = graph._replace(edges=(*graph.edges, *frames), nodes=nodes, ends=ends)
-    (tmp_path / "graph.json").write_bytes(to_json(evil))
-    (tmp_path / f"{EVIL}.json").write_bytes(to_json(graph)[:-9])
-    return tmp_path
+    (here / "graph.json").write_bytes(to_json(evil))
+    (here / f"{EVIL}.json").write_bytes(to_json(graph)[:-9])
+    return here
 
 
 PROGRAMS: dict[str, Callable[[list[str]], int]] = {

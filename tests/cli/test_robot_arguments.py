@@ -121,15 +121,13 @@ def test_wrong_use_is_one_line(
     words: list[str],
     said: str,
     capfd: pytest.CaptureFixture[str],
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
+    here: Path,
 ) -> None:
-    monkeypatch.chdir(tmp_path)
     assert run(words) == 2
     out, err = capfd.readouterr()
     assert (out, err.count("\n")) == ("", 1)
     assert said in err
-    assert list(tmp_path.iterdir()) == []
+    assert list(here.iterdir()) == []
 
 
 def test_lint_fills_in_its_first_robot(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:

@@ -50,13 +50,12 @@ OTHERS = {"snapshot", "completion"}
 
 
 @pytest.fixture
-def target(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def target(here: Path) -> Path:
     """Return what the hostile file in the working directory writes where it is let."""
-    monkeypatch.chdir(tmp_path)
-    found = tmp_path / "taken"
-    (tmp_path / PATH).write_text(ROBOT.replace("TARGET", str(found)))
-    (tmp_path / "fleet.yaml").write_text(FLEET)
-    (tmp_path / "graph.json").write_text("{}")
+    found = here / "taken"
+    (here / PATH).write_text(ROBOT.replace("TARGET", str(found)))
+    (here / "fleet.yaml").write_text(FLEET)
+    (here / "graph.json").write_text("{}")
     return found
 
 

@@ -397,9 +397,8 @@ def test_files_that_options_name_to_be_read() -> None:
     ],
 )  # fmt: skip
 def test_a_file_that_is_not_there_is_told_with_what_helps(
-    given: dict[str, object], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    given: dict[str, object], message: str, here: Path
 ) -> None:
-    monkeypatch.chdir(tmp_path)
     for name in ("rover.urdf", "fleet.yaml"):
         Path(name).write_text("")
     assert said(output.check_there, options(**{"command": "plan", **given})) == message

@@ -83,13 +83,12 @@ WRONG = (
 
 @pytest.mark.parametrize(("line", "words"), WRONG, ids=[it[:60] for it, _ in WRONG])
 def test_a_rewrite_that_cannot_be_meant(
-    line: str, words: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any
+    line: str, words: tuple[str, ...], here: Path, monkeypatch: pytest.MonkeyPatch, capsys: Any
 ) -> None:
-    monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(ROVER)))
     for name in ("r.urdf", "r.sdf", "r.xacro", "r.urdf.xacro", "one.rviz"):
         Path(name).write_bytes(ROVER)
-    before = contents(tmp_path)
+    before = contents(here)
     try:
         code = urdf_postfix.main(shlex.split(line))
     except SystemExit as end:
@@ -98,4 +97,4 @@ def test_a_rewrite_that_cannot_be_meant(
     assert (code, told.out, told.err.count("\n")) == (2, "", 1)
     assert told.err.startswith("urdf-postfix: ")
     assert [it for it in words if it not in told.err] == []
-    assert contents(tmp_path) == before
+    assert contents(here) == before

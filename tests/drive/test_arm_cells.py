@@ -5,7 +5,6 @@ arm."""
 
 from __future__ import annotations
 
-import importlib.util
 from itertools import product
 from pathlib import Path
 from typing import NamedTuple
@@ -20,13 +19,7 @@ from paths import ROOT
 from multibot_rewrite.base.releases import RELEASES, has_release
 from multibot_rewrite.cli import multibot
 
-pytestmark = [
-    pytest.mark.live,
-    pytest.mark.skipif(
-        not importlib.util.find_spec("rclpy"),
-        reason=f"names are resolved by the real rcl; install rclpy: {rcl_names.INSTALL}",
-    ),
-]
+pytestmark = [pytest.mark.live, rcl_names.needed()]
 EXAMPLE = ROOT / "examples/two_arms_moveit"
 MOCK = "mock_components/GenericSystem"
 PARAMETERS = "<parameters>controllers.yaml</parameters>"

@@ -6,7 +6,6 @@ Each example is built by the command and judged by ``verdict``, which imports no
 
 from __future__ import annotations
 
-import importlib.util
 import shutil
 from collections.abc import Callable
 from functools import cache
@@ -21,13 +20,7 @@ from planted import FAULTS, Spoiled
 
 from multibot_rewrite.cli import multibot
 
-pytestmark = [
-    pytest.mark.live,
-    pytest.mark.skipif(
-        not importlib.util.find_spec("rclpy"),
-        reason=f"names are resolved by the real rcl; install rclpy: {rcl_names.INSTALL}",
-    ),
-]
+pytestmark = [pytest.mark.live, rcl_names.needed()]
 ALL = "starts, drives, sees, plans"
 EXAMPLES = {
     "launch_tutorial": {"robot1": "starts, drives, sees", "robot2": "starts, drives, sees"},

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 from itertools import groupby
 from pathlib import Path
 
@@ -16,13 +15,7 @@ from node_set_cells import Cell
 
 from multibot_rewrite.cli import multibot
 
-pytestmark = [
-    pytest.mark.live,
-    pytest.mark.skipif(
-        not importlib.util.find_spec("rclpy"),
-        reason=f"names are resolved by the real rcl; install rclpy: {rcl_names.INSTALL}",
-    ),
-]
+pytestmark = [pytest.mark.live, rcl_names.needed()]
 # Whose description has all that moves them; arms have a test of their own.
 DRIVEN = ("gz", "classic", "sdf", "controlled")
 CONTROLLED = ("ros2_control", *node_set_cells.OF_MANAGERS)

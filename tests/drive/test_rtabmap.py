@@ -4,7 +4,6 @@ a robot does whose rtabmap waits in vain."""
 
 from __future__ import annotations
 
-import importlib.util
 from pathlib import Path
 from typing import Any
 
@@ -59,10 +58,7 @@ def test_when_stamps_have_to_be_equal(given: dict[str, Any], exact: bool) -> Non
 
 
 @pytest.mark.live
-@pytest.mark.skipif(
-    not importlib.util.find_spec("rclpy"),
-    reason=f"names are resolved by the real rcl; install rclpy: {rcl_names.INSTALL}",
-)
+@rcl_names.needed()
 @pytest.mark.parametrize(
     ("old", "new", "what", "why"),
     [

@@ -4,7 +4,6 @@ nobody sends are no fleet that drives."""
 
 from __future__ import annotations
 
-import importlib.util
 from pathlib import Path
 
 import fleet
@@ -14,13 +13,7 @@ import verdict
 
 from multibot_rewrite.cli import multibot
 
-pytestmark = [
-    pytest.mark.live,
-    pytest.mark.skipif(
-        not importlib.util.find_spec("rclpy"),
-        reason=f"names are resolved by the real rcl; install rclpy: {rcl_names.INSTALL}",
-    ),
-]
+pytestmark = [pytest.mark.live, rcl_names.needed()]
 HEAD = """import rclpy
 from geometry_msgs.msg import Twist
 from nav_msgs.msg import Odometry

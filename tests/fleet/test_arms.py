@@ -14,6 +14,7 @@ import pytest
 import yaml
 from fleet_folder import built_fleet, planned_fleet
 from lxml import etree
+from paths import write_files
 
 from multibot_rewrite.base.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.planning.way_checks import running_nodes
@@ -109,8 +110,7 @@ def built(
         "moveit.rviz": RVIZ,
         "fleet.yaml": FLEET.replace("LAYOUT", layout) + more,
     }
-    for name, text in files.items():
-        (folder / name).write_text(text)
+    write_files(folder, files)
     made = built_fleet(folder / "fleet.yaml")
     return {it.path: it.data.decode() for it in made.files}, list(made.findings)
 

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 from built_faults import edited, in_launch
 from fleet_folder import planned_fleet
+from paths import fixture_text, write_files
 from rule_examples import DESCRIPTION
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING
@@ -28,31 +29,7 @@ from multibot_rewrite.system.index import index
 from multibot_rewrite.system.ownership import whose_by_plan
 from multibot_rewrite.system.records import PUBLISHES, TOPIC, End
 
-LAUNCH = """\
-from pathlib import Path
-
-from launch import LaunchDescription
-from launch_ros.actions import Node
-
-ROBOT = Path(__file__).parent / 'robot.urdf'
-
-
-def ekf(name, **more):
-    values = {'odom0': '/wheel/odom', 'world_frame': 'odom', 'base_link_frame': 'base_link'}
-    return Node(package='robot_localization', executable='ekf_node', name=name,
-                parameters=[{**values, **more}],
-                remappings=[('odometry/filtered', 'odometry/map')] if more else [])
-
-
-def generate_launch_description():
-    return LaunchDescription([
-        Node(package='robot_state_publisher', executable='robot_state_publisher',
-             parameters=[{'robot_description': ROBOT.read_text()}]),
-        ekf('ekf_local'),
-        ekf('ekf_global'),
-        ekf('ekf_map', publish_tf=False),
-    ])
-"""
+LAUNCH = fixture_text("as_the_vendor_has_it_launch.txt")
 FLEET = """\
 layout: {}
 {}
@@ -219,8 +196,7 @@ def test_a_controller_of_the_vendor_that_lacks_an_interface_is_told_and_built(
 ) -> None:
     """It is not activated, in one robot as in two; its hardware is called by no robot's name."""
     launch = LAUNCH[: LAUNCH.index("ekf('ekf_local')")]
-    for name, text in {"robot.urdf": ARM, "arm.yaml": CONTROLLERS}.items():
-        (fleet.parent / name).write_text(text)
+    write_files(fleet.parent, {"robot.urdf": ARM, "arm.yaml": CONTROLLERS})
     (fleet.parent / "up.launch.py").write_text(f"{launch}{MANAGED}")
     assert main(["check-launch", str(fleet.parent / "up.launch.py")]) == 1
     assert "error: MB229" in capsys.readouterr().out

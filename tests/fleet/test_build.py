@@ -701,10 +701,7 @@ def test_there_is_nothing_to_undo(tmp_path: Path, capsys: pytest.CaptureFixture[
     assert "so there is nothing to undo" in capsys.readouterr().err
 
 
-def test_the_fleet_file_and_the_folder_have_defaults(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    fleet_folder(tmp_path)
-    monkeypatch.chdir(tmp_path)
+def test_the_fleet_file_and_the_folder_have_defaults(here: Path) -> None:
+    fleet_folder(here)
     assert main(["build", "-q"]) == 0
-    assert (tmp_path / "out" / MANIFEST).exists()
+    assert (here / "out" / MANIFEST).exists()

@@ -169,7 +169,7 @@ def test_free_fleet_gets_a_bridge_and_the_robots_of_its_adapter(made: Outputs) -
         "# The robots of the fleet adapter: put them below rmf_fleet of its configuration.\n"
         "rmf_fleet:\n  robots:\n"
     ) + "".join(
-        f'    {it}:\n      charger: "{it}_charger"\n      navigation_node_set: 2\n'
+        f'    {it}:\n      charger: "{it}_charger"\n      navigation_stack: 2\n'
         f'      initial_map: "L1"\n      map_frame: "map"\n'
         f'      robot_frame: "{it}/base_footprint"\n'
         for it in ("robot1", "robot2")
@@ -186,7 +186,7 @@ def test_the_adapter_of_free_fleet_finds_each_robot(layout: str, tmp_path: Path)
     robots = yaml.safe_load(text(made, "free_fleet/robots.yaml"))["rmf_fleet"]["robots"]
     edges = [it for it in made.planned.edges if not it.static]
     for robot, told in robots.items():
-        assert told["navigation_node_set"] == 2 and told["initial_map"]
+        assert told["navigation_stack"] == 2 and told["initial_map"]
         file = zenoh.Config.from_json5(text(made, f"free_fleet/{robot}.json5"))
         allow = json.loads(file.get_json("plugins/ros2dds/allow"))
         assert not any(own for what, own in allow.items() if what not in ALLOWED)
@@ -403,13 +403,12 @@ def test_one_name_in_two_domains_is_no_clash(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("layout", ["tf-per-robot", "postfix"])
 def test_check_launch_reads_the_files_of_domain_bridge(
-    layout: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    layout: str, here: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Each side of a bridge is a node in its domain, with the topics of the file. Robots may be called
     as topics and parts of nodes are, one may be in the domain of all robots."""
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "rover.urdf").write_text(KINDS["gz rover"].text.replace("ROBOT", "rover"))
-    (tmp_path / "fleet.yaml").write_text(
+    (here / "rover.urdf").write_text(KINDS["gz rover"].text.replace("ROBOT", "rover"))
+    (here / "fleet.yaml").write_text(
         f"layout: {layout}\ndistro: jazzy\ndescription: rover.urdf\n"
         "domains: {scan: 11, a: 5, bridge: 0}\ncrossing: [robot_description]\n"
         "robots: [{name: scan}, {name: a, pose: {x: 3}}, {name: bridge, pose: {x: 6}}]\n"
@@ -423,7 +422,7 @@ def test_check_launch_reads_the_files_of_domain_bridge(
     # In one view of all domains the copies are left out.
     assert main(check[:2]) == 0
     assert "_bridge_0" not in capsys.readouterr().out
-    file = tmp_path / "out/domain_bridge/a_bridge.yaml"
+    file = here / "out/domain_bridge/a_bridge.yaml"
     config = yaml.safe_load(file.read_text())
     del config["topics"]["/clock"]
     file.write_text(yaml.safe_dump(config))

@@ -140,11 +140,8 @@ def test_the_words_of_a_robot_are_those_of_no_other(tmp_path: Path) -> None:
     assert plan.words == {"r1": "r1", "r2": "r2", "alpha": "r1", "beta": "r2"}
 
 
-def test_a_node_of_a_file_that_is_called_like_a_node_set_is_the_files(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_node_of_a_file_that_is_called_like_a_node_set_is_the_files(here: Path) -> None:
     """It was refused: no SRDF for a node that a node set starts."""
-    monkeypatch.chdir(tmp_path)
     Path("rover.urdf").write_bytes((ROBOTS / "rover_gz.urdf").read_bytes())
     Path("node set of mine.yaml").write_text("move_group:\n  ros__parameters: {a: b}\n")
     Path("fleet.yaml").write_text(
@@ -176,11 +173,8 @@ def test_an_empty_list_of_files_is_none(tmp_path: Path) -> None:
     assert "odom_frame_id: r1/odom" in (tmp_path / "out/r1/params.yaml").read_text()
 
 
-def test_a_parameter_file_may_be_called_as_the_bridge_is(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_parameter_file_may_be_called_as_the_bridge_is(here: Path) -> None:
     """It was refused: two files would be written to ``r1/bridge.yaml``."""
-    monkeypatch.chdir(tmp_path)
     Path("rover.urdf").write_bytes((ROBOTS / "rover_gz.urdf").read_bytes())
     Path("bridge.yaml").write_text("amcl:\n  ros__parameters: {base_frame_id: base_link}\n")
     Path("fleet.yaml").write_text(

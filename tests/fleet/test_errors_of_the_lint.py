@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from fleet_folder import planned_fleet
+from paths import write_files
 from support.rule_examples import DESCRIPTION, whole
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, URDF, Finding, Rule
@@ -27,9 +28,7 @@ ASKED = [it for it in RULES.values() if it.level == ERROR and URDF in it.formats
 
 def described(rule: Rule, folder: Path) -> Path:
     """Return the bad example of a rule; where it has a package beside it, in this package."""
-    for name, text in rule.page.beside.items():
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / name).write_text(text)
+    write_files(folder, rule.page.beside)
     home = next(folder.glob("*/package.xml"), folder / "package.xml").parent
     ending = "urdf.xacro" if "xmlns:xacro" in rule.page.bad else "urdf"
     file = home / f"example.{ending}"
@@ -152,9 +151,7 @@ def test_no_error_of_a_parameter_file_is_new_to_the_folder(
 ) -> None:
     """What ``check-launch`` calls wrong with or without the plan, ``build`` has called wrong."""
     (own, beside), fleet, out = PARAMS[code], tmp_path / "fleet.yaml", tmp_path / "out"
-    for name, text in {"robot.urdf": DESCRIPTION, **beside, "own.yaml": own}.items():
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_text(text)
+    write_files(tmp_path, {"robot.urdf": DESCRIPTION, **beside, "own.yaml": own})
     fleet.write_text(
         f"layout: {layout}\ndistro: jazzy\nsimulator: none\nnode_sets: [nav2]\n"
         f"description: robot.urdf\nrelated_files: {{params: own.yaml}}\n{ROBOTS}"

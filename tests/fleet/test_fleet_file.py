@@ -133,17 +133,13 @@ def test_paths_are_below_the_folder_of_their_file() -> None:
     ],
 )  # fmt: skip
 def test_a_file_that_is_not_there_is_told_with_its_line(
-    data: dict[str, Any],
-    place: tuple[str | int, ...],
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
+    data: dict[str, Any], place: tuple[str | int, ...], here: Path
 ) -> None:
-    monkeypatch.chdir(tmp_path)
     for what in ("does not exist", "is a folder, not a file"):
         with pytest.raises(InputError) as found:
             check_files(data, (), {place: ("f.yaml", 7)})
         assert str(found.value) == f"f.yaml:7: no.x {what}; correct the path"
-        (tmp_path / "no.x").mkdir(exist_ok=True)
+        (here / "no.x").mkdir(exist_ok=True)
 
 
 @pytest.mark.parametrize(

@@ -267,15 +267,14 @@ DRIVE = (
 
 
 @pytest.fixture
-def fleet(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
-    monkeypatch.chdir(tmp_path)
+def fleet(here: Path) -> Any:
 
     def make(
         layout: str, node_set: str = "robot_state", body: str = "", more: str = ""
     ) -> FleetPlan:
-        (tmp_path / "rover.urdf").write_text(ROVER.format(body))
+        (here / "rover.urdf").write_text(ROVER.format(body))
         side = "postfix" if layout == "L4" else "prefix"
-        (tmp_path / "fleet.yaml").write_text(
+        (here / "fleet.yaml").write_text(
             f"layout: {layout}\naffix: {side}\nnode_sets: {node_set}\n{more}"
             "robots:\n"
             "  - {name: r1, description: rover.urdf,"

@@ -6,42 +6,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from paths import fixture_text, write_files
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.system.json import from_yaml
 
-NODE = """
-import rclpy
-from geometry_msgs.msg import TransformStamped, Twist
-from nav_msgs.msg import Odometry
-from rclpy.node import Node
-from sensor_msgs.msg import LaserScan
-from tf2_ros import TransformBroadcaster
-
-
-class Driver(Node):
-    def __init__(self):
-        super().__init__("acme_driver")
-        self.declare_parameter("side", "left")
-        self.declare_parameter("odom_frame", "odom")
-        side = self.get_parameter("side").value
-        self.create_subscription(Twist, "/cmd_vel", self.on_command, 10)
-        self.create_subscription(LaserScan, "scan", print, 10)
-        self.create_publisher(Odometry, f"{side}/odom", 10)
-        self.create_publisher(LaserScan, open("/etc/hostname").read(), 10)
-        self.broadcaster = TransformBroadcaster(self)
-
-    def on_command(self, message):
-        sent = TransformStamped()
-        sent.header.frame_id = self.get_parameter("odom_frame").value
-        sent.child_frame_id = "base_link"
-        self.broadcaster.sendTransform(sent)
-
-
-def main():
-    rclpy.init()
-    rclpy.spin(Driver())
-"""
+NODE = fixture_text("fleets_by_source_node.txt")
 SETUP = """
 from setuptools import setup
 setup(name="acme", entry_points={"console_scripts": ["driver = acme.driver:main"]})
@@ -81,9 +51,7 @@ def folder(tmp_path: Path) -> Path:
         "bare.urdf": ROBOT,
         "fleet.yaml": FLEET,
     }
-    for name, text in files.items():
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_text(text)
+    write_files(tmp_path, files)
     return tmp_path
 
 

@@ -117,7 +117,7 @@ def test_rviz_puts_the_name_before_links_itself(tmp_path: Path) -> None:
 @pytest.mark.more
 def test_the_plan_has_the_frames_as_they_are_sent(tmp_path: Path) -> None:
     plan = read_plan(text(made(tmp_path), "plan.yaml").encode(), "plan.yaml")
-    own = robot_named(plan, "graph2")
+    own = robot_named(plan, "robot2")
     assert {"frames2/base_link", "frames2/lidar_link", "frames2/odom"} <= {*own.frames}
     assert not {"base_link", "lidar_link"} & {*own.frames, *own.other_frames}
     publisher = "/graph2/robot_state_publisher"

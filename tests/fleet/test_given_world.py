@@ -12,34 +12,14 @@ from pathlib import Path
 
 import pytest
 from lxml import etree
+from paths import fixture_text
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.outputs.world_file import world_topics
 
 BOAT = """<sdf version="1.9"><model name="boat"><link name="hull"/>
 <link name="mast"><sensor name="imu" type="imu"/></link></model></sdf>"""
-WORLD = """<?xml version="1.0"?>
-<sdf version="1.9">
-  <world name="lake">
-    <plugin filename="gz-sim-physics-system" name="gz::sim::systems::Physics"/>
-    <!-- <include><uri>boat</uri></include> -->
-    <include>
-      <uri>model://boat</uri> <!-- </include> -->
-      <pose>1 2 3 0 0 0</pose>
-    </include>
-    <include><uri>meshes</uri><name>buoy</name></include>
-    <model name="hull"><link name="hull"/></model>
-    <plugin filename="libUSVWind.so" name="vrx::USVWind">
-      <wind_obj><name>boat</name><link_name>hull</link_name><gain>1</gain></wind_obj>
-      <wind_obj><name>buoy</name><link_name>hull</link_name></wind_obj>
-      <rate>10</rate>
-    </plugin>
-    <plugin filename="libScoring.so" name="Scoring"><vehicle>boat</vehicle></plugin>
-    <plugin filename="gz-sim-x-system" name="x"><enable>boat::hull</enable>
-      <topic>/model/boat/pose</topic><other>hull</other></plugin>
-  </world>
-</sdf>
-"""
+WORLD = fixture_text("given_world_world.txt")
 
 
 @pytest.fixture

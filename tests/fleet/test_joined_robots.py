@@ -77,16 +77,15 @@ FLEET = f"{KEYS}{PARTS}robots: [{{name: cell1, arguments: {{robot_ip: 10.0.0.2}}
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(here: Path) -> Path:
     """Return a working directory with the parts and their fleet file."""
-    (tmp_path / "parts").mkdir()
-    (tmp_path / "parts/table.urdf").write_text('<robot name="cell"><link name="table"/></robot>\n')
-    (tmp_path / "parts/arm.urdf.xacro").write_text(ARM)
-    (tmp_path / "parts/arm.srdf").write_text(SRDF)
-    (tmp_path / "parts/controllers.yaml").write_text(CONTROLLERS)
-    (tmp_path / "fleet.yaml").write_text(FLEET)
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
+    (here / "parts").mkdir()
+    (here / "parts/table.urdf").write_text('<robot name="cell"><link name="table"/></robot>\n')
+    (here / "parts/arm.urdf.xacro").write_text(ARM)
+    (here / "parts/arm.srdf").write_text(SRDF)
+    (here / "parts/controllers.yaml").write_text(CONTROLLERS)
+    (here / "fleet.yaml").write_text(FLEET)
+    return here
 
 
 def outputs(path: str = "fleet.yaml") -> dict[str, bytes]:

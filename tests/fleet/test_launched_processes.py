@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 import yaml
+from paths import fixture_text
 from rule_examples import DESCRIPTION
 
 from multibot_rewrite.cli.multibot import main
@@ -31,27 +32,7 @@ robots:
 """
 WEIGHED = """<link name="{}"><inertial><mass value="1"/>
   <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>"""
-LAUNCH = """\
-from launch import LaunchDescription
-from launch.actions import *
-from launch.conditions import IfCondition
-from launch.event_handlers import OnProcessExit, OnProcessIO, OnProcessStart
-from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
-from launch_ros.actions import *
-from launch_ros.descriptions import ComposableNode
-from launch_ros.substitutions import FindPackageShare
-
-
-def here(executable, **more):
-    return Node(package='acme', executable=executable, **more)
-
-
-def generate_launch_description():
-    SETUP
-    return LaunchDescription([
-        BODY
-    ])
-"""
+LAUNCH = fixture_text("launched_processes_launch.txt")
 
 
 def actions(
@@ -916,45 +897,7 @@ def test_what_a_condition_keeps_out_is_named_with_the_arguments_that_decide(
     assert "Not started: acme yes" in text and text.count("Not started") == 1
 
 
-SWITCHES = """
-        *[DeclareLaunchArgument(it, default_value=value) for it, value in {
-            'joy': 'true', 'mock': 'False', 'both': 'true', 'mode': 'a', 'sim': 'true',
-            'rviz': 'true', 'cam': 'false', 'two': 'False', 'log': 'false', 'part': 'true',
-            'twin': 'false'}.items()],
-        here('stick', condition=IfCondition(joy)),
-        here('driver', condition=UnlessCondition(LaunchConfiguration('mock'))),
-        here('fake', condition=IfCondition(PythonExpression(["'", both, "' == 'false'"]))),
-        here('real', condition=IfCondition(both)),
-        here('other', condition=IfCondition(PythonExpression(["'", mode, "' == 'a'"]))),
-        here('another', condition=LaunchConfigurationEquals('mode', 'b')),
-        here('unless_b', condition=IfCondition(PythonExpression(["'", mode, "' != 'b'"]))),
-        here('twin', name='x', condition=UnlessCondition(LaunchConfiguration('twin'))),
-        here('other_twin', name='x', condition=IfCondition(LaunchConfiguration('twin'))),
-        GroupAction([here('inner', condition=UnlessCondition(LaunchConfiguration('mock'))),
-            TimerAction(period=2.0, actions=[here('late')])], condition=IfCondition(joy)),
-        RegisterEventHandler(OnProcessExit(target_action=first, on_exit=[here('after')])),
-        GroupAction([first], condition=IfCondition(LaunchConfiguration('sim'))),
-        here('map', condition=IfCondition(LaunchConfiguration('rviz'))),
-        here('camera', condition=IfCondition(LaunchConfiguration('cam'))),
-        ComposableNodeContainer(package='rclcpp_components', executable='component_container',
-            name='box', namespace='', composable_node_descriptions=[ComposableNode(package='acme',
-                plugin='acme::P', name='p', condition=IfCondition(LaunchConfiguration('part')))]),
-        LoadComposableNodes(target_container='box', composable_node_descriptions=[
-            ComposableNode(package='acme', plugin='acme::Q', name='q',
-                condition=IfCondition(LaunchConfiguration('cam')))]),
-        here('with_part', condition=IfCondition(LaunchConfiguration('part'))),
-        here('instead', condition=UnlessCondition(LaunchConfiguration('part'))),
-        GroupAction([ExecuteProcess(cmd=['record', 'a']), IncludeLaunchDescription([
-            FindPackageShare('gone'), '/launch/x.launch.py']),
-            here('quiet', condition=IfCondition(LaunchConfiguration('log'))),
-            TimerAction(period=1.0, actions=[]),
-        ], condition=IfCondition(LaunchConfiguration('two'))),
-        here('logger', condition=IfCondition(LaunchConfiguration('log'))),
-        RegisterEventHandler(OnProcessExit(target_action=first, on_exit=[here('logged')]),
-            condition=IfCondition(LaunchConfiguration('log'))),
-        RegisterEventHandler(OnProcessExit(target_action=first, on_exit=[
-            here('waits', condition=IfCondition(joy))])),
-"""
+SWITCHES = fixture_text("launched_processes_switches.txt")
 # What is off by default.
 OFF = ["camera", "acme::Q", "record", "IncludeLaunchDescription", "logger", "logged", "fake"]
 OFF += ["another", "instead"]

@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from paths import write_files
 
 from multibot_rewrite.cli.multibot import main
 
@@ -65,8 +66,7 @@ def build(folder: Path, rules: str, more: str = "", *words: str) -> int:
     files = {"rover.urdf": ROBOT, "params.yaml": PARAMS, "system_model.yaml": MODEL}
     files |= {"unknown.system_model.yaml": MODEL + UNKNOWN}
     files |= {"fleet.yaml": FLEET + more, "nodes.yaml": OWN.format(rules)}
-    for name, text in files.items():
-        (folder / name).write_text(text)
+    write_files(folder, files)
     return main(["build", str(folder / "fleet.yaml"), "-o", str(folder / "out"), *words])
 
 

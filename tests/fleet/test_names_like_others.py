@@ -15,6 +15,7 @@ import yaml
 from drawn_builds import run
 from drawn_fleets import BRIDGE, KINDS
 
+pytestmark = pytest.mark.usefixtures("here")
 ROVER = KINDS["gz rover"].text.replace("ROBOT", "rover")
 UNNAMED = ROVER.replace("<gz_frame_id>lidar_link</gz_frame_id>", "")
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
@@ -33,11 +34,6 @@ def built(data: dict[str, object], files: dict[str, str]) -> tuple[str, str]:
     assert code in (0, 3), of_check
     assert " error: " not in of_check
     return of_build, of_check
-
-
-@pytest.fixture(autouse=True)
-def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
 
 
 @pytest.mark.sample(2)

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from paths import FIXTURES, SUPPORT
+from paths import FIXTURES, SUPPORT, fixture_text
 
 from multibot_rewrite import InputError, RewriteRefused, UsageError, load_fleet
 from multibot_rewrite.cli.multibot import main
@@ -24,26 +24,7 @@ from multibot_rewrite.related_files.params.rcl_parameters import node_parameters
 from multibot_rewrite.related_files.yaml_text import read_yaml
 
 ROVER = FIXTURES / "robots" / "rover.urdf"
-PARAMS = """\
-/**:
-  ros__parameters: {use_sim_time: yes, alpha1: 0.1}
-amcl:
-  ros__parameters:
-    base_frame_id: "base_footprint"   # the foot
-    odom_frame_id: odom
-    scan_topic: scan
-    tolerance: 1e-9
-    flag: n
-    quoted: "n"
-    initial_pose: {x: 0.5}
-    marker.y: 1
-    names: ['1', '2']
-local_costmap:
-  local_costmap:
-    ros__parameters: {global_frame: odom, robot_base_frame: base_link}
-my_node:
-  ros__parameters: {frame: base_link}
-"""
+PARAMS = fixture_text("scripts_params.yaml")
 FLEET = """\
 layout: {layout}
 affix: {affix}

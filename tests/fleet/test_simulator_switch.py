@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from lxml import etree
+from paths import fixture_text
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleet.file import simulator_switch as switch
@@ -84,27 +85,7 @@ def test_arguments_that_may_switch(arguments: str, more: str, given: str, found:
     assert made == found.split()
 
 
-MANAGED = """\
-<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
-  <xacro:arg name="{name}" default="{default}"/>
-  <link name="base_link">
-    <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
-  </link>
-  <link name="w">
-    <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
-  </link>
-  <joint name="wheel" type="continuous"><parent link="base_link"/><child link="w"/></joint>
-  <ros2_control name="s" type="system">
-    <hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>
-    <joint name="wheel"><command_interface name="velocity"/><state_interface name="position"/></joint>
-  </ros2_control>
-  <xacro:if value="{condition}">
-    <gazebo><plugin filename="gz_ros2_control-system"
-                    name="gz_ros2_control::GazeboSimROS2ControlPlugin"><parameters>c.yaml</parameters></plugin>
-    </gazebo>
-  </xacro:if>
-</robot>
-"""
+MANAGED = fixture_text("simulator_switch_managed.urdf")
 CONTROLLERS = """\
 controller_manager:
   ros__parameters:

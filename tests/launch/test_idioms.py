@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 import yaml
 from launched_programs import launched
-from paths import FIXTURES
+from paths import FIXTURES, fixture_text
 
 from multibot_rewrite import launch, load_fleet
 
@@ -31,58 +31,7 @@ PROGRAMS = {
     **{"spawner": "controller_manager", "driver": "my_driver", "plain": "my_driver"},
     **{"late": "my_driver", "off": "my_driver"},
 }
-EVENTS = """\
-from launch import LaunchDescription
-from launch.actions import (
-    DeclareLaunchArgument, GroupAction, LogInfo, RegisterEventHandler, TimerAction
-)
-from launch.conditions import IfCondition
-from launch.event_handlers import OnProcessExit, OnProcessStart
-from launch.substitutions import Command, LaunchConfiguration
-from launch_ros.actions import Node, PushRosNamespace
-from launch_ros.parameter_descriptions import ParameterValue
-
-from multibot_rewrite.launch import description, each_robot, lifecycle_node, node, place, spawn
-
-
-def actions(robot):
-    state = node(
-        "robot_state_publisher",
-        package="robot_state_publisher",
-        executable="robot_state_publisher",
-        parameters=[{"robot_description": description()}],
-        output="screen",
-    )
-    model = spawn("gz", parameters=[{"mine": 7}])
-    broadcaster = node("joint_state_broadcaster")
-    wheels = node("diff_drive_controller", arguments=["--inactive"])
-    late = Node(package="my_driver", executable="late", name="late", namespace=robot.namespace)
-    off = node("diff_drive_controller", condition=IfCondition("false"), package="my_driver",
-               executable="off")
-    command = Command(["COMMAND", " rover.urdf ", robot.name])
-    return [
-        state,
-        RegisterEventHandler(OnProcessStart(target_action=state, on_start=[model])),
-        RegisterEventHandler(OnProcessExit(target_action=model, on_exit=[broadcaster])),
-        RegisterEventHandler(OnProcessExit(target_action=broadcaster, on_exit=[wheels])),
-        RegisterEventHandler(OnProcessExit(target_action=wheels, on_exit=[late])),
-        TimerAction(period=0.2, actions=[place(on_exit=[LogInfo(msg="placed")])]),
-        GroupAction([PushRosNamespace("below"), off]),
-        lifecycle_node("controller_manager", package="my_driver", executable="driver",
-                       use_sim_time=False),
-        Node(package="my_driver", executable="plain", name="plain", namespace=robot.namespace,
-             parameters=[{"text": ParameterValue(command, value_type=str)}]),
-    ]
-
-
-def generate_launch_description():
-    return LaunchDescription(
-        [
-            DeclareLaunchArgument("fleet"),
-            each_robot(LaunchConfiguration("fleet"), actions),
-        ]
-    )
-"""
+EVENTS = fixture_text("idioms_events.txt")
 
 
 @pytest.fixture

@@ -71,22 +71,20 @@ def _parameters(files: dict[str, str]) -> list[tuple[str, Any]]:
 @pytest.mark.slow
 @pytest.mark.skipif(bool(launch.missing()), reason=f"not tried in the real launch: {MISSING}")
 @pytest.mark.parametrize("layout", ["tf-per-robot", "frames-per-robot"])
-def test_each_robot_reads_its_own_odometry(layout: str, tmp_path: Path, monkeypatch: Any) -> None:
+def test_each_robot_reads_its_own_odometry(layout: str, here: Path) -> None:
     for name, text in {
         "params.yaml": PARAMS,
         "fleet.yaml": FLEET.replace("LAYOUT", layout),
     }.items():
-        (tmp_path / name).write_text(text)
-    (tmp_path / "rover.urdf").write_text((FIXTURES / "robots" / "rover.urdf").read_text())
-    monkeypatch.chdir(tmp_path)
-    found = started(tmp_path, OWN, OURS, "[made]")
+        (here / name).write_text(text)
+    (here / "rover.urdf").write_text((FIXTURES / "robots" / "rover.urdf").read_text())
+    found = started(here, OWN, OURS, "[made]")
     assert found == {it: f"/{it}/odom" for it in ("robot1", "robot2")}
 
 
 @pytest.mark.slow
 @pytest.mark.skipif(bool(MISSING), reason=f"not tried in the real launch: {MISSING}")
-def test_by_hand_both_read_one(tmp_path: Path, monkeypatch: Any) -> None:
-    (tmp_path / "params.yaml").write_text(PARAMS)
-    monkeypatch.chdir(tmp_path)
+def test_by_hand_both_read_one(here: Path) -> None:
+    (here / "params.yaml").write_text(PARAMS)
     head = "from nav2_common.launch import RewrittenYaml"
-    assert started(tmp_path, head, BY_HAND, "made") == {"robot1": "/odom", "robot2": "/odom"}
+    assert started(here, head, BY_HAND, "made") == {"robot1": "/odom", "robot2": "/odom"}

@@ -17,16 +17,13 @@ from multibot_rewrite.lint.config.baseline import (
     read_baseline,
 )
 
+pytestmark = pytest.mark.usefixtures("here")
+
 
 def finding(
     code: str = "MB501", file: str = "a.urdf", message: str = "m", line: int = 1
 ) -> Finding:
     return Finding(code, "error", message, "hint", file, line, 1)
-
-
-@pytest.fixture(autouse=True)
-def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
 
 
 def kept(known: list[Finding], found: list[Finding], path: str = "b.json") -> tuple[int, int]:

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
-from paths import FIXTURES
+from paths import FIXTURES, write_files
 
 from multibot_rewrite.base.findings.finding import ERROR
 from multibot_rewrite.base.findings.formats import FORMATS
@@ -48,9 +48,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         ".hidden/bad.urdf": BROKEN,
         "empty/readme.md": "",
     }
-    for name, text in files.items():
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_text(text)
+    write_files(tmp_path, files)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

@@ -77,12 +77,6 @@ def pieces(*names: str) -> str:
 
 
 @pytest.fixture
-def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
-@pytest.fixture
 def nasty(here: Path, monkeypatch: pytest.MonkeyPatch) -> Linted:
     """Nasty files with findings of every level, one without any, and one through macros."""
     lint_in_this_process(monkeypatch)

@@ -518,8 +518,8 @@ def check_said(inside: str, said: str, distro: str = "jazzy") -> None:
         ),
         (
             camera(FORMAT.format("rgb8")),
-            "MB124 error rgb8</format>: <format> is 'rgb8', which SDF does not know; SDF knows L8,"
-            " L16, R8G8B8 and 16 more",
+            "MB124 error rgb8</format>: <format> is 'rgb8', which SDF does not know; SDF knows"
+            " B8G8R8, BAYER_BGGR8, BAYER_GBRG8 and 19 more",
         ),
         (
             camera(FORMAT.format("FLOAT32")),

@@ -30,34 +30,6 @@ def plugin(inside: str, library: str = "libgazebo_ros_imu_sensor.so") -> str:
 
 
 @pytest.mark.parametrize(
-    ("body", "expected"),
-    [
-        (linked("a", "b", "j"), []),
-        # What tf and controllers take: namespaces, hyphens, dots, capitals, digits in front.
-        (linked("robot1/base-link", "4_wheel.1", "Bottom-V2.j"), []),
-        (linked("", "b", "j"), ["MB302"]),
-        (linked("a", " ", ""), ["MB302", "MB302"]),
-        (linked("a b", " b", "cover to body"), ["MB303"] * 3),
-        # A name that is missing is reported by another rule.
-        ("<link/>", []),
-        ('<link name="${prefix} a"/><link name="$(arg x)::b"/>', []),
-        (linked("a::x", "b", "j"), ["MB305"]),
-        (linked("a", "b:c", "j::k"), ["MB305"]),
-        (linked("__a__", "__model__", "__j__"), ["MB306"] * 3),
-        (linked("____", "___", "__"), ["MB306"]),
-        (linked("__a", "b__", "_j_"), []),
-        (linked("a", "b", "world"), ["MB306"]),
-        (linked("fühler", "b", "j"), ["MB310"]),
-        # No ASCII hides a second thing: the rules look at different ones.
-        (linked("arm", "Arm", "ARM"), ["MB309"]),
-        (linked("a", "b", "j", more='<link name="A"/>'), ["MB309"]),
-    ],
-)
-def test_names_of_links_and_joints(body: str, expected: list[str]) -> None:
-    assert codes(body) == expected
-
-
-@pytest.mark.parametrize(
     ("name", "expected"),
     [
         ("my_robot", []),
@@ -77,11 +49,33 @@ def test_names_of_robots(name: str, expected: list[str]) -> None:
 
 
 INERTIAL = '<inertial><mass value="1"/></inertial>'
+LASER = "libgazebo_ros_laser.so"
 
 
 @pytest.mark.parametrize(
     ("body", "expected"),
     [
+        # Links and joints.
+        (linked("a", "b", "j"), []),
+        # What tf and controllers take: namespaces, hyphens, dots, capitals, digits in front.
+        (linked("robot1/base-link", "4_wheel.1", "Bottom-V2.j"), []),
+        (linked("", "b", "j"), ["MB302"]),
+        (linked("a", " ", ""), ["MB302", "MB302"]),
+        (linked("a b", " b", "cover to body"), ["MB303"] * 3),
+        # A name that is missing is reported by another rule.
+        ("<link/>", []),
+        ('<link name="${prefix} a"/><link name="$(arg x)::b"/>', []),
+        (linked("a::x", "b", "j"), ["MB305"]),
+        (linked("a", "b:c", "j::k"), ["MB305"]),
+        (linked("__a__", "__model__", "__j__"), ["MB306"] * 3),
+        (linked("____", "___", "__"), ["MB306"]),
+        (linked("__a", "b__", "_j_"), []),
+        (linked("a", "b", "world"), ["MB306"]),
+        (linked("fühler", "b", "j"), ["MB310"]),
+        # No ASCII hides a second thing: the rules look at different ones.
+        (linked("arm", "Arm", "ARM"), ["MB309"]),
+        (linked("a", "b", "j", more='<link name="A"/>'), ["MB309"]),
+        # The world.
         (linked("world", "a", "j", "fixed"), []),
         (linked("world", "a", "j", "floating"), []),
         ('<link name="world"/>', []),
@@ -97,15 +91,7 @@ INERTIAL = '<inertial><mass value="1"/></inertial>'
         ),
         ('<link name="World"><visual/></link>', []),
         ('<link name="world"><!-- the floor --></link>', []),
-    ],
-)
-def test_the_world(body: str, expected: list[str]) -> None:
-    assert codes(body) == expected
-
-
-@pytest.mark.parametrize(
-    ("body", "expected"),
-    [
+        # A link and a joint of one name.
         (linked("a", "b", "b"), ["MB308"]),
         (linked("a", "b", "a", "prismatic"), ["MB308"]),
         # Gazebo merges fixed links: neither name is left.
@@ -120,15 +106,7 @@ def test_the_world(body: str, expected: list[str]) -> None:
             ["MB308"],
         ),
         (linked("a", "b", ""), ["MB302"]),
-    ],
-)
-def test_a_link_and_a_joint_of_one_name(body: str, expected: list[str]) -> None:
-    assert codes(body) == expected
-
-
-@pytest.mark.parametrize(
-    ("body", "expected"),
-    [
+        # In ros2_control.
         (control('<joint name="a/j"/>'), ["MB304"]),
         (control('<sensor name="robot1/imu"/><gpio name="x/y"/>'), ["MB304", "MB304"]),
         # Elsewhere a slash in a joint's name is nothing special.
@@ -152,18 +130,7 @@ def test_a_link_and_a_joint_of_one_name(body: str, expected: list[str]) -> None:
             "</hardware></ros2_control>",
             [],
         ),
-    ],
-)
-def test_names_in_ros2_control(body: str, expected: list[str]) -> None:
-    assert codes(body) == expected
-
-
-LASER = "libgazebo_ros_laser.so"
-
-
-@pytest.mark.parametrize(
-    ("body", "expected"),
-    [
+        # Topics and namespaces.
         (plugin("<ros><namespace>my-robot</namespace></ros>"), ["MB312"]),
         (plugin("<ros><namespace>/</namespace></ros>"), []),
         (plugin("<ros><namespace></namespace></ros>"), []),
@@ -187,7 +154,7 @@ LASER = "libgazebo_ros_laser.so"
         ),
     ],
 )
-def test_topics_and_namespaces(body: str, expected: list[str]) -> None:
+def test_names_of_parts_and_topics(body: str, expected: list[str]) -> None:
     assert codes(body) == expected
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from no_workers import lint_in_this_process
+from paths import write_files
 
 from multibot_rewrite.lint.run import lint_files
 from multibot_rewrite.rules.settings import Settings
@@ -116,9 +117,6 @@ CASES = {
 def test_a_strangers_file_is_told_at_the_level_of_its_harm(case: str, tmp_path: Path) -> None:
     code, name, text, others, expected = CASES[case]
     package = tmp_path / "src" / "arm"
-    for path, content in {name: text, **others}.items():
-        file = package / path
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(content)
+    write_files(package, {name: text, **others})
     found = lint_files([str(package / name)], Settings(select=(code,)))
     assert [it.level for it in found if it.code == code] == expected

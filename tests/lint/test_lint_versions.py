@@ -122,10 +122,7 @@ def test_the_shape_of_a_capsule_is_a_matter_of_gazebo_alone() -> None:
     importlib.util.find_spec("mujoco") is None, reason="mujoco is missing: pip install mujoco"
 )
 @pytest.mark.parametrize("quaternion", ["0 0 0.6 0.8", "0.5 -0.5 0.5 -0.5", "0 0 0.6 -80"])
-def test_mujoco_reads_the_rotation_after_the_fix_alone(
-    quaternion: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)  # where it writes its warnings
+def test_mujoco_reads_the_rotation_after_the_fix_alone(quaternion: str, here: Path) -> None:
     import mujoco  # takes half a second
 
     def turn(text: str) -> np.ndarray:

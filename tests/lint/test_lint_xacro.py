@@ -170,16 +170,15 @@ def test_an_argument_without_default(
 
 @pytest.mark.more
 def test_arguments_on_the_command_line_and_in_the_configuration(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    here: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    write(tmp_path, {"r.xacro": xacro(SIM)})
-    monkeypatch.chdir(tmp_path)
+    write(here, {"r.xacro": xacro(SIM)})
     asked = ("--quiet", "--select", "MB202", "--fail-on", "note")
     assert main(["r.xacro", *asked]) == 0
     assert main(["r.xacro", "sim:=gz", *asked]) == 1
     said = capsys.readouterr().out
     assert "which is not declared" in said and said.endswith(" [with sim:=gz]\n")
-    (tmp_path / "urdf-lint.toml").write_text('[[xacro]]\narguments = {sim = "gz"}\n')
+    (here / "urdf-lint.toml").write_text('[[xacro]]\narguments = {sim = "gz"}\n')
     assert main(["r.xacro", *asked]) == 1
     assert capsys.readouterr().out == said
 

@@ -78,7 +78,7 @@ def test_what_a_tool_sends_to_a_robot_is_new() -> None:
     for reader, found in (
         ("/robot1/driver", [("MG130", WARNING, "/rosbridge_websocket")]),
         ("/robot1/twist_mux", []),
-        ("/rqt_gui_py_node_12", []),
+        ("/domain_bridge", []),
     ):
         assert codes(held(sent, f"as before: {reader} subscribes /robot1/e_stop {STOP}")) == found
 
@@ -137,9 +137,19 @@ def test_a_bridge_that_is_gone_is_missed_by_those_who_use_what_it_gave(
     told = [it for it in held(*gone, read) if it.node == "/ros_gz_bridge"]
     assert [(it.code, it.level, tuple(sorted(it.names))) for it in told] == [("MG130", ERROR, lost)]
     assert held(*(it.format("as before") for it in BRIDGE), read) == []
-    other = held(*gone, read, f"running: /gz_bridge publishes /robot1/imu {IMU}")
-    rest = tuple(it for it in lost if it != "/robot1/imu")
-    assert [tuple(sorted(it.names)) for it in other if it.node == "/ros_gz_bridge"] == [rest]
+    other = f"running: /gz_bridge publishes /robot1/imu {IMU}"
+    reset = "running: /gz_bridge serves /robot1/reset std_srvs/srv/Empty"
+    for more in ((other,), (other, reset)):
+        given = {line.split()[3] for line in more}
+        rest = [it for it in (tuple(it for it in lost if it not in given),) if it]
+        found = [it for it in held(*gone, read, *more) if it.node == "/ros_gz_bridge"]
+        assert [tuple(sorted(it.names)) for it in found] == rest
+
+
+def test_a_node_of_a_robot_that_is_gone_is_one_finding() -> None:
+    used = f"as before: /robot1/pilot subscribes /robot1/imu {IMU}"
+    found = held(f"earlier: /robot1/imu_driver publishes /robot1/imu {IMU}", used)
+    assert codes(found) == [("MG101", ERROR, "/robot1/imu_driver")]
 
 
 def test_a_root_that_all_share_is_missed() -> None:

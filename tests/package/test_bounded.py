@@ -220,10 +220,7 @@ JSON_READERS: dict[str, Reader] = {
 
 @pytest.mark.parametrize("fault", JSON_FAULTS)
 @pytest.mark.parametrize("reader", JSON_READERS)
-def test_every_json_reader_has_the_bounds(
-    reader: str, fault: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_every_json_reader_has_the_bounds(reader: str, fault: str, here: Path) -> None:
     text, message = JSON_FAULTS[fault]
     with pytest.raises(MultibotError) as caught:
         JSON_READERS[reader](text)

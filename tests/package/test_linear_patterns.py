@@ -12,6 +12,7 @@ import ast
 import json
 import random
 import re
+import warnings
 from collections.abc import Iterator
 from functools import lru_cache
 
@@ -189,3 +190,45 @@ def test_the_matcher_matches_as_python_does(pattern: str) -> None:
             assert matcher.match(text, at) == (match.end() if match else None)
         whole = real.fullmatch(text)
         assert matcher.match(text, whole=True) == (whole.end() if whole else None)
+
+
+# A checker of regular expressions that others wrote finds nothing in those of the package.
+with warnings.catch_warnings():
+    # It reads patterns by modules that Python calls deprecated since 3.11.
+    warnings.simplefilter("ignore", DeprecationWarning)
+    from regexploit.ast.sre import SreOpParser
+    from regexploit.redos import find
+
+
+# Patterns of fnmatch, which never goes back behind a star (Python 3.11 and later: an atomic group).
+UNREAD = "from_ATOMIC_GROUP"
+
+
+def attacks(pattern: str | bytes, flags: int) -> list[str]:
+    """Return the texts on which the checker says that a pattern takes long."""
+    text = pattern if isinstance(pattern, str) else pattern.decode("latin-1")
+    return [it.example() for it in find(SreOpParser().parse_sre(text, flags))]
+
+
+@pytest.mark.slow
+def test_the_checker_finds_nothing() -> None:
+    found = {}
+    for module, call, inside in calls():
+        try:
+            patterns = made_by(module, call, inside)
+        except UnresolvedError:
+            continue
+        for it in patterns:
+            try:
+                slow = attacks(it.pattern, 0 if isinstance(it.pattern, bytes) else it.flags)
+            except AttributeError as error:
+                assert UNREAD in str(error), it
+                continue
+            if slow:
+                found[it.place] = it.pattern, slow[0]
+    assert found == {}
+
+
+def test_the_checker_works() -> None:
+    assert attacks(r"(a+)+b", 0)
+    assert attacks(rb"install\(\s*DIR\s+([^)]*?)\s+TO", 0)

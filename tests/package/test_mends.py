@@ -149,13 +149,12 @@ def found(row: Row, command: str, capsys: pytest.CaptureFixture[str]) -> list[st
 @pytest.mark.sample(2)
 @pytest.mark.parametrize("row", ROWS, ids=lambda it: it.code)
 def test_a_finding_is_gone_where_its_sentence_is_followed(
-    row: Row, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    row: Row, here: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.chdir(tmp_path)
     for it in row.files:
-        shutil.copy(ROOT / it, tmp_path)
-    edit(tmp_path, row.wrong)
+        shutil.copy(ROOT / it, here)
+    edit(here, row.wrong)
     said = found(row, row.command, capsys)
     assert any(row.says in it for it in said), said
-    edit(tmp_path, row.mend)
+    edit(here, row.mend)
     assert found(row, row.then or row.command, capsys) == []

@@ -23,7 +23,8 @@ from real_robots import corpus_files, spread, wheel_files
 
 from multibot_rewrite import MultibotError, rewrite, rewrite_all, strip
 
-pytestmark = pytest.mark.slow
+# MuJoCo writes its warnings into a file of the working folder.
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures("here")]
 
 SIBLINGS = FIXTURES / "robots" / "siblings.urdf"
 HAS_PIN = importlib.util.find_spec("pinocchio") is not None
@@ -39,12 +40,6 @@ needs_mujoco = pytest.mark.skipif(not HAS_MUJOCO, reason="mujoco is missing: pip
 needs_check = pytest.mark.skipif(
     CHECK_URDF is None, reason="check_urdf is missing: apt install liburdfdom-tools"
 )
-
-
-@pytest.fixture(autouse=True)
-def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """MuJoCo writes its warnings into a file of the working folder."""
-    monkeypatch.chdir(tmp_path)
 
 
 class Key(NamedTuple):

@@ -15,7 +15,7 @@ import pytest
 import yaml
 from hypothesis import assume, given, strategies as st
 from jsonschema import Draft202012Validator
-from paths import FIXTURES, ROOT
+from paths import FIXTURES, ROOT, fixture_text
 
 from multibot_rewrite.base import editors
 from multibot_rewrite.base.findings.finding import Finding
@@ -96,57 +96,7 @@ PLAN = System(
     gaps=(Finding("MG102", "warning", "nothing sends", "start it", "a.yaml", 3, 5, node="/r1/x"),),
     domains=(Domain("r1", 11), Domain("", 10)),
 )
-TEXT = """\
-schema: 3
-layout: tf-per-robot
-release: jazzy
-shared_topics: [/clock]
-shared_frames: [map]
-ignored_nodes: ["helper*"]
-robots:
-- name: r1
-  frames: [b1/base]
-  tf_topic: /r1/tf
-  other_frames: [b1/gps]
-  tag: b1
-  nodes:
-  - name: /r1/drive
-    lifecycle: active
-    host: pc
-    way: plugin
-    taker: /r1/gz
-    sure: {word: runs, instead: [/r1/drive, /r1/spare]}
-    place: ../a.yaml:3
-    plugin: r.urdf:7
-    parameters: {use_sim_time: false, rates: [1, 2.5, "no"], gain: 1.0, is_on: true}
-    ends:
-    - [publishes, topic, /r1/x, std_msgs/msg/String | a/msg/B, x]
-    - {kind: topic, role: subscribes, name: /r1/y, type: std_msgs/msg/String, sure: may}
-    - [calls, service, /r1/go, a/srv/Go, go, "rate set"]
-  - {name: /r1/arm, way: spawner, node_set: nav2, sure: may}
-  - {name: /r1/spare, sure: {word: may, instead: [/r1/drive, /r1/spare]}}
-nodes:
-- name: /map_server
-  ends:
-  - [serves, service, /map, "", /map]
-ends:
-- {kind: topic, role: publishes, name: /z, type: std_msgs/msg/String, node: /gone, place: {file: odd:1}}
-parameters:
-- {node: /r1/arm, name: rate, value: "5", place: p.yaml:2}
-edges:
-- {child: base, parent: odom, publishers: [/r1/drive]}
-- {child: lidar, parent: base, topic: /tf_static, static: true, transform: \
-[0.5, -1, 1.0e-07, 0, 0, 0, 1]}
-topics:
-- {name: /r1/x, senders: ["/r1/d*"], one_sender: true, qos: {durability: VOLATILE}, \
-bridge: [publishes], type: std_msgs/msg/String}
-gaps:
-- {code: MG102, level: warning, message: "nothing sends", hint: "start it", file: a.yaml, \
-line: 3, column: 5, node: /r1/x}
-domains:
-- {robot: r1, number: 11}
-- {robot: "", number: 10}
-"""
+TEXT = fixture_text("plan_keys_text.yaml")
 SCHEMA = json.loads((files("multibot_rewrite") / editors.PLAN).read_text())
 
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import pytest
 from hypothesis import given, strategies as st
@@ -24,9 +24,14 @@ from multibot_rewrite.base.rosnames import (
     read_remap,
     remapped_node,
     resolve_bound,
-    resolve_name,
     split_remap,
 )
+
+
+def resolve_name(
+    name: str, kind: str, node: str, namespace: str, rules: Iterable[RemapRule]
+) -> str:
+    return resolve_bound(name, kind, bind(node, namespace, rules))
 
 
 def refusal(name: str) -> str:

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import json
 
+from paths import fixture_text
+
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.planning.enclaves import Profile, enclave_of, profiles, to_policy
@@ -146,42 +148,7 @@ PLAN = System(
     ),
     robots=(Robot("a", tf_topic="/a/tf"),),
 )
-PROFILE = """\
-        <profile ns="/a/nav" node="driver">
-          <topics publish="ALLOW">
-            <topic>/a/&lt;x&gt;</topic>
-            <topic>/parameter_events</topic>
-            <topic>/rosout</topic>
-          </topics>
-          <topics subscribe="ALLOW">
-            <topic>/a/cmd_vel</topic>
-            <topic>/clock</topic>
-            <topic>/parameter_events</topic>
-          </topics>
-          <services reply="ALLOW">
-            <service>/a/reset</service>
-            <service>~/describe_parameters</service>
-            <service>~/get_parameter_types</service>
-            <service>~/get_parameters</service>
-            <service>~/get_type_description</service>
-            <service>~/list_parameters</service>
-            <service>~/set_parameters</service>
-            <service>~/set_parameters_atomically</service>
-          </services>
-          <services request="ALLOW">
-            <service>/map</service>
-            <service>~/describe_parameters</service>
-            <service>~/get_parameter_types</service>
-            <service>~/get_parameters</service>
-            <service>~/list_parameters</service>
-            <service>~/set_parameters</service>
-            <service>~/set_parameters_atomically</service>
-          </services>
-          <actions execute="ALLOW">
-            <action>/a/go</action>
-          </actions>
-        </profile>
-"""
+PROFILE = fixture_text("texts_profile.txt")
 
 
 def test_a_policy_of_sros2_to_the_letter() -> None:

@@ -172,7 +172,7 @@ def test_a_built_folder_says_whose_each_name_is(
     assert main(["build", str(fleet), "-o", str(tmp_path / "out"), "-q"]) == 0
     assert main(["check-launch", str(tmp_path / "out/fleet.launch.py")]) == 0
     told = capsys.readouterr().err
-    assert "2 robots by the plan beside it: left, right; layout: postfix" in told
+    assert "2 robots by the plan in its folder: left, right; layout: postfix" in told
     assert "2 robots, 1 node each: all known" in told
 
 

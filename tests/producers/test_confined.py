@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
-from paths import FIXTURES, ROOT
+from paths import FIXTURES, ROOT, fixture_text
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.description.sources.child import fences
@@ -45,26 +45,7 @@ REFUSED = (
     "os.environ['A_SECRET']", "os.environ.get('A_SECRET')", "os.getenv('A_SECRET')",
     "ctypes.CDLL(None, use_errno=True).chmod(OUT.encode(), 0o700) and raised(ctypes.get_errno())",
 )  # fmt: skip
-FILE = """\
-import ctypes, os, shutil, tempfile
-from launch import LaunchDescription
-from launch_ros.actions import Node
-HERE, OUT = os.path.dirname(__file__), 'OUT_OF_IT'
-
-def raised(number):
-    raise PermissionError(number, "")
-
-def generate_launch_description():
-    nodes = [Node(package="p", executable="begun")]
-    for at, line in enumerate(LINES):
-        try:
-            eval(line)
-        except PermissionError:
-            nodes.append(Node(package="refused", executable=str(at)))
-        except BaseException as error:
-            nodes.append(Node(package=repr(error), executable=str(at)))
-    return LaunchDescription(nodes)
-"""
+FILE = fixture_text("confined_file.txt")
 
 
 @pytest.fixture
@@ -304,30 +285,7 @@ def test_without_fences_nothing_of_it_runs(kept: Path) -> None:
     assert second.startswith("LaunchGraph") and (kept / "made").exists()
 
 
-WITHOUT_TOOLS = """\
-import os, yaml
-import acme_tools
-class Tools(acme_tools.Tools):
-    def __init__(self, name):
-        super().__init__(name, more=1)
-        self.name = name
-class Kept(acme_tools.Tools):
-    def __init__(self):
-        self.made = self.make()
-from launch import LaunchDescription
-from launch.actions import IncludeLaunchDescription
-from launch.launch_description_sources import PythonLaunchDescriptionSource
-from launch_ros.actions import Node
-def generate_launch_description():
-    made = [acme_tools.make(), Tools("a").make(Kept().made), Tools("a"), Kept()]
-    texts = [dump({"a": it}) for dump in (yaml.safe_dump, yaml.dump) for it in made]
-    kinds = [type(yaml.safe_load(it)["a"]).__name__ for it in texts]
-    inner = PythonLaunchDescriptionSource(os.path.join(os.path.dirname(__file__), "b.launch.py"))
-    return LaunchDescription([
-        Node(package="p", executable=f"{Tools('b').name} {set(kinds)}"),
-        IncludeLaunchDescription(inner, launch_arguments=acme_tools.Given().items()),
-    ])
-"""
+WITHOUT_TOOLS = fixture_text("confined_without_tools.txt")
 INNER = """\
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument

@@ -16,7 +16,7 @@ import pytest
 import yaml
 from launched_here import read_here
 from launched_programs import launched
-from paths import ROOT
+from paths import ROOT, fixture_text
 from waiting import wait_until
 
 from multibot_rewrite import InputError
@@ -137,63 +137,8 @@ def test_includes_get_their_arguments_and_conditions_decide(tmp_path: Path) -> N
     assert (Path(found.place.file).name, found.place.line) == ("inner.launch.xml", 4)
 
 
-IN_XML = """<launch>
-  <arg name="robot" default="robot1"><choice value="robot1"/><choice value="robot2"/></arg>
-  <let name="rate" value="5.5"/>
-  <set_remap from="scan" to="front/scan"/>
-  <set_parameter name="all" value="1"/>
-  <group scoped="true">
-    <push-ros-namespace namespace="$(var robot)"/>
-    <node pkg="acme" exec="driver" name="d" args="--id $(var robot)_a -v" if="true">
-      <param name="rate" value="$(var rate)"/>
-      <param name="word" value="5" type="str"/>
-      <param name="list" value="1;2" value-sep=";"/>
-      <param name="inner"><param name="on" value="true"/></param>
-      <remap from="tf" to="$(var robot)/tf"/>
-      <env name="A" value="b"/>
-    </node>
-    <node pkg="acme" exec="never" unless="true"/>
-  </group>
-  <timer period="2.0"><node pkg="acme" exec="late"/></timer>
-  <node_container pkg="rclcpp_components" exec="component_container" name="box" namespace="">
-    <composable_node pkg="acme" plugin="acme::Part" name="part">
-      <param name="n" value="2"/></composable_node>
-  </node_container>
-  <executable cmd="ls -l" output="screen"/>
-</launch>
-"""
-IN_YAML = """launch:
-- arg: {name: robot, default: robot1, choice: [{value: robot1}, {value: robot2}]}
-- let: {name: rate, value: "5.5"}
-- set_remap: {from: scan, to: front/scan}
-- set_parameter: {name: all, value: "1"}
-- group:
-    scoped: true
-    children:
-    - push_ros_namespace: {namespace: $(var robot)}
-    - node:
-        pkg: acme
-        exec: driver
-        name: d
-        args: --id $(var robot)_a -v
-        if: "true"
-        param:
-        - {name: rate, value: $(var rate)}
-        - {name: word, value: "5", type: str}
-        - {name: list, value: [1, 2]}
-        - {name: inner, param: [{name: "on", value: true}]}
-        remap: [{from: tf, to: $(var robot)/tf}]
-        env: [{name: A, value: b}]
-    - node: {pkg: acme, exec: never, unless: "true"}
-- timer: {period: 2.0, children: [{node: {pkg: acme, exec: late}}]}
-- node_container:
-    pkg: rclcpp_components
-    exec: component_container
-    name: box
-    namespace: ""
-    composable_node: [{pkg: acme, plugin: "acme::Part", name: part, param: [{name: n, value: 2}]}]
-- executable: {cmd: ls -l, output: screen}
-"""
+IN_XML = fixture_text("launch_graph_in_xml.xml")
+IN_YAML = fixture_text("launch_graph_in_yaml.txt")
 
 
 @pytest.mark.parametrize(("name", "text"), [("a.launch.xml", IN_XML), ("a.launch.yaml", IN_YAML)])
@@ -310,37 +255,7 @@ def test_functions_run_and_what_starts_later_says_so(tmp_path: Path) -> None:
     assert (note.place.line, "run time" in note.message) == (NAMES + 4, True)
 
 
-EVENTS = """\
-from launch import LaunchDescription
-from launch.actions import *
-from launch.event_handlers import *
-from launch.substitutions import *
-from launch_ros.actions import *
-
-
-def one(robot):
-    first = Node(package="acme", executable="first")
-    late = [
-        Node(package="acme", executable="late", namespace=LaunchConfiguration("robot")),
-        Node(package="acme", executable="last"),
-    ]
-    end = Node(package="acme", executable="second", on_exit=[
-        Node(package="acme", executable="ended")])
-    return [
-        SetLaunchConfiguration("robot", robot),
-        GroupAction([
-            PushRosNamespace(robot),
-            first,
-            end,
-            RegisterEventHandler(OnProcessExit(target_action=first, on_exit=late)),
-            TimerAction(period=0.1, actions=[Node(package="acme", executable="timed")]),
-        ]),
-    ]
-
-
-def generate_launch_description():
-    return LaunchDescription([*one("robot1"), *one("robot2")])
-"""
+EVENTS = fixture_text("launch_graph_events.txt")
 
 
 @in_launch
@@ -678,30 +593,7 @@ def test_the_output_of_commands_is_known_and_nothing_is_started(tmp_path: Path) 
     assert made - before == {tmp_path / "bringup.launch.py"}
 
 
-TWO = """\
-from launch import LaunchDescription
-from launch.actions import *
-from launch.substitutions import *
-from launch_ros.actions import *
-from launch_ros.parameter_descriptions import ParameterValue
-from pathlib import Path
-
-HERE = str(Path(__file__).parent / "rover.urdf.xacro")
-
-
-def state(context, robot, *rules):
-    text = ParameterValue(Command(["xacro ", HERE]), value_type=str)
-    return [GroupAction([
-        PushRosNamespace(robot),
-        Node(package="robot_state_publisher", executable="robot_state_publisher", name="rsp",
-             parameters=[{"robot_description": text}], remappings=RULES),
-    ])]
-
-
-def generate_launch_description():
-    return LaunchDescription([
-        OpaqueFunction(function=state, args=[robot]) for robot in ("robot1", "robot2")])
-"""
+TWO = fixture_text("launch_graph_two.txt")
 
 
 @pytest.mark.more

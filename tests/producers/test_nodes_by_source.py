@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
-from paths import FIXTURES
+from paths import FIXTURES, fixture_text
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.knowledge.records import NodeFacts
@@ -150,93 +150,8 @@ def test_a_node_is_named_by_its_code_and_has_its_place() -> None:
     assert first.source == (f"{OWN / 'own_nodes' / 'inherited.py'}:20",)
 
 
-HEADER = """
-#include <rclcpp/rclcpp.hpp>
-namespace acme {
-class Base : public rclcpp::Node {
-public:
-  Base(const std::string & name, const rclcpp::NodeOptions & options);
-protected:
-  rclcpp::Publisher<std_msgs::msg::String>::SharedPtr state_;
-};
-class Driver : public Base {
-public:
-  explicit Driver(const rclcpp::NodeOptions & options);
-private:
-  using Scan = sensor_msgs::msg::LaserScan;
-  void setUp(); void onExtra();
-  void add(const std::string & side);
-  void onTimer();
-  std::string topic_, frame_{"laser"}, twice_;
-  bool debug_ = false;
-  message_filters::Subscriber<sensor_msgs::msg::Image> image_;
-  std::unique_ptr<tf2_ros::Buffer> buffer_;
-  std::shared_ptr<tf2_ros::TransformListener> listener_;
-  std::shared_ptr<tf2_ros::TransformBroadcaster> broadcaster_;
-};
-}
-"""
-UNIT = """
-#include "acme/driver.hpp"
-#define PREFIX "wheels/"
-namespace acme {
-static constexpr char BATTERY[] = "/battery";
-Base::Base(const std::string & name, const rclcpp::NodeOptions & options)
-: rclcpp::Node(name, options)
-{
-  state_ = create_publisher<std_msgs::msg::String>("~/state", 1);
-}
-Driver::Driver(const rclcpp::NodeOptions & options) : Base("driver", options)
-{
-  topic_ = declare_parameter<std::string>("scan_topic", "scan");
-  declare_parameter("frame_id", frame_);
-  get_parameter("frame_id", frame_);
-  this->declare_parameter("debug", false);
-  debug_ = this->get_parameter("debug").as_bool();
-  scan_ = create_publisher<Scan>(topic_, rclcpp::SensorDataQoS());
-  setUp();
-  onExtra();
-  if (debug_) { create_publisher<std_msgs::msg::String>("debug", 1); }
-#ifdef LIDAR
-  lidar_ = create_publisher<Scan>("lidar", 1);
-#endif
-  timer_ = create_wall_timer(1s, [this]() { create_publisher<std_msgs::msg::String>("lambda", 1); });
-  if (!rclcpp::ok()) { return; }
-  create_publisher<std_msgs::msg::String>("behind", 1);
-}
-void Driver::setUp()
-{
-  add("left"); add("right");
-  battery_ = this->create_publisher<sensor_msgs::msg::BatteryState>(BATTERY, 1);
-  reset_ = create_service<std_srvs::srv::Trigger>("~/reset", std::bind(&Driver::onReset, this, _1, _2));
-  dock_ = rclcpp_action::create_server<acme_msgs::action::Dock>(this, "dock", a, b, c);
-  image_.subscribe(this, "camera/image");
-  buffer_ = std::make_unique<tf2_ros::Buffer>(get_clock());
-  listener_ = std::make_shared<tf2_ros::TransformListener>(*buffer_);
-  broadcaster_ = std::make_shared<tf2_ros::TransformBroadcaster>(*this);
-  twice_ = "one"; twice_ = "two";
-  create_publisher<std_msgs::msg::String>(twice_, 1);
-  create_publisher<std_msgs::msg::String>(fromFile(), 1);
-}
-void Driver::add(const std::string & side)
-{
-  create_subscription<std_msgs::msg::Float64>(PREFIX + side, 1, cb);
-}
-void Driver::onTimer()
-{
-  geometry_msgs::msg::TransformStamped t;
-  t.header.frame_id = "odom";
-  t.child_frame_id = frame_;
-  broadcaster_->sendTransform(t);
-  auto late = create_publisher<std_msgs::msg::String>("late", 1);
-  buffer_->lookupTransform("map", frame_, tf2::TimePointZero);
-}
-}
-#if WITH_EXTRA
-void Driver::onExtra() { create_publisher<std_msgs::msg::String>("built", 1); }
-#endif
-RCLCPP_COMPONENTS_REGISTER_NODE(acme::Driver)
-"""
+HEADER = fixture_text("nodes_by_source_header.txt")
+UNIT = fixture_text("nodes_by_source_unit.txt")
 MAIN = """
 #include "acme/driver.hpp"
 int main(int argc, char ** argv) {

@@ -194,22 +194,21 @@ def test_a_program_that_has_announced_itself_without_nodes_is_not_seen(
 
 
 @pytest.mark.parametrize(
-    ("around", "announced", "here", "lost", "enough"),
+    ("around", "announced", "here", "enough"),
     [
-        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}, 2, 2, -1e9, "short"),
-        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}, 2, 3, -1e9, "long"),
-        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}, 0, 0, -1e9, "long"),
-        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}, 2, 2, 1e9, "long"),
-        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}, 2, 2, -1e9, "long"),
-        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "ROS_STATIC_PEERS": "a"}, 2, 2, -1e9, "long"),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}, 2, 2, "short"),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}, 2, 3, "long"),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}, 0, 0, "long"),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}, 2, 2, "long"),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "ROS_STATIC_PEERS": "a"}, 2, 2, "long"),
         (
-            {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "ROS_DISCOVERY_SERVER": "a:1"}, 2, 2, -1e9,
+            {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "ROS_DISCOVERY_SERVER": "a:1"}, 2, 2,
             "long",
         ),
     ],
 )  # fmt: skip
 def test_a_shorter_look_is_enough_where_all_of_this_machine_are_known(
-    around: dict[str, str], announced: int, here: int, lost: float, enough: str, clock: Clock,
+    around: dict[str, str], announced: int, here: int, enough: str, clock: Clock,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:  # fmt: skip
     for it in ("ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_STATIC_PEERS", "ROS_DISCOVERY_SERVER"):
@@ -222,7 +221,7 @@ def test_a_shorter_look_is_enough_where_all_of_this_machine_are_known(
     wanted = {
         "short": observe.assemble.ALL_KNOWN_SECONDS, "long": observe.assemble.QUIET_SECONDS,
     }  # fmt: skip
-    assert observe._enough(session(clock), 1.0, lost) == wanted[enough]
+    assert observe._enough(session(clock)) == wanted[enough]
 
 
 def test_what_is_subscribed_to(clock: Clock, monkeypatch: pytest.MonkeyPatch) -> None:

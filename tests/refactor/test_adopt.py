@@ -295,11 +295,10 @@ def test_a_folder_without_a_robot_is_refused(tmp_path: Path) -> None:
 
 @pytest.mark.more
 def test_the_command_prints_a_patch_or_changes_the_files(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    here: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    path = tmp_path / "r.urdf.xacro"
+    path = here / "r.urdf.xacro"
     path.write_text(robot('<link name="base"/>'))
-    monkeypatch.chdir(tmp_path)
     assert main(["adopt", ".", "--color", "never"]) == 0
     shown = capsys.readouterr()
     assert "--- a/r.urdf.xacro\n+++ b/r.urdf.xacro\n" in shown.out

@@ -6,7 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from paths import fixture_text
+from paths import fixture_text, write_files
 
 from multibot_rewrite import adopt
 from multibot_rewrite.cli.multibot import main
@@ -134,9 +134,7 @@ def test_one_parameter_file_of_a_name_is_filled_in_where_nothing_is(tmp_path: Pa
         "a/e.yaml": "a: [",
         "f.yaml": FILLED,
     }
-    for name, text in files.items():
-        (tmp_path / name).parent.mkdir(exist_ok=True)
-        (tmp_path / name).write_text(text)
+    write_files(tmp_path, files)
 
     def filled(urdfs: list[bytes], names: set[str]) -> dict[str, tuple[str, str, str]]:
         paths = [str(tmp_path / it) for it in files]
@@ -251,8 +249,7 @@ def test_names_in_code_and_data_are_listed_with_their_lines(package: Path) -> No
         "src/b.py": "x = 1\n\nframe = 'arm'\n",
         "config/c.yaml": "a:\n  ros__parameters: {joints: [j], frame: /base, own: based}\n",
     }
-    for name, text in files.items():
-        (package / name).write_text(text)
+    write_files(package, files)
     made = adopt(str(package))
     assert [(it.place.removeprefix(f"{package}/"), it.why) for it in made.left] == [
         ("config/c.yaml:2", "it names 'j', which a prefix does not reach"),

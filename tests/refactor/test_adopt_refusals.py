@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from paths import write_files
 
 from multibot_rewrite import adopt
 from multibot_rewrite.base.model import MultibotError
@@ -68,8 +69,7 @@ def test_what_cannot_be_is_one_line(
     case: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     files, said = REFUSED[case]
-    for name, text in files.items():
-        (tmp_path / name).write_text(text)
+    write_files(tmp_path, files)
     assert main(["adopt", str(tmp_path), "--in-place"]) == 2
     out, line = capsys.readouterr()
     assert (out, line.count("\n")) == ("", 1)

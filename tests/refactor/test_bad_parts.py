@@ -24,10 +24,9 @@ LOOP = f'<robot name="a" {SPACE}><xacro:include filename="OTHER"/><link name="a"
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "base.urdf").write_text(BASE)
-    return tmp_path
+def folder(here: Path) -> Path:
+    (here / "base.urdf").write_text(BASE)
+    return here
 
 
 def refused(words: list[str], folder: Path, capsys: pytest.CaptureFixture[str]) -> str:

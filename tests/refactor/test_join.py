@@ -346,10 +346,7 @@ def test_a_joined_text_that_was_edited_is_not_split(case: str) -> None:
         split(JOINED.replace(old, new))
 
 
-def test_the_command_joins_and_splits(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_the_command_joins_and_splits(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     Path("arm.urdf").write_text(ARM)
     Path("hand.urdf").write_text(HAND)
     words = ["join", "arm.urdf", "hand.urdf", "--at", "tool", "--prefix", "h_"]
@@ -396,18 +393,13 @@ def test_arguments_go_to_the_xacro_before_them(
     ],
 )
 def test_a_wrong_command_is_told_in_one_line(
-    words: list[str],
-    wanted: str,
-    capsys: pytest.CaptureFixture[str],
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
+    words: list[str], wanted: str, capsys: pytest.CaptureFixture[str], here: Path
 ) -> None:
-    monkeypatch.chdir(tmp_path)
     assert main(["join", *words]) == 2
     said = capsys.readouterr().err
     assert wanted in said
     assert said.count("\n") == 1
-    assert not list(tmp_path.iterdir())
+    assert not list(here.iterdir())
 
 
 def test_what_a_rewrite_refuses_is_one_line_too(

@@ -158,9 +158,8 @@ def test_a_broadcaster_of_some_joints_is_of_its_part(
 
 
 def test_the_command_writes_them_beside_the_description(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    here: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.chdir(tmp_path)
     for name, text in (("arm", ARM), ("gripper", GRIPPER)):
         Path(f"{name}.urdf").write_text(text)
     Path("arm.srdf").write_text(ARM_SRDF)

@@ -36,15 +36,14 @@ Write = Callable[[str], str]
 
 
 @pytest.fixture
-def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Write:
+def write(here: Path) -> Write:
     """Return a function that writes the list of parts and returns its path; the parts are beside it."""
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "parts").mkdir()
-    (tmp_path / "parts/arm.urdf").write_text(ARM)
-    (tmp_path / "parts/hand.urdf.xacro").write_text(HAND)
+    (here / "parts").mkdir()
+    (here / "parts/arm.urdf").write_text(ARM)
+    (here / "parts/hand.urdf.xacro").write_text(HAND)
 
     def written(text: str) -> str:
-        (tmp_path / "robot.urdf.join").write_text(text)
+        (here / "robot.urdf.join").write_text(text)
         return "robot.urdf.join"
 
     return written

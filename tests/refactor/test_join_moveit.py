@@ -130,13 +130,10 @@ def test_a_file_that_is_not_moveits_is_refused(tmp_path: Path) -> None:
         join([Part(TABLE), Part(ARM, "table", moveit=[str(tmp_path / "other.yaml")])])
 
 
-def test_the_command_writes_them_beside_the_description(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_the_command_writes_them_beside_the_description(here: Path) -> None:
     for name, text in (("table.urdf", TABLE), ("arm.urdf", ARM), ("arm.srdf", SRDF)):
-        (tmp_path / name).write_text(text)
-    given = ",".join(arm_files(tmp_path / "config", names=("kinematics.yaml",)))
+        (here / name).write_text(text)
+    given = ",".join(arm_files(here / "config", names=("kinematics.yaml",)))
     arm = f"description: arm.urdf, at: {{parent: table}}, srdf: arm.srdf, moveit: [{given}]"
     Path("all.join").write_text(f"join: [{{description: table.urdf}}, {{prefix: l_, {arm}}}]\n")
     words = ["join", "all.join"]

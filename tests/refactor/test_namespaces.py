@@ -11,8 +11,13 @@ import pytest
 from multibot_rewrite.base.releases import NEWEST_LTS
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.description.sources.access import BOUNDED
-from multibot_rewrite.refactor.declaring import NAMES, SPACES, free_name
-from multibot_rewrite.refactor.namespaces import namespaced, space_verified
+from multibot_rewrite.refactor.namespaces import (
+    NAMES,
+    SPACES,
+    free_name,
+    namespaced,
+    space_verified,
+)
 from multibot_rewrite.refactor.package import Expanding, read_package, texts_of
 from multibot_rewrite.refactor.source_edits import edited
 

@@ -408,11 +408,10 @@ OF_NONE = "has parameters of a controller that nothing declares; did you mean ar
     ],
 )
 def test_a_section_that_is_of_no_controller(
-    type_: str, sections: str, said: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    type_: str, sections: str, said: list[str], here: Path
 ) -> None:
-    monkeypatch.chdir(tmp_path)
     text = LOADED.format(type_) + "".join(CONTROLLER.format(it) for it in sections.split())
-    assert told(tmp_path, "c.yaml", text, "MB878") == said
+    assert told(here, "c.yaml", text, "MB878") == said
 
 
 ROW = "type: {}, action_ns: {}, joints: [{}]"
@@ -469,11 +468,8 @@ NO_FILE = "which no parameter file of the robot has"
         ("$(var side)_arm", ROW.format(FOLLOWS, ACTION, "left"), []),
     ],
 )
-def test_a_controller_as_moveit_has_it(
-    name: str, row: str, said: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "c.yaml").write_text(LOADED.format(JTC) + CONTROLLER.format("arm"))
+def test_a_controller_as_moveit_has_it(name: str, row: str, said: list[str], here: Path) -> None:
+    (here / "c.yaml").write_text(LOADED.format(JTC) + CONTROLLER.format("arm"))
     text = f"moveit_simple_controller_manager:\n  controller_names: [{name}]\n  {name}: {{{row}}}\n"
-    found = told(tmp_path, "moveit_controllers.yaml", text, "MB857")
+    found = told(here, "moveit_controllers.yaml", text, "MB857")
     assert found == said

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from paths import fixture_text
+from paths import fixture_text, write_files
 from rule_examples import BUILT, RELATED_FILES
 
 from multibot_rewrite.base.findings.finding import Finding, Rule
@@ -137,9 +137,7 @@ def by_both(
 ) -> tuple[list[str], list[str]]:
     """Return what the lint and a build say of a file in a package (the rover's, if it has none)."""
     file, key = RELATED_FILES[kind]
-    for name, content in {**ROVER, **beside, file: text}.items():
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / name).write_text(content)
+    write_files(folder, {**ROVER, **beside, file: text})
     linted = lint_file(
         str(folder / file), Settings(robots=ROBOTS, naming=make_naming("both"), distro=distro)
     )

@@ -594,6 +594,10 @@ INSTEAD_OF = {
         (hears("wanted"), hears("more"), sends("more", node="one"), sends("given")),
         "",
     ),
+    "a node that merges, and a name that goes on": (
+        (hears("wanted"), hears("more"), sends("more", node="one"), sends("wanted_raw")),
+        "wanted_raw",
+    ),
     "of Nav2": ((hears("wanted"), sends("given", node="controller_server")), ""),
     "a scan that others read": (
         (hears("scan", SCAN), sends("laser", SCAN), hears("laser", SCAN, "slam")),
@@ -606,6 +610,15 @@ INSTEAD_OF = {
     "joints of two": (
         (hears("joints", STATES), sends("arm", STATES, "arm"), sends("leg", STATES, "leg")),
         "",
+    ),
+    "joints that others read": (
+        (hears("joints", STATES), sends("arm", STATES, "arm"), hears("arm", STATES, "planner")),
+        "",
+    ),
+    "the joints of a description": (
+        (hears("joints", STATES, "robot_state_publisher"), sends("arm", STATES, "arm"),
+         hears("arm", STATES, "planner")),
+        "arm",
     ),
     "a map": ((hears("map", GRID, "planner"), sends("maps/map", GRID)), "maps/map"),
     "what a costmap shows": ((hears("map", GRID, "planner"), sends("x", GRID, "local_costmap")), ""),

@@ -7,7 +7,9 @@ import pytest
 from graph_examples import read_system
 
 from multibot_rewrite.base.findings.finding import Finding
+from multibot_rewrite.live.diagnose import diagnose
 from multibot_rewrite.rules.check import judge
+from multibot_rewrite.system.records import BUSY_MACHINE, Caveat
 
 TWIST, SCAN, ODOM = (
     "geometry_msgs/msg/Twist", "sensor_msgs/msg/LaserScan", "nav_msgs/msg/Odometry",
@@ -112,6 +114,12 @@ def test_a_dead_lidar_of_a_single_robot(space: str) -> None:
     sent = [f"transform odom -> laser on {space}/tf", f"frame_id odom on {space}/odom at 10 Hz"]
     (silent,) = found(*lines, *sent)
     assert (silent.code, silent.level, silent.node) == ("MG326", "error", f"{space}/lidar")
+    # A look that had no processor may not have received it; that nodes are missing is no reason.
+    system = read_system("\n".join(f"running: {it}" for it in (*lines, *sent))).system
+    for code, level in ((BUSY_MACHINE, "inconclusive"), ("programs-unannounced", "error")):
+        around = system.environment._replace(caveats=(Caveat(code, True, ""),))
+        told = diagnose(system._replace(environment=around)).findings
+        assert [(it.code, it.level) for it in told] == [("MG326", level)]
     assert codes(*lines, *sent, f"frame_id laser on {name}") == []
     # Where nothing comes again and again nobody listened for long.
     assert codes(*lines, sent[0], sent[1].removesuffix(" at 10 Hz")) == []

@@ -20,6 +20,7 @@ import yaml
 from drawn_fleets import Data, DrawnFleet, causes_of, drawn, simulated
 from drawn_spellings import FILE, SITE
 from hypothesis import HealthCheck, Phase, given, seed, settings, strategies as st
+from paths import write_files
 
 from multibot_rewrite import load_fleet
 from multibot_rewrite.base.naming import make_naming
@@ -47,9 +48,7 @@ GAPS = b"gaps:"
 def write(fleet: DrawnFleet, folder: Path) -> None:
     """Write a fleet file, those that it includes, and the files that they name."""
     texts = {path: _yaml(data) for path, data in (fleet.written or {FILE: fleet.data}).items()}
-    for path, text in {**fleet.files, **texts}.items():
-        (folder / path).parent.mkdir(parents=True, exist_ok=True)
-        (folder / path).write_text(text)
+    write_files(folder, {**fleet.files, **texts})
 
 
 def _yaml(data: Data) -> str:

@@ -7,7 +7,7 @@ import textwrap
 from collections.abc import Mapping
 from pathlib import Path
 
-from paths import fixture_text
+from paths import fixture_text, write_files
 
 from multibot_rewrite.checks.build import Outputs, make_outputs
 from multibot_rewrite.checks.judged_plan import plan_fleet
@@ -64,8 +64,7 @@ FILES = {
 
 def fleet_folder(folder: Path, fleet: str = SMALL, **files: str) -> Path:
     """Write the files and the fleet file; gives the path of the latter."""
-    for name, text in FILES.items():
-        (folder / name).write_text(text)
+    write_files(folder, FILES)
     for name, text in files.items():
         (folder / name.replace("__", ".")).write_text(textwrap.dedent(text))
     path = folder / "fleet.yaml"

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
 from fleet_folder import ARM
-from paths import FIXTURES, fixture_text
+from paths import FIXTURES, fixture_text, write_files
 
 # File -> its text, for a number of what it is large in.
 Files = Callable[[int], Mapping[str, str]]
@@ -249,8 +249,7 @@ def launch_file(files: Mapping[str, str]) -> str:
 def written(folder: Path, files: Mapping[str, str]) -> Path:
     """Return the folder, with these files in it."""
     folder.mkdir(exist_ok=True)
-    for name, text in files.items():
-        (folder / name).write_text(text)
+    write_files(folder, files)
     return folder
 
 

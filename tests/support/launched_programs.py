@@ -12,7 +12,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from paths import ROOT, SUPPORT
+from paths import ROOT, SUPPORT, write_files
 
 CHILD = SUPPORT / "launch_child.py"
 EXAMPLE = ROOT / "examples" / "multibot_example"
@@ -22,9 +22,7 @@ def fake_packages(folder: Path, files: dict[str, str], programs: dict[str, str])
     """Write an install folder of packages whose programs write down what they are told."""
     index = folder / "share" / "ament_index" / "resource_index" / "packages"
     index.mkdir(parents=True)
-    for name, text in files.items():
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / name).write_text(text)
+    write_files(folder, files)
     for package in {*programs.values(), *(path.split("/")[1] for path in files)}:
         (index / package).touch()
     for program, package in programs.items():

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from fleet_folder import planned_fleet
+from paths import write_files
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.checks.build import make_outputs
@@ -20,8 +21,7 @@ def found(
     folder: Path, files: dict[str, str], layout: str = "frames-per-robot"
 ) -> tuple[list[Finding], list[Finding]]:
     """Return what a build says, and what a plan says."""
-    for name, text in files.items():
-        (folder / name).write_text(text)
+    write_files(folder, files)
     fleet = folder / "fleet.yaml"
     fleet.write_text(f"layout: {layout}\n{files['fleet.yaml']}")
     plan = planned_fleet(fleet)

@@ -12,6 +12,7 @@ import tempfile
 import threading
 from collections.abc import Iterator, Sequence
 from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,14 @@ from paths import SUPPORT
 INSTALL = "pip install ros-jazzy-rclpy ros-jazzy-rmw-fastrtps-cpp ros-jazzy-common-interfaces"
 CHILD = SUPPORT / "rcl_names_child.py"
 SECONDS = 120
+
+
+def needed() -> Any:
+    """Return the mark of tests that ask it."""
+    import pytest
+
+    why = f"names are resolved by the real rcl; install rclpy: {INSTALL}"
+    return pytest.mark.skipif(not find_spec("rclpy"), reason=why)
 
 
 def ask(cases: Sequence[dict[str, Any]]) -> list[Any]:

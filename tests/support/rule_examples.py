@@ -12,7 +12,7 @@ import yaml
 from fleet_folder import planned_fleet
 from graph_calls import diagnose, seen_plan
 from graph_examples import read_example, read_looks, read_system
-from paths import fixture_text
+from paths import fixture_text, write_files
 
 from multibot_rewrite import RewriteRefused, rewrite_all, strip
 from multibot_rewrite.base.findings.finding import SRDF, URDF, XACRO, Finding, Rule
@@ -63,7 +63,7 @@ def found(
 ) -> list[Finding]:
     """Return what the rule finds in an example, with the files that are beside it (its own by
     default)."""
-    _write(folder, rule.page.beside if beside is None else beside)
+    write_files(folder, rule.page.beside if beside is None else beside)
     run = beside_example if _is_alone(rule) else RUNNERS[_format(rule)]
     findings = run(rule, example, folder)
     return [it for it in findings if it.code == rule.code]
@@ -84,12 +84,6 @@ def _is_alone(rule: Rule) -> bool:
 
 def _format(rule: Rule) -> str:
     return next(iter(rule.formats), URDF)
-
-
-def _write(folder: Path, files: Any) -> None:
-    for name, content in files.items():
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / name).write_text(content)
 
 
 def whole(example: str) -> str:
@@ -114,7 +108,7 @@ def lint_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
 
 def beside_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
     """Return the example as a file of a package, with the rule's files beside it."""
-    _write(folder, {"example.yaml": example})
+    write_files(folder, {"example.yaml": example})
     options: dict[str, Any] = dict(rule.options)
     return lint_file(str(folder / "example.yaml"), Settings(select=(rule.code,), **options))
 
@@ -142,7 +136,7 @@ def rewrite_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
 def related_file_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
     """Return a fleet of two robots with the example as one of their files."""
     file, key = RELATED_FILES[rule.formats[0]]
-    _write(folder, {file: example})
+    write_files(folder, {file: example})
     named = rule.options.get("related_files", {})
     assert isinstance(named, dict)
     return _fleet(rule, {"related_files": {**named, key: file}}, folder)
@@ -167,11 +161,11 @@ def _fleet(
 ) -> list[Finding]:
     """Return what is found in a fleet file of ``text`` and, where it lacks them, ``keys``."""
     if "robot.urdf" not in rule.page.beside:
-        _write(folder, {"robot.urdf": description})
+        write_files(folder, {"robot.urdf": description})
     said = yaml.safe_load(text) or {}
     options = {it: value for it, value in rule.options.items() if it != BUILT}
     more = {it: value for it, value in {**FLEET, **options, **keys}.items() if it not in said}
-    _write(folder, {"fleet.yaml": text + (yaml.safe_dump(more) if more else "")})
+    write_files(folder, {"fleet.yaml": text + (yaml.safe_dump(more) if more else "")})
     plan = planned_fleet(folder / "fleet.yaml")
     found = [it for it in make_outputs(plan).findings if it.code == rule.code]
     return found or list(plan.fleet.table.problems)
@@ -180,7 +174,7 @@ def _fleet(
 def remap_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
     """Return the findings of the remap table of ``robots`` by their description or file of nodes."""
     nodes = {} if example.startswith("<") else yaml.safe_load(example)["nodes"]
-    _write(folder, {"robot.urdf": DESCRIPTION if nodes else example, "nodes.yaml": example})
+    write_files(folder, {"robot.urdf": DESCRIPTION if nodes else example, "nodes.yaml": example})
     options: dict[str, Any] = {"robots": ["robot1", "robot2"], **POLICY, **rule.options}
     robots = options.pop("robots")
     file = str(folder / "nodes.yaml") if nodes else None

@@ -17,7 +17,7 @@ import tempfile
 from contextlib import suppress
 from pathlib import Path
 
-from paths import fixture_text
+from paths import fixture_text, write_files
 
 # The wheels' targets name a Python include folder of the machine they were made on.
 _CMAKE = fixture_text("tf2_build_cmake.txt")
@@ -68,10 +68,7 @@ def build(cache: Path) -> dict[str, str]:
 
 
 def _run_cmake(folder: Path) -> None:
-    for name, text in _FILES.items():
-        file = folder / "source" / name
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text)
+    write_files(folder / "source", _FILES)
     for step in (
         ["cmake", "-S", "source", "-B", "build", *_options(folder / "installed")],
         ["cmake", "--build", "build", "-j4"],

@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from paths import fixture_text
 
 from multibot_rewrite.producers.sources.records import Class, Place
 from tools.interfaces.__main__ import main
@@ -34,36 +35,7 @@ def facts(folder: Path, body: str, more: str = "", header: str = HEADER) -> set[
 
 
 # Role, name, type, way, parameter and condition of a fact, and what class Robot does for it.
-DECLARED = """\
-publishes|plan|nav_msgs/msg/Path
-    p_ = create_publisher<nav_msgs::msg::Path>("plan", 1);
-subscribes|~/plan|nav_msgs/msg/Path
-    s_ = node->template create_subscription<nav_msgs::msg::Path>("~/plan", 1);
-serves|ab|a_msgs/srv/Spin|||visible_
-    if (visible_) { s_ = create_service<Spin>("a" + std::string("b"), f); }
-calls|go|a_msgs/action/Go
-    c_ = rclcpp_action::create_client<a_msgs::action::Go>(node, "go");
-subscribes|scan|a_msgs/msg/Scan||t
-    declare_parameter("t", "scan"); get_parameter("t", t); create_subscription<a_msgs::msg::Scan>(t, 1);
-publishes|<t>|a_msgs/msg/Scan||t
-    auto t = get_parameter("t").as_string(); create_publisher<a_msgs::msg::Scan>(t, 1);
-subscribes|/tf|tf2_msgs/msg/TFMessage|helper
-    l_ = std::make_shared<tf2_ros::TransformListener>(*buffer_);
-subscribes|/tf|tf2_msgs/msg/TFMessage
-    l_ = std::make_shared<tf2_ros::TransformListener>(*buffer_, this, true);
-serves|s|a_msgs/srv/Spin|private mine
-    private_ = rclcpp::Node::make_shared("mine"); private_->create_service<Spin>("s", f);
-publishes|s|a_msgs/msg/Scan|||not (a_)
-    if (a_) { } else { p_ = create_publisher<a_msgs::msg::Scan>("s", 1); }
-publishes|<get_name>/s|a_msgs/msg/Scan
-    using a_msgs::msg::Scan; create_publisher<Scan>(get_name() + "/s"s, 1);
-subscribes|in
-    sub_.subscribe(this, resolve_topic_or_service_name("in"));
-publishes|/tf_static|tf2_msgs/msg/TFMessage
-    b_ = std::make_shared<tf2_ros::StaticTransformBroadcaster>(this);
-serves|go|a_msgs/action/Go
-    auto s = rclcpp_action::create_server<a_msgs::action::Go>(this, "go", f, g, h);
-"""
+DECLARED = fixture_text("extraction_declared.txt")
 
 
 @pytest.mark.sample(1)

@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from paths import write_files
 
 from tools.proved import OPEN, PROVED, REFUSED, descriptions, judged, kind_of
 
@@ -40,8 +41,7 @@ def test_each_file_has_a_verdict_a_layout_and_release(tmp_path: Path) -> None:
         "macro.xacro": '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"/>',
         "broken.urdf": "<robot",
     }
-    for name, text in texts.items():
-        (tmp_path / name).write_text(text)
+    write_files(tmp_path, texts)
     found = {
         it.name: [(each.word, each.is_known) for each in judged(it, ["postfix"], ["jazzy", ""])]
         for it in descriptions([tmp_path])

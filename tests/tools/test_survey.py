@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from lxml import etree
-from paths import CORPUS, ROOT
+from paths import CORPUS, ROOT, write_files
 from surveyed_robot import inventory, surveyed
 
 from multibot_rewrite.base.naming import make_naming
@@ -202,12 +202,8 @@ def test_how_much_is_known() -> None:
     assert percentage(2000, 1999) == 99.9
 
 
-def test_the_program_reads_what_it_can(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    for name, text in {"a.urdf": '<robot name="r"/>', "b.urdf": "<robot>", "c.xml": ""}.items():
-        (tmp_path / name).write_text(text)
+def test_the_program_reads_what_it_can(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write_files(here, {"a.urdf": '<robot name="r"/>', "b.urdf": "<robot>", "c.xml": ""})
     assert main(["."]) == 0
     first, second, *_ = capsys.readouterr().out.splitlines()
     assert first == "1 file read, 1 cannot be read"

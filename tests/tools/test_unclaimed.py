@@ -99,14 +99,8 @@ def test_a_line_without_path_or_reason_is_refused(row: str) -> None:
     ],
 )
 def test_the_program_says_what_is_left(
-    reasons: str,
-    code: int,
-    printed: str,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
+    reasons: str, code: int, printed: str, here: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.chdir(tmp_path)
     Path("why.tsv").write_text(reasons)
     body = plugin("libacme.so", "<x>hip</x>")
     joint = '<joint name="hip" type="fixed"><parent link="a"/><child link="b"/></joint>'

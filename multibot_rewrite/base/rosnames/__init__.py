@@ -195,13 +195,3 @@ def resolve_bound(name: str, kind: str, bound: BoundNode) -> str:
     full = (bound.services if kind == "service" else bound.topics).get(full, full)
     _demand(f"{kind} name", full, check_full_name(full))
     return full
-
-
-def resolve_name(
-    name: str, kind: str, node: str, namespace: str, rules: Iterable[RemapRule]
-) -> str:
-    """Return the name that ``name`` becomes, a topic or service of ``node`` started in
-    ``namespace`` with ``rules``. ``node`` and ``namespace`` are those before the rules; ``rules``
-    the node's own ones followed by the process's. Raises UsageError where rcl refuses the node or
-    the name. See ``bind`` for many."""
-    return resolve_bound(name, kind, bind(node, namespace, rules))

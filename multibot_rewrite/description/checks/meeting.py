@@ -114,7 +114,7 @@ def shared_with(
     yield from found
     if not found and robot.encode() not in text:
         yield from _same_text(document, naming, definitions)
-    if document.root.find("link") is None and document.root.find(".//model/link") is None:
+    if all(document.root.find(it) is None for it in ("link", ".//model/link", ".//include")):
         from multibot_rewrite.description.sources.included_by import robot_instead  # few ask for it
 
         hint = robot_instead(document.file)

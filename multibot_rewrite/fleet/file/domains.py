@@ -6,8 +6,6 @@ move_group runs once, and reads the joint states of all arms on one topic: MoveI
 messages with some of the joints (moveit2 2.12.4 current_state_monitor.cpp, ``jointStateCallback``).
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection, Mapping
 from typing import NamedTuple
 

@@ -99,7 +99,11 @@ def why_not(graph: LaunchGraph) -> str:
     """Return why a fleet is not made of a launch file that was read; empty if it is."""
     hint = "source its workspace, or put its sources into this src/ (or below launch_roots:)"
     found = (f"it imports the Python package {it!r}, which is not here" for it in graph.imports)
-    ends = (f"the launch ends with {it.message}" for it in graph.notes if it.fails)
+    # What lacks a file is named beside the rest of the robot; what raises is no bringup.
+    raised = (
+        it.message for it in graph.notes if it.fails and "FileNotFoundError" not in it.message
+    )
+    ends = (f"the launch ends with {it}" for it in raised)
     return next(chain((f"{it}; {hint}" for it in found), ends), "")
 
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The hashes of what a build read and wrote: what the next build must change, and what it must not."""
 
-from __future__ import annotations
-
 import json
 import os
 from collections.abc import Iterable, Mapping

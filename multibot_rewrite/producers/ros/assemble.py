@@ -12,6 +12,7 @@ from multibot_rewrite.base.grouping import sets_by_key
 from multibot_rewrite.base.wording import SEVERAL, plural, shorten
 from multibot_rewrite.system.record_values import FARTHEST
 from multibot_rewrite.system.records import (
+    BUSY_MACHINE,
     EXPECTED,
     PUBLISHES,
     QUIET,
@@ -34,7 +35,6 @@ ALL_KNOWN_SECONDS = 1.5
 DELAY_SECONDS = 0.5
 # So much of its time a look may wait for a processor.
 STARVED = 1 / 3
-BUSY_MACHINE = "busy-machine"
 # The endpoints of one participant arrive together; a busy machine may pause in between.
 BURST_SECONDS = 0.5
 # The second replaces the first in a rehearsal on a machine without tf2_msgs.

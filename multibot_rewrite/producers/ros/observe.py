@@ -13,7 +13,6 @@ import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from functools import partial
-from math import inf
 
 from multibot_rewrite.producers.ros import assemble, queries, ros
 from multibot_rewrite.producers.ros.ask import ask_nodes
@@ -191,7 +190,6 @@ def _wait_until_settled(
     """
     request = session.request
     times, last_change = _ChangeTimes(), assemble.ObservationClock()
-    losses = _Losses()
     queried: object = None
     pause, spent, clock = POLL_SECONDS, 0.0, assemble.ObservationClock(last=session.now())
     while not session.stop.is_set():
@@ -207,7 +205,7 @@ def _wait_until_settled(
         factor = PAUSE_FACTOR if changed.all == now else LONG_PAUSE_FACTOR
         pause = _pause_after(time.thread_time() - began, factor)
         missed = second.missed(seen) if changed.all < now else ()
-        quiet = _enough(session, changed.all, losses.last(now))
+        quiet = _enough(session)
         if second.lossy:
             quiet = assemble.LOSSY_QUIET_SECONDS
         # Not later than the moment at which it is quiet.
@@ -233,34 +231,18 @@ def _wait_until_settled(
     return "", clock, (), ()
 
 
-class _Losses:
-    """When this process last lost a datagram, in seconds of the look."""
-
-    def __init__(self) -> None:
-        self._lost, self._at = 0, -inf
-
-    def last(self, now: float) -> float:
-        """Return when something was last lost until ``now``."""
-        lost = lost_by_us()
-        if lost != self._lost:
-            self._lost, self._at = lost, now
-        return self._at
-
-
-def _enough(session: GraphSession, changed: float, lost: float) -> float:
-    """Return how many seconds without a change after ``changed`` are enough: fewer where every
-    participant of this machine has announced itself, the range allows no other machine, and what
-    was ``lost`` has been sent again, as Fast DDS does after its heartbeat of 3 s."""
+def _enough(session: GraphSession) -> float:
+    """Return how many seconds without a change are enough: fewer where every participant of this
+    machine has announced itself, the range allows no other machine, and this process has lost nothing
+    that Fast DDS sends again after its heartbeat of 3 s."""
     asked = environment.settings(os.environ)
     if asked.range != LOCALHOST or asked.static_peers or asked.discovery_server:
         return assemble.QUIET_SECONDS
     announced = queries.participants(session.node)
     # One that was killed meanwhile is still announced, and would hide one that is not yet.
     here = participants_here(session.domain())
-    if not announced or len(announced) != here:
-        return assemble.QUIET_SECONDS
-    again = lost + assemble.QUIET_SECONDS - changed
-    return min(max(assemble.ALL_KNOWN_SECONDS, again), assemble.QUIET_SECONDS)
+    sure = announced and len(announced) == here and not lost_by_us()
+    return assemble.ALL_KNOWN_SECONDS if sure else assemble.QUIET_SECONDS
 
 
 class _ChangeTimes:

@@ -7,92 +7,72 @@ found is 7400 + 250 * domain + 10 + 2 * number.
 
 import os
 import socket
-from collections.abc import Iterable
+import sys
+from collections import defaultdict
+from collections.abc import Callable, Mapping
 from contextlib import suppress
-from typing import NamedTuple
+from typing import TypeVar
 
 TABLES = ("/proc/net/udp", "/proc/net/udp6")
 _FIRST, _A_DOMAIN, _UNICAST = 7400, 250, 10
 OPEN_HERE = "/proc/self/fd"
 # What all nodes of a large fleet say of themselves at once; net.core.rmem_max may be less.
 ROOM_BYTES = 1 << 22
-
-
-class Socket(NamedTuple):
-    """A local port, how many datagrams were lost since it is open because its buffer was full, and the
-    inode by which its process has it open."""
-
-    port: int
-    lost: int
-    inode: str
-
-
-def participants_at(ports: Iterable[int], domain: int) -> int:
-    """Return how many participants of a domain have some of these ports."""
-    inner = {port - _FIRST - _A_DOMAIN * domain for port in ports}
-    return len({it for it in inner if _UNICAST <= it < _A_DOMAIN and it % 2 == 0})
-
-
-def sockets_in(table: str) -> list[Socket]:
-    """Return the sockets of a table such as ``/proc/net/udp``: the last column counts drops."""
-    rows = (line.split() for line in table.splitlines()[1:])
-    return [
-        Socket(int(row[1].rpartition(":")[2], 16), int(row[-1]), row[9])
-        for row in rows
-        if len(row) > 9
-    ]
+# SO_MEMINFO of Linux (asm-generic/socket.h) and its size; the last number in it counts drops.
+_MEMORY_INFO, _DROPS = (55, 36), slice(32, 36)
+T = TypeVar("T")
 
 
 def participants_here(domain: int) -> int | None:
     """Return how many participants of a domain run on this machine; None if unknown: no Linux."""
-    found = _sockets_here()
-    return None if found is None else participants_at((it.port for it in found), domain)
+    found = sum(port >= _UNICAST and port % 2 == 0 for port in _lost_at(domain))
+    return found if os.path.exists(TABLES[0]) else None
 
 
 def lost_here(domain: int) -> int:
     """Return how many datagrams for a domain this machine has lost; 0 if unknown."""
-    first = _FIRST + _A_DOMAIN * domain
-    return sum(it.lost for it in _sockets_here() or () if first <= it.port < first + _A_DOMAIN)
+    return sum(_lost_at(domain).values())
 
 
-def lost_by_us() -> int:
-    """Return how many datagrams the sockets of this process have lost; 0 if unknown.
-
-    What another process lost need not be waited for: it offers its endpoints again after 1 s, and that
-    the names of its nodes have not come is noticed (``queries.without_nodes``).
-    """
-    own = set(_open_files().values())
-    return sum(it.lost for it in _sockets_here() or () if f"socket:[{it.inode}]" in own)
-
-
-def _open_files() -> dict[int, str]:
-    """Return what each open file of this process is, by its number; empty if unknown."""
-    found = {}
-    for number in os.listdir(OPEN_HERE) if os.path.isdir(OPEN_HERE) else ():
-        with suppress(OSError):
-            found[int(number)] = os.readlink(f"{OPEN_HERE}/{number}")
-    return found
-
-
-def _sockets_here() -> list[Socket] | None:
-    found: list[Socket] = []
-    try:
-        for path in TABLES:
-            with open(path) as file:
-                found += sockets_in(file.read())
-    except (OSError, ValueError):
-        return None
+def _lost_at(domain: int) -> Mapping[int, int]:
+    """Return the open ports of a domain, counted from its first, each with the datagrams lost there
+    because a buffer was full; empty if unknown."""
+    found: dict[int, int] = defaultdict(int)
+    for path in TABLES:
+        # A machine without IPv6 has no second one.
+        with suppress(OSError, ValueError, IndexError), open(path) as table:
+            for row in map(str.split, [*table][1:]):
+                port = int(row[1].rpartition(":")[2], 16) - _FIRST - _A_DOMAIN * domain
+                if 0 <= port < _A_DOMAIN:
+                    found[port] += int(row[-1])
     return found
 
 
 def make_room() -> None:
     """Give the UDP sockets of this process room for what a fleet says at once: Linux has it for some
     160 datagrams, and what is lost comes again only after a heartbeat of 3 s."""
-    for number in _open_files():
+    _ask_own(lambda own: own.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, ROOM_BYTES))
+
+
+def lost_by_us() -> int:
+    """Return how many datagrams the UDP sockets of this process have lost; 0 if unknown.
+
+    What another process lost need not be waited for: it offers its endpoints again after 1 s, and that
+    the names of its nodes have not come is noticed (``queries.without_nodes``).
+    """
+    told = _ask_own(lambda own: own.getsockopt(socket.SOL_SOCKET, *_MEMORY_INFO))
+    return sum(int.from_bytes(it[_DROPS], sys.byteorder) for it in told)
+
+
+def _ask_own(ask: Callable[[socket.socket], T]) -> list[T]:
+    """Return what each UDP socket of this process answers, without those that cannot."""
+    found = []
+    for number in os.listdir(OPEN_HERE) if os.path.isdir(OPEN_HERE) else ():
         with suppress(OSError):
-            borrowed = socket.socket(fileno=number)
+            borrowed = socket.socket(fileno=int(number))
             try:
                 if borrowed.type == socket.SOCK_DGRAM:
-                    borrowed.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, ROOM_BYTES)
+                    found.append(ask(borrowed))
             finally:
                 borrowed.detach()
+    return found

@@ -243,7 +243,7 @@ def _unknown_word(
     near = nearest(text, known)
     if not near and version <= CLASSIC and name == "sensor/@type":
         return  # Gazebo Classic lets plugins add types of sensors
-    hint = f"did you mean {near!r}?" if near else f"SDF knows {shorten(known)}"
+    hint = f"did you mean {near!r}?" if near else f"SDF knows {shorten(sorted(known))}"
     message = f"{_element_in_words(element, at)} is {shortened(text)!r}, which SDF does not know"
     yield fault("word", element, at, message, hint)
 

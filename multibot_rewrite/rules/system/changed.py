@@ -95,12 +95,12 @@ def _changes(before: System, seen: Index) -> Iterator[_Change]:
                 yield _Change(end.node, what, (end.name,))
         elif heeded := _heeded(seen, end):
             yield _Change(end.node, f"{did_not}; {heeded}", (end.name,), ERROR)
-        elif tool and end.role == PUBLISHES and (user := _user(seen, end)):
+        elif end.role == PUBLISHES and (user := _user(seen, end)):
             yield _Change(end.node, f"{did_not}; {user} reads it", (end.name,))
         elif end.node in nodes and not tool:
             yield _Change(end.node, did_not, (end.name,))
     # What the robots' own nodes gave is in the plan that is made of the earlier snapshot.
-    lost = (it for key, it in old.items() if key not in new and seen.is_tool(it.node))
+    lost = (it for it in old.values() if seen.is_tool(it.node))
     missed = ((it.node, (it.name, user)) for it in lost if (user := _lost_by(seen, it)))
     for node, pairs in lists_by_key(missed).items():
         names = tuple(dict(pairs))

@@ -63,7 +63,7 @@ def _orphan(seen: Index, end: End) -> Ends | None:
         for it in seen.by_node[end.node]
         if it.role == SUBSCRIBES and it.name in seen.published
     )
-    if merges or seen.robot(end.node) not in ("", robot):
+    if seen.robot(end.node) not in ("", robot):
         return None
     given = [
         it
@@ -72,8 +72,11 @@ def _orphan(seen: Index, end: End) -> Ends | None:
         and _DIGITS.sub("", it.name) != _DIGITS.sub("", end.name)
         and not _waits_itself(seen, it, end)
     ]
+    begins = [it for it in given if _begin_alike(seen.plain(it.name), seen.plain(end.name))]
+    if merges:
+        return _only(begins)
     akin = [it for it in given if _telling_words(seen, it.name) & _telling_words(seen, end.name)]
-    akin = akin or [it for it in given if _begin_alike(seen.plain(it.name), seen.plain(end.name))]
+    akin = akin or begins
     plain = end.type.startswith(_PLAIN_DATA) or end.name.startswith(f"{end.node}/")
     plain = plain or is_from_outside(end.name)
     return _only(akin) or (None if plain else _only(given))
@@ -151,7 +154,7 @@ def _data(seen: Index, end: End) -> Ends | None:
     given = [it for it in given if _DIGITS.sub("", it.name) != _DIGITS.sub("", end.name)]
     unread = [it for it in given if not at_work(it.subscribers)]
     # Joints come from several nodes, and a node that merges them need not have all.
-    several = words.JOINTS in (kind, end.type)
+    several = words.JOINTS in (kind, end.type) and not seen.publishes_description(end.node)
     akin = [it for it in unread if _telling_words(seen, it.name) & _telling_words(seen, end.name)]
     unread = akin if len(akin) == 1 else unread
     same = [it for it in given if it.type == end.type and words.is_of_a_body(end.type)]

@@ -20,6 +20,7 @@ DRIVE = """<robot name="r"><link name="a"/><gazebo>
 </plugin></gazebo></robot>"""
 
 
+INCLUDED = "<gazebo><include><uri>model://x</uri></include></gazebo>"
 NO_LINK = ("1 robot without a link",)
 
 
@@ -97,6 +98,8 @@ def test_every_reason_is_a_warning_of_a_rewrite() -> None:
         ),
         # A <link> of a plugin is no link of the robot.
         (LIDAR.format("x").replace('<link name="a"/>', "<own><link>a</link></own>"), NO_LINK),
+        # Its links are those of the model that it includes (x500 of PX4).
+        (LIDAR.format("x").replace('<link name="a"/>', INCLUDED), ("1 included model not read",)),
         (DRIVE.format("demo"), ()),
         (DRIVE.format(""), ()),
         (DRIVE.format("<!-- c -->demo"), ()),

@@ -362,11 +362,8 @@ def test_a_mistake_of_the_user_is_not_blamed_on_a_package(make: Make, tmp_path: 
 
 
 @pytest.mark.slow
-def test_a_user_file_called_like_a_built_in_one_hides_nothing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (tmp_path / "hardware.vocab").write_text(SECTION.format(name="aa"))
-    monkeypatch.chdir(tmp_path)
+def test_a_user_file_called_like_a_built_in_one_hides_nothing(here: Path) -> None:
+    (here / "hardware.vocab").write_text(SECTION.format(name="aa"))
     builtin = list(load_definitions((), NEWEST_LTS, packages=False).names("hardware"))
     definitions = load_definitions(("hardware.vocab",), NEWEST_LTS, packages=False)
     assert list(definitions.names("hardware")) == builtin

@@ -18,6 +18,7 @@ from description_calls import (
 from paths import fixture_text
 
 from multibot_rewrite import DefinitionsError, rewrite
+from multibot_rewrite.base.releases import RELEASES, ROS_1, has_release
 
 HEAD = "[plugin mine]\nabout: a test\n"
 NEW_PLUGIN = fixture_text("definitions_new_plugin.txt")
@@ -206,6 +207,16 @@ def test_a_builtin_name_has_one_section_for_each_ros(type_: str) -> None:
 def test_every_builtin_section_says_what_it_is() -> None:
     silent = [f"{r.file}:{r.line} {r.name}" for r in builtin() if not (r.about or r.source)]
     assert silent == []
+
+
+@pytest.mark.parametrize("release", RELEASES)
+def test_a_name_is_one_in_releases_that_read_its_value(release: str) -> None:
+    definitions = load_definitions((), release)
+    for section in (it for it in check_definitions(definitions) if it.type == "plugin"):
+        values = definitions.values(section.names[0], section.ros == ROS_1)
+        for site in (it for it in section.sites if values and it.role != "keep"):
+            row = values.rows.get(site.path)
+            assert not row or has_release(row.releases, release), (section.name, site.path)
 
 
 def test_every_value_kept_says_why() -> None:

@@ -13,7 +13,7 @@ from itertools import product
 import pytest
 
 from multibot_rewrite import rewrite, strip
-from multibot_rewrite.base.rosnames import parse_remap, resolve_name
+from multibot_rewrite.base.rosnames import bind, parse_remap, resolve_bound
 
 ROBOT = '<robot name="rover"><link name="base"/><gazebo>{}</gazebo></robot>'
 LEFT = (
@@ -47,7 +47,7 @@ def name_in_graph(text: str, name: str, kind: str = "topic") -> str:
     node = re.findall(r'<plugin name="([^"]*)"', text)[0]
     namespace = (re.findall(r"<namespace>([^<]*)<", text) or ["/"])[0]
     found = [it for it in map(parse_remap, rule_texts(text)) if it is not None]
-    return resolve_name(name, kind, node, namespace, found)
+    return resolve_bound(name, kind, bind(node, namespace, found))
 
 
 @pytest.mark.sample(1)

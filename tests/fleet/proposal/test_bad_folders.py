@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from paths import write_files
 
 from multibot_rewrite.cli.multibot import main
 
@@ -37,9 +38,7 @@ SAYS = {
 
 @pytest.mark.parametrize("kind", FILES)
 def test_a_folder_without_a_robot_that_can_be_told(kind: str, tmp_path: Path, capsys: Any) -> None:
-    for name, text in FILES[kind].items():
-        (tmp_path / name).parent.mkdir(exist_ok=True)
-        (tmp_path / name).write_text(text)
+    write_files(tmp_path, FILES[kind])
     fleet = tmp_path / "out" / "fleet.yaml"
     assert main(["init", str(tmp_path), "--yes", "-o", str(fleet)]) == 2
     said = capsys.readouterr().err

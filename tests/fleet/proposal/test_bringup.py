@@ -271,6 +271,7 @@ def test_the_description_says_what_the_launch_file_that_is_named_is_for(
 SHOWN = RVIZ[:-1] + f", arguments=['-d', {PATH.format('rviz/rover.rviz')}])"
 BRIDGED = BRIDGE[:-1] + f", parameters=[{{'config_file': {PATH.format('config/bridge.yaml')}}}])"
 CONTROLLED = DRIVER[:-1] + f", name='driver', parameters=[{PATH.format('config/control.yaml')}])"
+SCRIPT = "ExecuteProcess(cmd=['python3', '/opt/wave.py', '2'])"
 
 
 def test_only_files_that_a_node_reads_are_taken(package: Path) -> None:
@@ -281,7 +282,9 @@ def test_only_files_that_a_node_reads_are_taken(package: Path) -> None:
     assert sorted(windows) == ["rover/rviz/a.rviz", "rover/rviz/rover.rviz"]
     text = (package.parent / "out/fleet.launch.py").read_text()
     assert text.count("executable='rviz2'") == 2
-    write(package / "launch", {"up": f"{PUBLISHER}; {GZ}; {SHOWN}; {BRIDGED}; {CONTROLLED}"})
+    write(
+        package / "launch", {"up": f"{PUBLISHER}; {GZ}; {SHOWN}; {BRIDGED}; {CONTROLLED}; {SCRIPT}"}
+    )
     fleet = fleet_of(package)
     assert "node_sets" not in fleet
     assert fleet["related_files"] == {
@@ -296,6 +299,7 @@ def test_only_files_that_a_node_reads_are_taken(package: Path) -> None:
         "ros_gz_sim create",
         "ros_gz_bridge parameter_bridge: config_file",
         "driver (acme driver)",
+        "wave.py (python3)",
         "Once for all robots; `own_nodes: [NAME]` gives each its own:",
         "rviz2 rviz2, since it only shows data or forwards an operator's commands",
     ]

@@ -296,20 +296,17 @@ def test_names_of_the_robots_are_given(tmp_path: Path, capsys: Any) -> None:
         (["--layout", "L9"], "--layout"),
     ],
 )
-def test_mistakes_are_one_line(
-    words: list[str], says: str, tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (tmp_path / "empty").mkdir()
-    (tmp_path / "src" / "kap").mkdir(parents=True)
-    (tmp_path / "src" / "kap" / "package.xml").write_text("<package><name>kap</name></package>")
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "notes.yaml").write_text("a: 1\n")
-    (tmp_path / "bad.urdf").write_text("<robot")
-    (tmp_path / "part.xacro").write_text(TOOL)
-    (tmp_path / "need.xacro").write_text(TOOL.replace("/>", '><link name="$(arg size)"/></robot>'))
-    there = tmp_path / "fleet.yaml"
+def test_mistakes_are_one_line(words: list[str], says: str, here: Path, capsys: Any) -> None:
+    (here / "empty").mkdir()
+    (here / "src" / "kap").mkdir(parents=True)
+    (here / "src" / "kap" / "package.xml").write_text("<package><name>kap</name></package>")
+    (here / "notes.yaml").write_text("a: 1\n")
+    (here / "bad.urdf").write_text("<robot")
+    (here / "part.xacro").write_text(TOOL)
+    (here / "need.xacro").write_text(TOOL.replace("/>", '><link name="$(arg size)"/></robot>'))
+    there = here / "fleet.yaml"
     there.write_text("mine")
-    given = [it.format(folder=tmp_path, there=ROBOTS / "rover.urdf") for it in words]
+    given = [it.format(folder=here, there=ROBOTS / "rover.urdf") for it in words]
     more = [] if "-o" in given else ["-o", str(there)]
     try:
         code = init(*given, *more)

@@ -34,15 +34,12 @@ def test_the_node_sets_that_a_description_says(
     assert list(related_files._node_sets(robot, nodes, "p/r.srdf")) == [*found, moveit]
 
 
-def test_the_nearest_file_is_the_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_nearest_file_is_the_first(here: Path) -> None:
     """What the description loads, what is of its package, what is called like it and less otherwise;
     then by name."""
-    monkeypatch.chdir(tmp_path)
     for package in ("own", "zzz"):
-        (tmp_path / package).mkdir()
-        (tmp_path / package / "package.xml").write_text(
-            f"<package><name>{package}</name></package>"
-        )
+        (here / package).mkdir()
+        (here / package / "package.xml").write_text(f"<package><name>{package}</name></package>")
     inside = "<parameters> zzz/loaded.yaml </parameters><parameters/>"
     root = etree.fromstring(f"<robot>{inside}</robot>")
     wanted = [

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 import yaml
-from paths import ROBOTS, ROOT
+from paths import ROBOTS, ROOT, write_files
 from small_robots import PACKAGE, robot
 
 from multibot_rewrite.base.model import InputError
@@ -20,13 +20,6 @@ from multibot_rewrite.proposal.searching import Found
 
 MODEL = '<robot name="{0}"><link name="{0}_base"/></robot>'
 SECTION = "{}_node: {{ros__parameters: {{rate: 1}}}}\n"
-
-
-def files(folder: Path, **texts: str) -> None:
-    for name, text in texts.items():
-        path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
 
 
 def fleet_of(folder: Path, *words: str) -> dict[str, Any]:
@@ -45,7 +38,7 @@ def fleet_of(folder: Path, *words: str) -> dict[str, Any]:
 )  # fmt: skip
 def test_what_is_tried_is_what_is_written(options: list[str], tmp_path: Path, capsys: Any) -> None:
     """Two robots of one description share its node set, which a YAML writer shortens to an alias."""
-    files(tmp_path, **{f"{it}/robot.urdf": MODEL.format(it) for it in ("a", "b", "c")})
+    write_files(tmp_path, {f"{it}/robot.urdf": MODEL.format(it) for it in ("a", "b", "c")})
     paths = [str(tmp_path / it / "robot.urdf") for it in ("a", "b", "c")]
     made = fleet_of(tmp_path, *paths, *options)
     assert {it["node_sets"][0] for it in made["robots"]} == {"robot_state"}
@@ -58,7 +51,7 @@ def test_what_is_tried_is_what_is_written(options: list[str], tmp_path: Path, ca
 
 
 def test_values_that_robots_share_may_be_one_object(tmp_path: Path) -> None:
-    files(tmp_path, **{"a.urdf": MODEL.format("a")})
+    write_files(tmp_path, {"a.urdf": MODEL.format("a")})
     own = {"description": str(tmp_path / "a.urdf"), "node_sets": ["robot_state"]}
     robots = [{"name": it, **own} for it in ("one", "two")]
     assert [it.name for it in read_fleet({"robots": robots}, "", {}).robots] == ["one", "two"]
@@ -70,9 +63,9 @@ def test_values_that_robots_share_may_be_one_object(tmp_path: Path) -> None:
 
 def test_a_file_is_of_the_robot_in_whose_folder_it_is(tmp_path: Path) -> None:
     for name in ("left", "right"):
-        files(
+        write_files(
             tmp_path / f"{name}_description",
-            **{
+            {
                 "package.xml": PACKAGE.format(f"{name}_description"),
                 "urdf/robot.urdf": robot(name, "wheel"),
                 "config/own.yaml": SECTION.format(name),
@@ -103,8 +96,8 @@ def test_a_file_is_of_the_robot_that_it_fits(
     file: str, text: str, owners: set[str], tmp_path: Path
 ) -> None:
     for path in ("two_arms_moveit/arm.urdf", "launch_tutorial/rover.urdf"):
-        files(tmp_path, **{path.rpartition("/")[2]: (ROOT / "examples" / path).read_text()})
-    files(tmp_path, **{file: text})
+        write_files(tmp_path, {path.rpartition("/")[2]: (ROOT / "examples" / path).read_text()})
+    write_files(tmp_path, {file: text})
     out, paths = tmp_path / "f.yaml", [str(tmp_path / it) for it in ("arm.urdf", "rover.urdf")]
     main(["init", *paths, "-n", "1", "--yes", "-o", str(out)])
     made = yaml.safe_load(out.read_text())
@@ -117,7 +110,7 @@ def test_a_robot_of_nav2_without_a_map_is_asked_for_one(value: str | None, tmp_p
     text = "amcl: {ros__parameters: {}}\ncontroller_server: {ros__parameters: {}}\n"
     text += f"map_server:\n  ros__parameters:\n    yaml_filename: {value}\n" if value else ""
     rover = (ROOT / "examples" / "launch_tutorial" / "rover.urdf").read_text()
-    files(tmp_path, **{"rover.urdf": rover, "nav2.yaml": text})
+    write_files(tmp_path, {"rover.urdf": rover, "nav2.yaml": text})
     main(["init", str(tmp_path / "rover.urdf"), "--yes", "-o", str(tmp_path / "f.yaml")])
     asked = "# Nav2 waits for a map: write its yaml_filename" in (tmp_path / "f.yaml").read_text()
     assert asked is (value != "office.yaml")
@@ -125,8 +118,8 @@ def test_a_robot_of_nav2_without_a_map_is_asked_for_one(value: str | None, tmp_p
 
 def test_kinematics_are_of_the_robot_that_has_the_groups(tmp_path: Path) -> None:
     group = '<robot name="{0}"><group name="{0}_group"><link name="{0}_base"/></group></robot>'
-    files(tmp_path, **{"rover.srdf": group.format("rover")})
-    files(tmp_path, **{"kinematics.yaml": "arm_group: {kinematics_solver: kdl}\n"})
+    write_files(tmp_path, {"rover.srdf": group.format("rover")})
+    write_files(tmp_path, {"kinematics.yaml": "arm_group: {kinematics_solver: kdl}\n"})
     srdf, file = str(tmp_path / "rover.srdf"), str(tmp_path / "kinematics.yaml")
     found = Found(srdf=(srdf,), moveit=(file,))
     of_others = moveit_of_others(Looked(str(tmp_path / "rover.urdf")), srdf, found)
@@ -140,9 +133,11 @@ def test_kinematics_are_of_the_robot_that_has_the_groups(tmp_path: Path) -> None
 
 def test_what_another_robot_of_the_fleet_has_is_not_left_over(tmp_path: Path) -> None:
     """The files of other packages are nobody's business either."""
-    files(tmp_path, **{"arm.urdf": robot("arm", "lift_arm"), "rover.urdf": robot("rover", "turn")})
+    write_files(
+        tmp_path, {"arm.urdf": robot("arm", "lift_arm"), "rover.urdf": robot("rover", "turn")}
+    )
     joints = {"a": {"ros__parameters": {"joints": ["lift_arm", "arm_base", "lift_arm_wheel"]}}}
-    files(tmp_path, **{"config.yaml": yaml.safe_dump(joints)})
+    write_files(tmp_path, {"config.yaml": yaml.safe_dump(joints)})
     paths = [str(tmp_path / it) for it in ("arm.urdf", "rover.urdf")]
     made = fleet_of(tmp_path, *paths, "-n", "1")
     assert made["robots"][0]["related_files"] == {"params": ["../config.yaml"]}
@@ -173,7 +168,7 @@ def test_robots_of_other_descriptions_may_have_other_frames(tmp_path: Path, caps
     for name, parts in {"rover": ("mast", "imu", "laser"), "scout": ("mast", "imu")}.items():
         own = "".join(map(part.format, parts))
         text = f'<robot name="{name}"><link name="base_link"/>{own}</robot>'
-        files(tmp_path, **{f"{name}.urdf": text})
+        write_files(tmp_path, {f"{name}.urdf": text})
     kinds = ("rover.urdf", "rover.urdf", "scout.urdf")
     robots = [{"name": f"r{number}", "description": it} for number, it in enumerate(kinds)]
     fleet = {"layout": "tf-per-robot", "node_sets": ["nav2", "robot_state"], "robots": robots}

@@ -8,37 +8,13 @@ from typing import Any
 
 import pytest
 import yaml
+from paths import fixture_text
 
 from multibot_rewrite.cli.multibot import main
 
 pytestmark = pytest.mark.slow
 
-ROVER = """\
-<robot name="rover" xmlns:xacro="http://www.ros.org/wiki/xacro">
-  <xacro:arg name="{switch}" default="{default}"/>
-  <xacro:arg name="simple" default="true"/>
-  <xacro:property name="mass">
-    <inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
-  </xacro:property>
-  <link name="base_link"><xacro:insert_block name="mass"/></link>
-  <link name="wheel"><xacro:insert_block name="mass"/></link>
-  <joint name="turn" type="continuous">
-    <parent link="base_link"/><child link="wheel"/><axis xyz="0 1 0"/>
-  </joint>
-  <ros2_control name="drive" type="system">
-    <hardware>
-      <xacro:if value="$(arg {switch})"><plugin>gz_ros2_control/GazeboSimSystem</plugin></xacro:if>
-      <xacro:unless value="$(arg {switch})"><plugin>acme/Driver</plugin></xacro:unless>
-    </hardware>
-    <joint name="turn"><command_interface name="velocity"/><state_interface name="position"/></joint>
-  </ros2_control>
-  <gazebo>
-    <plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" filename="gz_ros2_control-system">
-      <parameters>$(find rover)/control.yaml</parameters>
-    </plugin>
-  </gazebo>
-</robot>
-"""
+ROVER = fixture_text("switch_rover.urdf")
 CONTROL = """\
 controller_manager:
   ros__parameters:

@@ -15,6 +15,7 @@ from fleet_folder import built_fleet, planned_fleet
 from given_parameters import given_in
 from lxml import etree
 from named_ends import named_ends
+from paths import fixture_text
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.checks.build import Outputs
@@ -26,32 +27,7 @@ from multibot_rewrite.producers.evidence.hardware import exported
 from multibot_rewrite.producers.evidence.nodes import nodes_of
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
-ARM = """\
-<robot name="fr3">
-  <link name="base_link"/>
-  <link name="hand"/>
-  <joint name="fr3_joint1" type="revolute">
-    <parent link="base_link"/><child link="hand"/>
-    <limit lower="-1" upper="1" effort="1" velocity="1"/>
-  </joint>
-  <ros2_control name="arm" type="system">
-    <hardware>
-      <plugin>{plugin}</plugin>
-      {param}
-    </hardware>
-    <joint name="fr3_joint1">
-      <command_interface name="position"/>
-      <command_interface name="velocity"/>
-      <state_interface name="position"/>
-    </joint>
-    <gpio name="speed_scaling"><state_interface name="speed_scaling_factor"/></gpio>
-    <gpio name="gravity">
-      <command_interface name="x"/><command_interface name="y"/><command_interface name="z"/>
-      <command_interface name="gravity_async_success"/>
-    </gpio>
-  </ros2_control>
-</robot>
-"""
+ARM = fixture_text("controllers_arm.urdf")
 FRANKA = ARM.format(
     plugin="franka_hardware/FrankaHardwareInterface",
     param='<param name="prefix"></param><param name="robot_type">fr3</param>',

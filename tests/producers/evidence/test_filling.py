@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import pytest
 from given_parameters import given_in
+from paths import fixture_text
 
 from multibot_rewrite.base.model import InputError
 from multibot_rewrite.knowledge.node_sets import load_node_set, load_nodes
@@ -57,27 +58,7 @@ def test_a_filter_that_sends_nothing() -> None:
     assert node.sends == ()
 
 
-COSTMAP = """\
-local_costmap:
-  local_costmap:
-    ros__parameters:
-      plugins: [obstacles, bubble, inflation]
-      filters: [keepout]
-      global_frame: odom
-      obstacles:
-        plugin: nav2_costmap_2d::ObstacleLayer
-        observation_sources: front back
-        front: {topic: /front/scan}
-        back: {topic: scan_back}
-      bubble: {plugin: "nav2_costmap_2d::VoxelLayer", observation_sources: "", publish_voxel_map: true}
-      inflation: {plugin: "nav2_costmap_2d::InflationLayer"}
-      keepout: {plugin: "nav2_costmap_2d::KeepoutFilter", filter_info_topic: keepout_info}
-      # No layer of this costmap.
-      old_layer:
-        plugin: nav2_costmap_2d::ObstacleLayer
-        observation_sources: old
-        old: {topic: /old}
-"""
+COSTMAP = fixture_text("filling_costmap.txt")
 
 
 def test_a_costmap_has_the_layers_of_its_list() -> None:

@@ -10,8 +10,7 @@ import re
 from pathlib import Path
 
 import pytest
-from closed_arm import ARM_FILES, MASS
-from closed_robot import FILES
+from closed_robot import ARM_FILES, FILES, MASS
 from open_findings import found
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")

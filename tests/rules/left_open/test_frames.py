@@ -9,7 +9,7 @@ import open_findings
 import pytest
 from closed_robot import FILES
 from given_parameters import run_given
-from paths import fixture_text
+from paths import fixture_text, write_files
 
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.releases import NEWEST_LTS
@@ -63,8 +63,7 @@ def test_nodes_whose_transforms_are_apart(
 
 @pytest.mark.more
 def test_a_tree_that_the_rewrite_has_cut_is_an_error(tmp_path: Path) -> None:
-    for name, text in FILES.items():
-        (tmp_path / name).write_text(text)
+    write_files(tmp_path, FILES)
     plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {}))
     key = ("robot1", "ekf_filter_node")
     assert plan.fleet.edges[key]

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from closed_robot import FILES
+from paths import write_files
 
 from multibot_rewrite.cli.multibot import main
 
@@ -20,8 +21,7 @@ pytestmark = pytest.mark.live
 def test_the_plan_of_a_robot_s_own_files_holds(
     layout: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    for name, text in FILES.items():
-        (tmp_path / name).write_text(text)
+    write_files(tmp_path, FILES)
     fleet = tmp_path / "fleet.yaml"
     fleet.write_text(f"layout: {layout}\n{FILES['fleet.yaml']}")
     assert main(["rehearse", str(fleet), "--select", "MG"]) == 0

@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from closed_arm import ARM_FILES, MASS
-from closed_robot import FILES
+from closed_robot import ARM_FILES, FILES, MASS
 from open_findings import found
 
 from multibot_rewrite.lint.check import lint_file
