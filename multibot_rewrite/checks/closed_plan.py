@@ -18,7 +18,6 @@ from multibot_rewrite.checks.meeting import shared_by_nothing
 from multibot_rewrite.checks.robot_system import (
     as_written,
     beside,
-    joined,
     of_all_robots,
     of_sources,
     with_controllers,
@@ -52,6 +51,7 @@ from multibot_rewrite.rules.system.states import (
 from multibot_rewrite.rules.system.tf_pieces import tf_tree_in_pieces
 from multibot_rewrite.rules.system.unsent import frame_not_sent, no_longer_sent, open_ends
 from multibot_rewrite.system.index import Index, index
+from multibot_rewrite.system.merging import joined
 from multibot_rewrite.system.ownership import ALONE, Whose, whose_by_plan
 from multibot_rewrite.system.records import (
     CLAIMS,

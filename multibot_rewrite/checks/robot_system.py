@@ -62,6 +62,7 @@ from multibot_rewrite.producers.launch.spawners import active
 from multibot_rewrite.related_files.moveit.file_kind import SIMPLE
 from multibot_rewrite.related_files.params.sections import PARAMETERS
 from multibot_rewrite.related_files.yaml_text import YamlText
+from multibot_rewrite.system.merging import joined
 from multibot_rewrite.system.records import (
     MAY,
     NOWHERE,
@@ -192,18 +193,6 @@ def beside(own: System, shared: System) -> System:
     """Return the system of one robot, with what nodes for all robots give it, not what these need."""
     given = tuple(it for it in shared.ends if it.role not in NEEDS)
     return joined(own, shared._replace(ends=given))
-
-
-def joined(first: System, *others: System) -> System:
-    """Return the first system, with the nodes, ends and transforms of others."""
-    systems = (first, *others)
-    return first._replace(
-        nodes=tuple(it for one in systems for it in one.nodes),
-        ends=tuple(it for one in systems for it in one.ends),
-        edges=tuple(it for one in systems for it in one.edges),
-        robots=tuple(it for one in systems for it in one.robots),
-        heard=tuple(it for one in systems for it in one.heard),
-    )
 
 
 def _system(runs: Iterable[Run], rows: Iterable[End] = (), edges: Iterable[Edge] = ()) -> System:

@@ -10,8 +10,8 @@ from collections.abc import Mapping
 from multibot_rewrite.base.findings.finding import Finding
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import only, unique
-from multibot_rewrite.system.merging import WORST_LAST
-from multibot_rewrite.system.ownership import whose_by_plan
+from multibot_rewrite.system.merging import WORST_LAST, joined
+from multibot_rewrite.system.ownership import renamed, whose_by_plan
 from multibot_rewrite.system.records import System
 
 # That of nodes of all robots, where a plan does not say another.
@@ -96,18 +96,10 @@ def side_by_side(seen: Mapping[int, System]) -> System:
     """Return the views of all domains as one, to be shown or to compare robots; findings name the
     domain if there are several."""
     views = tuple(seen.values())
-    first = views[0]
     if len(views) == 1:
-        return first
+        return views[0]
     looks = [it.environment for it in seen.values()]
-    return first._replace(
-        nodes=tuple(it for one in views for it in one.nodes),
-        ends=tuple(it for one in views for it in one.ends),
-        edges=tuple(it for one in views for it in one.edges),
-        heard=tuple(it for one in views for it in one.heard),
-        descriptions=tuple(it for one in views for it in one.descriptions),
-        parameters=tuple(it for one in views for it in one.parameters),
-        controllers=tuple(it for one in views for it in one.controllers),
+    return joined(*views)._replace(
         environment=looks[0]._replace(
             participants=sum(it.participants for it in looks),
             settled=max((it.settled for it in looks), key=WORST_LAST.index),
@@ -128,21 +120,7 @@ def space_of(domain: int) -> str:
 
 def named(view: System, domain: int) -> System:
     """Return the view of a robot without a name, below a name for its domain."""
-    space = space_of(domain)
-    ends = (it._replace(name=space + it.name, node=space + it.node) for it in view.ends)
-    edges = (
-        it._replace(topic=space + it.topic, publishers=tuple(space + one for one in it.publishers))
-        for it in view.edges
-    )
-    return view._replace(
-        nodes=tuple(it._replace(name=space + it.name) for it in view.nodes),
-        ends=tuple(ends),
-        edges=tuple(edges),
-        heard=tuple(it._replace(topic=space + it.topic) for it in view.heard),
-        descriptions=tuple(it._replace(topic=space + it.topic) for it in view.descriptions),
-        parameters=tuple(it._replace(node=space + it.node) for it in view.parameters),
-        controllers=tuple(it._replace(manager=space + it.manager) for it in view.controllers),
-    )
+    return renamed(view, lambda name: f"{space_of(domain)}{name}")
 
 
 def unnamed(it: Finding) -> Finding:

@@ -6,7 +6,7 @@ any snapshot has it."""
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import UsageError
@@ -28,6 +28,8 @@ from multibot_rewrite.system.records import (
 # Why looks ended, from good to bad.
 WORST_LAST = (EXPECTED, QUIET, TIMEOUT, CHANGING)
 _MANY = 4
+# The fields that systems have side by side.
+_HELD = ("nodes", "ends", "edges", "robots", "heard", "descriptions", "parameters", "controllers")
 
 
 class Look(NamedTuple):
@@ -61,6 +63,14 @@ def merged(looks: Sequence[Look]) -> System:
         tuple(controllers[it] for it in sorted(controllers)),
         descriptions=tuple(described[it] for it in sorted(described)),
     )
+
+
+def joined(first: System, *others: System) -> System:
+    """Return the first system, with what is in others as well."""
+    every: dict[str, Any] = {
+        key: tuple(it for one in (first, *others) for it in getattr(one, key)) for key in _HELD
+    }
+    return first._replace(**every)
 
 
 def _refuse_strangers(looks: Sequence[Look]) -> None:

@@ -3,7 +3,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from multibot_rewrite.base.conventions import SENT_FRAMES, USUAL_FRAMES
 from multibot_rewrite.system.records import HARDWARE_NODE, System
@@ -156,35 +156,47 @@ def without_name(plan: System) -> System:
     def bare(name: str) -> str:
         return (name.removeprefix(space) or "/") if f"{name}/".startswith(f"{space}/") else name
 
-    return plan._replace(
-        nodes=tuple(
-            it._replace(
-                name=bare(it.name),
-                taker=bare(it.taker),
-                sure=it.sure._replace(instead=tuple(map(bare, it.sure.instead))),
-            )
-            for it in plan.nodes
-        ),
-        ends=tuple(it._replace(name=bare(it.name), node=bare(it.node)) for it in plan.ends),
-        edges=tuple(
-            it._replace(topic=bare(it.topic), publishers=tuple(map(bare, it.publishers)))
-            for it in plan.edges
-        ),
-        robots=(robot._replace(tf_topic=bare(robot.tf_topic)),),
-        gaps=tuple(
-            it._replace(
-                message=it.message.replace(f"{space}/", "/"),
-                hint=it.hint.replace(f"{space}/", "/"),
-                node=bare(it.node),
-                names=tuple(map(bare, it.names)),
-            )
-            for it in plan.gaps
-        ),
-        parameters=tuple(it._replace(node=bare(it.node)) for it in plan.parameters),
-        topics=tuple(
-            it._replace(name=bare(it.name), senders=tuple(map(bare, it.senders)))
-            for it in plan.topics
-        ),
+    gaps = (
+        it._replace(
+            message=it.message.replace(f"{space}/", "/"),
+            hint=it.hint.replace(f"{space}/", "/"),
+            node=bare(it.node),
+            names=tuple(map(bare, it.names)),
+        )
+        for it in plan.gaps
+    )
+    return renamed(plan, bare)._replace(gaps=tuple(gaps))
+
+
+def renamed(system: System, new: Callable[[str], str]) -> System:
+    """Return the system with its nodes, topics, services and actions under new names."""
+
+    def one(name: str) -> str:
+        return new(name) if name else name
+
+    def each(names: Iterable[str]) -> tuple[str, ...]:
+        return tuple(map(one, names))
+
+    def changed(records: Iterable[Any], *fields: str) -> tuple[Any, ...]:
+        return tuple(
+            it._replace(**{field: one(getattr(it, field)) for field in fields}) for it in records
+        )
+
+    senders = (it._replace(senders=each(it.senders)) for it in system.topics)
+    groups = (
+        it._replace(sure=it.sure._replace(instead=each(it.sure.instead))) for it in system.nodes
+    )
+    edges = (it._replace(publishers=each(it.publishers)) for it in system.edges)
+    return system._replace(
+        nodes=changed(groups, "name", "taker"),
+        ends=changed(system.ends, "name", "node"),
+        edges=changed(edges, "topic"),
+        robots=changed(system.robots, "tf_topic"),
+        topics=changed(senders, "name"),
+        heard=changed(system.heard, "topic"),
+        descriptions=changed(system.descriptions, "topic"),
+        parameters=changed(system.parameters, "node"),
+        controllers=changed(system.controllers, "manager"),
     )
 
 
