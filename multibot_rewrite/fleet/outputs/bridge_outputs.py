@@ -58,8 +58,8 @@ def bridge_outputs(plan: FleetPlan) -> FilesToCheck:
     or rewritten."""
     fleet = plan.fleet
     # A vendor who bridges transforms bridges all of them.
-    own = (it.spec for it in plan.robots if it.spec.launch and brings_transforms(it.spec))
-    placed = {*fleet.placed, *(it.namespace for it in own)}
+    vendors = (it.spec for it in plan.robots if it.spec.launch and brings_transforms(it.spec))
+    placed = {*fleet.placed, *(it.namespace for it in vendors)}
     topics, unbridged = bridged_topics(
         fleet.inventories, fleet.naming, fleet.models, fleet.table.runs, placed
     )
