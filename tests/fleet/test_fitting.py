@@ -257,6 +257,50 @@ def test_a_keyboard_does_not_go_past_what_limits_or_chooses(
         assert planned(out, "/robot1/teleop_twist_keyboard", "publishes", found)
 
 
+ROW = """\
+- ros_topic_name: {}
+  gz_topic_name: {}
+  ros_type_name: geometry_msgs/msg/Twist
+  gz_type_name: gz.msgs.Twist
+  direction: ROS_TO_GZ
+"""
+BRIDGED = "distro: jazzy\nsimulator: gazebo\nrelated_files: {bridge: bridge.yaml}\nnode_sets: "
+
+
+@pytest.mark.parametrize(
+    ("node_sets", "rows_", "below", "sender", "topic", "keys"),
+    [
+        ("teleop", ("cmd_vel",), "sensors", "twist_mux", "sensors/cmd_vel", "key_vel"),
+        ("teleop", ("drive/cmd",), "", "twist_mux", "drive/cmd", "key_vel"),
+        ("teleop", ("/drive/cmd",), "sensors", "twist_mux", "drive/cmd", "key_vel"),
+        ("teleop", ('"<namespace>/cmd"',), "sensors", "twist_mux", "cmd", "key_vel"),
+        ("teleop", (), "sensors", "twist_mux", "cmd_vel", "key_vel"),
+        ("nav2", ("cmd_vel",), "sensors", "collision_monitor", "sensors/cmd_vel", "cmd_vel_nav"),
+        ("teleop_direct", ("cmd_vel",), "s", "teleop_twist_joy_node", "s/cmd_vel", "s/cmd_vel"),
+    ],
+)
+def test_what_is_added_sends_where_the_robots_own_bridge_takes_commands(
+    node_sets: str, rows_: tuple[str, ...], below: str, sender: str, topic: str, keys: str,
+    tmp_path: Path,
+) -> None:  # fmt: skip
+    """ros_gz_bridge expands relative names in its own namespace. A row for something else (``pan``)
+    does not lead the drive away; the other robot, without the key, has its bridge as it is."""
+    every = [*((it, "cmd_vel") for it in rows_), ("pan", "pan")]
+    (tmp_path / "bridge.yaml").write_text("".join(ROW.format(*it) for it in every))
+    key = f", bridge_namespace: {below}" if below else ""
+    robots = f"[{{name: robot1{key}}}, {{name: robot2}}]"
+    fleet, out = tmp_path / "fleet.yaml", tmp_path / "out"
+    fleet.write_text(
+        f"layout: both\ndescription: {ROVER}\n{BRIDGED}{node_sets}\nrobots: {robots}\n"
+    )
+    assert main(["build", str(fleet), "-o", str(out), "-q"]) == 0
+    assert planned(out, f"/robot1/{sender}", "publishes", f"/robot1/{topic}")
+    assert rows(out)[f"/robot1/{topic}"] == PLAIN
+    assert keyboard(out)[0] == f"/robot1/{keys}"
+    other = rows_[0].strip('/"').replace("<namespace>/", "") if rows_ else "cmd_vel"
+    assert planned(out, f"/robot2/{sender}", "publishes", f"/robot2/{other}")
+
+
 @pytest.mark.parametrize(
     ("inputs", "topic"),
     [

@@ -8,13 +8,12 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
-from multibot_rewrite.fleet.outputs.output_file import own_yaml
 from multibot_rewrite.fleet.robots.fitting.node_topics import CommandEnd, entry_of, relays_of
+from multibot_rewrite.fleet.robots.fitting.sensors import bridged_commands
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.knowledge.records import Endpoint
 from multibot_rewrite.planning.bridged_topics import DIRECTIONS, bridged_topics
 from multibot_rewrite.planning.start import Start
-from multibot_rewrite.producers.ends import bridge_ends
 from multibot_rewrite.related_files.names.node_topics import robot_topic
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES, TOPIC
 from multibot_rewrite.system.words import PLAIN, STAMPED
@@ -77,11 +76,19 @@ def teleop(plan: FleetPlan, robot: RewrittenRobot) -> Teleop:
 
 
 def _commands(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[CommandEnd]:
-    """Yield a robot's ends with velocities: those of nodes, then of bridges, which have no name."""
+    """Yield a robot's ends with velocities: those of nodes, then of the robot's own
+    bridges or else the generated one, which have no name."""
     for node, end, name in _ends(plan, robot):
         if end.kind == TOPIC and end.type in (PLAIN, STAMPED) and not end.when:
             yield CommandEnd(node, end.role, name, end.type, end.parameter, end.name)
-    for topic, type_ in _bridged(plan, robot):
+    own = bridged_commands(robot.member, robot.spec).items()
+    found = [(robot_topic(robot.topics, f"/{name}"), type_) for name, type_ in own]
+    if not found:
+        fleet, name = plan.fleet, robot.spec.namespace
+        inventory = {name: fleet.inventories[name]}
+        made, _ = bridged_topics(inventory, fleet.naming, fleet.models, fleet.table.runs)
+        found = [(it.ros, it.ros_type) for it in made if it.direction == TO_GZ]
+    for topic, type_ in found:
         if type_ in (PLAIN, STAMPED):
             yield CommandEnd("", SUBSCRIBES, topic, type_)
 
@@ -95,16 +102,3 @@ def _obeyed(ends: Sequence[CommandEnd]) -> list[str]:
     sent = {it.topic for it in ends if it.role == PUBLISHES}
     drives = [it.topic for it in usual if it.node not in relays]
     return drives or [it.topic for it in usual if it.topic not in sent]
-
-
-def _bridged(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, str]]:
-    """Yield the topics that go to the simulator, with their types: those of the robot's bridge
-    files, then those of the generated bridge."""
-    for path in robot.spec.related_files.get("bridge", ()):
-        for end in bridge_ends(own_yaml(robot.spec, path), robot.spec.bridge_namespace_of(path)):
-            if end.role == SUBSCRIBES:
-                yield robot_topic(robot.topics, end.name), end.type
-    fleet = plan.fleet
-    own = {robot.spec.namespace: fleet.inventories[robot.spec.namespace]}
-    made, _ = bridged_topics(own, fleet.naming, fleet.models, fleet.table.runs)
-    yield from ((it.ros, it.ros_type) for it in made if it.direction == TO_GZ)

@@ -13,6 +13,7 @@ from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.robot_nodes import (
     launched_nodes,
+    node_sources,
     nodes_of_sets,
     related_file_nodes,
 )
@@ -48,9 +49,7 @@ def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
 
 def _key(spec: RobotSpec) -> object:
     """Return a key; robots with equal keys have the same files."""
-    files = tuple(spec.related_files.items())
-    said = spec.use_sim_time, spec.bridge_namespace, spec.bridges_below
-    return spec.sources, spec.node_sets, spec.launch, spec.simulator, files, said
+    return node_sources(spec), tuple(spec.related_files.items()), spec.use_sim_time
 
 
 def split_per_robot(plan: FleetPlan) -> Iterator[FleetPlan]:

@@ -85,6 +85,7 @@ def node_sources(spec: RobotSpec) -> NodeSources:
     files = tuple(
         spec.related_files.get(it, ()) for it in ("params", "bridge", "rviz", "moveit", "lua")
     )
+    files += ((spec.bridge_namespace,), *spec.bridges_below)
     return spec.node_sets, files, spec.launch, spec.srdf, spec.simulator, spec.sources
 
 

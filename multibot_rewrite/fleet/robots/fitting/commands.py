@@ -10,7 +10,6 @@ from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import is_tool_word
 from multibot_rewrite.fleet.file.robot_spec import RobotSpec
-from multibot_rewrite.fleet.outputs.output_file import own_yaml
 from multibot_rewrite.fleet.robots.fitting.node_topics import (
     COMMANDS,
     CommandEnd,
@@ -22,26 +21,30 @@ from multibot_rewrite.fleet.robots.fitting.node_topics import (
     usual_values,
     with_rules,
 )
+from multibot_rewrite.fleet.robots.fitting.sensors import bridge_rows_of
 from multibot_rewrite.knowledge.conditions import chosen_type, parse_condition
 from multibot_rewrite.knowledge.records import TWIST_MUX, Endpoint, NodeFacts
 from multibot_rewrite.planning.records import Run
-from multibot_rewrite.producers.ends import bridge_ends
 from multibot_rewrite.producers.evidence.filling import lookup
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 from multibot_rewrite.system.words import PLAIN
 
 
-def driving(nodes: Sequence[NodeFacts], own: Collection[str]) -> Sequence[NodeFacts]:
-    """Return the nodes with unheard commands of ``own`` ones sent to the one controller that drives."""
-    drives = topics_of(controllers(nodes), SUBSCRIBES, COMMANDS)
-    if len(drives) != 1:
+def driving(
+    nodes: Sequence[NodeFacts], own: Collection[str], bridged: Iterable[str]
+) -> Sequence[NodeFacts]:
+    """Return the nodes with unheard commands of ``own`` ones sent to the one controller that drives;
+    without controllers to the first topic that is ``bridged``."""
+    led = topics_of(controllers(nodes), SUBSCRIBES, COMMANDS)
+    drives = led or [*bridged]
+    if len(led) > 1 or not drives:
         return nodes
     made = []
     for node in nodes:
         if node.name not in own or node.host:
             made.append(node)
             continue
-        heard = topics_of((it for it in nodes if it is not node), SUBSCRIBES)
+        heard = {*drives, *topics_of((it for it in nodes if it is not node), SUBSCRIBES)}
         lost = (it for it, topic in sent_commands(node).items() if topic not in heard)
         made.append(with_rules(node, dict.fromkeys(lost, drives[0])))
     return made
@@ -143,12 +146,7 @@ def _wanted(
     the nodes of its files have, and what all nodes have; else the plain one."""
     topics = {topic_of(it.node, end) for it in choices for end in _ends_of_either_type(it.node)}
     said = [it.type for it in choices if it.is_set]
-    rows = [
-        end.type
-        for path in spec.related_files.get("bridge", ())
-        for end in bridge_ends(own_yaml(spec, path))
-        if end.role == SUBSCRIBES
-    ]
+    rows = [it.end.type for it in bridge_rows_of(spec) if it.end.role == SUBSCRIBES]
     heard = [
         end.type
         for node in nodes

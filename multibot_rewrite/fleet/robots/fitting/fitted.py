@@ -17,7 +17,6 @@ from multibot_rewrite.description.rewriters.own_defaults import MODEL, default_o
 from multibot_rewrite.description.rewriters.text import text_at
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec
-from multibot_rewrite.fleet.outputs.output_file import own_yaml
 from multibot_rewrite.fleet.robots.fitting.commands import (
     by_way_of_relays,
     driving,
@@ -28,6 +27,8 @@ from multibot_rewrite.fleet.robots.fitting.commands import (
 )
 from multibot_rewrite.fleet.robots.fitting.node_topics import controllers, plugins, usual_values
 from multibot_rewrite.fleet.robots.fitting.sensors import (
+    bridge_rows_of,
+    bridged_commands,
     by_sensor,
     hearing_sensors,
     offered_topics,
@@ -39,7 +40,6 @@ from multibot_rewrite.knowledge.records import MOVE_GROUP, TWIST_MUX, NodeFacts
 from multibot_rewrite.planning.bridged_topics import TF_ELEMENT, TF_TYPE
 from multibot_rewrite.planning.records import Given, Run
 from multibot_rewrite.planning.transforms import edges_in, sent_by
-from multibot_rewrite.producers.ends import bridge_rows
 from multibot_rewrite.producers.evidence.filling import sent_with
 from multibot_rewrite.system.records import NOWHERE, SUBSCRIBES, Edge, edge_of
 from multibot_rewrite.system.words import last_word
@@ -76,17 +76,15 @@ def _sent_by_systems(member: Member) -> Iterator[tuple[str, Edge]]:
 
 def brings_transforms(spec: RobotSpec) -> bool:
     """Return whether a bridge file of the robot or of its launch files has a row with transforms."""
-    paths = spec.related_files.get("bridge", ())
-    return any(it.end.type == TF_TYPE for path in paths for it in bridge_rows(own_yaml(spec, path)))
+    return any(it.end.type == TF_TYPE for it in bridge_rows_of(spec))
 
 
 def _led_elsewhere(spec: RobotSpec) -> set[str]:
     """Return last words of gz topics with transforms that bridge files put on no tf topic."""
     led: dict[str, set[str]] = defaultdict(set)
-    for path in spec.related_files.get("bridge", ()):
-        for it in bridge_rows(own_yaml(spec, path)):
-            if it.end.type == TF_TYPE and it.end.role != SUBSCRIBES:
-                led[last_word(it.inside)].add(last_word(it.end.name))
+    for it in bridge_rows_of(spec):
+        if it.end.type == TF_TYPE and it.end.role != SUBSCRIBES:
+            led[last_word(it.inside)].add(last_word(it.end.name))
     return {inside for inside, names in led.items() if _TF not in names}
 
 
@@ -209,16 +207,19 @@ RVIZ = "rviz2"
 
 class Described(NamedTuple):
     """What a description has for the nodes of its robot: the transforms that its plugins send, the
-    topics of its sensors by type, and its root, where a usual link of the body is below it."""
+    topics of its sensors by type, its root, where a usual link of the body is below it, and the topics
+    of commands that bridges bring to it."""
 
     sent: tuple[Edge, ...]
     offered: Mapping[str, Sequence[str]]
     root: str
+    bridged: Collection[str]
 
 
 def described(member: Member, spec: RobotSpec) -> Described:
     """Return what the description has, under the names that it has there."""
-    return Described(sent_by_plugins(member, spec), offered_topics(member, spec), root_link(member))
+    sent, offered = sent_by_plugins(member, spec), offered_topics(member, spec)
+    return Described(sent, offered, root_link(member), bridged_commands(member, spec))
 
 
 def free_nodes(own: Iterable[str], given: Iterable[Run]) -> frozenset[str]:
@@ -250,8 +251,9 @@ def fitted(
     settled = [to_the_drive(it) if it.name in muxes else it for it in settled]
     usual = dict(one for it in nodes if it.name in muxes for one in it.usual)
     if muxes:
-        settled = [*through_a_mux(driving(settled, muxes), own, usual, known[TWIST_MUX])]
-    routed = by_way_of_relays(driving(settled, own), own)
+        led = driving(settled, muxes, has.bridged)
+        settled = [*through_a_mux(led, own, usual, known[TWIST_MUX])]
+    routed = by_way_of_relays(driving(settled, own, has.bridged), own)
     typed = of_one_type(routed, own, free, given, known, spec)
     return tuple(without_second_senders(typed, free, has.sent))
 

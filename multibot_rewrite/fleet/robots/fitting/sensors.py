@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Topics of sensors: nodes hear those that the robot has."""
+"""Topics of sensors: nodes hear those that the robot has. Topics of commands to a simulator."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.naming import make_naming
 from multibot_rewrite.description.steps.collect import collect
 from multibot_rewrite.fleet.file.robot_spec import REAL, RobotSpec
+from multibot_rewrite.fleet.outputs.output_file import own_yaml
 from multibot_rewrite.fleet.robots.fitting.node_topics import (
+    COMMANDS,
     controllers,
     plugins,
     topic_of,
@@ -20,6 +22,7 @@ from multibot_rewrite.fleet.robots.member import Member
 from multibot_rewrite.knowledge.conditions import HEARD, holds, parse_condition, verdict
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts
 from multibot_rewrite.planning.bridged_topics import DIRECTIONS, bridged_topics
+from multibot_rewrite.producers.ends import BridgeRow, bridge_rows
 from multibot_rewrite.producers.evidence.filling import lookup
 from multibot_rewrite.system.records import PUBLISHES, SUBSCRIBES
 from multibot_rewrite.system.words import ODOMETRY
@@ -56,6 +59,32 @@ def offered_topics(member: Member, spec: RobotSpec) -> Mapping[str, Sequence[str
     images, clouds = found.get(IMAGE, ()), found.get(CLOUD, ())
     depths = [it for it in images if _DEPTH in it or f"{it}/points" in clouds]
     return {**found, IMAGE: [it for it in images if it not in depths], DEPTHS: depths}
+
+
+def bridge_rows_of(spec: RobotSpec) -> Iterator[BridgeRow]:
+    """Yield the rows of the robot's own bridge files."""
+    for path in spec.related_files.get("bridge", ()):
+        yield from bridge_rows(own_yaml(spec, path), spec.bridge_namespace_of(path))
+
+
+def bridged_commands(member: Member, spec: RobotSpec) -> dict[str, str]:
+    """Return the types of commands that go to the simulator, by the topics of the robot's own bridge
+    files; then those that the description names besides, for which the build has rows."""
+    every = [] if spec.simulator == REAL else bridge_rows_of(spec)
+    rows = [it for it in every if it.end.role == SUBSCRIBES and it.end.type in COMMANDS]
+    inside = {_alone(it.inside) for it in rows}
+    made, _ = bridged_topics({"": collect(member.source, member.tree)} if rows else {}, _NAMING)
+    named = (it for it in made if it.direction == DIRECTIONS["out"] and not it.is_free)
+    besides = (it for it in named if it.ros_type in COMMANDS and _alone(it.gz) not in inside)
+    ends = [
+        *((it.end.name, it.end.type) for it in rows),
+        *((it.ros, it.ros_type) for it in besides),
+    ]
+    return {_alone(name): type_ for name, type_ in ends}
+
+
+def _alone(name: str) -> str:
+    return name.rpartition("<namespace>/")[2].strip("/")
 
 
 def wanted(node: NodeFacts, end: Endpoint) -> str:
