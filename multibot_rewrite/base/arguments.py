@@ -153,8 +153,8 @@ def _source(what: str, value: object) -> object:
         value = name if isinstance(name, str) and os.path.isfile(name) else value.read()
     elif hasattr(root, "iterfind"):  # of lxml and of Python, each with a function of this name
         value = sys.modules[type(root).__module__].tostring(root)
-    # Empty text is no path.
-    return _SOURCE(what, b"" if value == "" else value)
+    # Empty text is no path; empty bytes are an empty file.
+    return _SOURCE(what, None if value == "" else value)
 
 
 _SOURCE = _path_or(bytes, "write a path, XML text or bytes")

@@ -15,6 +15,7 @@ from multibot_rewrite import UsageError
 from multibot_rewrite.base.rosnames import (
     NameFault,
     RemapRule,
+    bind,
     check_full_name,
     check_namespace,
     check_node_name,
@@ -22,7 +23,7 @@ from multibot_rewrite.base.rosnames import (
     expand,
     parse_remap,
     remapped_node,
-    resolve_name,
+    resolve_bound,
 )
 
 pytestmark = [
@@ -221,6 +222,6 @@ def placed(case: dict[str, Any]) -> list[str | None] | None:
 
 def led_to(name: str, kind: str, where: tuple[str, str, list[RemapRule]]) -> str | None:
     try:
-        return resolve_name(name, kind, *where)
+        return resolve_bound(name, kind, bind(*where))
     except UsageError:
         return None

@@ -84,7 +84,7 @@ def _message_and_hint(
         return (
             f"the included {part.name!r} is not read: its topics and frames stay as they are",
             "put its folder next to the model's, or name the one above it in GZ_SIM_RESOURCE_PATH; "
-            "what is older than SDF 1.7, in a world or a <gazebo>, write it here",
+            "copy a model of SDF 1.6 or older, of a world or of a <gazebo> into this file",
         )
     who = f"{part.kind} {part.name!r}"
     if part.section is not None:

@@ -69,7 +69,7 @@ def _unstable(
             claim.start,
             "MB424",
             ERROR,
-            f"the number in {claim.value!r} would depend on how the robot's name sorts",
+            f"the number in {claim.value!r} would depend on the robot's name",
             "use --affix prefix, or keep the fixed joints apart with preserveFixedJoint",
         )
         for (claim, text), (_, other) in zip(collisions, last, strict=False)

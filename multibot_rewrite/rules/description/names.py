@@ -95,7 +95,7 @@ def world_link(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB308", "link-and-joint-alike", WARNING)
 def link_and_joint_alike(subject: Subject) -> Iterator[Problem]:
-    """Report it only if both remain: Gazebo merges the links of a fixed joint into one."""
+    """Report a link and a joint of one name, unless Gazebo merges the link away."""
     robot = subject.robot
     for joint in robot.joints:
         if joint.name not in robot.link or joint.type == "fixed" or not joint.name.strip():

@@ -132,7 +132,7 @@ def _missing(file: NamedFile, site: Site) -> str:
 
 @rule("MB875", "file-of-another-robot", ERROR, formats=(MOVEIT,), options={"build": True})
 def of_another_robot(file: NamedFile) -> Iterator[Finding]:
-    """Report one finding for all names, at the first."""
+    """Report a file that names another robot's joints or links, once, at the first."""
     missing, count, first = _foreign(file)
     if missing and first:
         few = ", ".join(text for _, text in missing[:2])
@@ -273,7 +273,7 @@ def included_file(file: NamedFile) -> Iterator[Finding]:
 
 @robots_rule("MB888", "lua-frame-not-plain", WARNING, LUA)
 def computed_frame(file: NamedFile) -> Iterator[Finding]:
-    """Report each such frame, if robots have frames of their own."""
+    """Report each computed frame of a Lua file, if robots have frames of their own."""
     for site in file.computed if frames_differ(file.context) else ():
         message = f"{site.key} is not a plain string, so it stays unchanged"
         yield remark(site, message, "each robot needs its own frame here; write the name in quotes")

@@ -14,7 +14,7 @@ from multibot_rewrite.rules.declaration import remark_at, robots_rule
 
 @rule("MB872", "rviz-ros1-property", WARNING, formats=(RVIZ,))
 def ros1_property(file: NamedFile) -> Iterator[Finding]:
-    """Report each such property of each display."""
+    """Report each property of a display that is of ROS 1."""
     for one in file.shown:
         for key, _ in pairs(one.node):
             if key.value in rviz_data()["legacy"]:
@@ -32,14 +32,14 @@ def volatile_description(file: NamedFile) -> Iterator[Finding]:
     ]
     if found:
         names = ", ".join(repr(one.name) for one in found)
-        message = f"{names} misses a description published before rviz2 starts: it is Volatile"
+        message = f"display {names} is Volatile: it misses a description sent before rviz2 starts"
         hint = "set Durability Policy: Transient Local below Description Topic"
         yield remark_at(found[0].node, message, hint)
 
 
 @robots_rule("MB891", "rviz-unknown-display", WARNING, RVIZ)
 def unknown_display(file: NamedFile) -> Iterator[Finding]:
-    """Report each such display."""
+    """Report each display of an unknown class."""
     for one in file.shown:
         if not one.known:
             message = f"display class {one.cls!r} is not known; only its Topic is renamed"

@@ -171,7 +171,7 @@ def _rows(launched: Launched) -> Iterator[_Row]:
 
 @launch_rule("MG705", "bridge-to-another-robot")
 def to_another_robot(launched: Launched) -> Iterator[Finding]:
-    """Report it by the names of the models, if their topics contain them."""
+    """Report bridges to another robot's topics, by the models' names in the topics."""
     models = launched.simulated
     called = {it.name: {it.name, *it.words.get("-topic", "").split("/")} - {""} for it in models}
     sent = {(f"/{one.gz.lstrip('/')}", it.name) for it in models for one in it.topics}

@@ -158,7 +158,7 @@ def no_description(launched: Launched) -> Iterator[Finding]:
 
 @launch_rule("MG728", "controller-without-type")
 def no_type(launched: Launched) -> Iterator[Finding]:
-    """Report it if all parameter files are known; a plugin's manager reads its file elsewhere."""
+    """Report controllers without a type, if all parameter files are known."""
     if any(it.parameters for it in launched.graph.notes):
         return
     own = (it for it in launched.nodes if it.process != SIMULATED)
@@ -196,7 +196,7 @@ def moves_nothing(facts: NodeFacts, given: Run) -> bool:
 
 @launch_rule("MG726", "not-activated")
 def not_listed(launched: Launched) -> Iterator[Finding]:
-    """Report it by full names: a manager is for the nodes of its namespace."""
+    """Report lifecycle nodes that no manager lists under their full name."""
     managers = [it for it in launched.nodes if _is_known_as(it, LIFECYCLE_MANAGER)]
     listed = {name: it for it in managers for name in _listed(it)}
     known = all(isinstance(it.value("node_names"), list) for it in managers)

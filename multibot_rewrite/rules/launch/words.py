@@ -47,7 +47,7 @@ _TURN = 2 * pi
 
 @launch_rule("MG711", "static-transform-implausible")
 def implausible(launched: Launched) -> Iterator[Finding]:
-    """Report each fault of each publisher."""
+    """Report each implausible transform of each static publisher."""
     for it in launched.nodes:
         if it.fact.known != STATIC:
             continue

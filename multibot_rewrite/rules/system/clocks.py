@@ -76,7 +76,7 @@ def _on_simulated_time(seen: Index) -> dict[str, list[str]]:
 
 @system_rule("MG502", "two-clocks", ERROR)
 def two_clocks(seen: Index) -> Iterator[Finding]:
-    """Report it also for two nodes of one name: a bridge that was started for each robot."""
+    """Report several clocks on a topic, also of two nodes with one name."""
     nodes = _clocks(seen)
     times = {node: _times(seen, node) for node in nodes}
     if sum(max(1, count) for count in times.values()) > 1:

@@ -43,7 +43,7 @@ _OFFERED = ("goal_pose", "initialpose", "clicked_point")
 
 @system_rule("MG310", "command-for-several-robots", ERROR, drawn="leak", meant=(SUBSCRIBES,))
 def command_for_several_robots(seen: Index) -> Iterator[Finding]:
-    """Report it whether or not anybody sends at the moment."""
+    """Report a command topic of several robots, whether or not anybody sends on it."""
     orders = seen.orders
     for (kind, name), ends in seen.by_name.items():
         joystick = ends.type == words.JOYSTICK

@@ -40,7 +40,7 @@ class _Message(NamedTuple):
 
 @system_rule("MG411", "frame-id-of-another-robot", ERROR)
 def frame_id_of_another_robot(seen: Index) -> Iterator[Finding]:
-    """Report it by the names of frames: robots with a tf topic each may have the same ones."""
+    """Report messages with another robot's frame, by the name of the frame."""
     frames = _by_topic(seen)
     for (frame, robot, senders), messages in _by_sender(seen).items():
         # A sender of the frame's robot has the wrong topic, not the wrong frame.
@@ -108,7 +108,7 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG419", "joints-of-another-robot", ERROR)
 def joints_of_another_robot(seen: Index) -> Iterator[Finding]:
-    """Report it by robots' names in those of joints; a topic for all robots may have any."""
+    """Report joint states with another robot's joints, by the robots' names in them."""
     whose = cache(partial(_robot_of_joint, seen))
     for it in (one for one in seen.system.heard if one.joints):
         _, senders = sent_on(seen, it.topic)

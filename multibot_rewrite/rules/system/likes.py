@@ -205,7 +205,7 @@ ENOUGH = 10
 
 @system_rule("MG326", "less-than-another-robot", WARNING)
 def less_than_another_robot(seen: Index) -> Iterator[Finding]:
-    """Report it compared with the robot that has the most messages on the topic."""
+    """Report robots with fewer messages than the one with the most on such a topic."""
     yield from _silent_or_slow(seen)
     yield from _slow_transforms(seen)
     # Name without the robot's -> robot -> name, of the topics whose messages were counted.

@@ -35,7 +35,7 @@ class _Body(NamedTuple):
 
 @system_rule("MG415", "map-not-joined", ERROR, absence=True)
 def map_not_joined(seen: Index) -> Iterator[Finding]:
-    """Report it unless the tree is in pieces below the odometry, which is another finding."""
+    """Report a map that no transform joins to the robot; pieces below the odometry are MG406."""
     for tree in seen.trees:
         silent = (it for it in tree.listeners if switch(TF_SWITCHES, it))
         localizers = [it for it in (*tree.senders, *silent) if _starts_at(seen, it)]
@@ -128,7 +128,7 @@ _TOLERANCE = 10e-3
 
 @system_rule("MG416", "transform-refused", ERROR)
 def transform_refused(seen: Index) -> Iterator[Finding]:
-    """Report it by the checks of BufferCore::setTransformImpl, once per topic and reason."""
+    """Report transforms that BufferCore::setTransformImpl refuses, once per topic and reason."""
     edges = [it for tree in seen.trees for it in tree.edges]
     found = lists_by_key(((it.topic, why), it) for it in edges if (why := _why_dropped(it)))
     for (topic, why), edges in found.items():
@@ -176,7 +176,7 @@ _FAR = 20.0
 
 @system_rule("MG418", "part-far-away", WARNING)
 def part_far_away(seen: Index) -> Iterator[Finding]:
-    """Report it by the length alone: what is below the map is as far away as a building is long."""
+    """Report parts that are implausibly far from their parent; below the map distance is no fault."""
     for tree in seen.trees:
         above = {it.child: it.parent for it in tree.edges}
         for it in tree.edges:

@@ -30,7 +30,7 @@ STAMPED = "Stamped"
 
 @system_rule("MG306", "types-differ", ERROR, all_ends=True)
 def types_differ(seen: Index) -> Iterator[Finding]:
-    """Report it unless one of a node's ends connects with the type of the other side, or the plan."""
+    """Report ends of one topic with other types, unless one of the node's ends connects."""
     by_plan = planned_types(seen)
     for ends in seen.by_name.values():
         every = (*ends.publishers, *ends.subscribers, *ends.servers, *ends.clients)
@@ -230,7 +230,7 @@ def _never_meets(seen: Index, first: _Refused, *more: _Refused) -> Finding:
 
 @system_rule("MG309", "not-latched", ERROR)
 def not_latched(seen: Index) -> Iterator[Finding]:
-    """Report it unless a subscriber asks for it, or a plan has another QoS: those are findings."""
+    """Report latched topics with a volatile sender or reader, or with another QoS than planned."""
     topics = seen.expected.system.topics if seen.expected else ()
     planned = {it.name: it.qos for it in topics if it.qos}
     for name, qos in planned.items():

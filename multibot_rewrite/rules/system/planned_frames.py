@@ -47,7 +47,7 @@ Strays = Mapping[str, Sequence[Stray]]
 
 @planned_rule("MG207", "frame-without-robot-name", ERROR, nodes=False, absence=True)
 def frame_without_robot_name(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Report it for one robot only; otherwise it is a frame of several robots."""
+    """Report a planned frame that is sent without the robot's name, for one robot only."""
     for tree, robot, found in _of_each(plan, seen):
         if bare := [it for it in found if it.bare]:
             bare.sort(key=lambda it: robot.frames.index(it.meant))

@@ -98,7 +98,7 @@ def _not_started(plan: Index, node: str) -> Cause:
 
 @planned_rule("MG108", "unplanned-node", WARNING, drawn="unexpected")
 def unplanned_node(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Report it only if the plan has nodes of its robot."""
+    """Report nodes that are not in the plan, if the plan has nodes of their robot."""
     if not unplanned_nodes(plan, seen):
         return
     meant = set(matches(plan, seen).values())
@@ -127,7 +127,7 @@ def unplanned_node(plan: Index, seen: Index) -> Iterator[Finding]:
 
 @planned_rule("MG109", "missing-robot", ERROR, absence=True, drawn="missing")
 def missing_robot(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Report one finding instead of one for each node."""
+    """Report a robot none of whose planned nodes runs, in one finding."""
     for robot in plan.system.robots:
         if _is_missing(plan, seen, robot):
             count = len(plan.own[robot.name])
@@ -153,7 +153,7 @@ def _machines(seen: Index) -> Machines:
 
 @planned_rule("MG125", "several-alternatives-run", ERROR)
 def several_alternatives_run(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Report one finding a group."""
+    """Report alternatives that run at the same time, one finding a group."""
     for group, robot in _groups(plan):
         running = tuple(node for node in group if node in seen.nodes)
         if len(running) > 1:
@@ -166,7 +166,7 @@ def several_alternatives_run(plan: Index, seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG112", "enclave-of-another-robot", ERROR, drawn="cross-talk")
 def enclave_of_another_robot(seen: Index) -> Iterator[Finding]:
-    """Report it by the robots' names in the path of the enclave."""
+    """Report nodes in another robot's enclave, by the robots' names in its path."""
     robots = {*seen.robots}
     for name, enclave in dict.fromkeys((it.name, it.enclave) for it in seen.system.nodes):
         robot = seen.robot(name) if enclave else ""
@@ -251,7 +251,7 @@ def _too_many_recorded(plan: Index, seen: Index) -> Iterator[Finding]:
 
 @planned_rule("MG126", "bridged-topic-missing", ERROR, absence=True, drawn="missing")
 def bridged_topic_missing(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Report one finding for a robot; one for all if nothing is bridged."""
+    """Report topics that a bridge should bring, one finding for a robot, or for all."""
     rows = [(topic, role) for topic in plan.system.topics for role in topic.bridge]
     missing = [(topic, role) for topic, role in rows if not _is_carried(seen, topic, role)]
     if missing and len(missing) == len(rows):

@@ -21,7 +21,7 @@ Difference = tuple[Parameter, str]
 
 @planned_rule("MG132", "parameter-not-planned", ERROR)
 def parameter_not_planned(plan: Index, seen: Index) -> Iterator[Finding]:
-    """Report one finding a node; a parameter that the node does not have is unknown."""
+    """Report parameters with another value than planned, one finding a node."""
     told = (it for it in seen.system.parameters if (it.name, it.value) != (SIM_TIME, UNTOLD))
     values = {(it.node, it.name): it.value for it in told}
     for node, planned in lists_by_key((it.node, it) for it in plan.system.parameters).items():

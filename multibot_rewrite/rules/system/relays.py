@@ -106,7 +106,7 @@ def data_in_a_circle(seen: Index) -> Iterator[Finding]:
         for ends in both if len(both) == 1 else ():
             yield data_in_a_circle.finding(
                 f"reads {ends.name}, on which it sends",
-                "let it read, or send, on another topic",
+                "remap its input or its output to another topic",
                 robot=seen.robot(node), node=node, names=(ends.name,),
             )  # fmt: skip
         if len(read) == len(sent) == 1 and not both:

@@ -304,7 +304,7 @@ def claims_any(known: Iterable[Interface]) -> bool:
 
 
 def _claimed_twice(seen: Index) -> Iterator[Finding]:
-    """Report it of one controller; two controllers are reported if both are active."""
+    """Report command interfaces that one controller claims by two parameters."""
     for other, it in claimed_twice(seen.system.interfaces):
         yield interface_claimed_twice.finding(
             f"claims {it.name} by two parameters", f"name another joint{see((other, it))}",

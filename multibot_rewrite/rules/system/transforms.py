@@ -83,12 +83,12 @@ def _who_sends(
         return f"{and_then(robots)} need frames of their own, or tf topics of their own; {sent}"
     if len(robots) > 1:
         return f"{sent}; a node of another robot that has the names of {owner}?"
-    return sent or "two nodes send it: stop one"
+    return sent or "two nodes send parts of it: stop one"
 
 
 @system_rule("MG402", "robots-frames-collide", ERROR)
 def robots_frames_collide(seen: Index) -> Iterator[Finding]:
-    """Report it also if one robot has no name in its frames and all others have."""
+    """Report robots with the same frames on one topic, also if one robot's frames have no name."""
     for tree in seen.trees:
         who = collide(seen, tree)
         if who:

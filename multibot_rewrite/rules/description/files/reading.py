@@ -174,7 +174,7 @@ def unused_namespace(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB146", "loose-xml", WARNING, formats=(URDF, SRDF, XACRO))
 def loose_xml(subject: Subject) -> Iterator[Problem]:
-    """Report it as the rewrite does; xacro itself cannot read what is wrong here."""
+    """Report what XML forbids, as the rewrite does; xacro itself cannot read it."""
     found = () if subject.origins else loosely_written(subject.document)
     level = ERROR if subject.format == XACRO else ""
     yield from (it._replace(level=level) for it in found)

@@ -89,7 +89,7 @@ def unreadable_value(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB124", "unknown-word", ERROR, formats=(URDF, SRDF, PARAMS, MOVEIT))
 def unknown_word(subject: Subject) -> Iterator[Problem]:
-    """Report them; a sensor type of other releases is a warning unless this one simulates it."""
+    """Report values that are none of the allowed ones; sensor types of other releases are warnings."""
     definitions = subject.tree.definitions
     for it in faults("word", subject):
         type_ = it.element.get("type", "") if it.element.tag == "sensor" else ""

@@ -24,7 +24,7 @@ _REFUSED = ("word", "missing", "value", "range", "rotation-twice")
 
 @rule("MB126", "rotation-twice", ERROR)
 def rotation_twice(subject: Subject) -> Iterator[Problem]:
-    """Report it with a fix if both are the same."""
+    """Report a rotation that is written twice, with a fix if both are the same."""
     for it in faults("rotation-twice", subject):
         yield it._replace(edits=convert.one_rotation(_text(subject), it.element, "rpy"))
 
@@ -43,7 +43,7 @@ def no_rotation(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB128", "needs-later-version", WARNING)
 def needs_later_version(subject: Subject) -> Iterator[Problem]:
-    """Report it with a fix that keeps the pose in the file."""
+    """Report what needs a later URDF version, with a fix that keeps the pose in the file."""
     hint = 'write version="1.1" in <robot>' if _reads(subject) >= QUATERNIONS else ""
     for it in faults("needs-later-version", subject):
         yield it._replace(edits=_read_now(subject, it.element), hint=hint)
@@ -77,7 +77,7 @@ def ignored_limit(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB133", "version-of-release", ERROR, options={"distro": "jazzy"})
 def version_of_release(subject: Subject) -> Iterator[Problem]:
-    """Report it with a fix if the file means the same in URDF 1.0."""
+    """Report a URDF version that the release lacks, with a fix if 1.0 means the same."""
     root = subject.document.root
     declared, reads = versions.read_version(root.get("version", "")), _reads(subject)
     if root.tag == "robot" and declared in versions.KNOWN and declared > reads:
@@ -111,7 +111,7 @@ def capsule_in_rviz(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB136", "quaternion-in-mujoco", WARNING, options={"targets": ("mjcf",)})
 def quaternion_in_mujoco(subject: Subject) -> Iterator[Problem]:
-    """Report it with a fix; other rules report what urdfdom does not read or refuses."""
+    """Report quaternions that MuJoCo ignores, with a fix; other rules report what urdfdom refuses."""
     root = subject.document.root
     if "mjcf" not in subject.settings.targets or versions.version_of(root) < QUATERNIONS:
         return

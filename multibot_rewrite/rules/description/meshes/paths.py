@@ -164,7 +164,7 @@ def _ending(it: Used) -> str:
 
 @rule("MB708", "mesh-format-partly", NOTE)
 def mesh_format_partly(subject: Subject) -> Iterator[Problem]:
-    """Report each such format once."""
+    """Report each mesh format that only some programs read, once."""
     seen = set()
     for it in _meshes(subject):
         ending = _ending(it)

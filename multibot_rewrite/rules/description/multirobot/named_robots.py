@@ -108,7 +108,7 @@ def collision_number_unstable(subject: Subject) -> Iterator[Problem]:
     )
     for (claim, text), (_, other) in zip(first, last, strict=False):
         if text != other.replace(LAST, ROBOT_SLOT):
-            message = f"the number in {claim.value!r} would depend on how the robot's name sorts"
+            message = f"the number in {claim.value!r} would depend on the robot's name"
             yield Problem(claim.element, message, claim.attribute, "use affix prefix")
 
 

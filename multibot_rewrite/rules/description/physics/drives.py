@@ -95,7 +95,7 @@ def wheels_turn_wrong(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB624", "wheel-cannot-turn", ERROR)
 def wheel_cannot_turn(subject: Subject) -> Iterator[Problem]:
-    """Report each such joint that a drive names."""
+    """Report each joint that a drive names as a wheel and that cannot turn."""
     for element, joint in wheel_joints(subject):
         if fault := _fault_of(joint):
             yield Problem(element, f"wheel joint {joint.name!r} {fault}", "", "make it continuous")

@@ -11,6 +11,7 @@ from functools import partial, wraps
 from lxml.etree import _Element
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, SRDF, WARNING, rule
+from multibot_rewrite.base.wording import plural
 from multibot_rewrite.description.checks.links_and_joints import Joint, Robot
 from multibot_rewrite.description.checks.planning_groups import (
     FREE_FLYER,
@@ -137,7 +138,7 @@ def _link(problem: Problem) -> str:
 
 @srdf_rule("MB809", "duplicate-pair", NOTE)
 def duplicate_pair(subject: Subject) -> Iterator[Problem]:
-    """Report one finding per file; the order of the two does not matter."""
+    """Report repeated pairs of disabled collisions, once per file; order does not matter."""
     first: dict[frozenset[str], _Element] = {}
     found = []
     for it in subject.document.root.iterchildren("disable_collisions"):
@@ -147,7 +148,7 @@ def duplicate_pair(subject: Subject) -> Iterator[Problem]:
     if found:
         names = [f"{text_of(it, 'link1')}-{text_of(it, 'link2')}" for it in found[:SHOWN]]
         more = ", ..." if len(found) > SHOWN else ""
-        message = f"{len(found)} pairs are already disabled: {', '.join(names)}{more}"
+        message = f"{plural(len(found), 'pair')} disabled twice: {', '.join(names)}{more}"
         yield Problem(found[0], message, None, "delete the line")
 
 
@@ -178,7 +179,7 @@ def pair_without_shape(subject: Subject) -> Iterator[Problem]:
 
 @srdf_rule("MB820", "adjacent-links", NOTE)
 def adjacent_links(subject: Subject) -> Iterator[Problem]:
-    """Report one finding per file, if it disables any pair."""
+    """Report adjacent links whose collisions are not disabled, once per file."""
     root, robot = subject.document.root, subject.beside
     pairs = list(root.iterchildren("disable_collisions"))
     if robot is None or not pairs:

@@ -81,7 +81,7 @@ def several_parents(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB505", "unreachable-link", ERROR)
 def unreachable_link(subject: Subject) -> Iterator[Problem]:
-    """Report one finding, at the first link; links in the loop itself are MB503."""
+    """Report links that the root does not reach, once; links in the loop itself are MB503."""
     robot = subject.robot
     if is_tree(robot):
         return
