@@ -76,8 +76,7 @@ def teleop(plan: FleetPlan, robot: RewrittenRobot) -> Teleop:
 
 
 def _commands(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[CommandEnd]:
-    """Yield a robot's ends with velocities: those of nodes, then of the robot's own
-    bridges or else the generated one, which have no name."""
+    """Yield a robot's ends with velocities: those of nodes, then of bridges, which have no name."""
     for node, end, name in _ends(plan, robot):
         if end.kind == TOPIC and end.type in (PLAIN, STAMPED) and not end.when:
             yield CommandEnd(node, end.role, name, end.type, end.parameter, end.name)

@@ -70,17 +70,14 @@ def bridge_rows_of(spec: RobotSpec) -> Iterator[BridgeRow]:
 def bridged_commands(member: Member, spec: RobotSpec) -> dict[str, str]:
     """Return the types of commands that go to the simulator, by the topics of the robot's own bridge
     files; then those that the description names besides, for which the build has rows."""
-    every = [] if spec.simulator == REAL else bridge_rows_of(spec)
-    rows = [it for it in every if it.end.role == SUBSCRIBES and it.end.type in COMMANDS]
-    inside = {_alone(it.inside) for it in rows}
-    made, _ = bridged_topics({"": collect(member.source, member.tree)} if rows else {}, _NAMING)
+    rows = [it for it in bridge_rows_of(spec) if it.end.role == SUBSCRIBES]
+    if spec.simulator == REAL or not rows:
+        return {}
+    own = {_alone(it.inside): (it.end.name, it.end.type) for it in rows}
+    made, _ = bridged_topics({"": collect(member.source, member.tree)}, _NAMING)
     named = (it for it in made if it.direction == DIRECTIONS["out"] and not it.is_free)
-    besides = (it for it in named if it.ros_type in COMMANDS and _alone(it.gz) not in inside)
-    ends = [
-        *((it.end.name, it.end.type) for it in rows),
-        *((it.ros, it.ros_type) for it in besides),
-    ]
-    return {_alone(name): type_ for name, type_ in ends}
+    every = own | {_alone(it.gz): (it.ros, it.ros_type) for it in named} | own
+    return {_alone(name): type_ for name, type_ in every.values() if type_ in COMMANDS}
 
 
 def _alone(name: str) -> str:
