@@ -22,12 +22,17 @@ def wrong_in_descriptions(
     simulated: Iterable[Member],
     said: Iterable[Member] = (),
     launched: Iterable[Member] = (),
+    unplaced: Iterable[Member] = (),
 ) -> Iterator[Finding]:
     """Yield findings about what stops the robots of these descriptions, each once. The ``simulated``
     ones run in Gazebo; unless they are in ``said`` (the fleet file says so), the hint says how to
-    deny it. In descriptions that the user's launch files start (``launched``) errors are warnings."""
-    its = (simulated, said, launched)
-    in_gazebo, sure, own = ({it.source.file for it in one} for one in its)
+    deny it. In descriptions that the user's launch files start (``launched``) errors are warnings,
+    except those of a simulator into which the fleet file alone puts the robot (``unplaced``)."""
+    # What only looks at a robot's files needs none of the lint.
+    from multibot_rewrite.lint.launched import is_of_simulator
+
+    its = (simulated, said, launched, unplaced)
+    in_gazebo, sure, own, added = ({it.source.file for it in one} for one in its)
     documents = {
         source.file: (source, made.document, it)
         for it in members
@@ -39,10 +44,14 @@ def wrong_in_descriptions(
             definitions=definitions, distro=distro, ros=ROS_2, simulated=file in in_gazebo
         )
         told = {(one.code, one.message) for one in it.shared}
-        for one in _linted(document, made, settings, file in in_gazebo - sure):
-            if (one.code, one.message) not in told:
-                is_own = file in own and one.level == ERROR
-                yield as_known(one, "description has it") if is_own else one
+        for one in _linted(document, made, settings):
+            if (one.code, one.message) in told:
+                continue
+            of_simulator = one.level == ERROR and is_of_simulator(one, document)
+            hints = (one.hint, _REAL if of_simulator and file in in_gazebo - sure else "")
+            found = one._replace(hint="; ".join(filter(None, hints)))
+            is_own = one.level == ERROR and file in (own - (sure & added) if of_simulator else own)
+            yield as_known(found, "description has it") if is_own else found
 
 
 def as_known(it: Finding, what: str) -> Finding:
@@ -52,14 +61,11 @@ def as_known(it: Finding, what: str) -> Finding:
     return it._replace(level=WARNING, hint=hint)
 
 
-def _linted(
-    document: Document, made: Document, settings: Settings, may_be_real: bool
-) -> Iterator[Finding]:
-    """Yield what is wrong with a document, except what is right in the one ``made`` of it."""
-    # What only looks at a robot's files needs none of the lint.
+def _linted(document: Document, made: Document, settings: Settings) -> Iterator[Finding]:
+    """Return what is wrong with a document, except what is right in the one ``made`` of it."""
     from multibot_rewrite.lint.check import lint_subject, unsuppressed
     from multibot_rewrite.lint.files.subjects import make_subject
-    from multibot_rewrite.lint.launched import in_use, is_of_simulator, may_stop
+    from multibot_rewrite.lint.launched import in_use, may_stop
     from multibot_rewrite.rules.description.names import reserved_name
 
     found = lint_subject(make_subject(document, settings), may_stop)
@@ -67,6 +73,4 @@ def _linted(
     if any(it.code == reserved_name.code for it in asked):
         left = lint_subject(make_subject(made, settings), lambda it: it is reserved_name)
         asked = [it for it in asked if left or it.code != reserved_name.code]
-    for it in in_use(asked, document, settings.simulated):
-        told = may_be_real and it.level == ERROR and is_of_simulator(it, document)
-        yield it._replace(hint=f"{it.hint}; {_REAL}" if it.hint else _REAL) if told else it
+    return in_use(asked, document, settings.simulated)

@@ -58,7 +58,8 @@ def plan_fleet(
         simulated = [it.member for it in robots if is_simulated(it)]
         said = [it.member for it in robots if is_said(it)]
         own = [it.member for it in robots if it.spec.launch]
-        wrong = wrong_in_descriptions(members, file.definitions, simulated, said, own)
+        unplaced = [it.member for it in robots if not plan.evidence_of(it).placing]
+        wrong = wrong_in_descriptions(members, file.definitions, simulated, said, own, unplaced)
         specs = {node_sources(it.spec): it.spec for it in robots}
         idle = [
             one

@@ -197,6 +197,36 @@ def test_a_name_that_the_rewrite_changes_is_no_error(tmp_path: Path) -> None:
         assert found == expected
 
 
+STATES = """\
+<launch><node pkg="robot_state_publisher" exec="robot_state_publisher">
+  <param name="robot_description" value="$(command 'cat $(dirname)/robot.urdf')"/></node>{}</launch>
+"""
+SPAWNS = '<node pkg="ros_gz_sim" exec="create" args="-name r -topic robot_description"/>'
+
+
+@pytest.mark.parametrize(
+    ("simulator", "started", "level"),
+    [
+        # sdformat src/Model.cc refuses the name, and gz-sim UserCommands.cc then creates nothing.
+        ("gazebo", "", "error"),
+        # The user's own launch file has the same error for one robot.
+        ("gazebo", SPAWNS, "warning"),
+        # Nobody has said that the robot is simulated.
+        ("", "", "warning"),
+    ],
+)
+def test_an_error_of_a_simulator_is_known_only_where_the_launch_file_spawns_the_robot(
+    simulator: str, started: str, level: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = f'<robot name="world">{LINK.format(SOLID)}{GAZEBO.format("")}</robot>'
+    fleet = "layout: tf-per-robot\ndistro: jazzy\ndescription: robot.urdf\nlaunch: up.launch.xml\n"
+    fleet += ROBOTS + (f"simulator: {simulator}\n" if simulator else "")
+    texts = {"robot.urdf": text, "up.launch.xml": STATES.format(started), "fleet.yaml": fleet}
+    write_files(tmp_path, texts)
+    main(["build", str(tmp_path / "fleet.yaml"), "-o", str(tmp_path / "out"), "--trust"])
+    assert f" {level}: MB306" in capsys.readouterr().err
+
+
 @pytest.mark.more
 def test_a_rule_that_is_not_asked_makes_no_error() -> None:
     """``described`` asks those that are errors, and three that may be; a text of xacro is no robot's.
