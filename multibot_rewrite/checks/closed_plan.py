@@ -40,6 +40,7 @@ from multibot_rewrite.producers.ends import BRIDGE_FILE, NEEDS, bridge_ends
 from multibot_rewrite.producers.evidence.nodes import MANAGER
 from multibot_rewrite.producers.launch.bridges import services_in
 from multibot_rewrite.rules.check import absences, contradictions
+from multibot_rewrite.rules.files.plugin_names import without_input
 from multibot_rewrite.rules.system.differing import differs_from_its_likes
 from multibot_rewrite.rules.system.localized import map_not_joined
 from multibot_rewrite.rules.system.states import (
@@ -247,10 +248,15 @@ def gaps_of(
 ) -> tuple[Finding, ...]:
     """Return the gaps in the robots of a fleet, by place; ``made`` are the robots' files, and what
     was found as they were made."""
-    texts, found = sorted_out(made)
-    known = of_files(found)
+    texts, told = sorted_out(made)
+    known = of_files(told)
     for robot in (group.robots[0] for group in group_robots(plan)):
         known |= {it for it in robot.findings if it.file == robot.spec.srdf and it.level != NOTE}
+    # What a file of the user lacks has been found there.
+    said = {(it.code, it.hint) for it in known}
+    found = without_input(plan.fleet.table.runs, plan.file.distro)
+    lacking = (it._replace(file="") for it in found if (it.code, it.hint) not in said)
+    known |= {_in_file(it, plan.robots[0]) for it in lacking}
     known |= {*_gaps(plan, fleet, texts, known), *not_across(fleet), *_shared(plan)}
     return tuple(
         sorted(known, key=lambda it: (it.file, it.line, it.column, it.code, it.message, it))

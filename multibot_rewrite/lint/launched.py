@@ -34,6 +34,7 @@ from multibot_rewrite.related_files.formats import read_named
 from multibot_rewrite.related_files.named_file import BRIDGE, PARAMS, kind_of
 from multibot_rewrite.rules.files import bridges
 from multibot_rewrite.rules.files.judge import judged
+from multibot_rewrite.rules.files.plugin_names import without_input
 from multibot_rewrite.rules.settings import LEFT_OUT, Settings
 from multibot_rewrite.system.records import NOWHERE, Place
 
@@ -94,7 +95,11 @@ _TEXT = re.compile(r"<\?xml|<robot|<sdf")
 def named_findings(launched: Launched) -> list[Finding]:
     """Return what is wrong with the files that a launch file names, each once."""
     every = (_descriptions, _loaded_again, _parameters, _values, bridge_findings)
-    return list(dict.fromkeys(it for findings in every for it in findings(launched)))
+    lacking = [*without_input(launched.nodes, launched.release)]
+    # Said once of all nodes, not in each file.
+    said = {(it.code, it.hint) for it in lacking}
+    found = (it for findings in every for it in findings(launched))
+    return [*dict.fromkeys(it for it in found if (it.code, it.hint) not in said), *lacking]
 
 
 def _descriptions(launched: Launched) -> Iterator[Finding]:

@@ -171,7 +171,8 @@ def _tf_topics(seen: Diagnosis) -> Iterator[str]:
     own, shared = [], []
     for topic, nodes in seen.tf:
         robots = unique(seen.whose.robot(node) or "no robot" for node in nodes)
-        if nodes == (RECORDER,) or robots == (seen.whose.robot(topic),):
+        alone = nodes == (RECORDER,) or robots == (seen.whose.robot(topic),)
+        if alone or _is_named_otherwise(seen):
             own.append(topic)
         else:
             count = plural(len(nodes), "node")
@@ -188,6 +189,15 @@ def _layout(seen: Diagnosis) -> str:
         return seen.layout.name
     if seen.layout:
         return f"looks like {seen.layout.name} ({seen.layout.short}: {seen.layout.about})"
+    if _is_named_otherwise(seen):
+        return "not known without its plan (check PLAN, check-launch --plan PLAN)"
     if any(robot.before or robot.behind for robot in seen.robots):
         return "frames have the robot's name, topics and nodes have not"
     return "none of those known: neither tf topics nor frames have the robot's name"
+
+
+def _is_named_otherwise(seen: Diagnosis) -> bool:
+    """Return whether each robot shows in frames alone, though names of nodes have its name."""
+    whose = whose_by_guess(it._replace(only_frames=False) for it in seen.robots)
+    named = {whose.robot(node.name) for node in seen.graph.nodes}
+    return bool(seen.robots) and all(it.only_frames and it.name in named for it in seen.robots)

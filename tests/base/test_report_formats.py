@@ -189,7 +189,10 @@ KNOWN = {**rule("MB101", "bad-name"), **rule("MB102", "odd-name"), **rule("MG201
         ("MB1019", "did you mean 'MB101'?"),
         ("mb199", "did you mean 'MB1'?"), ("MG21", "did you mean 'MG2'?"),
         ("lost-topc", "did you mean 'lost-topic'?"),
-        ("xyz", "see multibot inspect"),
+        ("topics", "rules about it: MG201 lost-topic"),
+        ("name", "rules about it: MB101 bad-name, MB102 odd-name"),
+        ("really", "rules about it: MB101 bad-name, MB102 odd-name, MG201 lost-topic"),
+        ("xyz", "see multibot inspect"), ("it", "see multibot inspect"),
     ],
 )  # fmt: skip
 def test_a_code_that_no_rule_has(word: str, hint: str) -> None:

@@ -153,3 +153,25 @@ def test_each_command_says_the_same_of_a_parameter_file(
     assert said[0] == said[1] == said[2] == said[3]
     codes = [(it.split(":")[0], it.split()[2]) for it in said[0]]
     assert codes == [("3", "MB110"), ("4", "MB312"), ("5", "MB853")]
+
+
+@pytest.mark.parametrize("layout", ["postfix", "both"])
+def test_inputs_that_nobody_chose_are_missed_once_by_build_and_launch(
+    layout: str, here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """robot_localization ros_filter.cpp:1176: a filter without an input estimates nothing."""
+    (here / "rover.urdf").write_text(ROVER)
+    fleet = FLEET.replace("related_files: {params: ekf.yaml}", f"layout: {layout}")
+    (here / "fleet.yaml").write_text(fleet)
+    said = []
+    for words in (["build", "fleet.yaml", "-o", "out"], ["check-launch", "out/fleet.launch.py"]):
+        assert main(words) == 0
+        lines = "".join(capsys.readouterr()).splitlines()
+        said.append([it.partition(" warning: ")[2] for it in lines if "MB115" in it])
+    assert said[0] == said[1] and len(said[0]) == 1
+    filters = {
+        "postfix": "/ekf_filter_node_robot1, /ekf_filter_node_robot2",
+        "both": "/robot1/ekf_filter_node, /robot2/ekf_filter_node",
+    }
+    told = f"MB115 {filters[layout]}: none of these is set: odom0, pose0, twist0, imu0 ("
+    assert said[0][0].startswith(told)

@@ -31,3 +31,11 @@ def test_robots_that_only_frames_name() -> None:
         "layout: frames have the robot's name, topics and nodes have not",
         "tf on /tf: 1 node of no robot",
     ]
+    # Names of nodes have their names as well: whose each topic is says only a plan.
+    more = tuple(Node(f"/{it}_state") for it in ("robot1", "robot2"))
+    assert said(graph._replace(nodes=graph.nodes + more)) == [
+        "2 robots by what their frames have: robot1, robot2",
+        "layout: not known without its plan (check PLAN, check-launch --plan PLAN)",
+        "tf on /tf",
+    ]
+    assert said(graph._replace(nodes=graph.nodes + more[:1]))[2] == "tf on /tf: 1 node of no robot"

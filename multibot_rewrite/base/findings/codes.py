@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.base.findings.finding import Rule
 from multibot_rewrite.base.model import UsageError
 from multibot_rewrite.base.nearest import nearest
+from multibot_rewrite.base.wording import SEVERAL, shorten
 
 # What explains a code, and lists all without one.
 ASKED = "multibot inspect"
@@ -30,9 +32,20 @@ def no_rule(word: str, rules: Mapping[str, Rule]) -> str:
     # The longest code that the word begins with, or the code or name most like it.
     begun = (word[:size].upper() for size in range(len(word), 2, -1))
     near = next((it for it in begun if it in known), "")
-    near = near or nearest(word.upper(), sorted(known)) or near_name(word, rules)
-    hint = f"did you mean {near!r}?" if near else f"see {ASKED}"
+    near = near or nearest(word.upper(), sorted(known))
+    named = [] if near else [it for it in rules.values() if _has(it.name, word)]
+    near = near or ("" if named else near_name(word, rules))
+    about = [] if near else named or [it for it in rules.values() if _has(it.what, word)]
+    few = shorten([f"{it.code} {it.name}" for it in about], SEVERAL)
+    other = f"rules about it: {few}" if few else f"see {ASKED}"
+    hint = f"did you mean {near!r}?" if near else other
     return f"no rule has the code {word!r}, and none begins with it; {hint}"
+
+
+def _has(text: str, word: str) -> bool:
+    """Return whether a word of the text begins with the word, which may be a plural."""
+    begun = word.lower().removesuffix("s")
+    return len(begun) > 2 and any(it.startswith(begun) for it in re.findall(r"\w+", text.lower()))
 
 
 def find_codes(words: Iterable[str], where: str, rules: Mapping[str, Rule]) -> tuple[str, ...]:

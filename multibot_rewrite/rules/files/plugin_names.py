@@ -8,14 +8,16 @@ controller_manager.cpp ('type' param was not defined, controller type does not e
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from functools import cache
 
 import yaml
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.nearest import MISTYPED, nearest, slip_of
 from multibot_rewrite.base.releases import has_release, releases_with
+from multibot_rewrite.base.wording import SEVERAL, shorten, unique
 from multibot_rewrite.knowledge.declared import (
     NODE,
     Base,
@@ -25,6 +27,8 @@ from multibot_rewrite.knowledge.declared import (
     packages,
     plugin_bases,
 )
+from multibot_rewrite.knowledge.parameters import built_in_nodes
+from multibot_rewrite.planning.records import Run
 from multibot_rewrite.producers.evidence.hardware import TYPE
 from multibot_rewrite.related_files.named_file import NamedFile
 from multibot_rewrite.related_files.params.sections import (
@@ -34,9 +38,10 @@ from multibot_rewrite.related_files.params.sections import (
     controller_types,
 )
 from multibot_rewrite.related_files.yaml_text import pairs
-from multibot_rewrite.rules.declaration import remark_at
+from multibot_rewrite.rules.declaration import at, remark_at
+from multibot_rewrite.rules.description.files import values
 from multibot_rewrite.rules.files.demands import Demand, demands, value_of
-from multibot_rewrite.rules.files.parameter_files import of_release
+from multibot_rewrite.rules.files.parameter_files import facts_of_node, of_release
 from multibot_rewrite.rules.files.section_facts import (
     Section,
     Setting,
@@ -251,22 +256,41 @@ def missing_parameters(file: NamedFile) -> Iterator[Finding]:
         is_whole = len(unknown) < len(found) < len(needed)
         controller = section.node is not None and bool(section.node.types)
         yield from found if is_whole or not controller else ()
-        for fact in facts:
-            for words in (words for check, words in fact.checks if check == "required_or"):
-                names = (fact.path, *words.split())
-                there = (
-                    it in section.whole or is_set_in_other_file(file, section.title, it)
-                    for it in names
-                )
-                if section.given and not any(there):
-                    message = f"{section.title}: none of these is set: {', '.join(names)}"
-                    hint = f"add one; see {fact.source}"
-                    yield remark_at(section.given[0].key, message, hint, WARNING)
+        for said, names, hint in _none_of(facts, section.whole) if section.given else ():
+            if not any(is_set_in_other_file(file, section.title, it) for it in names):
+                message = f"{section.title}: {said}"
+                yield remark_at(section.given[0].key, message, hint, WARNING)
     for it in demands(file, "needs"):
         # A value that only a launch file fills in is there, too.
         if it.given.value is True and it.section.at + it.words[0] not in it.section.whole:
             message = f"{it.section.title}: {it.given.name} is true without {it.words[0]}"
             yield remark_at(it.given.key, message, f"add it, or set this to false; see {it.source}")
+
+
+def without_input(runs: Iterable[Run], release: str) -> Iterator[Finding]:
+    """Yield a finding for all nodes that have none of the same parameters, one of which they need."""
+    known = built_in_nodes(release).nodes
+    called = lists_by_key((it.fact.known or it.fact.name, it) for it in runs if not it.untold)
+    for node, alike in ((known[name], alike) for name, alike in called.items() if name in known):
+        facts = of_release(facts_of_node(node, "", "", ()), release)
+        lacking = [(it, *said) for it in alike for said in _none_of(facts, it.values)]
+        if lacking:
+            first, said, _, hint = lacking[0]
+            names = shorten(unique(it.full_name for it, *_ in lacking), SEVERAL)
+            place = next((it.place for it in first.values.values()), first.place)
+            yield at(values.missing, place, f"{names}: {said}", hint, level=WARNING)
+
+
+def _none_of(
+    facts: Iterable[Declared], there: Collection[str]
+) -> Iterator[tuple[str, tuple[str, ...], str]]:
+    """Yield message, parameters and hint where none of several is there, one of which has to be."""
+    for fact in facts:
+        for words in (words for check, words in fact.checks if check == "required_or"):
+            names = (fact.path, *words.split())
+            if not any(it in there for it in names):
+                said = f"none of these is set: {', '.join(names)}"
+                yield said, names, f"add one to its parameter file; see {fact.source}"
 
 
 def _missing(file: NamedFile, section: Section, fact: Declared, words: str) -> Iterator[Finding]:
