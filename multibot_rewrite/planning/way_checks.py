@@ -264,9 +264,8 @@ def useless_rules(
 
 @cache
 def _names_of_managers(release: str) -> frozenset[str]:
-    """Return the names in the code of controller managers and, if they hand on their rules in
-    ``release``, of their controllers. The names are those of all releases: a description may be for
-    several."""
+    """Return names in the code of controller managers and, if they hand on their rules in ``release``,
+    of controllers: those of every release, as one description may be for several."""
     handed_on = controller_way(release).of_manager
     every = every_release().nodes.values()
     nodes = [it for it in every if it.name == MANAGER or (handed_on and it.host == MANAGER)]

@@ -96,16 +96,11 @@ def _names(of: int, it: Description, changes: Iterable[ValueEdit]) -> Iterator[_
                 used = _used(read, number, attribute, pieces, at)
                 made, other = _copied_from(read, pieces, at)
                 places = frozenset((real[file], start) for file, start in other)
-                yield _Name(
-                    of,
-                    _on_disk(used, real),
-                    _on_disk(made, real),
-                    places,
-                    mine.get(at),
-                )
+                yield _Name(of, _real(used, real), _real(made, real), places, mine.get(at))
 
 
-def _on_disk(spot: Spot | None, real: Mapping[str, str]) -> Spot | None:
+def _real(spot: Spot | None, real: Mapping[str, str]) -> Spot | None:
+    """Return the spot with the real path of its file."""
     return spot and (real[spot[0]], spot[1])
 
 

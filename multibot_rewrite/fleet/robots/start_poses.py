@@ -156,8 +156,7 @@ def static_transform(
 
 
 def initial_pose(pose: Pose) -> dict[str, object]:
-    """Return amcl's parameters for a start pose, with ``set_initial_pose``, without which they do not
-    count."""
+    """Return amcl's parameters for a start pose, with the switch that makes them count."""
     values = {f"initial_pose.{key}": getattr(pose, key) for key in ("x", "y", "z", "yaw")}
     return {"set_initial_pose": True, **values}
 
@@ -187,8 +186,7 @@ def _sent(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, list[Edge]]:
 
 
 def _odometry_sender(plan: FleetPlan, robot: RewrittenRobot) -> str:
-    """Return an unknown node with an odometry frame that no known node sends, and the place of the
-    parameter, to begin a sentence; "" for none."""
+    """Return the beginning of a sentence: an unknown node with an odometry frame of its own; or ""."""
     described = {it.name for it in plan.fleet.facts}
     own = (edges for (name, _), edges in plan.fleet.edges.items() if name == robot.spec.namespace)
     frames = {frame for edges in own for it in edges for frame in (it.parent, it.child)}

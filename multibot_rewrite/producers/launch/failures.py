@@ -48,8 +48,7 @@ _ROS_1 = "it is a launch file of ROS 1; in ROS 2 it is $(find-pkg-share NAME), $
 
 
 def started_by(text: str) -> str:
-    """Return a clause to append to a message: the programs that the text of a launch file names; "" for
-    none."""
+    """Return a clause to append: the programs that a launch file's text names; "" for none."""
     programs = shorten(_STARTED.findall(text), _SHOWN)
     return f"; by its text it starts {programs}" if programs else ""
 

@@ -138,7 +138,7 @@ BLANK = lazy_compile(r"\s")
 
 @memoized
 def named(subject: Subject) -> list[tuple[str, str, _Element]]:
-    """Return (kind, name, element) of links and joints; an empty name only where it is written."""
+    """Return (kind, name, element) of links and joints that have a name without substitution."""
     links, joints = subject.robot.links, subject.robot.joints
     every = [
         *[("link", it.name, it.element) for it in links],

@@ -138,9 +138,7 @@ def _model_of(plugin: _Element) -> ModelWheels | None:
 def _drive(subject: Subject, plugin: _Element, kinds: Sequence[Tags]) -> Drive | None:
     model = _model_of(plugin)
     for tags in kinds:
-        left, right = (
-            tuple(_named_wheels(subject, model, plugin, it)) for it in (tags.left, tags.right)
-        )
+        left, right = (tuple(_wheels(subject, model, plugin, it)) for it in (tags.left, tags.right))
         if left and right:
             sizes = {it: plugin.find(it) for it in (tags.separation, tags.radius)}
             robot = model.robot if model else subject.robot
@@ -148,7 +146,7 @@ def _drive(subject: Subject, plugin: _Element, kinds: Sequence[Tags]) -> Drive |
     return None
 
 
-def _named_wheels(
+def _wheels(
     subject: Subject, model: ModelWheels | None, plugin: _Element, tags: Sequence[str]
 ) -> Iterator[Wheel]:
     for it in plugin.iterchildren(*tags):

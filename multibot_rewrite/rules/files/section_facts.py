@@ -151,7 +151,7 @@ def _sections(file: NamedFile) -> Iterator[Section]:
             return
         given = _settings_below(file.document, it.body)
         if name in ANY or PLACEHOLDER.search(it.path):
-            yield _make_section(it.path, None, given, declared_by(EVERY_NODE), _by_name(given))
+            yield _section(it.path, None, given, declared_by(EVERY_NODE), _by_name(given))
             continue
         type_ = types.get(name) or next((str(at.value) for at in given if at.name == "type"), "")
         node = it.node
@@ -160,7 +160,7 @@ def _sections(file: NamedFile) -> Iterator[Section]:
         facts = facts_of_node(node, type_, file.file, file.roots)
         whole = _by_name(given)
         below, rest = _of_plugins(it.path, given, whole)
-        yield _make_section(it.path, node, rest, (*facts, *declared_by(EVERY_NODE)), whole)
+        yield _section(it.path, node, rest, (*facts, *declared_by(EVERY_NODE)), whole)
         yield from below
 
 
@@ -174,14 +174,14 @@ def _of_moveit(file: NamedFile) -> Iterator[Section]:
     read = _settings_below(file.document, root, above) if root is not None else ()
     given = tuple(it._replace(value=_tagged(it.node, it.value)) for it in read)
     facts = facts_of_node(node, "", file.file, file.roots)
-    yield _make_section(node.name, node, given, facts, _by_name(given))
+    yield _section(node.name, node, given, facts, _by_name(given))
 
 
 def _by_name(given: Sequence[Setting]) -> Mapping[str, Setting]:
     return {it.name: it for it in given}
 
 
-def _make_section(
+def _section(
     title: str,
     node: NodeParameters | None,
     given: tuple[Setting, ...],
@@ -238,9 +238,7 @@ def _of_plugins(
     for name, its in of.items():
         class_, facts = plugins[name]
         own = tuple(it._replace(name=it.name.removeprefix(f"{name}.")) for it in its)
-        found.append(
-            _make_section(f"{title}: {name} ({class_})", None, own, facts, whole, f"{name}.")
-        )
+        found.append(_section(f"{title}: {name} ({class_})", None, own, facts, whole, f"{name}."))
     return found, tuple(rest)
 
 

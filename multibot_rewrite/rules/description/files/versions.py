@@ -64,10 +64,13 @@ def _read_now(subject: Subject, element: _Element) -> tuple[Edit, ...]:
 def ignored_limit(subject: Subject) -> Iterator[Problem]:
     """Report limits that came with version 1.2; one finding for a <limit>."""
     newest = versions.KNOWN[-1]
-    hint = f'write version="{newest}" in <robot>'
-    if _reads(subject) < newest:
-        hint = f"delete it: only URDF {newest} has it, and this release does not read that"
-    read = min(versions.version_of(subject.document.root), _reads(subject)) >= newest
+    reads = _reads(subject)
+    hint = (
+        f'write version="{newest}" in <robot>'
+        if reads >= newest
+        else "delete it: this release has none"
+    )
+    read = min(versions.version_of(subject.document.root), reads) >= newest
     for joint in subject.robot.joints if not read else ():
         limit = joint.parts.get("limit")
         given = () if limit is None else limit.keys()
