@@ -120,7 +120,8 @@ def _switch(what: str, value: object) -> object:
     raise _type_error(what, value, "write True or False")
 
 
-def _number(what: str, value: object) -> object:
+def _int(what: str, value: object) -> object:
+    """Return the value; raises UsageError unless it is an int."""
     if isinstance(value, int) and not isinstance(value, bool):
         return value
     raise _type_error(what, value, "write an int")
@@ -163,7 +164,7 @@ READERS: Mapping[str, Reader] = {
     "str": _text,
     "str | None": _or_none(_text),
     "bool": _switch,
-    "int": _number,
+    "int": _int,
     "Iterable[str]": _names,
     "Iterable[Part]": _records,
     "Mapping[str, str] | None": _or_none(_texts_by_name),

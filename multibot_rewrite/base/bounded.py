@@ -189,13 +189,13 @@ def load_json(data: bytes | str, made: Callable[[dict[str, Any]], object] | None
     def whole(digits: str) -> int:
         if len(digits) > MAX_DIGITS:
             # Where it is does not matter to whoever made it.
-            raise json.JSONDecodeError(_digits(digits), text, text.index(digits))
+            raise json.JSONDecodeError(_too_many_digits(digits), text, text.index(digits))
         return int(digits)
 
     return json.loads(text, parse_int=whole, object_hook=made)
 
 
-def _digits(number: str) -> str:
+def _too_many_digits(number: str) -> str:
     return f"a number of {len(number):,} characters, over the limit of {MAX_DIGITS}"
 
 
@@ -247,7 +247,7 @@ def _with_digit_limit(construct: Any, kind: str) -> Any:
 
     def checked(loader: Any, node: yaml.Node) -> Any:
         if len(node.value) > MAX_DIGITS:
-            raise ConstructorError(None, None, _digits(node.value), node.start_mark)
+            raise ConstructorError(None, None, _too_many_digits(node.value), node.start_mark)
         try:
             return construct(loader, node)
         except (ArithmeticError, AttributeError, LookupError, ValueError):

@@ -197,7 +197,7 @@ def _too_near(plan: FleetPlan) -> Iterator[Finding]:
     fleet that is all at the origin is a warning: somebody else may place it, but the launch file of
     a build does not."""
     robots = [it for it in plan.robots if is_simulated(it)]
-    if not any(any(_place(it.spec)) for it in robots):
+    if not any(any(_start_at(it.spec)) for it in robots):
         if len(robots) > 1:
             room = max(1, ceil(4 * max(map(_filled_radius, robots))))
             message = f"the {len(robots)} robots are spawned at the origin, in each other"
@@ -206,7 +206,7 @@ def _too_near(plan: FleetPlan) -> Iterator[Finding]:
         return
     sources = [it.spec.sources for it in robots]
     reach = {key: _filled_radius(it) for key, it in dict(zip(sources, robots, strict=True)).items()}
-    placed = [(it, _place(it.spec), reach[key]) for key, it in zip(sources, robots, strict=True)]
+    placed = [(it, _start_at(it.spec), reach[key]) for key, it in zip(sources, robots, strict=True)]
     pairs = combinations(placed, 2) if len(placed) <= MOST else pairwise(placed)
     for (one, here, own), (other, there, more) in pairs:
         if (gap := dist(here, there)) < own + more:
@@ -221,7 +221,7 @@ def _filled_radius(it: RewrittenRobot) -> float:
     return filled_by(it.member.inventory.document.root)
 
 
-def _place(spec: RobotSpec) -> tuple[float, float, float]:
+def _start_at(spec: RobotSpec) -> tuple[float, float, float]:
     pose = spec.pose or Pose()
     return pose.x, pose.y, pose.z
 

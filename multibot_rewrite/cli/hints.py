@@ -32,7 +32,8 @@ def option_hint(wrong: str, command: str, known: Collection[str], has_fleet: boo
 def _meaning(
     option: str, command: str, known: Collection[str], has_fleet: bool, name: str = "it"
 ) -> str:
-    """Return what does what an option means; ``name`` is what to call it. Or ""."""
+    """Return a hint for an unknown option: the option, key or command that does the same; "" for none.
+    ``name`` is what to call the option in it."""
     word = f"-{option.removeprefix('-').replace('_', '-')}"
     if own := other_words("options").get(f"{command} {word}"):
         return f"use {own}"

@@ -44,7 +44,7 @@ def run(options: argparse.Namespace, word: str) -> int:
     if options.output_kind == JSON:
         deliver(options, json_bytes({"nodes": [_as_json(found)]}))
     else:
-        deliver_report(options, _details(found, folder))
+        deliver_report(options, _printed_details(found, folder))
     return DONE
 
 
@@ -66,11 +66,11 @@ def run_known(options: argparse.Namespace, facts: NodeFacts) -> int:
         deliver(options, json_bytes({"nodes": [{**_as_json(found), "versions": versions}]}))
     else:
         grid = Grid(("release", "came with", "has", "read at", "of version", "of", ""), rows)
-        deliver_report(options, (*_details(found, ""), *(("", grid) if rows else ())))
+        deliver_report(options, (*_printed_details(found, ""), *(("", grid) if rows else ())))
     return DONE
 
 
-def _details(found: NodeSource, folder: str) -> Iterator[str | Grid]:
+def _printed_details(found: NodeSource, folder: str) -> Iterator[str | Grid]:
     facts = found.facts
     yield f"node {facts.name} of {facts.package}, by {plural(len(found.files), 'file')} of its source"
     own = [

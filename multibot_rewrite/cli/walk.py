@@ -14,7 +14,7 @@ from multibot_rewrite.base.wording import plural, shorten, unique
 EVERYTHING = "--no-default-excludes"
 
 
-def _refuse(error: OSError) -> NoReturn:
+def _raise_unreadable(error: OSError) -> NoReturn:
     raise InputError(f"{error.filename}: cannot be read: {error.strerror}") from None
 
 
@@ -38,7 +38,7 @@ def find_files(
     paths: Sequence[str],
     suffixes: tuple[str, ...],
     everything: bool = False,
-    unreadable: Callable[[OSError], None] = _refuse,
+    unreadable: Callable[[OSError], None] = _raise_unreadable,
     wanted: Callable[[str], bool] = bool,
 ) -> FoundFiles:
     """Return the files named, and those with one of the suffixes below the folders named; each once.

@@ -33,12 +33,12 @@ def read_yaml_with_lines(text: str, file: str, own: bool = False) -> YamlItem:
     ``own`` says that it is of this package, so that it needs no limits."""
     try:
         node = compose_own_yaml(text) if own else compose_yaml(text, file)
-        return YamlItem(f"{file}:1", None) if node is None else _item(node, f"{file}:1", file)
+        return YamlItem(f"{file}:1", None) if node is None else _yaml_item(node, f"{file}:1", file)
     except InputError as error:
         raise UsageError(str(error)) from None
 
 
-def _item(node: "yaml.Node", where: str, file: str) -> YamlItem:
+def _yaml_item(node: "yaml.Node", where: str, file: str) -> YamlItem:
     if isinstance(node.value, str):
         if node.tag == "tag:yaml.org,2002:null":
             return YamlItem(where, None)
@@ -47,7 +47,7 @@ def _item(node: "yaml.Node", where: str, file: str) -> YamlItem:
 
     if isinstance(node, yaml.MappingNode):
         return YamlItem(where, _mapping(node, file))
-    inner = (_item(it, f"{file}:{it.start_mark.line + 1}", file) for it in node.value)
+    inner = (_yaml_item(it, f"{file}:{it.start_mark.line + 1}", file) for it in node.value)
     return YamlItem(where, tuple(inner))
 
 
@@ -64,7 +64,7 @@ def _mapping(node: "yaml.Node", file: str) -> dict[str, YamlItem]:
         if key.value in found:
             raise UsageError(f"{where}: the key {key.value!r} is repeated; remove one of them")
         # A block value starts a line below its key; a reader looks for the key.
-        found[key.value] = _item(value, where, file)
+        found[key.value] = _yaml_item(value, where, file)
     return found
 
 

@@ -26,7 +26,7 @@ def action(base: Any, make: Callable[[Context], Made], first: Mapping[str, Any])
 
 def component(base: Any, make: Callable[[Context], Options], first: Mapping[str, Any]) -> Any:
     """Return a ComposableNode: with options ``first``, then with those of ``make``."""
-    return _component(base)(make, first)
+    return _component_class(base)(make, first)
 
 
 @cache
@@ -56,7 +56,7 @@ def _action(base: Any) -> Any:
 
 
 @cache
-def _component(base: Any) -> Any:
+def _component_class(base: Any) -> Any:
     class ComponentOfRobot(base):  # type: ignore[misc]
         """A component for a robot."""
 

@@ -45,11 +45,11 @@ def active_rules(settings: Settings, format_: str) -> tuple[Rule, ...]:
     """Return the rules that are on for a subject of that format, by their codes; none that find
     nothing without robots if none are named."""
     levels = tuple(settings.levels.items())
-    return _active(settings.select, settings.ignore, levels, format_, bool(settings.robots))
+    return _active_rules(settings.select, settings.ignore, levels, format_, bool(settings.robots))
 
 
 @lru_cache(maxsize=16)
-def _active(
+def _active_rules(
     select: tuple[str, ...],
     ignore: tuple[str, ...],
     levels: tuple[tuple[str, str], ...],

@@ -92,7 +92,7 @@ def _create_endpoint(
     stubs: _Stubs, node: Any, endpoint: Endpoint, edges: Iterable[Edge]
 ) -> Iterator[Publish]:
     """Create one endpoint, with a substitute where its type is not installed."""
-    type_ = _installed(endpoint.type)
+    type_ = _installed_class(endpoint.type)
     if type_ is None:
         substitute = substitute_type(endpoint.kind, endpoint.type)
         stubs.replaced.update({endpoint.type: substitute} if endpoint.type else {})
@@ -100,7 +100,7 @@ def _create_endpoint(
             for part in action_parts(endpoint):
                 yield from _create_endpoint(stubs, node, part, ())
             return
-        type_ = _installed(substitute)
+        type_ = _installed_class(substitute)
     if endpoint.kind == TOPIC and endpoint.role == PUBLISHES:
         yield from _create_publisher(stubs, node, type_, endpoint, edges)
     else:
@@ -108,7 +108,7 @@ def _create_endpoint(
 
 
 @cache
-def _installed(type_: str) -> Any:
+def _installed_class(type_: str) -> Any:
     return ros.message_class(type_)[0] if type_ else None
 
 
@@ -128,7 +128,7 @@ def _create_publisher(
     publisher = ros.publish(node, type_, endpoint.name, static)
     own = [edge for edge in edges if edge.static == static]
     # One message with all transforms, or one for each where tf's own type is not installed.
-    transform = _installed("geometry_msgs/msg/TransformStamped")
+    transform = _installed_class("geometry_msgs/msg/TransformStamped")
     made = []
     for edge in own:
         one = transform(child_frame_id=edge.child)

@@ -119,7 +119,7 @@ def _boxes(group: DrawnGroup, place: "GroupLayout", ids: Ids, prefix: str) -> It
             f"{tooltip(node.name, _meaning(node.state))}</g>"
         )
     for name, y in place.names:
-        yield _name(name, group.robot, y, _id_attributes(ids.names.get(name.name), ids, prefix))
+        yield _name_box(name, group.robot, y, _id_attributes(ids.names.get(name.name), ids, prefix))
 
 
 def _id_attributes(id_: str | None, ids: Ids, prefix: str) -> str:
@@ -129,7 +129,7 @@ def _id_attributes(id_: str | None, ids: Ids, prefix: str) -> str:
     return f' data-id="{id_}"{anchor}'
 
 
-def _name(name: DrawnName, robot: str, y: float, id_attributes: str) -> str:
+def _name_box(name: DrawnName, robot: str, y: float, id_attributes: str) -> str:
     x, wide = MIDDLE
     badge = {SERVICE: "srv", ACTION: "act"}.get(name.kind, "")
     many = plural(len(name.merged), name.kind)

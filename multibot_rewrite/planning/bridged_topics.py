@@ -168,7 +168,7 @@ def _robot_topics(inventory: Inventory, robot: str, model: str, naming: Naming) 
     elsewhere = OF_BOTH if is_for_classic(inventory) else ()
     for sensor in inventory.document.root.iter("sensor"):
         if sensor.get("type") not in elsewhere:
-            yield from _sensor(sensor, robot, inventory.release)
+            yield from _topics_of_sensor(sensor, robot, inventory.release)
     plugins = list(plugin_topics(inventory, robot, model, naming))
     gz_of: dict[str, set[str]] = defaultdict(set)
     # Two systems with one topic have one row, that for tf where one of them is for it; MB243 warns.
@@ -222,7 +222,7 @@ def plugin_topics(
             yield PluginTopics(host.element, bridged, left)
 
 
-def _sensor(sensor: etree._Element, robot: str, release: str) -> Iterator[Found]:
+def _topics_of_sensor(sensor: etree._Element, robot: str, release: str) -> Iterator[Found]:
     kind = sensor.get("type", "")
     rows = rows_of(SENSORS, kind, release)
     loaded = (library_key(it.get("filename", "")) for it in sensor.iterchildren("plugin"))

@@ -239,7 +239,7 @@ def useless_rules(
     description may serve robots with other controllers: a rule for one known in ``release`` is
     right."""
     others = [*map(_names, controllers or ())]
-    known = _of_managers(release)
+    known = _names_of_managers(release)
     by_file = any(it.fact.origin.place.line for it in controllers or ())
     for run in runs:
         own, wide, node = _names(run), run.process_wide, run.node
@@ -263,9 +263,9 @@ def useless_rules(
 
 
 @cache
-def _of_managers(release: str) -> frozenset[str]:
-    """Return the names in the code of controller managers and of controllers that get their rules, in
-    any release: one description may be for several."""
+def _names_of_managers(release: str) -> frozenset[str]:
+    """Return names in the code of controller managers and, if they hand on their rules in ``release``,
+    of controllers: those of every release, as one description may be for several."""
     handed_on = controller_way(release).of_manager
     every = every_release().nodes.values()
     nodes = [it for it in every if it.name == MANAGER or (handed_on and it.host == MANAGER)]

@@ -243,7 +243,7 @@ def with_controllers(it: Looked, files: Sequence[str], reach: Reach) -> Looked:
 
 def _loads_nothing(root: etree._Element | None) -> bool:
     """Return whether the plugin that makes a controller manager has a file that nothing names."""
-    parts = _parts(root) if root is not None else []
+    parts = _gazebo_parts(root) if root is not None else []
     plugins = (it for part in parts for it in part.iter("plugin"))
     made = (it for it in plugins if "ros2_control" in (it.get("filename") or ""))
     texts = [one.text or "" for it in made for one in it.iter("parameters")]
@@ -283,17 +283,17 @@ def _is_controlled(root: etree._Element) -> bool:
     return made or _simulator(root) == NO_SIMULATOR
 
 
-def _parts(root: etree._Element) -> list[etree._Element]:
+def _gazebo_parts(root: etree._Element) -> list[etree._Element]:
     return [root] if root.tag == "sdf" else root.findall("gazebo")
 
 
 def _plugin_files(root: etree._Element) -> list[str]:
-    return [it.get("filename") or "" for part in _parts(root) for it in part.iter("plugin")]
+    return [it.get("filename") or "" for part in _gazebo_parts(root) for it in part.iter("plugin")]
 
 
 def _simulator(root: etree._Element) -> str:
     """Return the simulator, by the plugins of ``<gazebo>`` or an SDF; sensors alone are for gz-sim."""
-    parts, files = _parts(root), _plugin_files(root)
+    parts, files = _gazebo_parts(root), _plugin_files(root)
     if any(it.startswith(_CLASSIC) for it in files):
         return CLASSIC
     sensors = any(part.find(".//sensor") is not None for part in parts)

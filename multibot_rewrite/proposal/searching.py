@@ -145,8 +145,8 @@ def search(paths: Sequence[str], launch: Sequence[LaunchOrder] = ()) -> Found:
 
 
 def loaded_by(graph: LaunchGraph, found: Found) -> Mapping[str, str]:
-    """Return the descriptions that a launch file loads, by their real paths: it reads the file,
-    gives it to a node, or starts a world with the model."""
+    """Return real path -> path of the descriptions that a launch file reads, gives to a node, or has in
+    a world that it starts. The path is as the search found it, otherwise relative."""
     known = {os.path.realpath(it): it for it in found.every}
     ends = tuple(known_names()["ends"])
     words = (it for node in graph.nodes for it in node.arguments if it.endswith(ends))

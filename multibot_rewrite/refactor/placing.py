@@ -100,6 +100,7 @@ def _names(of: int, it: Description, changes: Iterable[ValueEdit]) -> Iterator[_
 
 
 def _real(spot: Spot | None, real: Mapping[str, str]) -> Spot | None:
+    """Return the spot with the real path of its file."""
     return spot and (real[spot[0]], spot[1])
 
 

@@ -50,7 +50,7 @@ def merged(looks: Sequence[Look]) -> System:
     frames = tuple(_frames(frame for look in looks for frame in look.snapshot.edges))
     heard = {(it.topic, it.frame, it.joints): it for look in looks for it in look.snapshot.heard}
     described = {it.topic: it for look in looks for it in look.snapshot.descriptions}
-    around = _environment(looks, nodes, endpoints)
+    around = _merged_environment(looks, nodes, endpoints)
     parameters = {(it.node, it.name): it for look in looks for it in look.snapshot.parameters}
     controllers = {(it.manager, it.name): it for look in looks for it in look.snapshot.controllers}
     return System(
@@ -144,7 +144,7 @@ def _frames(frames: Iterable[Edge]) -> Iterator[Edge]:
         yield Edge(child, parent, topic, static, senders, several, transform, rate, age=age)
 
 
-def _environment(
+def _merged_environment(
     looks: Sequence[Look], nodes: Sequence[Node], endpoints: Sequence[End]
 ) -> Environment:
     around = [look.snapshot.environment for look in looks]

@@ -126,7 +126,7 @@ def stand_ins(monkeypatch: pytest.MonkeyPatch) -> None:
 def frontend(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     """Yield what XML can say, in launch or in the stand-in."""
     stand_ins(monkeypatch)
-    made_once = (launch_context.substitution_class, later._action, later._component)
+    made_once = (launch_context.substitution_class, later._action, later._component_class)
     for it in made_once:
         it.cache_clear()
     yield importlib.import_module("multibot_rewrite.launch.frontend")

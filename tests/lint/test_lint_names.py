@@ -178,6 +178,12 @@ def test_a_slash_in_front_goes_where_that_is_safe(body: str, fixed: bool) -> Non
     assert bool(left) is not fixed
 
 
+def test_an_interface_without_a_name_is_to_get_one() -> None:
+    body = control('<gpio name=""/>')
+    found = lint_data("r.urdf", f"<robot>{body}</robot>".encode(), Settings(MB3))
+    assert [it.hint for it in found if it.code == "MB313"] == ["give it a name"]
+
+
 def test_a_lone_slash_is_no_frame() -> None:
     assert codes(plugin("<frame_name>/</frame_name>")) == []
 

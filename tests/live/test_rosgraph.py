@@ -192,7 +192,7 @@ def changed(key: str, new: object) -> str:
         (changed("qos.reliability", 9), "there is no policy 9"),
         (changed("qos.history", -1), "there is no policy -1"),
         (changed("qos.deadline.sec", "soon"), "qos.deadline.sec: expected a whole number"),
-        (changed("type.hash.value", [300]), "not 0 to 255"),
+        (changed("type.hash.value", [300]), "not 0 to 255; record the graph again"),
         (changed("type", "a/msg/B"), "type: expected an object"),
         (changed("colour", 1), "unknown key"),
         (MESSAGE + "- '...'\n", "--full-length"),

@@ -102,7 +102,7 @@ def rows(monkeypatch: pytest.MonkeyPatch, ros: Ros, *stubs: Stub, turns: int = 0
         (True, CALLS): ros.kept("calls action"),
     }
     monkeypatch.setattr(stub_nodes, "_CREATORS", {**usual, **own})
-    stub_nodes._installed.cache_clear()
+    stub_nodes._installed_class.cache_clear()
     waited: list[float] = []
 
     class Stop(threading.Event):
@@ -113,7 +113,7 @@ def rows(monkeypatch: pytest.MonkeyPatch, ros: Ros, *stubs: Stub, turns: int = 0
     told: list[bytes] = []
     order = json.dumps(to_order(stubs))
     assert stub_nodes.main(order, Stop(), told.append) == 0
-    stub_nodes._installed.cache_clear()
+    stub_nodes._installed_class.cache_clear()
     replaced, ros.ends, ros.frames = json.loads(told[0])
     return [("replaced", replaced), *ros.rows]
 

@@ -274,7 +274,7 @@ def test_no_hint_goes_past_what_limits_velocities() -> None:
         ),
         (
             [f"/robot{it}/lidar publishes /robot2/scan {SCAN}" for it in "12"],
-            "a namespace, remap rule or parameter of robot1 names robot2; pass the rule"
+            "correct the namespace, remap rule or parameter of robot1 that names robot2; pass the rule"
             " /robot2/scan:=scan to /robot1/lidar",
         ),
     ],

@@ -160,14 +160,14 @@ NOT_SHARED = ", and is not in shared_topics: robots that do the same use one top
         # Everybody's.
         (USES.format("publishes", "/rosout", "rcl_interfaces/msg/Log"),),
         (USES.format("publishes", "/robot2/x", TEXT),
-         "publishes /robot2/x, a name of robot2; a remap rule or parameter of robot1 names"
-         " robot2"),
+         "publishes /robot2/x, a name of robot2; correct the remap rule or parameter of"
+         " robot1 that names robot2"),
         (USES.format("subscribes", "/robot2/x", TEXT),
-         "subscribes to /robot2/x, a name of robot2; a remap rule or parameter of robot1 names"
-         " robot2"),
+         "subscribes to /robot2/x, a name of robot2; correct the remap rule or parameter of"
+         " robot1 that names robot2"),
         (USES.format("calls", "/robot2/x", "std_srvs/srv/Trigger"),
-         "has a client for /robot2/x, a name of robot2; a remap rule or parameter of robot1"
-         " names robot2"),
+         "has a client for /robot2/x, a name of robot2; correct the remap rule or parameter of"
+         " robot1 that names robot2"),
         (f"planned: /robot1/a publishes /robot1/x {TEXT} as /x\n"
          + USES.format("publishes", "/x", TEXT),
          "should publish topic /robot1/x, but does not; it publishes /x instead: the remap rule"
@@ -264,7 +264,7 @@ SENT = LASER + STATIC.format("{}", "robot1/tool", OWN_TF)
 PIECES = "MG406 the tf tree of robot1 on /robot1/tf has 2 roots: {}; "
 ON_TF = (
     "/robot1/robot_state_publisher sends tf on /tf, but the tf of robot1 is on /robot1/tf; pass -r"
-    " /tf:=tf -r /tf_static:=tf_static: to the whole process, where the node shares one"
+    " /tf:=tf -r /tf_static:=tf_static to each node; if it shares a process, to the whole process"
 )
 
 

@@ -213,8 +213,8 @@ TREE = (
     "transform robot1/base -> robot1/laser on /robot1/tf by /robot1/state",
 )
 ELSEWHERE = (
-    "but the tf of robot1 is on /robot1/tf; pass -r /tf:=tf -r /tf_static:=tf_static: to the whole"
-    " process, where the node shares one"
+    "but the tf of robot1 is on /robot1/tf; pass -r /tf:=tf -r /tf_static:=tf_static to each"
+    " node; if it shares a process, to the whole process"
 )
 
 
@@ -230,8 +230,8 @@ ELSEWHERE = (
          " -r /tf:=/tf/robot1 -r /tf_static:=/tf_static/robot1, one for each robot"),
         (f"/robot1/rsp publishes /robot1/tf {TF}", f"/robot1/base publishes /old/tf {TF}",
          "MG405 /robot1/base sends tf on /old/tf, but the tf of robot1 is on /robot1/tf; pass"
-         " -r /tf:=tf -r /tf_static:=tf_static: to the whole process, where the node"
-         " shares one"),
+         " -r /tf:=tf -r /tf_static:=tf_static to each node; if it shares a process, to the"
+         " whole process"),
         (f"/x publishes /robot1/tf {TF}", "transform robot2/a -> robot2/b on /robot1/tf",
          "transform robot1/a -> robot1/b on /robot1/tf",
          "MG405 robot2/b of robot2 on /robot1/tf, which is of robot1; start its nodes in its own"
@@ -347,7 +347,7 @@ ELSEWHERE = (
          f"/robot1/driver publishes /robot1/tf {TF}",
          "MG405 /robot1/driver sends tf on /robot2/tf, but the tf of robot1 is on /robot1/tf; a"
          " namespace or remap rule of robot1 names robot2; pass -r /tf:=tf -r"
-         " /tf_static:=tf_static: to the whole process, where the node shares one"),
+         " /tf_static:=tf_static to each node; if it shares a process, to the whole process"),
         (*TREE, f"/robot1/amcl subscribes /tf {TF}",
          f"MG405 /robot1/amcl hears tf on /tf, {ELSEWHERE}"),
         (*TREE, f"/robot1/amcl subscribes /tf {TF}", f"/robot1/nav subscribes /tf {TF}",
@@ -356,7 +356,7 @@ ELSEWHERE = (
          f"/robot2/state publishes /robot2/tf {TF}",
          "MG405 /robot1/amcl hears tf on /robot2/tf, but the tf of robot1 is on /robot1/tf;"
          " a namespace or remap rule of robot1 names robot2; pass -r /tf:=tf -r"
-         " /tf_static:=tf_static: to the whole process, where the node shares one"),
+         " /tf_static:=tf_static to each node; if it shares a process, to the whole process"),
         (*TREE, f"/rviz2 subscribes /tf {TF}",
          "MG405 listens to /tf, on which no node sends; robots send on /robot1/tf; start it"
          " with -r /tf:=/robot1/tf -r /tf_static:=/robot1/tf_static, one for each robot"),
@@ -406,7 +406,7 @@ GO, STOP = "nav2_msgs/action/NavigateToPose", "std_srvs/srv/Trigger"
 DRIVE = f"/robot1/driver subscribes /robot1/cmd_vel {TWIST}"
 SERVER = f"/robot1/controller_server publishes /robot1/cmd_vel {TWIST}"
 TWO_DRIVES = (DRIVE, SERVER, DRIVE.replace("1", "2"), SERVER.replace("1", "2"))
-NAMES_ROBOT1 = "a namespace, remap rule or parameter of robot2 names robot1"
+NAMES_ROBOT1 = "correct the namespace, remap rule or parameter of robot2 that names robot1"
 CHOOSE = "put twist_mux before the robot's driver, each sender with a topic of its own"
 PLAY = "play it in another ROS_DOMAIN_ID, or with --remap {0}:={0}_of_bag"
 

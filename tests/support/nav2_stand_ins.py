@@ -125,10 +125,10 @@ def relay(node: Any, source: str, target: str, replaced: dict[str, str], prefix:
             it.child_frame_id = f"{prefix}{it.child_frame_id}"
         publisher.publish(message)
 
-    type_ = stub_nodes._installed(TF)
+    type_ = stub_nodes._installed_class(TF)
     if type_ is None:
         replaced[TF] = substitute_type(TOPIC, TF)
-        type_ = stub_nodes._installed(replaced[TF])
+        type_ = stub_nodes._installed_class(replaced[TF])
     latched = "tf_static" in source
     publisher = stub_nodes.ros.publish(node, type_, target, latched)
     node.create_subscription(type_, source, passed_on, stub_nodes.ros._qos(latched, True))

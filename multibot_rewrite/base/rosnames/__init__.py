@@ -141,13 +141,13 @@ def remapped_node(node: str, namespace: str, rules: Iterable[RemapRule]) -> tupl
     """
     rules = tuple(rules)
     namespace = namespace if namespace.startswith("/") else f"/{namespace}"
-    _demand("node name", node, check_node_name(node))
-    _demand("namespace", namespace, check_namespace(namespace))
+    _raise_fault("node name", node, check_node_name(node))
+    _raise_fault("namespace", namespace, check_namespace(namespace))
     node = _first_target(rules, NODE_KEYS, node) or node
     namespace = _first_target(rules, (NAMESPACE_KEY,), node) or namespace
     # rmw_create_node looks at both once more: a rule may end in a slash or be too long.
-    _demand("node name", node, check_node_name(node))
-    _demand("namespace", namespace, check_namespace(namespace))
+    _raise_fault("node name", node, check_node_name(node))
+    _raise_fault("namespace", namespace, check_namespace(namespace))
     return node, namespace
 
 
@@ -155,7 +155,7 @@ def _first_target(rules: Iterable[RemapRule], keys: tuple[str, ...], node: str) 
     return next((r.target for r in rules if r.source in keys and r.node in ("", node)), "")
 
 
-def _demand(what: str, name: str, fault: NameFault | None) -> None:
+def _raise_fault(what: str, name: str, fault: NameFault | None) -> None:
     if fault is not None:
         raise UsageError(f"{what} {name!r}: {fault.reason}")
 
@@ -185,7 +185,7 @@ def bind(node: str, namespace: str, rules: Iterable[RemapRule]) -> BoundNode:
 def resolve_bound(name: str, kind: str, bound: BoundNode) -> str:
     """Return the name that ``name`` of a bound node becomes; UsageError where rcl refuses the name.
     ``kind`` is ``topic`` or ``service``. One step only: the result is not remapped again."""
-    _demand(f"{kind} name", name, check_topic_name(name))
+    _raise_fault(f"{kind} name", name, check_topic_name(name))
     full = expand(name, bound.namespace, bound.node)
     if "{" in full:
         unknown = "{" + full.partition("{")[2].partition("}")[0] + "}"
@@ -193,5 +193,5 @@ def resolve_bound(name: str, kind: str, bound: BoundNode) -> str:
             f"{kind} name {name!r}: {unknown} is not known, use {{node}}, {{ns}} or {{namespace}}"
         )
     full = (bound.services if kind == "service" else bound.topics).get(full, full)
-    _demand(f"{kind} name", full, check_full_name(full))
+    _raise_fault(f"{kind} name", full, check_full_name(full))
     return full

@@ -126,7 +126,8 @@ def _same_text(document: Document, naming: Naming, definitions: Definitions) -> 
     parts = list(active_parts(document.root, definitions))
     for part in parts:
         if part.opens_something and not (naming.topics == NAMESPACE and part.is_apart):
-            message = f"all robots get the same text, and {part.kind} {part.name!r} runs in it"
+            what = f"{part.kind} {part.name!r}, which may open the same topics or services in each"
+            message = f"all robots get the same text with {what}"
             is_fixed = any(it.section and it.section.hardwired for it in parts)
             yield Problem(part.element, message, None, OWN if is_fixed else NAMED, (), SAME_TEXT)
             return

@@ -220,8 +220,8 @@ def _rules(home: _Element) -> Iterator[ReadRule]:
 
 
 def _remap_arguments(home: _Element) -> Iterator[_Element]:
-    """Yield the words after -r or --remap between --ros-args and --, and rules outside, which rcl takes
-    as well (rcl arguments.c: "This syntax is deprecated")."""
+    """Yield the <argument>s that may be remap rules: after -r or --remap between --ros-args and --, and
+    all outside, where rcl takes rules, too (rcl arguments.c: "This syntax is deprecated")."""
     ros, flag = False, ""
     for element in home.iterfind("argument"):
         text = text_of(element)

@@ -61,7 +61,7 @@ def read(data: bytes, file: str, definitions: Definitions) -> Reading:
 def read_tree(root: _Element, definitions: Definitions) -> Reading:
     """Return the names of a parsed description; raises nothing."""
     hosts, unknown = _hosts(root, definitions)
-    nodes = _nodes(hosts, definitions.release)
+    nodes = _ros_nodes(hosts, definitions.release)
     with_node = {it.number for it in nodes}
     names = [*_links(root), *_of_nodes(nodes), *_without_rules(root, hosts, with_node)]
     names += _of_hosts(root, hosts, "plugin", with_node, definitions)
@@ -89,7 +89,7 @@ def transforms_sent(
     """Yield the plugins that send a transform of odometry, with the frames of parent and child."""
     hosts, _ = _hosts(root, definitions)
     senders = {it.number: it for it in hosts if "/tf" in it.section.publishes}
-    for node in _nodes(senders.values(), definitions.release):
+    for node in _ros_nodes(senders.values(), definitions.release):
         frames = dict(node.frames)
         for parent, child in node.sends:
             yield senders[node.number].element, frames[parent], frames[child]
@@ -111,7 +111,7 @@ def _hosts(root: _Element, definitions: Definitions) -> tuple[list[_Host], list[
     return hosts, unknown
 
 
-def _nodes(hosts: Iterable[_Host], release: str) -> tuple[ReadNode, ...]:
+def _ros_nodes(hosts: Iterable[_Host], release: str) -> tuple[ReadNode, ...]:
     made = (node_of(*it, release) for it in hosts)
     return tuple(node for node in made if node is not None)
 
@@ -178,8 +178,8 @@ def _of_hosts(
     for host in hosts:
         if host.number not in nodes or _is_of_either(host):
             yield from _topics(host, tag, definitions.release)
-        yield from _frames(host, tag)
-        yield from _lookups(root, host, definitions)
+        yield from _frame_names(host, tag)
+        yield from _world_lookups(root, host, definitions)
         yield from _opened_names(host, tag)
 
 
@@ -227,7 +227,7 @@ def _topics(host: _Host, tag: str, release: str) -> Iterator[RuntimeName]:
         yield RuntimeName(kind, name, tag, host.number, path)
 
 
-def _frames(host: _Host, tag: str) -> Iterator[RuntimeName]:
+def _frame_names(host: _Host, tag: str) -> Iterator[RuntimeName]:
     for path, value in frames_of(host.element, host.section):
         yield RuntimeName(FRAME, value, tag, host.number, path)
     for entry in host.section.hardwired:
@@ -241,9 +241,9 @@ def _opened_names(host: _Host, tag: str) -> Iterator[RuntimeName]:
         yield RuntimeName(kind, value, tag, host.number, path)
 
 
-def _lookups(root: _Element, host: _Host, definitions: Definitions) -> Iterator[RuntimeName]:
-    """Yield names that a plugin or system looks up in the whole world, of things that this file
-    has; with the robot's own model in front it is another name, where the model keeps its name."""
+def _world_lookups(root: _Element, host: _Host, definitions: Definitions) -> Iterator[RuntimeName]:
+    """Yield names of things in this file that a plugin or system looks up in the whole world. A name
+    that begins with the robot's own model is yielded as the name of that model."""
     kind, tag = host.section.unique, str(host.element.tag)
     (every,) = definitions.find("element", tag)
     sites = [it for it in (*every.sites, *host.section.sites) if it.role != "keep"]

@@ -155,7 +155,7 @@ def _atom(piece: str, pieces: deque[str], depth: int) -> _Piece:
         return lambda states, after: _add(states, piece, after)
     if _is_count(piece) or (piece[0] == "[" and not _WHOLE_CLASS.fullmatch(piece)):
         raise PatternError(f"{piece} repeats nothing, or is not closed")
-    characters = _characters(piece)
+    characters = _matched_characters(piece)
     return lambda states, after: _add(states, characters, after)
 
 
@@ -197,7 +197,7 @@ def _times(piece: _Piece, least: int, most: int | None) -> _Piece:
     return add
 
 
-def _characters(piece: str) -> frozenset[str]:
+def _matched_characters(piece: str) -> frozenset[str]:
     if piece == ".":
         return _ALL - {"\n", "\r"}
     if piece[0] == "[":

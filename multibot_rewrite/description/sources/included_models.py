@@ -41,7 +41,7 @@ def with_includes(data: bytes, file: str, above: tuple[str, ...] = ()) -> bytes:
 
     ``above``: the files that include this one. Raises InputError if a model includes itself.
     """
-    document = _document(data, file) if b"<include" in data and len(above) <= _DEEPEST else None
+    document = _readable(data, file) if b"<include" in data and len(above) <= _DEEPEST else None
     if document is None or document.root.tag != "sdf" or document.root.find("world") is not None:
         return data
     above = (*above, real_path(file))
@@ -73,7 +73,7 @@ def _included_text(include: _Element, file: str, above: tuple[str, ...]) -> byte
     data = with_includes(_text(path), path, above)
     root = _root(data, path)
     model = root.find("model") if root is not None else None
-    if root is None or model is None or (_version(root) < (1, 7) and _OLD.search(data)):
+    if root is None or model is None or (_version_numbers(root) < (1, 7) and _OLD.search(data)):
         return b""
     if next(model.iter("include"), None) is not None:  # it would be lost
         return b""
@@ -89,14 +89,14 @@ def _included_text(include: _Element, file: str, above: tuple[str, ...]) -> byte
     return b"".join(_SPACES.sub(b" ", etree.tostring(it, with_tail=False)) for it in parts)
 
 
-def _document(data: bytes, path: str) -> Document | None:
+def _readable(data: bytes, path: str) -> Document | None:
     with suppress(InputError):
         return read_document(data, path)
     return None
 
 
 def _root(data: bytes, path: str) -> _Element | None:
-    document = _document(data, path)
+    document = _readable(data, path)
     if document is None:
         return None
     etree.strip_tags(document.root, etree.Comment)
@@ -105,7 +105,7 @@ def _root(data: bytes, path: str) -> _Element | None:
 
 def _nested(include: _Element, model: _Element) -> _Element:
     """Return the model with the name, pose and plugins of its include."""
-    model.set("name", _name(include, model))
+    model.set("name", _model_name(include, model))
     if text_at(include, "placement_frame"):
         model.set("placement_frame", text_at(include, "placement_frame"))
     for tag in ("pose", "static"):
@@ -119,7 +119,7 @@ def _nested(include: _Element, model: _Element) -> _Element:
 
 def _merged(include: _Element, model: _Element) -> Iterator[_Element]:
     """Yield the parts of the model, placed from a frame in its place."""
-    proxy = f"_merged__{_name(include, model)}__model__"
+    proxy = f"_merged__{_model_name(include, model)}__model__"
     first = model.find("link")
     usual = first.get("name", "") if first is not None else ""
     frame = etree.Element("frame", name=proxy, attached_to=model.get("canonical_link") or usual)
@@ -152,7 +152,7 @@ def _placed(part: _Element, proxy: str) -> None:
             axis.set("expressed_in", proxy)
 
 
-def _name(include: _Element, model: _Element) -> str:
+def _model_name(include: _Element, model: _Element) -> str:
     return text_at(include, "name") or model.get("name", "")
 
 
@@ -176,13 +176,13 @@ def _in_folder(path: str) -> str:
         return path if is_file(path) else ""
     config = os.path.join(path, "model.config")
     said = _root(_text(config), config) if is_file(config) else None
-    files = sorted(said.iter("sdf"), key=_version) if said is not None else []
+    files = sorted(said.iter("sdf"), key=_version_numbers) if said is not None else []
     name = (files[-1].text or "").strip() if files else ""
     found = os.path.join(path, name)
     return found if name and "/" not in name and is_file(found) else ""
 
 
-def _version(element: _Element) -> tuple[int, ...]:
+def _version_numbers(element: _Element) -> tuple[int, ...]:
     parts = element.get("version", "").split(".")
     return tuple(int(it) for it in parts) if all(it.isdigit() for it in parts) else ()
 

@@ -32,7 +32,7 @@ def package_folders(name: str, file: str, roots: tuple[str, ...]) -> tuple[str, 
     sources = os.environ.get("ROS_PACKAGE_PATH", "")
     installed = os.environ.get("AMENT_PREFIX_PATH", "")
     here = os.path.dirname(os.path.abspath(file))
-    return _candidates(name, here, (*roots, *_split(sources)), _split(installed))
+    return _candidates(name, here, (*roots, *_split_paths(sources)), _split_paths(installed))
 
 
 @outside
@@ -76,7 +76,7 @@ def _candidates(
     return (*found, *(it for it in shares if MANIFEST in entries(it)))
 
 
-def _split(paths: str) -> tuple[str, ...]:
+def _split_paths(paths: str) -> tuple[str, ...]:
     return tuple(it for it in paths.split(os.pathsep) if it)
 
 

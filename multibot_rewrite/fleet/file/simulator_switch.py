@@ -87,7 +87,7 @@ def loads_hardware(root: _Element) -> bool:
 
 
 def suits_simulator(root: _Element) -> bool:
-    """Return whether a simulator's controller manager can load its hardware."""
+    """Return whether a simulator can load all hardware of a description; also true without hardware."""
     if _lacks_a_class(root):
         return False
     return not loads_hardware(root) or all(map(may_be_simulated, hardware_classes(root)))
@@ -211,6 +211,7 @@ def with_own_arguments(
 
 
 def _choice(it: Argument, naming: Naming, robot: RobotSpec) -> _Choice:
+    """Return the robot's name as the value of an argument; no value if it does not fit all its uses."""
     uses = [use for use in it.uses if use.kind in ROS_KINDS or use.how != WHOLE]
     if not (it.word and (it.is_empty or it.is_space) and uses) or any(
         _makes_other_names(use, naming) for use in uses

@@ -24,7 +24,7 @@ from multibot_rewrite.related_files.yaml_text import pairs, replaced, spliced
 def vendor_commands(plan: FleetPlan) -> Iterator[str]:
     """Yield the vendor's commands that take the files of the one robot of a plan."""
     (robot,) = plan.robots
-    for it in _commands(plan, robot):
+    for it in _launch_commands(plan, robot):
         given = {**it.takes, **it.as_it_is}
         files = {argument: name_of(robot, what) for argument, what in given.items()}
         if given and not any(files.values()):
@@ -45,7 +45,7 @@ def taken_as_they_are(plan: FleetPlan) -> set[str]:
     return {
         placed_path(robot, name)
         for robot in plan.robots
-        for it in _commands(plan, robot)
+        for it in _launch_commands(plan, robot)
         for what in it.as_it_is.values()
         if (name := name_of(robot, what))
     }
@@ -71,7 +71,7 @@ def copied(plan: FleetPlan) -> Iterator[OutputFile]:
             yield OutputFile(f"{robot.spec.name}/{name}", text.encode(), (source,))
 
 
-def _commands(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[TakingCommand]:
+def _launch_commands(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[TakingCommand]:
     kind = SIMULATED if is_simulated(robot) else REAL
     for it in shapes()[plan.file.shape].launch if plan.file.shape else ():
         if it.robots in ("", kind) and (

@@ -76,7 +76,8 @@ class StartPoses(NamedTuple):
 
 
 def start_poses(plan: FleetPlan) -> StartPoses:
-    """Return a transform from the world for each robot with a pose that no other node localises."""
+    """Return for each robot with a pose: a transform from the world, amcl's initial pose, or both; or a
+    finding that says why its pose is not published."""
     found: list[object] = []
     for robot in plan.robots:
         if robot.spec.pose is not None:
@@ -134,7 +135,7 @@ def _place(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[objec
         what = f"its pose is not published, because it has {frames} instead of one"
         yield _finding(NO_SINGLE_ROOT, robot, what, "connect them by a joint")
         return
-    if own := _own_odometry(plan, robot):
+    if own := _odometry_sender(plan, robot):
         what = f"its pose is not published, because {own} may send where its base is"
         yield _finding(OWN_ODOMETRY, robot, what, "describe it in a file of nodes, with sends:")
         return
@@ -155,7 +156,7 @@ def static_transform(
 
 
 def initial_pose(pose: Pose) -> dict[str, object]:
-    """Return the parameters for amcl's start pose; they count only with ``set_initial_pose``."""
+    """Return amcl's parameters for a start pose, with the switch that makes them count."""
     values = {f"initial_pose.{key}": getattr(pose, key) for key in ("x", "y", "z", "yaw")}
     return {"set_initial_pose": True, **values}
 
@@ -184,8 +185,8 @@ def _sent(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, list[Edge]]:
     }
 
 
-def _own_odometry(plan: FleetPlan, robot: RewrittenRobot) -> str:
-    """Return a message about an unknown node's odometry frame that no known node sends, or ""."""
+def _odometry_sender(plan: FleetPlan, robot: RewrittenRobot) -> str:
+    """Return the beginning of a sentence: an unknown node with an odometry frame of its own; or ""."""
     described = {it.name for it in plan.fleet.facts}
     own = (edges for (name, _), edges in plan.fleet.edges.items() if name == robot.spec.namespace)
     frames = {frame for edges in own for it in edges for frame in (it.parent, it.child)}

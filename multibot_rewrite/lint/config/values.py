@@ -34,7 +34,7 @@ def _texts(given: KeyValue) -> tuple[str, ...]:
     return tuple(given.value)
 
 
-def _text(given: KeyValue) -> str:
+def _non_empty_text(given: KeyValue) -> str:
     if not isinstance(given.value, str):
         raise UsageError(f"{given.where} is {type_name(given.value)}, write a text in quotes")
     if not given.value:
@@ -72,7 +72,7 @@ def _levels(given: KeyValue) -> dict[str, str]:
 
 
 def _one_of(given: KeyValue, allowed: Sequence[str]) -> str:
-    word = _text(given)
+    word = _non_empty_text(given)
     if word not in allowed:
         raise UsageError(f"{given.where} is {word!r}, use one of {', '.join(allowed)}")
     return word
@@ -92,7 +92,8 @@ def checked_robots(robots: Sequence[str], where: str) -> tuple[str, ...]:
 
 
 def _path(given: KeyValue) -> str:
-    return os.path.join(given.folder, _text(given))
+    """Return a path from the folder of its configuration file; raises UsageError for another value."""
+    return os.path.join(given.folder, _non_empty_text(given))
 
 
 def _file(given: KeyValue) -> str:
@@ -142,7 +143,7 @@ def _argument_sets(given: KeyValue) -> tuple[ArgumentSet, ...]:
         if "arguments" not in parts:
             raise UsageError(f"{one.where}: no arguments, write arguments = {{name = 'value'}}")
         arguments = tuple((name, _argument(it)) for name, it in _table_of(parts["arguments"]))
-        files = _text(parts["files"]) if "files" in parts else ""
+        files = _non_empty_text(parts["files"]) if "files" in parts else ""
         patterns = anchored(files, one.folder, one.where) if files else (EVERY_FILE,)
         found += (ArgumentSet(pattern, arguments) for pattern in patterns)
     return tuple(found)
@@ -164,11 +165,11 @@ READERS: Mapping[str, Callable[[KeyValue], object]] = {
     "per-file-ignores": _per_file,
     "levels": _levels,
     "robots": lambda it: checked_robots(_texts(it), it.where),
-    "layout": _text,
-    "affix": _text,
-    "topics": _text,
-    "groups": _text,
-    "separators": lambda it: {kind: _text(one) for kind, one in _table_of(it)},
+    "layout": _non_empty_text,
+    "affix": _non_empty_text,
+    "topics": _non_empty_text,
+    "groups": _non_empty_text,
+    "separators": lambda it: {kind: _non_empty_text(one) for kind, one in _table_of(it)},
     "shared-frames": _texts,
     "shared-topics": _texts,
     "targets": targets,

@@ -62,12 +62,12 @@ def find_pair(path: str, srdf: Inventory, settings: Settings) -> Pair:
     """Return the description that an SRDF belongs to: the one that has most of its names. One that
     lacks more than a few of them is that of another robot or another variant."""
     if settings.urdf:
-        return _read(settings.urdf, srdf, settings)
+        return _pair_with(settings.urdf, srdf, settings)
     name = srdf.document.root.get("name", "").strip()
     best = NO_PAIR
     for candidate in _candidates(path, name, settings)[:TRIED]:
         try:
-            found = _read(candidate, srdf, settings)
+            found = _pair_with(candidate, srdf, settings)
         except InputError:  # reported when it is linted itself
             continue
         if best is NO_PAIR or found.misses < best.misses:
@@ -104,7 +104,7 @@ def _stem(path: str) -> str:
     return os.path.basename(path).partition(".")[0]
 
 
-def _read(path: str, srdf: Inventory, settings: Settings) -> Pair:
+def _pair_with(path: str, srdf: Inventory, settings: Settings) -> Pair:
     data, name = described(path, settings)
     tree = builtin_tree(settings.definitions, settings.distro, settings.ros)
     inventory = collect(read_document(data, name), tree)

@@ -191,8 +191,8 @@ def load_urdf(root: _Element, source: str) -> Model:
         raise InputError(f"{what}; urdf-lint finds the line") from None
 
 
-def _floats(values: Iterable[float]) -> tuple[float, ...]:
-    """Return numbers that JSON has."""
+def _finite(values: Iterable[float]) -> tuple[float, ...]:
+    """Return numbers rounded to 9 digits; raises ValueError for NaN and infinity, which JSON lacks."""
     found = tuple(round(float(it), 9) for it in values)
     if not all(map(isfinite, found)):
         raise ValueError(f"{found} is not finite")
@@ -201,11 +201,11 @@ def _floats(values: Iterable[float]) -> tuple[float, ...]:
 
 def _rgba(material: Any) -> Colour:
     found = material and material.color
-    return _floats(found.rgba) if found and len(found.rgba) == 4 else UNCOLOURED
+    return _finite(found.rgba) if found and len(found.rgba) == 4 else UNCOLOURED
 
 
 def _pose(origin: Any) -> Matrix:
-    return matrix_of(HERE) if origin is None else [*map(_floats, origin)]
+    return matrix_of(HERE) if origin is None else [*map(_finite, origin)]
 
 
 def _shapes(link: Any, named: Mapping[str, Colour], source: str) -> Iterator[Shape]:
@@ -213,16 +213,16 @@ def _shapes(link: Any, named: Mapping[str, Colour], source: str) -> Iterator[Sha
         colour = _rgba(it.material) or (it.material and named.get(it.material.name)) or UNCOLOURED
         pose, own = _pose(it.origin), it.geometry
         if own.box:
-            x, y, z = _floats(own.box.size)
+            x, y, z = _finite(own.box.size)
             yield Shape("box", (x, y, z), pose, colour)
         elif own.cylinder:
-            size = _floats((own.cylinder.radius, own.cylinder.length))
+            size = _finite((own.cylinder.radius, own.cylinder.length))
             yield Shape("cylinder", size, pose, colour)
         elif own.sphere:
-            yield Shape("sphere", _floats([own.sphere.radius]), pose, colour)
+            yield Shape("sphere", _finite([own.sphere.radius]), pose, colour)
         else:
             scale: Any = 1.0 if own.mesh.scale is None else own.mesh.scale
-            size = _floats(scale if hasattr(scale, "__len__") else [scale] * 3)
+            size = _finite(scale if hasattr(scale, "__len__") else [scale] * 3)
             yield mesh_shape(own.mesh.filename, size, pose, colour, source)
 
 
@@ -231,9 +231,9 @@ def _joint(it: Any) -> Joint:
     if kind == "continuous":
         lower, upper = -round(pi, 4), round(pi, 4)
     elif it.limit and kind in ("revolute", "prismatic"):
-        lower, upper = _floats((it.limit.lower or 0.0, it.limit.upper or 0.0))
+        lower, upper = _finite((it.limit.lower or 0.0, it.limit.upper or 0.0))
     leader = it.mimic and it.mimic.joint
-    factor, offset = _floats((it.mimic.multiplier, it.mimic.offset)) if leader else (1.0, 0.0)
+    factor, offset = _finite((it.mimic.multiplier, it.mimic.offset)) if leader else (1.0, 0.0)
     mimic = (leader, factor, offset) if leader else None
-    pose, axis = _pose(it.origin), _floats(it.axis)
+    pose, axis = _pose(it.origin), _finite(it.axis)
     return Joint(it.name, kind, it.parent or "", it.child or "", pose, axis, lower, upper, mimic)

@@ -106,10 +106,10 @@ def _shapes(link: Named, frames: Frames, at: Pose) -> Iterator[Shape]:
         colour = numbers(visual.findtext("material/diffuse") or "") or ()
         colour = colour if len(colour) == 4 else (*colour, 1.0) if len(colour) == 3 else UNCOLOURED
         for it in visual.iterfind("geometry/*"):
-            yield from _shape(it, pose, colour, frames.source)
+            yield from _shapes_of(it, pose, colour, frames.source)
 
 
-def _shape(
+def _shapes_of(
     it: _Element, pose: Matrix, colour: Vector | tuple[float, ...], source: str
 ) -> Iterator[Shape]:
     size = [numbers(it.findtext(name) or "") for name in ("size", "radius", "length", "scale")]

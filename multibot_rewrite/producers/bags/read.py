@@ -135,16 +135,16 @@ def _topic(reader: Reader, name: str, connections: list[Connection]) -> Recorded
     text = first.msgdef.data
     has_header = bool(_HEADER.match(text)) if text else type_ in _HEADED
     if type_ in JOINTED:
-        names = map(read_joint_names, _first(reader, connections, HEADERS))
+        names = map(read_joint_names, _first_messages(reader, connections, HEADERS))
         joints = dict.fromkeys(it for it in names if it)
     elif count and has_header:
-        read = list(_first(reader, connections, HEADERS))
+        read = list(_first_messages(reader, connections, HEADERS))
         found = map(read_header_frame, read)
         frames = dict.fromkeys(it for it in found if it is not None)
         pose = max((pose_in(type_, it) for it in read), key=lambda it: inf in it, default=())
     elif type_ == CLOCK_TYPE:
         pace = Pace()
-        for data in _first(reader, connections, TRANSFORMS):
+        for data in _first_messages(reader, connections, TRANSFORMS):
             pace = pace.after(read_stamp(data) or 0.0)
         back = round(pace.back, 1)
     offered = (getattr(it.ext, "offered_qos_profiles", ()) for it in connections)
@@ -152,7 +152,7 @@ def _topic(reader: Reader, name: str, connections: list[Connection]) -> Recorded
     return RecordedTopic(name, type_, count, qos, tuple(frames), tuple(joints), back, pose)
 
 
-def _first(reader: Reader, connections: list[Connection], many: int) -> Iterator[bytes]:
+def _first_messages(reader: Reader, connections: list[Connection], many: int) -> Iterator[bytes]:
     return (bytes(data) for _, _, data in islice(reader.messages(connections), many))
 
 
@@ -163,7 +163,7 @@ def _transforms(
     found: dict[tuple[str, str], Edge] = {}
     paces: dict[tuple[str, str], Pace] = {}
     static = topic.rpartition("/")[2] == "tf_static" or "/tf_static/" in topic
-    for read, data in enumerate(_first(reader, connections, TRANSFORMS + 1)):
+    for read, data in enumerate(_first_messages(reader, connections, TRANSFORMS + 1)):
         message = read_tf(data) if read < TRANSFORMS else None
         if message is None:
             return _paced(found, paces), True

@@ -48,7 +48,7 @@ _ROS_1 = "it is a launch file of ROS 1; in ROS 2 it is $(find-pkg-share NAME), $
 
 
 def started_by(text: str) -> str:
-    """Return, for people, the programs that the text of a launch file names; empty for none."""
+    """Return a clause to append: the programs that a launch file's text names; "" for none."""
     programs = shorten(_STARTED.findall(text), _SHOWN)
     return f"; by its text it starts {programs}" if programs else ""
 
@@ -114,12 +114,12 @@ def _lacking(error: BaseException) -> str:
 def _line(error: BaseException) -> str:
     """Return the line of a launch file in Python that raised it."""
     # launch has an error of its own around it.
-    frames = reversed(_frames(error.__cause__ or error))
+    frames = reversed(_stack_frames(error.__cause__ or error))
     last = next((it for it in frames if it.filename.endswith("launch.py")), None)
     return f" ({os.path.basename(last.filename)}:{last.lineno})" if last else ""
 
 
-def _frames(error: BaseException) -> StackSummary:
+def _stack_frames(error: BaseException) -> StackSummary:
     from traceback import extract_tb  # slow to import; few launch files fail
 
     return extract_tb(error.__traceback__)
@@ -140,7 +140,7 @@ def _variable(error: BaseException) -> str:
     if of_os and isinstance(error, KeyError):
         return str(error.args[0])
     # os.getenv gives None, which is no part of a path.
-    lines = [it.line or "" for it in _frames(error)]
+    lines = [it.line or "" for it in _stack_frames(error)]
     asked = _ASKED.findall(" ".join(lines)) if isinstance(error, TypeError) else []
     return next((it for it in asked if it not in os.environ), "")
 

@@ -144,7 +144,7 @@ def _last_word(it: LaunchedNode) -> str:
     return it.executable.rpartition(":")[2].removesuffix(".py")
 
 
-def _snake(name: str) -> str:
+def _snake_case(name: str) -> str:
     return _CAMEL.sub("_", name).lower()
 
 
@@ -152,13 +152,13 @@ def known_node(
     it: LaunchedNode, node_set: Sequence[NodeFacts], known: Mapping[str, NodeFacts]
 ) -> NodeFacts | None:
     """Return what is known of a node: by its name in a node set, or by package and executable."""
-    executable = _snake(_last_word(it))
+    executable = _snake_case(_last_word(it))
     program = f"{it.package}/{it.executable}"
     of_set = (node for node in node_set if node.name == it.name and node.package == it.package)
     wanted = {it.name, it.executable, executable, executable.removesuffix("_node")}
     of_package = (node for node in known.values() if node.package == it.package and not node.host)
     # A component that has a program of its own is called as its class: RectifyNode, rectify_node.
-    by_word = (node for node in of_package if {node.name, _snake(node.name)} & wanted)
+    by_word = (node for node in of_package if {node.name, _snake_case(node.name)} & wanted)
     chosen = (node for node in known.values() if runs(node, program))
     found = next(of_set, None) or next(chosen, None) or next(by_word, None)
     return as_started(found, it.executable, it.arguments) if found else None

@@ -81,12 +81,12 @@ def models_of(
         text = texts[topic].text if topic in texts else _model_text(words)
         name = words.get("-name", words.get("-entity", ""))
         moved = _moved(text, words.get("-robot_namespace", ""))
-        model = _read(name, moved, it.place, release, spawned=True)
+        model = _read_model(name, moved, it.place, release, spawned=True)
         found += [model._replace(text=text, words=said)] if model else []
         lost += [] if model else [it]
         taken.add(topic)
     rest = (it for it in texts.values() if it.topic not in taken)
-    more = (_read("", it.text, it.place, release, spawned=False) for it in rest)
+    more = (_read_model("", it.text, it.place, release, spawned=False) for it in rest)
     return Models((*found, *filter(None, more)), tuple(lost))
 
 
@@ -122,7 +122,7 @@ def _model_text(words: Mapping[str, str]) -> str:
     return read_file(path).decode() if os.path.isfile(path) else words.get("-string", "")
 
 
-def _read(name: str, text: str, place: Place, release: str, spawned: bool) -> Model | None:
+def _read_model(name: str, text: str, place: Place, release: str, spawned: bool) -> Model | None:
     try:
         reading = read(text.encode(), place.file, load_definitions((), release, ros=ROS_2))
     except InputError:

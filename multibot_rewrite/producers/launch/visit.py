@@ -198,7 +198,7 @@ def _include(entity: Any, seen: Visit) -> Iterable[Any] | None:
     return found
 
 
-def _pass(entity: Any, seen: Visit) -> None:
+def _add_nothing(entity: Any, seen: Visit) -> None:
     return None
 
 
@@ -213,7 +213,7 @@ def _node(entity: Any, seen: Visit) -> Iterable[Any] | None:
     return instead
 
 
-def _container(entity: Any, seen: Visit) -> Iterable[Any] | None:
+def _visit_container(entity: Any, seen: Visit) -> Iterable[Any] | None:
     if not wants(entity, seen):
         return None
     _node(entity, seen)
@@ -331,9 +331,9 @@ Handler = Callable[[Any, Visit], "Iterable[Any] | None"]
 def _handlers() -> Mapping[str, Handler]:
     return {
         **dict.fromkeys(names().executed.split(), _execute),
-        **dict.fromkeys(names().passed.split(), _pass),
+        **dict.fromkeys(names().passed.split(), _add_nothing),
         _INCLUDE: _include,
-        "ComposableNodeContainer": _container,
+        "ComposableNodeContainer": _visit_container,
         "LoadedComponent": _component,
         "LoadComposableNodes": _loaded,
         "Node": _node,

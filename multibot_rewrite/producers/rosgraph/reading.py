@@ -116,7 +116,8 @@ def _endpoints(node: "NodeMessage", file: str) -> Iterator[End]:
 def _topic(topic: "Topic", role: str, node: str, file: str) -> End:
     version, value = topic.type.hash
     if not all(0 <= it < 256 for it in (version, *value)):
-        raise InputError(f"{file}: {topic.name}: a byte of the type's hash is not 0 to 255")
+        what = "type.hash has a number that is not 0 to 255; record the graph again"
+        raise InputError(f"{file}: topic {topic.name}: {what}")
     hash_ = f"RIHS{version:02d}_{bytes(value).hex()}" if any(value) else ""
     qos = _qos(topic, file)
     return End(TOPIC, role, topic.name, topic.type.name, hash_, node, qos, "")

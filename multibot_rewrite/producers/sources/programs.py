@@ -40,7 +40,7 @@ def read_program(files: Sequence[str], packages: Packages) -> Read:
     while waiting and len(found) < MOST_FILES:
         path = os.path.realpath(waiting.pop(0))
         if path not in found:
-            found[path] = _read(path)
+            found[path] = _read_source(path)
             follow = _included if path.endswith(tuple(READERS)[:-1]) else _imported
             waiting += (it for one in found[path].imports for it in follow(path, one, packages))
     faults = [(Place("", "", it, 1), "is one file too many to be read") for it in waiting[:1]]
@@ -48,7 +48,7 @@ def read_program(files: Sequence[str], packages: Packages) -> Read:
     return Read(joined([*found.values(), left]), tuple(found))
 
 
-def _read(path: str) -> Source:
+def _read_source(path: str) -> Source:
     place = Place("", "", path)
     try:
         data = read_file(path)

@@ -315,6 +315,7 @@ def _construction(
 
 
 def _chain(names: Names, found: Class) -> tuple[tuple[Class, ...], tuple[str, ...]]:
+    """Return the class with its known base classes, and the names of its unknown ones."""
     chain, beyond, waiting = [found], [], [*found.bases]
     while waiting and len(chain) < DEEPEST:
         base = waiting.pop(0).strip("<>")

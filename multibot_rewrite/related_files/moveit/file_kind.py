@@ -65,7 +65,7 @@ def find_names(
     value counts once for every shape that reaches it."""
     walk = _Walk(names, [], set(), set())
     if root is not None:
-        _below(root, rules, walk)
+        _claim_below(root, rules, walk)
     free = (it for it in _scalars(root) if id(it) not in walk.claimed and is_text(it))
     others = [site_at(it, "", str(it.value)) for it in free]
     twice = []
@@ -94,7 +94,7 @@ def is_merge(key: yaml.Node) -> bool:
     return isinstance(key, yaml.ScalarNode) and key.value == _MERGE and not key.style
 
 
-def _below(node: yaml.Node, rule: Shape, walk: _Walk) -> None:
+def _claim_below(node: yaml.Node, rule: Shape, walk: _Walk) -> None:
     if (id(node), id(rule)) in walk.seen:
         return
     walk.seen.add((id(node), id(rule)))
@@ -102,7 +102,7 @@ def _below(node: yaml.Node, rule: Shape, walk: _Walk) -> None:
         walk.claimed.update(id(it) for it in _scalars(node))
     elif isinstance(node, yaml.SequenceNode):
         for item in node.value:
-            _below(item, rule, walk)
+            _claim_below(item, rule, walk)
     elif isinstance(node, yaml.ScalarNode):
         if isinstance(rule, str) and is_text(node):
             walk.claimed.add(id(node))
@@ -118,7 +118,7 @@ def _below(node: yaml.Node, rule: Shape, walk: _Walk) -> None:
             walk.found.extend(
                 Site(kind, without_robot(text), "", slot, at, len(text)) for at, text, kind in marks
             )
-            _below(value, below, walk)
+            _claim_below(value, below, walk)
 
 
 def _named(node: yaml.ScalarNode, kind: str) -> Iterator[Site]:

@@ -178,8 +178,8 @@ def output(_: Context, value: str) -> str:
     return f"{head}{slash}{named}"
 
 
-def _speller(word: str) -> Speller:
-    return lambda context, value: spell(context.names, word, value)
+def _speller(kind: str) -> Speller:
+    return lambda context, value: spell(context.names, kind, value)
 
 
 # Topics and services depend on their node as well, see ``node_topics``.

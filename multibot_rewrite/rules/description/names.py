@@ -138,7 +138,7 @@ BLANK = lazy_compile(r"\s")
 
 @memoized
 def named(subject: Subject) -> list[tuple[str, str, _Element]]:
-    """Return (kind, name, element) of the links and joints that have a name attribute."""
+    """Return (kind, name, element) of links and joints that have a name without substitution."""
     links, joints = subject.robot.links, subject.robot.joints
     every = [
         *[("link", it.name, it.element) for it in links],
@@ -263,7 +263,8 @@ def odd_interface(subject: Subject) -> Iterator[Problem]:
         ):
             name = it.get("name")
             if name is not None and (not name.strip() or _is_odd(it.tag, name.split())):
-                yield Problem(it, f"<{it.tag}> has the name {name!r}", "name")
+                hint = "" if name.strip() else "give it a name"
+                yield Problem(it, f"<{it.tag}> has the name {name!r}", "name", hint)
 
 
 def _is_odd(tag: str, words: Collection[str]) -> bool:

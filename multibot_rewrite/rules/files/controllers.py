@@ -46,7 +46,7 @@ def undeclared_controller(file: NamedFile) -> Iterator[Finding]:
             near = nearest(str(it.value), left) if it.value not in keys else ""
             if near:
                 place = Place(file.file, keys[near].start_mark.line + 1)
-                yield from _lacks(it, f"controller {it.value}", did_you_mean_at(near, place))
+                yield from _missing(it, f"controller {it.value}", did_you_mean_at(near, place))
         for key, body in controllers_of(manager):
             yield from _of_one(file, key, body, declared)
 
@@ -59,7 +59,7 @@ def _of_one(
     if controller is None:
         near = nearest(name, declared)
         hint = did_you_mean_at(near, declared[near].place) if near else ""
-        yield from _lacks(key, f"controller {name}", hint)
+        yield from _missing(key, f"controller {name}", hint)
         return
     # The joints of a controller; none where its parameters do not list any.
     own: dict[str, Place] = {}
@@ -70,7 +70,7 @@ def _of_one(
         if joint.value not in own:
             near = nearest(joint.value, own)
             hint = did_you_mean_at(near, own.get(near) or next(iter(own.values())))
-            yield from _lacks(joint, f"joint {joint.value} of {name}", hint)
+            yield from _missing(joint, f"joint {joint.value} of {name}", hint)
     facts = beside(file).known.get(controller.fact.known)
     if facts is not None and not controller.unknown_type:
         yield from _action(key, body, controller, facts)
@@ -89,13 +89,13 @@ def _action(
     called = f"{key.value}/{given.value}"
     if given.value not in served:
         near = next((f"{key.value}/{it}" for it in served), "")
-        yield from _lacks(given, f"action {called}", did_you_mean_at(near, controller.place))
+        yield from _missing(given, f"action {called}", did_you_mean_at(near, controller.place))
     elif served[given.value] != type_.value:
         hint = did_you_mean_at(served[given.value], controller.place)
-        yield from _lacks(type_, f"{called} as {type_.value}", hint)
+        yield from _missing(type_, f"{called} as {type_.value}", hint)
 
 
-def _lacks(node: yaml.Node, name: str, hint: str) -> Iterator[Finding]:
+def _missing(node: yaml.Node, name: str, hint: str) -> Iterator[Finding]:
     # Launch files fill in placeholders.
     if not PLACEHOLDER.search(name):
         yield remark_at(node, f"MoveIt uses {name}, which no parameter file of the robot has", hint)

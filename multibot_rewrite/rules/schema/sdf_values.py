@@ -94,7 +94,7 @@ def _numbers(text: str, *, count: int) -> Misread | None:
     return Misread(f"is not {count} numbers", True) if read < count else None
 
 
-def _pose(text: str, *, size: int) -> Misread | None:
+def _misread_pose(text: str, *, size: int) -> Misread | None:
     words = text.split()
     if not all(map(_REAL.match, words)):
         return Misread(f"is not {size} numbers", True)
@@ -117,8 +117,8 @@ CHECKS: dict[str, Callable[[str], Misread | None]] = {
     "truth": _truth,
     "vector2d": partial(_numbers, count=2),
     **dict.fromkeys(("vector", "vector3"), partial(_numbers, count=3)),
-    "pose": partial(_pose, size=6),
-    QUATERNION: partial(_pose, size=7),
+    "pose": partial(_misread_pose, size=6),
+    QUATERNION: partial(_misread_pose, size=7),
     "color": _color,
 }
 

@@ -49,7 +49,7 @@ def to_set(name: str, value: str, *nodes: str) -> Cause:
 
 def names_another(robot: str, owner: str, remaps: Sequence[Remap] = ()) -> Cause:
     """Return why nodes of a robot have a name of another one, and what gives them its own."""
-    hint = f"a namespace, remap rule or parameter of {robot} names {owner}"
+    hint = f"correct the namespace, remap rule or parameter of {robot} that names {owner}"
     for node, old, new in remaps[:1]:
         rule = f"{old}:={new.removeprefix(node.rpartition('/')[0] + '/')}"
         hint += f"; pass the rule {rule} to {shorten([it.node for it in remaps])}"

@@ -184,7 +184,7 @@ def part_far_away(seen: Index) -> Iterator[Finding]:
             if it.static and _FAR < away < inf and _is_of_a_body(seen, it.parent, above):
                 yield part_far_away.finding(
                     f"{it.parent} -> {it.child} on {it.topic} is {away:g} m long",
-                    "write metres",
+                    f"write metres where {shorten(it.publishers) or 'its node'} gets it",
                     robot=seen.frame_robot(it.child) or only(robots_of(seen, it.publishers)),
                     names=(it.child, it.topic),
                 )

@@ -48,14 +48,14 @@ def topic_names_miss(seen: Index) -> Iterator[Finding]:
     if not unsent:
         return
     # What only may be sent is not what was meant.
-    published = {name: it for name, it in topics.items() if any(map(_runs, it.publishers))}
+    published = {name: it for name, it in topics.items() if any(map(_surely_runs, it.publishers))}
     unheard = {name: it for name, it in published.items() if not at_work(it.subscribers)}
     for ends in unsent:
         by_kind: dict[str, list[End]] = {}
         there = done_elsewhere(seen, ends)
         lost = there and not has_likes_of(seen, seen.robot(ends.name), there)
         for end in _each_node(ends.subscribers):
-            if is_viewer(end.node) or not _runs(end):
+            if is_viewer(end.node) or not _surely_runs(end):
                 continue
             # What chooses between several inputs seldom has all of them.
             offered = unheard if chooses(end.node) else published
@@ -103,7 +103,8 @@ def _reads_no_robots(seen: Index, end: End, names: Sequence[str]) -> Finding:
     )  # fmt: skip
 
 
-def _runs(end: End) -> bool:
+def _surely_runs(end: End) -> bool:
+    """Return whether the end is certain, because its node certainly runs."""
     return end.sure == RUNS
 
 
@@ -274,7 +275,7 @@ def server_names_miss(seen: Index) -> Iterator[Finding]:
     """Yield clients whose server has another name. A service that nobody serves may be optional."""
     for ends in seen.by_name.values():
         if ends.kind != TOPIC and not ends.servers:
-            for end in filter(_runs, _each_node(ends.clients)):
+            for end in filter(_surely_runs, _each_node(ends.clients)):
                 yield from _unserved(
                     seen, end, _served_names(seen).get((end.kind, end.type), _NOBODY)
                 )

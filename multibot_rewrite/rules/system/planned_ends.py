@@ -209,7 +209,7 @@ def _why_besides(plan: Index, end: End, other: str) -> Cause:
     node, name = end.node, end.name
     robot, (plugin, place) = plan.robot_of[node], plugin_of(plan, node)
     if other:
-        return Cause(f"a remap rule or parameter of {robot} names {other}")
+        return Cause(f"correct the remap rule or parameter of {robot} that names {other}")
     if plugin:
         return caused(f"{plugin} has no namespace or remap rule for it, see {place}", place)
     word = plan.of_names.tag(robot)

@@ -101,7 +101,7 @@ def data_of_another_robot(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG323", "two-maps", ERROR, meant=(PUBLISHES,))
 def two_maps(seen: Index) -> Iterator[Finding]:
-    """Report two maps, unless nodes of several robots send them: that is a topic of several robots."""
+    """Report map topics with several publishers, unless they are of several robots."""
     for ends in seen.topics:
         nodes = nodes_of(ends.publishers) if ends.type == words.MAP else ()
         if len(nodes) < 2 or len(robots_of(seen, nodes)) > 1:

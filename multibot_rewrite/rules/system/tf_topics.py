@@ -251,7 +251,7 @@ def _tf_on_other_topic(
     # tf2 asks for /tf: a rule for the name that another rule made is none.
     target = "tf" if home.startswith(f"/{seen.of_names.tag(robot)}/") else home
     rules = f"-r /{TF}:={target} -r {static_topic(f'/{TF}')}:={static_topic(target)}"
-    hint = f"pass {rules}: to the whole process, where the node shares one"
+    hint = f"pass {rules} to each node; if it shares a process, to the whole process"
     if home == f"/{TF}":
         hint = f"leave out its rules for {home} and {static_topic(home)}, or start it without them"
     if other not in ("", robot):

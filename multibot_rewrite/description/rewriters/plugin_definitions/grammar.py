@@ -191,7 +191,7 @@ def assemble(
         words("hardwired"),
         below,
         settings.get("about", ""),
-        settings.get("source") or _read_in(settings.get("read", "")),
+        settings.get("source") or _checkout_source(settings.get("read", "")),
         file,
         line,
         settings.get("releases", ""),
@@ -201,8 +201,8 @@ def assemble(
     )
 
 
-def _read_in(words: str) -> str:
-    """Return the source without the tag, if only a checkout is named for its values."""
+def _checkout_source(words: str) -> str:
+    """Return "repository path" of a setting ``read``, which is "repository tag path"."""
     repository, _, rest = words.partition(" ")
     return f"{repository} {rest.partition(' ')[2]}".strip()
 

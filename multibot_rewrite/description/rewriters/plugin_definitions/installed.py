@@ -44,7 +44,7 @@ def installed() -> tuple[Installed, ...]:
 def advice(message: str) -> str:
     """Return the hint for an error in a file of an installed package; empty for other files."""
     owner = next((file for file in installed() if message.startswith(f"{file.name}:")), None)
-    return _remedy(owner.distribution) if owner else ""
+    return _reinstall_hint(owner.distribution) if owner else ""
 
 
 def announcing(folders: Iterable[str]) -> list[str]:
@@ -101,17 +101,17 @@ def _files(folder: str) -> Iterator[Installed]:
         points = sorted(about.entry_points.select(group=GROUP), key=lambda point: point.name)
     except (TypeError, ValueError, AttributeError) as error:
         what = f"{folder}/entry_points.txt cannot be read: {error}"
-        raise DefinitionsError(f"{name} {version}: {what}{_remedy(name)}") from None
+        raise DefinitionsError(f"{name} {version}: {what}{_reinstall_hint(name)}") from None
     for point in points:
         try:
             paths = definitions_files(point.value)
         except DefinitionsError as error:
             what = f"entry point {point.name} = {point.value}: {error}"
-            raise DefinitionsError(f"{name} {version}: {what}{_remedy(name)}") from None
+            raise DefinitionsError(f"{name} {version}: {what}{_reinstall_hint(name)}") from None
         yield from (Installed(name, version, path) for path in paths)
 
 
-def _remedy(distribution: str) -> str:
+def _reinstall_hint(distribution: str) -> str:
     return f"; correct and reinstall it, or: pip uninstall {distribution}"
 
 

@@ -115,6 +115,7 @@ def _value(place: str, path: str, words: list[str]) -> Iterator[Value]:
 
 
 def _range(place: str, options: Mapping[str, str]) -> tuple[float | None, float | None, bool]:
+    """Return the least value, the greatest one, and whether the least one is excluded."""
     above, (low, _, high) = options.get("above", ""), options.get("range", "").partition("..")
     try:
         found = float(above or low) if above or low else None

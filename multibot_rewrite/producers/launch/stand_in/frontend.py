@@ -166,10 +166,10 @@ def _condition(entity: Entity) -> Any:
         raise RuntimeError("if and unless conditions can't be used simultaneously")
     kinds = import_module("launch.conditions")
     classes = {"if": kinds.IfCondition, "unless": kinds.UnlessCondition}
-    return next((classes[it](_parts(entity.take(it))) for it in words), None)
+    return next((classes[it](_substitutions(entity.take(it))) for it in words), None)
 
 
-def _parts(value: Any) -> Any:
+def _substitutions(value: Any) -> Any:
     return parse_substitution(value if isinstance(value, str) else str(value))
 
 
@@ -195,7 +195,7 @@ def _command_words(line: str) -> list[Any]:
 
 def _pairs(first: str, second: str) -> Callable[[list[Entity]], list[Any]]:
     def read(entities: list[Entity]) -> list[Any]:
-        return [tuple(_parts(it) for it in _taken(one, first, second)) for one in entities]
+        return [tuple(_substitutions(it) for it in _taken(one, first, second)) for one in entities]
 
     return read
 
@@ -212,13 +212,13 @@ def _parameter(entity: Entity) -> Any:
     allowed = entity.values.pop("allow_substs", False)
     (path,) = _taken(entity, "from")
     files = import_module("launch_ros.descriptions")
-    allowed = _parts(allowed) if isinstance(allowed, str) else allowed
-    return files.ParameterFile(_parts(path), allow_substs=allowed)
+    allowed = _substitutions(allowed) if isinstance(allowed, str) else allowed
+    return files.ParameterFile(_substitutions(path), allow_substs=allowed)
 
 
 def _named_value(entity: Entity) -> tuple[Any, Any]:
     """Return a parameter with its value, or with those below its name."""
-    name = tuple(_parts(entity.take("name")))
+    name = tuple(_substitutions(entity.take("name")))
     if inner := entity.all("param"):
         entity.check()
         return name, dict(map(_named_value, inner))
@@ -237,7 +237,7 @@ def _typed(value: Any, kind: str) -> Any:
     if not isinstance(value, str):
         return value
     if "$(" in value or kind == "str":
-        return _parts(value)
+        return _substitutions(value)
     return load_yaml(value, A_VALUE) if value else value
 
 
@@ -255,7 +255,7 @@ _MODULES = {
     "loops": f"{__package__}.processes",
 }
 _READERS: Mapping[str, Reader] = {
-    **{"": _parts, "text": str, "truth": _truth, "words": _command_words},
+    **{"": _substitutions, "text": str, "truth": _truth, "words": _command_words},
     "end": lambda _: [import_module("launch.actions").Shutdown()],
 }
 _named = _pairs("name", "value")
@@ -287,7 +287,7 @@ def _form(text: str) -> Form:
         key, _, how = key.partition(":")
         needs += [key] if word[0] == "!" else []
         if key[0] == "<":
-            below[key[1:-1]] = argument, _BELOW.get(key[1:-1], _parts)
+            below[key[1:-1]] = argument, _BELOW.get(key[1:-1], _substitutions)
         else:
             values[key] = argument or key, _READERS[how]
     actions, _ = below.pop("*", ("", None))

@@ -174,7 +174,7 @@ def _configuration(it: Any, context: LaunchContext) -> str:
     )
 
 
-def _variable(it: Any, context: LaunchContext) -> str:
+def _environment_variable(it: Any, context: LaunchContext) -> str:
     name = text_of(context, it.name)
     if name not in context.environment:
         os.environ.get(name)  # raises for one that is set and hidden
@@ -198,7 +198,7 @@ def _expression(it: Any, context: LaunchContext) -> str:
     return str(eval(text_of(context, it.expression), {}, known))
 
 
-def _iterated(it: Any, context: LaunchContext) -> str:
+def _loop_value(it: Any, context: LaunchContext) -> str:
     known = context.get_locals_as_dict()
     own = {key.removeprefix(ITERATED): known[key] for key in known if key.startswith(ITERATED)}
     return _looked_up(context, own, text_of(context, it.name), it.default_value, "value of a loop")
@@ -270,7 +270,7 @@ class AnySubstitution(AllSubstitution):
 
 TextSubstitution = _substitution(lambda it, context: str(it.text), "text")
 LaunchConfiguration = _substitution(_configuration, "variable_name", "default")
-EnvironmentVariable = _substitution(_variable, "name", "default_value")
+EnvironmentVariable = _substitution(_environment_variable, "name", "default_value")
 PythonExpression = _substitution(_expression, "expression", "python_modules")
 _SIDES = ("left", "right")
 EqualsSubstitution = _substitution(lambda it, context: _is(_equal(it, context)), *_SIDES)
@@ -282,8 +282,8 @@ NotSubstitution = _substitution(
 )
 IfElseSubstitution = _substitution(_chosen, "condition", "if_value", "else_value")
 # launch/substitutions/for_loop_var.py (rolling).
-ForEachVar = _substitution(_iterated, "name", "default_value")
-ForLoopIndex = _substitution(_iterated, "name", "default_value")
+ForEachVar = _substitution(_loop_value, "name", "default_value")
+ForLoopIndex = _substitution(_loop_value, "name", "default_value")
 AnonName = _substitution(_anonymous, "name")
 LocalSubstitution = _substitution(
     # The file is a program in Python, too.

@@ -64,7 +64,13 @@ def _read_now(subject: Subject, element: _Element) -> tuple[Edit, ...]:
 def ignored_limit(subject: Subject) -> Iterator[Problem]:
     """Report limits that came with version 1.2; one finding for a <limit>."""
     newest = versions.KNOWN[-1]
-    read = min(versions.version_of(subject.document.root), _reads(subject)) >= newest
+    reads = _reads(subject)
+    hint = (
+        f'write version="{newest}" in <robot>'
+        if reads >= newest
+        else "delete it: this release has none"
+    )
+    read = min(versions.version_of(subject.document.root), reads) >= newest
     for joint in subject.robot.joints if not read else ():
         limit = joint.parts.get("limit")
         given = () if limit is None else limit.keys()
@@ -72,7 +78,7 @@ def ignored_limit(subject: Subject) -> Iterator[Problem]:
         if limit is not None and there:
             verb = "are" if there[1:] else "is"
             message = f"joint {joint.name!r}: {' and '.join(there)} {verb} not read"
-            yield Problem(limit, message, there[0], f"needs URDF {newest}")
+            yield Problem(limit, message, there[0], hint)
 
 
 @rule("MB133", "version-of-release", ERROR, options={"distro": "jazzy"})

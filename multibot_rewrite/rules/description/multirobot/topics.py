@@ -202,13 +202,13 @@ def one_robot_description(subject: Subject) -> Iterator[Problem]:
 
 @rule("MB419", "ignored-model-namespace", WARNING)
 def ignored_model_namespace(subject: Subject) -> Iterator[Problem]:
-    """Report each ignored namespace."""
+    """Report each model's namespace that the release's Gazebo does not read."""
     return ignored_namespaces(subject.inventory, subject.tree)
 
 
 @rule("MB429", "model-namespace-in-use", WARNING, options={"distro": "rolling"})
 def model_namespace_in_use(subject: Subject) -> Iterator[Problem]:
-    """Report each namespace that is in use."""
+    """Report each model's namespace that plugins put in front of their relative topics."""
     return used_namespaces(subject.inventory, subject.tree)
 
 

@@ -124,7 +124,7 @@ def _of_models(subject: Subject) -> Iterator[Problem]:
         if mass is not None and mass <= 0:
             message = f"mass of link {link.get('name')!r} is {mass:g}"
             yield Problem(inertial, f"{message}, and has to be above 0", None, level=level)
-        found = [] if inertia is None else [_moment(inertia, it) for it in _MOMENTS]
+        found = [] if inertia is None else [_moment_or_default(inertia, it) for it in _MOMENTS]
         moments = tuple(it for it in found if it is not None)
         if len(moments) != len(_MOMENTS) or inertia is None:
             continue
@@ -146,7 +146,7 @@ def _is_static(link: _Element) -> bool:
 _MOMENTS = {"ixx": 1.0, "ixy": 0.0, "ixz": 0.0, "iyy": 1.0, "iyz": 0.0, "izz": 1.0}
 
 
-def _moment(inertia: _Element, name: str) -> float | None:
+def _moment_or_default(inertia: _Element, name: str) -> float | None:
     return number_at(inertia, name) if inertia.find(name) is not None else _MOMENTS[name]
 
 

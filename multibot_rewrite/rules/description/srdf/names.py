@@ -259,7 +259,7 @@ def state_beyond_limits(subject: Subject) -> Iterator[Problem]:
             continue
         lower, upper = limits
         if not lower - ROUNDING <= values[0] <= upper + ROUNDING:
-            message = f"{name!r} is {values[0]:g}, its limits are {lower:g} to {upper:g}"
+            message = f"joint {name!r} is {values[0]:g}, its limits are {lower:g} to {upper:g}"
             yield Problem(it, message, "value", "correct the value")
 
 
