@@ -88,9 +88,7 @@ def _changes(before: System, seen: Index) -> Iterator[_Change]:
     for key, end in new.items():
         tool, did_not = seen.is_tool(end.node), f"{DOES[end.role]} {end.name}, and did not"
         if key in old:
-            if (was := _type_and_qos(old[key])) != (now := _type_and_qos(end)) and not seen.is_tool(
-                end.node
-            ):
+            if (was := _type_and_qos(old[key])) != (now := _type_and_qos(end)) and not tool:
                 what = f"{DOES[end.role]} {end.name} as {now}, and did as {was}"
                 yield _Change(end.node, what, (end.name,))
         elif heeded := _heeded(seen, end):

@@ -229,10 +229,13 @@ def is_sure(seen: Index, found: Finding, moved: bool) -> bool:
     """Return whether all of a tree in pieces is in the launch file. For a robot that is not
     ``moved`` by a plugin in a simulator a driver that is started apart may send the odometry, and
     what is sent on another topic of the robot somebody may bring to its tree; pieces without the
-    usual frames may be meant. Where a build's start pose places the robot, nothing localizes it."""
+    usual frames may be meant. Where a build's start pose places the robot, nothing localizes it; a
+    misspelt frame of it is sure."""
     loose = [it for it in loose_odometry(seen) if {*found.names} & {*it}]
     own = (it for it in seen.nodes if seen.robot(it) == found.robot)
-    if any(last_word(seen.plain(it)) == START_POSE for it in own):
+    misspelt = {(it.robot, it.names) for it in _misspelled(seen)}
+    is_misspelt = (found.robot, found.names) in misspelt
+    if not is_misspelt and any(last_word(seen.plain(it)) == START_POSE for it in own):
         return False
     lacking = [(odom, it) for odom, root in loose for it in found.names if it not in (odom, root)]
     if (loose and not moved) or any(sent_elsewhere(seen, found.robot, *it) for it in lacking):
