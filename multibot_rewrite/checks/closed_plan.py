@@ -254,9 +254,8 @@ def gaps_of(
         known |= {it for it in robot.findings if it.file == robot.spec.srdf and it.level != NOTE}
     # What a file of the user lacks has been found there.
     said = {(it.code, it.hint) for it in known}
-    found = without_input(plan.fleet.table.runs, plan.file.distro)
-    lacking = (it._replace(file="") for it in found if (it.code, it.hint) not in said)
-    known |= {_in_file(it, plan.robots[0]) for it in lacking}
+    lacking = without_input(plan.fleet.table.runs, plan.file.distro)
+    known |= {_in_file(it, plan.robots[0]) for it in lacking if (it.code, it.hint) not in said}
     known |= {*_gaps(plan, fleet, texts, known), *not_across(fleet), *_shared(plan)}
     return tuple(
         sorted(known, key=lambda it: (it.file, it.line, it.column, it.code, it.message, it))

@@ -95,8 +95,10 @@ _TEXT = re.compile(r"<\?xml|<robot|<sdf")
 def named_findings(launched: Launched) -> list[Finding]:
     """Return what is wrong with the files that a launch file names, each once."""
     every = (_descriptions, _loaded_again, _parameters, _values, bridge_findings)
-    lacking = [*without_input(launched.nodes, launched.release)]
-    # Said once of all nodes, not in each file.
+    unread = {it.place for it in launched.graph.notes}
+    nodes = (it for it in launched.nodes if it.place not in unread)
+    # Reported once for all nodes, not in each file.
+    lacking = [*without_input(nodes, launched.release)]
     said = {(it.code, it.hint) for it in lacking}
     found = (it for findings in every for it in findings(launched))
     return [*dict.fromkeys(it for it in found if (it.code, it.hint) not in said), *lacking]

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.base.findings.finding import Rule
@@ -33,19 +32,15 @@ def no_rule(word: str, rules: Mapping[str, Rule]) -> str:
     begun = (word[:size].upper() for size in range(len(word), 2, -1))
     near = next((it for it in begun if it in known), "")
     near = near or nearest(word.upper(), sorted(known))
-    named = [] if near else [it for it in rules.values() if _has(it.name, word)]
-    near = near or ("" if named else near_name(word, rules))
-    about = [] if near else named or [it for it in rules.values() if _has(it.what, word)]
+    start = f" {word.lower().removesuffix('s')}"
+    every = [it for it in rules.values() if not near and start[3:]]
+    named = [it for it in every if start in f" {it.name}".replace("-", " ")]
+    about = named or [it for it in every if start in it.what.lower()]
     few = shorten([f"{it.code} {it.name}" for it in about], SEVERAL)
+    near = near or ("" if named else near_name(word, rules))
     other = f"rules about it: {few}" if few else f"see {ASKED}"
     hint = f"did you mean {near!r}?" if near else other
     return f"no rule has the code {word!r}, and none begins with it; {hint}"
-
-
-def _has(text: str, word: str) -> bool:
-    """Return whether a word of the text begins with the word, which may be a plural."""
-    begun = word.lower().removesuffix("s")
-    return len(begun) > 2 and any(it.startswith(begun) for it in re.findall(r"\w+", text.lower()))
 
 
 def find_codes(words: Iterable[str], where: str, rules: Mapping[str, Rule]) -> tuple[str, ...]:

@@ -8,13 +8,13 @@ controller_manager.cpp ('type' param was not defined, controller type does not e
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from functools import cache
 
 import yaml
 
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
-from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.nearest import MISTYPED, nearest, slip_of
 from multibot_rewrite.base.releases import has_release, releases_with
 from multibot_rewrite.base.wording import SEVERAL, shorten, unique
@@ -41,7 +41,7 @@ from multibot_rewrite.related_files.yaml_text import pairs
 from multibot_rewrite.rules.declaration import at, remark_at
 from multibot_rewrite.rules.description.files import values
 from multibot_rewrite.rules.files.demands import Demand, demands, value_of
-from multibot_rewrite.rules.files.parameter_files import facts_of_node, of_release
+from multibot_rewrite.rules.files.parameter_files import of_release
 from multibot_rewrite.rules.files.section_facts import (
     Section,
     Setting,
@@ -256,10 +256,9 @@ def missing_parameters(file: NamedFile) -> Iterator[Finding]:
         is_whole = len(unknown) < len(found) < len(needed)
         controller = section.node is not None and bool(section.node.types)
         yield from found if is_whole or not controller else ()
-        for said, names, hint in _none_of(facts, section.whole) if section.given else ():
+        for said, hint, *names in _none_of(facts, section.whole) if section.given else ():
             if not any(is_set_in_other_file(file, section.title, it) for it in names):
-                message = f"{section.title}: {said}"
-                yield remark_at(section.given[0].key, message, hint, WARNING)
+                yield remark_at(section.given[0].key, f"{section.title}: {said}", hint, WARNING)
     for it in demands(file, "needs"):
         # A value that only a launch file fills in is there, too.
         if it.given.value is True and it.section.at + it.words[0] not in it.section.whole:
@@ -269,28 +268,25 @@ def missing_parameters(file: NamedFile) -> Iterator[Finding]:
 
 def without_input(runs: Iterable[Run], release: str) -> Iterator[Finding]:
     """Yield a finding for all nodes that have none of the same parameters, one of which they need."""
-    known = built_in_nodes(release).nodes
-    called = lists_by_key((it.fact.known or it.fact.name, it) for it in runs if not it.untold)
-    for node, alike in ((known[name], alike) for name, alike in called.items() if name in known):
-        facts = of_release(facts_of_node(node, "", "", ()), release)
-        lacking = [(it, *said) for it in alike for said in _none_of(facts, it.values)]
-        if lacking:
-            first, said, _, hint = lacking[0]
-            names = shorten(unique(it.full_name for it, *_ in lacking), SEVERAL)
-            place = next((it.place for it in first.values.values()), first.place)
-            yield at(values.missing, place, f"{names}: {said}", hint, level=WARNING)
+    known, lacking = built_in_nodes(release).nodes, defaultdict[tuple[str, ...], list[Run]](list)
+    for run in runs:
+        node = None if run.untold else known.get(run.fact.known or run.fact.name)
+        facts = declared_by(f"{node.package}/{node.name}") if node else ()
+        for said in _none_of(facts, run.values):
+            lacking[said].append(run)
+    for (said, hint, *_), nodes in lacking.items():
+        names = shorten(unique(it.full_name for it in nodes), SEVERAL)
+        yield at(values.missing, nodes[0].place, f"{names}: {said}", hint, level=WARNING)
 
 
-def _none_of(
-    facts: Iterable[Declared], there: Collection[str]
-) -> Iterator[tuple[str, tuple[str, ...], str]]:
-    """Yield message, parameters and hint where none of several is there, one of which has to be."""
+def _none_of(facts: Iterable[Declared], there: Collection[str]) -> Iterator[tuple[str, ...]]:
+    """Yield message, hint and names of parameters where none is there and one has to be."""
     for fact in facts:
         for words in (words for check, words in fact.checks if check == "required_or"):
             names = (fact.path, *words.split())
             if not any(it in there for it in names):
                 said = f"none of these is set: {', '.join(names)}"
-                yield said, names, f"add one to its parameter file; see {fact.source}"
+                yield said, f"add one to its parameter file; see {fact.source}", *names
 
 
 def _missing(file: NamedFile, section: Section, fact: Declared, words: str) -> Iterator[Finding]:
