@@ -68,7 +68,7 @@ def ignored_limit(subject: Subject) -> Iterator[Problem]:
     hint = (
         f'write version="{newest}" in <robot>'
         if reads >= newest
-        else "delete it: this release has none"
+        else "delete it: this release ignores it"
     )
     read = min(versions.version_of(subject.document.root), reads) >= newest
     for joint in subject.robot.joints if not read else ():
