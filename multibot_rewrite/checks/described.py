@@ -27,9 +27,11 @@ def wrong_in_descriptions(
     """Yield findings about what stops the robots of these descriptions, each once. The ``simulated``
     ones run in Gazebo; unless they are in ``said`` (the fleet file says so), the hint says how to
     deny it. In descriptions that the user's launch files start (``launched``) errors are warnings,
-    except those of a simulator into which the fleet file alone puts the robot (``unplaced``)."""
+    except for a model that the simulator into which the fleet file alone puts the robot
+    (``unplaced``) does not make."""
     # What only looks at a robot's files needs none of the lint.
     from multibot_rewrite.lint.launched import is_of_simulator
+    from multibot_rewrite.rules.description.names import reserved_name
 
     its = (simulated, said, launched, unplaced)
     in_gazebo, sure, own, added = ({it.source.file for it in one} for one in its)
@@ -50,7 +52,8 @@ def wrong_in_descriptions(
             of_simulator = one.level == ERROR and is_of_simulator(one, document)
             hints = (one.hint, _REAL if of_simulator and file in in_gazebo - sure else "")
             found = one._replace(hint="; ".join(filter(None, hints)))
-            is_own = one.level == ERROR and file in (own - (sure & added) if of_simulator else own)
+            is_not_made = one.code == reserved_name.code and file in sure & added
+            is_own = one.level == ERROR and file in own and not is_not_made
             yield as_known(found, "description has it") if is_own else found
 
 

@@ -275,8 +275,8 @@ def without_input(runs: Iterable[Run], release: str) -> Iterator[Finding]:
         for said in _none_of(facts, run.values):
             lacking[said].append(run)
     for (said, hint, *_), nodes in lacking.items():
-        names = shorten(unique(it.full_name for it in nodes), SEVERAL)
-        yield at(values.missing, nodes[0].place, f"{names}: {said}", hint, level=WARNING)
+        who = shorten(unique(it.full_name for it in nodes), SEVERAL)
+        yield at(values.missing, nodes[0].place, f"{who}: {said}", hint, level=WARNING)
 
 
 def _none_of(facts: Iterable[Declared], there: Collection[str]) -> Iterator[tuple[str, ...]]:
