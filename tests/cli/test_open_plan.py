@@ -167,7 +167,7 @@ def test_inputs_that_nobody_chose_are_missed_once_by_build_and_launch(
     for words in (["build", "fleet.yaml", "-o", "out"], ["check-launch", "out/fleet.launch.py"]):
         assert main(words) == 0
         lines = "".join(capsys.readouterr()).splitlines()
-        said.append([it.partition(" warning: ")[2] for it in lines if "MB115" in it])
+        said.append([it.partition(" note: ")[2] for it in lines if "MB115" in it])
     assert said[0] == said[1] and len(said[0]) == 1
     filters = {
         "postfix": "/ekf_filter_node_robot1, /ekf_filter_node_robot2",

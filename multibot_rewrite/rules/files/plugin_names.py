@@ -272,8 +272,8 @@ def without_input(runs: Iterable[Run], release: str) -> Iterator[Finding]:
     for run in runs:
         node = None if run.untold else known.get(run.fact.known or run.fact.name)
         facts = declared_by(f"{node.package}/{node.name}") if node else ()
-        for said in _none_of(facts, run.values):
-            lacking[said].append(run)
+        for fault in _none_of(facts, run.values):
+            lacking[fault].append(run)
     for (said, hint, *_), nodes in lacking.items():
         who = shorten(unique(it.full_name for it in nodes), SEVERAL)
         yield at(values.missing, nodes[0].place, f"{who}: {said}", hint, level=WARNING)
