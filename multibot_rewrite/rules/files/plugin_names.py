@@ -276,7 +276,7 @@ def without_input(runs: Iterable[Run], release: str) -> Iterator[Finding]:
             lacking[fault].append(run)
     for (said, hint, *_), nodes in lacking.items():
         who = shorten(unique(it.full_name for it in nodes), SEVERAL)
-        yield at(values.missing, nodes[0].place, f"{who}: {said}", hint, level=WARNING)
+        yield at(values.missing, nodes[0].place, f"{who}: {said}", hint, level=NOTE)
 
 
 def _none_of(facts: Iterable[Declared], there: Collection[str]) -> Iterator[tuple[str, ...]]:
