@@ -84,7 +84,7 @@ def not_as_planned(
 
 
 def is_of_sources(it: Finding) -> bool:
-    """Return whether a finding is about one robot alone, whatever its name."""
+    """Return whether one robot may have the fault by its sources already, by the code."""
     return bool(it.robot) and it.code in (*_OF_SOURCES, *_MISSED)
 
 

@@ -284,6 +284,7 @@ def _is_controlled(root: etree._Element) -> bool:
 
 
 def _gazebo_parts(root: etree._Element) -> list[etree._Element]:
+    """Return the elements with what is for Gazebo: of an SDF its root, otherwise each ``<gazebo>``."""
     return [root] if root.tag == "sdf" else root.findall("gazebo")
 
 

@@ -94,6 +94,7 @@ def _as_values(own: Sequence[Parameter]) -> dict[str, object]:
 
 
 def _is_plain(value: object) -> bool:
+    """Return whether it is a text, number or bool, or a list of these."""
     items = value if isinstance(value, list) else [value]
     return all(isinstance(it, bool | int | float | str) for it in items)
 

@@ -145,5 +145,6 @@ def said_of(text: str, finding: Finding, robot: str) -> str:
 
 
 def _pattern(word: str, *, escaped: bool = False) -> re.Pattern[str]:
+    """Return an expression that finds a word as a whole; ``escaped`` if it is an expression already."""
     inner = word if escaped else re.escape(word)
     return re.compile(rf"(?<![A-Za-z0-9])(?:{inner})(?![A-Za-z0-9])")

@@ -310,6 +310,7 @@ def _are_read(tree: Tree) -> bool:
 
 
 def _with_namespace(inventory: Inventory) -> list[_Element]:
+    """Return the models, own and included, that have a namespace."""
     if b"namespace" not in inventory.document.source:
         return []
     models = inventory.document.root.iter(MODEL, INCLUDE)

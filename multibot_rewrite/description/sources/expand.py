@@ -129,6 +129,7 @@ def expand_traced(
 
 
 def _text(path: str, result: Result, trace: Trace) -> bytes:
+    """Return what xacro made, and print its warnings; raises InputError, placed by ``trace``."""
     # What xacro warns about, without what a terminal would obey.
     for line in result.notes.splitlines():
         sys.stderr.write("".join(it if it.isprintable() else "?" for it in line) + "\n")

@@ -62,8 +62,8 @@ _TOOLS = {"SetInitialPose": "initialpose", "SetGoal": "goal_pose"}
 
 
 def windows_of_plan(plan: System, relayed: bool) -> tuple[RvizText, ...]:
-    """Return one config for all robots; one for each robot, with its namespace and tf topic, if
-    each sends its transforms on its own topic and they are not ``relayed`` to ``/tf``."""
+    """Return a config for each robot, with its namespace and tf topic, if each sends its transforms on
+    its own topic and they are not ``relayed`` to ``/tf``; otherwise a single one for all."""
     layout = next(it for it in LAYOUTS if plan.layout in (it.name, it.short))
     robots, shared = shown_by_robot(plan)
     lines = [_group(it, at, layout.at_run_time) for at, it in enumerate(robots)]

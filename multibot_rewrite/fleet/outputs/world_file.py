@@ -264,7 +264,9 @@ def world_file(plan: FleetPlan) -> FilesAndFindings:
 
 
 def _needed(robots: Sequence[RewrittenRobot], kind: str) -> dict[str, str]:
-    """Return the systems for the sensors of these robots, by library, and those of their files."""
+    """Return the XML of the systems that sensors and files of these robots need, by library.
+
+    ``kind`` is what plugins are called after: gz-sim or ignition-gazebo."""
     roots = [it.member.inventory.document.root for it in robots]
     types = {sensor.get("type", "") for root in roots for sensor in root.iter("sensor")}
     needed = dict(sorted(SYSTEMS[it] for it in types & SYSTEMS.keys()))

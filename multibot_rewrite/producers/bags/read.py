@@ -196,5 +196,6 @@ def _qos(given: Any) -> Qos:
 
 
 def _seconds(given: Any) -> float:
+    """Return the seconds of a duration of QoS; infinite for 0 and for what stands for no limit."""
     passed = given.sec + given.nsec / 1e9
     return inf if given.sec >= _NO_LIMIT_SECONDS or passed == 0 else passed

@@ -56,6 +56,7 @@ def _axis(frames: Frames, joint: Named) -> Vector | None:
 
 
 def _link(link: Named) -> _Element:
+    """Return a link of SDF as one of URDF, without shapes whose pose cannot be read."""
     made = etree.Element("link", name=link.name)
     for written in link.element.iterchildren("collision", "visual"):
         pose = written.find("pose")

@@ -40,8 +40,8 @@ ABSENT = "is that robot started, and is its name right?"
 
 @system_rule("MG303", "topic-names-miss", ERROR, absence=True, drawn="leak")
 def topic_names_miss(seen: Index) -> Iterator[Finding]:
-    """Yield subscribers whose topic is sent under another name. What tools alone read is a note;
-    one with only the type in common a warning, since something else may send it."""
+    """Yield subscribers whose topic nobody sends, with the name it is sent under where one is alike. It
+    is a note if a tool sends that, and a warning if only the type is alike: another may send it."""
     topics = {name: it for (kind, name), it in seen.by_name.items() if kind == TOPIC}
     unsent = [it for it in topics.values() if not it.publishers and it.type != TF]
     unsent = [it for it in unsent if it.name not in EVERYBODYS]

@@ -169,6 +169,7 @@ def _chosen(subject: Subject) -> tuple[str, ...]:
 
 
 def _line(it: Interface) -> str:
+    """Return where it is written: ``file.xacro:12``."""
     return f"{os.path.basename(it.place.file)}:{it.place.line}"
 
 
