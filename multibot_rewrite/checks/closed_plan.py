@@ -248,8 +248,8 @@ def gaps_of(
 ) -> tuple[Finding, ...]:
     """Return the gaps in the robots of a fleet, by place; ``made`` are the robots' files, and what
     was found as they were made."""
-    texts, told = sorted_out(made)
-    known = of_files(told)
+    texts, findings = sorted_out(made)
+    known = of_files(findings)
     for robot in (group.robots[0] for group in group_robots(plan)):
         known |= {it for it in robot.findings if it.file == robot.spec.srdf and it.level != NOTE}
     # What a file of the user lacks has been found there.

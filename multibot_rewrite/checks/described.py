@@ -45,9 +45,9 @@ def wrong_in_descriptions(
         settings = Settings(
             definitions=definitions, distro=distro, ros=ROS_2, simulated=file in in_gazebo
         )
-        told = {(one.code, one.message) for one in it.shared}
+        shared = {(one.code, one.message) for one in it.shared}
         for one in _linted(document, made, settings):
-            if (one.code, one.message) in told:
+            if (one.code, one.message) in shared:
                 continue
             of_simulator = one.level == ERROR and is_of_simulator(one, document)
             hints = (one.hint, _REAL if of_simulator and file in in_gazebo - sure else "")
