@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.system.records import NO_ORIGIN, Origin
 
 MANAGER, MOVE_GROUP, TWIST_MUX = "controller_manager", "move_group", "twist_mux"
@@ -221,3 +222,10 @@ class NodeFacts(NamedTuple):
 
 # What is known of a node that nobody knows.
 UNKNOWN = NodeFacts("", "", (), is_known=False)
+
+
+def names_its_process(kind: str, release: str) -> bool:
+    """Return whether a name given to this node becomes that of every node in its process. A rule
+    __node holds for the process, and the controllers of these releases take its rules
+    (ros2_control#1684)."""
+    return kind == MANAGER and controller_way(release).process_wide

@@ -4,10 +4,10 @@ it says where: at the place of a record, and of what is next to it."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import wraps
 from importlib import import_module
-from pkgutil import iter_modules
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Rule, declare, rule
@@ -113,7 +113,8 @@ def rules_in(package: str, *apart: str) -> list[Rule]:
     module is its own package; a rule that several modules have is there once."""
     name = f"{__package__}.{package}"
     whole = import_module(name)
-    inside = (it.name for it in iter_modules(getattr(whole, "__path__", ())))
+    files = (it for path in getattr(whole, "__path__", ()) for it in sorted(os.listdir(path)))
+    inside = (it[:-3] for it in files if it.endswith(".py") and it != "__init__.py")
     modules = [import_module(f"{name}.{it}") for it in inside if it not in apart]
     found = (it for one in (whole, *modules) for it in vars(one).values() if isinstance(it, Rule))
     return list({id(it): it for it in found}.values())
