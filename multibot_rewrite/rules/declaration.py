@@ -11,13 +11,13 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
 
 from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Rule, declare, rule
-from multibot_rewrite.system.records import NOWHERE, Place
 
 if TYPE_CHECKING:
     import yaml
 
     from multibot_rewrite.related_files.named_file import NamedFile
     from multibot_rewrite.system.index import Index
+    from multibot_rewrite.system.records import Place
 
 
 _Check = TypeVar("_Check", bound=Callable[..., Any])
@@ -189,7 +189,7 @@ def at(rule: Rule, place: Place, message: str, hint: str, **more: Any) -> Findin
 
 def where(records: Iterable[Placed]) -> dict[str, Any]:
     """Return the place fields of a finding, at the last record that has a place; empty without one."""
-    places = [it.place for it in records if it.place != NOWHERE]
+    places = [it.place for it in records if it.place.file]
     return _place_fields(places[-1]) if places else {}
 
 
@@ -199,6 +199,6 @@ def _place_fields(place: Place) -> dict[str, Any]:
 
 def see(records: Iterable[Placed]) -> str:
     """Return ``; see FILE:LINE and FILE:LINE``: the places of all but the last one."""
-    places = dict.fromkeys(str(it.place) for it in records if it.place != NOWHERE)
+    places = dict.fromkeys(str(it.place) for it in records if it.place.file)
     others = [*places][:-1]
     return f"; see {' and '.join(others)}" if others else ""
