@@ -61,8 +61,9 @@ _NO_BRACKETS = bytes(set(range(256)) - _STEPS.keys() - {ord('"')})
 
 @outside
 def read_bytes(path: str, limit: int = MAX_BYTES) -> bytes:
-    """Return the bytes of a file, which may be a device without an end. Raises OSError, also for a file
-    that is too large or a pipe in a folder, and ValueError for a path that no system takes."""
+    """Return the bytes of a file or device; raises OSError, ValueError for an impossible path.
+
+    A file over the limit and a pipe in a folder are OSErrors as well."""
     _refuse_pipe(path)
     with open(path, "rb") as file:
         # Not the limit at once: the memory for it takes longer to get than most files to read.
@@ -84,6 +85,7 @@ def read_start(path: str, most: int) -> bytes:
 
 
 def _refuse_pipe(path: str) -> None:
+    """Raise OSError for a pipe in a folder."""
     if stat.S_ISFIFO(os.stat(path).st_mode) and not path.startswith(_OF_A_SHELL):
         raise OSError(errno.EINVAL, "it is a pipe, and reading it may never end: give a file", path)
 
@@ -118,37 +120,37 @@ def compose_yaml(text: str, file: str, remedy: str = CORRECT) -> yaml.Node | Non
     """Return PyYAML's node of the one document; raises InputError with the place in ``file``."""
     import yaml
 
-    node: yaml.Node | None = _within_bounds(
+    node: yaml.Node | None = _parsed_within_bounds(
         partial(yaml.compose, Loader=_loader()), text, file, remedy
     )
     return node
 
 
 def compose_own_yaml(text: str) -> yaml.Node | None:
-    """Return the root node of a YAML text of this package, without limits for its size. All values but
-    booleans and null are text."""
+    """Return the root node of YAML of this package: no limits; all but booleans and null is text."""
     import yaml
 
     return yaml.compose(text, Loader=_plain_loader())
 
 
 def load_yaml(text: str, file: str, remedy: str = CORRECT) -> Any:
-    """Return the value of the one document; raises InputError with the place in ``file``, also for an
-    unknown tag and for a value that Python does not have."""
+    """Return the value of the one document; raises InputError with the place in ``file``.
+
+    An unknown tag, or a value that Python does not have, is an InputError too."""
     import yaml
 
-    return _within_bounds(partial(yaml.load, Loader=_loader()), text, file, remedy)
+    return _parsed_within_bounds(partial(yaml.load, Loader=_loader()), text, file, remedy)
 
 
 def load_own_yaml(module: str, name: str) -> Any:
-    """Return the value of a YAML file of this package, whose bounds are not checked; ``module`` is the
-    ``__file__`` next to it."""
+    """Return the value of a YAML file of this package, next to ``module``, without limits."""
     import yaml
 
     return yaml.load(own_text(module, name), _loader())
 
 
-def _within_bounds(parse: Callable[[str], Any], text: str, file: str, remedy: str) -> Any:
+def _parsed_within_bounds(parse: Callable[[str], Any], text: str, file: str, remedy: str) -> Any:
+    """Return what ``parse`` makes of a YAML text; raises InputError if it is wrong or too large."""
     import yaml
 
     try:
@@ -196,6 +198,7 @@ def load_json(data: bytes | str, made: Callable[[dict[str, Any]], object] | None
 
 
 def _too_many_digits(number: str) -> str:
+    """Return the problem with a number that is too long."""
     return f"a number of {len(number):,} characters, over the limit of {MAX_DIGITS}"
 
 
@@ -243,6 +246,7 @@ def _plain_loader() -> type[yaml.SafeLoader]:
 
 
 def _with_digit_limit(construct: Any, kind: str) -> Any:
+    """Return a YAML constructor that raises ConstructorError for a wrong or too long value."""
     from yaml.constructor import ConstructorError
 
     def checked(loader: Any, node: yaml.Node) -> Any:
@@ -291,6 +295,7 @@ def _check_bounds(text: str) -> None:
 
 
 def _refuse(event: yaml.Event, problem: str) -> NoReturn:
+    """Raise the ComposerError for a problem at an event."""
     from yaml.composer import ComposerError
 
     raise ComposerError(None, None, problem, event.start_mark)  # type: ignore[arg-type]

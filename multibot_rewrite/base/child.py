@@ -85,6 +85,7 @@ def git(where: str, *words: str, given: bytes = b"") -> bytes:
 
 
 def _git(where: str, more: Mapping[str, str], words: Sequence[str], given: bytes = b"") -> bytes:
+    """Return what git prints, with ``more`` settings than those that switch hooks and the like off."""
     settings = [part for it in {**_QUIET, **more}.items() for part in ("-c", "=".join(it))]
     command = ["git", "-C", where, "--no-pager", *settings, *words]
     environ = {**os.environ, **_ALONE}

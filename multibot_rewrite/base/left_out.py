@@ -47,6 +47,7 @@ def ignored_by_git(paths: Iterable[str]) -> set[str]:
 
 
 def _ignored_by_git(tree: str, paths: list[str]) -> list[str]:
+    """Return the paths in one work tree that git ignores."""
     import subprocess  # a command that looks into no folder needs no git
 
     from multibot_rewrite.base.child import git

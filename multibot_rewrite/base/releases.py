@@ -63,8 +63,7 @@ def chosen_release(given: str, environment: Mapping[str, str]) -> str:
 
 
 def release_for_description(given: str, environment: Mapping[str, str]) -> str:
-    """Return the release for one description: the one asked for, otherwise that of ROS_DISTRO,
-    otherwise of the sourced ROS; empty where none of them is known."""
+    """Return the release asked for, or of ROS_DISTRO, or of the sourced ROS; empty if none is known."""
     if given:
         return chosen_release(given, environment)
     found = environment.get(VARIABLE, "") or _sourced(environment)
@@ -135,7 +134,7 @@ def release_chosen_here(given: str | None = None) -> str:
 
 
 def why_here(given: str | None = None) -> str:
-    """Return ``why_told`` with this process's environment."""
+    """Return ``why_release`` with this process's environment."""
     return why_release(given or "", os.environ)
 
 
@@ -189,6 +188,7 @@ def is_release_words(words: str) -> bool:
 
 
 def _terms(words: str) -> Iterator[re.Match[str]]:
+    """Yield the terms of release words; raises UsageError for words that are none."""
     for term in words.split(","):
         found = _TERM.fullmatch(term.strip())
         if found is None:
@@ -197,6 +197,7 @@ def _terms(words: str) -> Iterator[re.Match[str]]:
 
 
 def _term_holds(term: re.Match[str], release: str) -> bool:
+    """Return whether a release is among those of a term."""
     at, bound = RELEASES.index(release), RELEASES.index(term["release"])
     if term["until"]:
         return at <= bound

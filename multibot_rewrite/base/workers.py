@@ -131,8 +131,7 @@ def _ended(worker: _Worker) -> int:
 
 
 def processors() -> int:
-    """Return how many processors this process may use: those of its affinity (``taskset``), and of
-    them as much as the quota of its container."""
+    """Return how many processors this process may use, by its affinity and its container's quota."""
     if not hasattr(os, "sched_getaffinity"):  # not on Linux
         return os.cpu_count() or 1
     try:
@@ -164,6 +163,7 @@ def worker_pool(
 
 
 def _limit_memory() -> None:
+    """Limit the memory of this process to ``MOST_MEMORY`` more bytes than now."""
     try:
         with open("/proc/self/statm") as file:
             now = int(file.read().split()[0]) * resource.getpagesize()
@@ -185,6 +185,7 @@ def limit_time(seconds: float) -> None:
 
 
 def _limit(kind: int, most: int) -> None:
+    """Lower a resource limit of this process to ``most``."""
     _, hard = resource.getrlimit(kind)
     if hard == resource.RLIM_INFINITY or most < hard:
         resource.setrlimit(kind, (most, hard))
