@@ -160,7 +160,7 @@ def make_scene(
     by_plan, seen = side_by_side(plan, graph)
     targets = find_targets(by_plan, seen, found)
     states = make_states(found, targets)
-    edges = sorted(_edges(by_plan, seen, states))
+    edges = sorted(_drawn_edges(by_plan, seen, states))
     missing = (node for node, state in states.nodes.items() if state == MISSING)
     every = {*seen.nodes, *missing, *(edge.node for edge in edges)}
     robot, shared = by_plan.of_names.robot, {*by_plan.own[""], *plan.shared_topics}
@@ -170,16 +170,16 @@ def make_scene(
             for its in (every, {edge.name for edge in edges})
         )
     )
-    nodes = _nodes(by_plan, seen, states, edges, robot_of)
+    nodes = _drawn_nodes(by_plan, seen, states, edges, robot_of)
     return Scene(
         outcome or Outcome(verdict, verdict_words(verdict, found, held)),
         plan.layout,
         tuple(robot.name for robot in plan.robots),
-        tuple(_groups(plan, edges, nodes, robot_of)),
+        tuple(_drawn_groups(plan, edges, nodes, robot_of)),
         tuple(_crossings(edges, robot_of)),
         make_frame_trees(by_plan, seen, states),
         tuple(found),
-        tuple(_rows(by_plan, dict(zip(found, targets, strict=True)))),
+        tuple(_finding_rows(by_plan, dict(zip(found, targets, strict=True)))),
         graph.environment,
         alternatives(plan),
         frozenset(seen.nodes),
@@ -187,7 +187,8 @@ def make_scene(
     )
 
 
-def _rows(plan: Index, targets: Mapping[Finding, Targets]) -> Iterator[FindingRow]:
+def _finding_rows(plan: Index, targets: Mapping[Finding, Targets]) -> Iterator[FindingRow]:
+    """Yield a row for each finding, one for those of several robots, the worst first."""
     each = with_members(targets, robot_words(plan.system))
     for finding, members in sorted(each, key=lambda it: _ORDER.index(it[0].level)):
         concerned = {robot for it in members for robot in robots_of(plan, it)}
@@ -201,7 +202,7 @@ def _rows(plan: Index, targets: Mapping[Finding, Targets]) -> Iterator[FindingRo
         yield FindingRow(finding, merged(targets[it] for it in members), robots, place)
 
 
-def _edges(plan: Index, seen: Index, states: States) -> Iterator[DrawnEdge]:
+def _drawn_edges(plan: Index, seen: Index, states: States) -> Iterator[DrawnEdge]:
     """Yield the endpoints in the graph, and those that a finding reports as missing."""
     # One endpoint with a known type is enough.
     common_names = {
@@ -232,8 +233,9 @@ def _edges(plan: Index, seen: Index, states: States) -> Iterator[DrawnEdge]:
 
 
 def _is_expected(plan: Index, key: EndKey, bridged: Container[tuple[str, str]]) -> bool:
-    """Return whether the plan has an endpoint of the graph, by itself or in another form. An action
-    may be planned as its parts. Helpers of a robot's nodes have what these have."""
+    """Return whether the plan has an endpoint of the graph, by itself or in another form.
+
+    An action may be planned as its parts. Helpers of a robot's nodes have what these have."""
     node, kind, role, name = key
     if key in plan.by_key or node in plan.own[""] or (role, name) in bridged:
         return True
@@ -242,9 +244,10 @@ def _is_expected(plan: Index, key: EndKey, bridged: Container[tuple[str, str]]) 
     return is_tool(node) and bool(plan.robot(node))
 
 
-def _nodes(
+def _drawn_nodes(
     plan: Index, seen: Index, states: States, edges: Sequence[DrawnEdge], robot_of: _RobotOf
 ) -> dict[str, DrawnNode]:
+    """Return the nodes to draw by name, each with its state."""
     planned = {*plan.robot_of, *plan.own[""]}
     edge_states = sets_by_key((it.node, it.state) for it in edges)
     own_states = sets_by_key((it.node, it.state) for it in edges if not it.common)
@@ -263,7 +266,7 @@ def _nodes(
     return result
 
 
-def _groups(
+def _drawn_groups(
     plan: System, edges: Iterable[DrawnEdge], nodes: Mapping[str, DrawnNode], robot_of: _RobotOf
 ) -> Iterator[DrawnGroup]:
     """Yield a group for each robot and one for the rest; an edge between two robots is in both."""
@@ -311,6 +314,7 @@ def combined_state(states: Collection[str]) -> str:
 
 
 def _crossings(edges: Iterable[DrawnEdge], robot_of: _RobotOf) -> Iterator[Crossing]:
+    """Yield what connects the groups of two robots."""
     found: dict[tuple[str, str, str, str], dict[str, None]] = defaultdict(dict)
     for edge in edges:
         source, target = robot_of.nodes[edge.node], robot_of.names[edge.name]

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What each finding is about, and the states of endpoints, nodes and frames that follow from it; and
-the tf trees of a graph as rows: a frame, its depth, and what is wrong with it."""
+"""What findings are about, the states that follow from it, and the tf trees of a graph as rows.
+
+Endpoints, nodes and frames have states; a row is a frame, its depth, and what is wrong with it."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
@@ -95,6 +96,7 @@ def make_states(findings: Iterable[Finding], targets: Sequence[Targets]) -> Stat
 
 
 def _endpoint_targets(plan: Index, seen: Index, finding: Finding) -> Targets:
+    """Return the nodes and names that a finding without frames is about."""
     # Nothing else is called like a node of which the finding speaks.
     one_of = {node for group in alternatives(plan.system) for node in group}
     nodes = tuple(
@@ -181,7 +183,7 @@ def make_frame_trees(plan: Index, seen: Index, states: States) -> tuple[FrameTre
         found += sorted(trees, key=lambda tree: order.get(tree.robot, len(order)))
         for robot in home:
             missing = [frame for frame in robot.frames if frame not in forest.robots]
-            faults = (_in_words(states.frames.get((topic, frame), ())) for frame in missing)
+            faults = (_rule_names(states.frames.get((topic, frame), ())) for frame in missing)
             lost = tuple(
                 FrameRow(frame, -1, 0, robot.name, MISSING, words, False, False)
                 for frame, words in zip(missing, faults, strict=True)
@@ -213,10 +215,10 @@ def _trees(forest: _Forest, states: States) -> Iterator[tuple[FrameRow, ...]]:
         )
         for part in parts.values():
             seen.discard(root)
-            yield tuple(_rows(forest, states, root, part, seen))
+            yield tuple(_tree_rows(forest, states, root, part, seen))
 
 
-def _rows(
+def _tree_rows(
     forest: _Forest, states: States, root: str, first: Sequence[str], seen: set[str]
 ) -> Iterator[FrameRow]:
     """Yield rows depth first from ``root`` through the children ``first``, without recursion."""
@@ -231,7 +233,7 @@ def _rows(
             depth,
             forest.robots[frame],
             CLASH if codes else OK,
-            _in_words(codes),
+            _rule_names(codes),
             forest.static.get((parent, frame), False),
             repeated=frame in seen,
         )
@@ -242,5 +244,6 @@ def _rows(
         at += 1
 
 
-def _in_words(codes: Iterable[str]) -> tuple[str, ...]:
+def _rule_names(codes: Iterable[str]) -> tuple[str, ...]:
+    """Return the names of the rules, as words."""
     return tuple(RULES[code].name.replace("-", " ") for code in codes)

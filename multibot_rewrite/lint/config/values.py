@@ -26,6 +26,7 @@ class KeyValue(NamedTuple):
 
 
 def _texts(given: KeyValue) -> tuple[str, ...]:
+    """Return a list of texts; raises UsageError for another value."""
     if not isinstance(given.value, list):
         raise UsageError(f"{given.where} is {type_name(given.value)}, write a list of texts")
     wrong = next((it for it in given.value if not isinstance(it, str)), None)
@@ -35,6 +36,7 @@ def _texts(given: KeyValue) -> tuple[str, ...]:
 
 
 def _non_empty_text(given: KeyValue) -> str:
+    """Return a text; raises UsageError for another value, or an empty one."""
     if not isinstance(given.value, str):
         raise UsageError(f"{given.where} is {type_name(given.value)}, write a text in quotes")
     if not given.value:
@@ -51,6 +53,7 @@ def _table_of(given: KeyValue) -> Iterator[tuple[str, KeyValue]]:
 
 
 def _codes(given: KeyValue) -> tuple[str, ...]:
+    """Return the codes of rules that a list names."""
     return find_lint_codes(_texts(given), given.where)
 
 
@@ -63,15 +66,17 @@ def find_lint_codes(words: Sequence[str], where: str) -> tuple[str, ...]:
     return find_codes(words, where, RULES)
 
 
-def _levels(given: KeyValue) -> dict[str, str]:
+def _levels_by_code(given: KeyValue) -> dict[str, str]:
+    """Return the level of each code in a table."""
     levels = {}
     for word, it in _table_of(given):
         (code,) = find_lint_codes((word,), given.where)
-        levels[code] = _one_of(it, (*LEVELS, OFF))
+        levels[code] = _allowed_text(it, (*LEVELS, OFF))
     return levels
 
 
-def _one_of(given: KeyValue, allowed: Sequence[str]) -> str:
+def _allowed_text(given: KeyValue, allowed: Sequence[str]) -> str:
+    """Return the text; raises UsageError unless it is allowed."""
     word = _non_empty_text(given)
     if word not in allowed:
         raise UsageError(f"{given.where} is {word!r}, use one of {', '.join(allowed)}")
@@ -80,7 +85,7 @@ def _one_of(given: KeyValue, allowed: Sequence[str]) -> str:
 
 def targets(given: KeyValue) -> tuple[str, ...]:
     """Return the targets that a key lists; raises for an unknown one."""
-    return tuple(_one_of(given._replace(value=it), TARGETS) for it in _texts(given))
+    return tuple(_allowed_text(given._replace(value=it), TARGETS) for it in _texts(given))
 
 
 def checked_robots(robots: Sequence[str], where: str) -> tuple[str, ...]:
@@ -91,19 +96,21 @@ def checked_robots(robots: Sequence[str], where: str) -> tuple[str, ...]:
         raise UsageError(f"{where}: {error}") from None
 
 
-def _path(given: KeyValue) -> str:
+def _path_from_folder(given: KeyValue) -> str:
     """Return a path from the folder of its configuration file; raises UsageError for another value."""
     return os.path.join(given.folder, _non_empty_text(given))
 
 
 def _file(given: KeyValue) -> str:
-    path = _path(given)
+    """Return the path of a file; raises UsageError where there is none."""
+    path = _path_from_folder(given)
     if not os.path.isfile(path):
         raise UsageError(f"{given.where}: no file {given.value!r} in {given.folder}")
     return path
 
 
 def _folders(given: KeyValue) -> tuple[str, ...]:
+    """Return the paths of folders; raises UsageError where there is none."""
     paths = tuple(os.path.join(given.folder, it) for it in _texts(given))
     wrong = next((it for it in paths if not os.path.isdir(it)), None)
     if wrong is not None:
@@ -112,6 +119,7 @@ def _folders(given: KeyValue) -> tuple[str, ...]:
 
 
 def _seconds(given: KeyValue) -> float:
+    """Return a number of seconds, of at most a day; raises UsageError for another value."""
     value = given.value
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise UsageError(f"{given.where} is {type_name(value)}, write a number of seconds")
@@ -120,17 +128,20 @@ def _seconds(given: KeyValue) -> float:
     return float(value)
 
 
-def _per_file(given: KeyValue) -> tuple[tuple[str, tuple[str, ...]], ...]:
+def _codes_by_pattern(given: KeyValue) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    """Return pairs of a pattern for paths and the codes that are off there."""
     return tuple(
         (pattern, _codes(it)) for key, it in _table_of(given) for pattern in _patterns(key, given)
     )
 
 
 def _excluded_patterns(given: KeyValue) -> tuple[str, ...]:
+    """Return patterns for the paths that a list excludes."""
     return tuple(it for key in _texts(given) for it in _patterns(key, given))
 
 
 def _argument_sets(given: KeyValue) -> tuple[ArgumentSet, ...]:
+    """Return the sets of xacro arguments, each for the files that a pattern matches."""
     if not isinstance(given.value, list):
         raise UsageError(f"{given.where} is {type_name(given.value)}, write tables [[xacro]]")
     found: list[ArgumentSet] = []
@@ -162,8 +173,8 @@ def _argument(given: KeyValue) -> str:
 READERS: Mapping[str, Callable[[KeyValue], object]] = {
     "select": _codes,
     "ignore": _codes,
-    "per-file-ignores": _per_file,
-    "levels": _levels,
+    "per-file-ignores": _codes_by_pattern,
+    "levels": _levels_by_code,
     "robots": lambda it: checked_robots(_texts(it), it.where),
     "layout": _non_empty_text,
     "affix": _non_empty_text,
@@ -174,13 +185,13 @@ READERS: Mapping[str, Callable[[KeyValue], object]] = {
     "shared-topics": _texts,
     "targets": targets,
     "roots": _folders,
-    "distro": partial(_one_of, allowed=RELEASES),
+    "distro": partial(_allowed_text, allowed=RELEASES),
     "urdf": _file,
     "definitions": lambda it: listed_files(*it),
     "xacro": _argument_sets,
     "exclude": _excluded_patterns,
-    "baseline": _path,
-    "fail-on": partial(_one_of, allowed=LEVELS),
+    "baseline": _path_from_folder,
+    "fail-on": partial(_allowed_text, allowed=LEVELS),
     "seconds": _seconds,
 }
 # Keys whose field has another name.
@@ -204,6 +215,7 @@ def anchored(pattern: str, folder: str, where: str) -> tuple[str, ...]:
 
 
 def _check_pattern(pattern: str, where: str) -> None:
+    """Raise UsageError for a pattern that cannot be used."""
     if not pattern:
         raise UsageError(f"{where}: a pattern is empty")
     if pattern.startswith("!"):

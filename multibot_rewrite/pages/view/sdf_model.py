@@ -63,7 +63,7 @@ def load_sdf(root: _Element, source: str) -> Model:
     return Model({MODEL: (), **shapes}, (*fixed, *joints))
 
 
-def declared(root: _Element) -> dict[str, int]:
+def lines_by_name(root: _Element) -> dict[str, int]:
     """Return the line of each link, joint, frame and nested model of the first model."""
     model = next(root.iter("model"))
     return {it.name: line_of(it.element) for it in named_in(model, "")}
@@ -75,6 +75,7 @@ def line_of(element: _Element) -> int:
 
 
 def _joint(frames: Frames, ends: JointEnds, at: dict[str, Pose]) -> Joint:
+    """Return a joint as the view draws it; ``at`` has the poses of the links."""
     it = frames.named[ends.joint]
     written = it.element.find("axis/xyz")
     axis = (None if written is None else vector(written.text or "")) or (0.0, 0.0, 1.0)
@@ -98,6 +99,7 @@ def _limits(it: Named, kind: str) -> tuple[float, float]:
 
 
 def _shapes(link: Named, frames: Frames, at: Pose) -> Iterator[Shape]:
+    """Yield the shapes of a link whose frame is ``at``."""
     for visual in link.element.iterchildren("visual"):
         written = visual.find("pose")
         relative = "" if written is None else written.get("relative_to", "")
@@ -112,6 +114,7 @@ def _shapes(link: Named, frames: Frames, at: Pose) -> Iterator[Shape]:
 def _shapes_of(
     it: _Element, pose: Matrix, colour: Vector | tuple[float, ...], source: str
 ) -> Iterator[Shape]:
+    """Yield the shape of a geometry."""
     size = [numbers(it.findtext(name) or "") for name in ("size", "radius", "length", "scale")]
     box, radius, long, scale = (values or () for values in size)
     if it.tag == "box" and len(box) == 3:
