@@ -73,7 +73,6 @@ def _bound(takes: Signature, title: str, args: tuple[Any, ...], kwargs: dict[str
 
 
 def _reader_of_list(read: Reader) -> Reader:
-    """Return a reader that reads each value of a list and returns a tuple."""
     return lambda what, values: tuple(read(f"{what}[{at}]", it) for at, it in enumerate(values))
 
 
@@ -82,7 +81,6 @@ def _or_none(read: Reader) -> Reader:
 
 
 def _type_error(what: str, value: object, write: str) -> UsageError:
-    """Return the error for a value of a wrong type; ``write`` says what to write."""
     type_ = type(value).__name__
     article = "an" if type_[:1] in "aeiouAEIOU" else "a"
     return UsageError(f"{what} is {value if value is None else f'{article} {type_}'}; {write}")

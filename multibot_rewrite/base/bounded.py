@@ -61,9 +61,7 @@ _NO_BRACKETS = bytes(set(range(256)) - _STEPS.keys() - {ord('"')})
 
 @outside
 def read_bytes(path: str, limit: int = MAX_BYTES) -> bytes:
-    """Return the bytes of a file or device; raises OSError, ValueError for an impossible path.
-
-    A file over the limit and a pipe in a folder are OSErrors as well."""
+    """Return the bytes of a file or device; raises OSError, also if too large, and ValueError."""
     _refuse_pipe(path)
     with open(path, "rb") as file:
         # Not the limit at once: the memory for it takes longer to get than most files to read.
@@ -85,7 +83,6 @@ def read_start(path: str, most: int) -> bytes:
 
 
 def _refuse_pipe(path: str) -> None:
-    """Raise OSError for a pipe in a folder."""
     if stat.S_ISFIFO(os.stat(path).st_mode) and not path.startswith(_OF_A_SHELL):
         raise OSError(errno.EINVAL, "it is a pipe, and reading it may never end: give a file", path)
 
@@ -134,9 +131,7 @@ def compose_own_yaml(text: str) -> yaml.Node | None:
 
 
 def load_yaml(text: str, file: str, remedy: str = CORRECT) -> Any:
-    """Return the value of the one document; raises InputError with the place in ``file``.
-
-    An unknown tag, or a value that Python does not have, is an InputError too."""
+    """Return the value of the one document; raises InputError with the place in ``file``."""
     import yaml
 
     return _parsed_within_bounds(partial(yaml.load, Loader=_loader()), text, file, remedy)
@@ -177,10 +172,7 @@ def _yaml_fault(error: Exception, text: str, file: str, remedy: str) -> str:
 
 
 def load_json(data: bytes | str, made: Callable[[dict[str, Any]], object] | None = None) -> Any:
-    """Return the value of a JSON text; raises json.JSONDecodeError, UnicodeDecodeError.
-
-    ``made`` replaces each object, the innermost first.
-    """
+    """Return the value of a JSON text, with ``made`` for each object; raises JSONDecodeError."""
     import json
 
     raw = data if isinstance(data, bytes) else data.encode("utf-8", "surrogatepass")
@@ -198,7 +190,6 @@ def load_json(data: bytes | str, made: Callable[[dict[str, Any]], object] | None
 
 
 def _too_many_digits(number: str) -> str:
-    """Return the problem with a number that is too long."""
     return f"a number of {len(number):,} characters, over the limit of {MAX_DIGITS}"
 
 
@@ -295,7 +286,6 @@ def _check_bounds(text: str) -> None:
 
 
 def _refuse(event: yaml.Event, problem: str) -> NoReturn:
-    """Raise the ComposerError for a problem at an event."""
     from yaml.composer import ComposerError
 
     raise ComposerError(None, None, problem, event.start_mark)  # type: ignore[arg-type]

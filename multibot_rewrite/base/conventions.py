@@ -86,9 +86,7 @@ USUAL_FRAMES = tuple(it.name for it in FRAMES if it.expected)
 
 
 class ToolNode(NamedTuple):
-    """Nodes in addition to any fleet, by a pattern of the name without its namespace.
-
-    ``looks``: it only looks, or passes on what a person asks for, so it is no sender of its own."""
+    """Nodes in addition to any fleet, by a name pattern; ``looks``: it is no sender of its own."""
 
     pattern: str
     looks: bool
@@ -141,7 +139,6 @@ def only_looks(word: str) -> bool:
 
 @cache
 def _any_of(patterns: tuple[str, ...]) -> re.Pattern[str]:
-    """Return an expression that matches what one of the shell patterns matches."""
     from fnmatch import translate
 
     return re.compile("|".join(map(translate, patterns)))

@@ -54,10 +54,7 @@ def without_comments(source: bytes) -> bytes:
 
 
 def with_gaps(pieces: Sequence[str], gap: str) -> str:
-    """Return a pattern for texts of the pieces in this order, with ``gap`` once or more between.
-
-    Each piece is taken where it comes first, and no other place is tried: what lies between it and the
-    next one can always be longer."""
+    """Return a pattern for texts of the pieces, each taken at its first place, ``gap`` between them."""
     first, *others = pieces
     *middle, last = others or [""]
     taken = (rf"(?=(?P<_{at}>{gap}+?{re.escape(it)}))(?P=_{at})" for at, it in enumerate(middle))

@@ -35,10 +35,7 @@ def source_folders(above: str, names: Iterable[str]) -> list[str]:
 
 
 def ignored_by_git(paths: Iterable[str]) -> set[str]:
-    """Return the paths that git ignores in the work tree that each is in; a tracked file never is.
-
-    What is in no work tree is not ignored, and nothing is where git cannot be run.
-    """
+    """Return the paths that git ignores in their work trees; none without git or outside of one."""
     trees: dict[str, list[str]] = defaultdict(list)
     for path in paths:
         if tree := _work_tree(os.path.dirname(os.path.abspath(path))):
@@ -47,7 +44,6 @@ def ignored_by_git(paths: Iterable[str]) -> set[str]:
 
 
 def _ignored_by_git(tree: str, paths: list[str]) -> list[str]:
-    """Return the paths in one work tree that git ignores."""
     import subprocess  # a command that looks into no folder needs no git
 
     from multibot_rewrite.base.child import git

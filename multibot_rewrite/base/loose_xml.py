@@ -125,5 +125,4 @@ def _mended(part: re.Match[bytes], first: int) -> tuple[bytes, str]:
 
 
 def _is_tag(part: bytes) -> bool:
-    """Return whether a part is a tag: no comment, declaration or processing instruction."""
     return not part.startswith((b"<!", b"<?"))

@@ -114,9 +114,7 @@ class Naming(NamedTuple):
 
 
 def leaves_world_systems(world_systems: str | None, robots: Sequence[str]) -> bool:
-    """Return whether the world's systems are left to the world: by default for several robots.
-
-    Each robot would load them again. Raises UsageError for an unknown word."""
+    """Return whether a rewrite leaves the world's systems out: by default for several robots."""
     if world_systems is None:
         return len(robots) > 1
     _refuse_unknown("world_systems", world_systems, WORLD_SYSTEMS)
@@ -205,9 +203,7 @@ def _active_separators(layout: Layout, topics: str, separators: dict[str, str]) 
 
 
 def affix(naming: Naming, kind: str, text: str, namespaced: bool = False) -> Affix | None:
-    """Return where the robot's name goes in a name of ``kind``; None where it is not renamed.
-
-    ``namespaced`` is true where a ROS namespace reaches the value."""
+    """Return where the robot's name goes in a name of ``kind``; None where it is not renamed."""
     if naming.own and (kind, text) in naming.own:
         return naming.own[kind, text]
     separator = naming.separators.get(kind)
@@ -224,7 +220,6 @@ def affix(naming: Naming, kind: str, text: str, namespaced: bool = False) -> Aff
 def _ros_affix(
     naming: Naming, separator: str, kind: str, text: str, in_namespace: bool
 ) -> Affix | None:
-    """Return the affix of a topic, namespace or stem; None where it is not renamed."""
     if kind == "namespace":
         return _namespace_affix(separator, text)
     if kind == "stem" and in_namespace:
@@ -262,7 +257,6 @@ def is_keyword(text: str) -> bool:
 
 
 def _name_affix(side: str, separator: str, text: str) -> Affix:
-    """Return the affix of a plain name, after or before it."""
     if side == POSTFIX:
         return Affix(len(text), separator, "")
     return Affix(1 if text.startswith("/") else 0, "", separator)
@@ -287,7 +281,6 @@ def _topic_affix(naming: Naming, separator: str, text: str, below: bool) -> Affi
 
 
 def _namespace_affix(separator: str, text: str) -> Affix | None:
-    """Return the affix of a namespace; None for one with a substitution."""
     if not NOT_PLAIN.isdisjoint(text):
         return None
     at = 1 if text.startswith("/") else 0

@@ -57,9 +57,7 @@ class Guesses:
         self._made: dict[str, str] = {}
 
     def nearest(self, name: str, known: Iterable[str], alike: float = ALIKE) -> str:
-        """Return the ``nearest`` name, or "" where it was asked for many others already.
-
-        ``known`` is the same for the same name."""
+        """Return the ``nearest`` name, or "" once it was asked for ``HINTED`` other names."""
         if name not in self._made and len(self._made) < HINTED:
             self._made[name] = nearest(name, islice(known, COMPARED), alike)
         return self._made.get(name, "")
@@ -129,7 +127,6 @@ def meant_name(name: str, known: Iterable[str]) -> str:
 
 @lru_cache(maxsize=4096)  # each unknown name is compared with the same known ones
 def _name_parts(name: str) -> tuple[str, ...]:
-    """Return the words of a name, in lower case."""
     return tuple(fold(name).split("_"))
 
 

@@ -107,7 +107,6 @@ def digest(answer: object) -> str:
 
 
 def _error_digest(error: Exception) -> str:
-    """Return the digest of an error that a question raised."""
     return f"{type(error).__name__} {digest(str(error))}"
 
 

@@ -47,10 +47,9 @@ _TERM = lazy_compile(r"(?P<until><=)?(?P<release>[a-z]+)(?: (?P<version>[0-9][0-
 
 
 def chosen_release(given: str, environment: Mapping[str, str]) -> str:
-    """Return the requested release, or that of ROS_DISTRO, of the sourced ROS, or the newest LTS.
+    """Return the release asked for, or that of ROS_DISTRO or the sourced ROS, or the newest LTS.
 
-    Raises UsageError for a release that is not known.
-    """
+    Raises UsageError for a release that is not known."""
     found = given or environment.get(VARIABLE, "") or _sourced(environment) or NEWEST_LTS
     if found in RELEASES:
         return found
@@ -197,7 +196,6 @@ def _terms(words: str) -> Iterator[re.Match[str]]:
 
 
 def _term_holds(term: re.Match[str], release: str) -> bool:
-    """Return whether a release is among those of a term."""
     at, bound = RELEASES.index(release), RELEASES.index(term["release"])
     if term["until"]:
         return at <= bound

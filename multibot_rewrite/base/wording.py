@@ -79,5 +79,4 @@ def in_json(text: str) -> str:
 
 
 def _escaped_match(found: re.Match[str]) -> str:
-    """Return the Python escape of a matched character."""
     return found[0].encode("unicode_escape").decode()

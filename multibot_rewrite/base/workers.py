@@ -36,11 +36,7 @@ class _Worker(NamedTuple):
 
 
 class WorkerPool(Generic[_Item, _Made]):
-    """Workers that all run ``work``.
-
-    ``lost`` makes the result for an item whose worker died, from the item and the number of the
-    signal (0: it ended by itself).
-    """
+    """Workers that run ``work``; ``lost`` makes the result for an item whose worker died."""
 
     def __init__(
         self,
@@ -163,7 +159,6 @@ def worker_pool(
 
 
 def _limit_memory() -> None:
-    """Limit the memory of this process to ``MOST_MEMORY`` more bytes than now."""
     try:
         with open("/proc/self/statm") as file:
             now = int(file.read().split()[0]) * resource.getpagesize()

@@ -41,9 +41,7 @@ def rules() -> Mapping[str, Rule]:
 
 @cache
 def declared() -> tuple[Rule, ...]:
-    """Return the rules of commands other than the lint, in the order of the codes.
-
-    Of two with one code the later one counts, which is of the module that declares it."""
+    """Return the rules of commands other than the lint, in the order of the codes, each code once."""
     from multibot_rewrite.lint.registry import RULES
     from multibot_rewrite.rules import check
     from multibot_rewrite.rules.launch import judge

@@ -48,9 +48,7 @@ def lint_file(path: str, settings: Settings) -> list[Finding]:
 def lint_data(
     path: str, data: bytes, settings: Settings, wanted: Callable[[Rule], bool] = bool
 ) -> list[Finding]:
-    """Return the findings of a text called ``path``, from where xacro resolves includes.
-
-    A description is checked by the ``wanted`` rules."""
+    """Return what the ``wanted`` rules find in a text; xacro resolves includes from its ``path``."""
     return _lint_source(path, lambda: data, settings, wanted)
 
 
@@ -96,10 +94,7 @@ def _add_findings(
     found: list[Finding],
     sources: dict[str, bytes],
 ) -> None:
-    """Add what the rules find to ``found``, and the files that were read to ``sources``.
-
-    It is a function of its own so that the subjects are released before the garbage collector is back,
-    which would search all of them."""
+    """Add findings and read files; the subjects are released before the garbage collector is back."""
     for subject in read_subjects(path, data, settings):
         if isinstance(subject, Failed):
             it = failure(path, subject.error, settings)
@@ -152,9 +147,7 @@ def _raise_too_long(*_: object) -> NoReturn:
 def unsuppressed(
     findings: Sequence[Finding], sources: Mapping[str, bytes], settings: Settings
 ) -> list[Finding]:
-    """Return the findings that no comment or per-file setting suppresses, and those about comments.
-
-    The first of ``sources`` is the file that is linted, the others are those it includes."""
+    """Return the findings that nothing suppresses, and those about comments of the first source."""
     reported = [it for it in findings if not is_silent(settings, file_of(it), it.code)]
     if not any(MARK in source for source in sources.values()):
         return reported
@@ -218,7 +211,6 @@ def _place(
 
 
 def _is_argument(subject: Subject, number: int, attribute: str | None) -> bool:
-    """Return whether the value of an attribute comes from a xacro argument."""
     origin = subject.origins.of(number) if subject.origins and attribute is not None else None
     return origin is not None and is_argument(subject.sources, origin, attribute or "")
 

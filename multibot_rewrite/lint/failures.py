@@ -105,7 +105,6 @@ def _crashed(path: str, message: str, hint: str) -> Finding:
 
 
 def _error_text(error: Exception) -> str:
-    """Return type and message of an error in one line."""
     return " ".join(f"{type(error).__name__}: {error}".split())
 
 

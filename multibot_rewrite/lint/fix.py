@@ -25,9 +25,7 @@ _LINE = re.compile(r"\bline \d+")
 
 
 def fix(path: str, source: bytes, settings: Settings) -> tuple[bytes, list[Finding]]:
-    """Return the text with every safe fix applied, and the findings that are left.
-
-    Raises InputError if the file cannot be read, ProofError if the proof fails."""
+    """Return the fixed text and the findings that are left; raises InputError, ProofError."""
     findings = lint_data(path, source, settings)
     for _ in range(ROUNDS):
         found = {edit for it in findings if it.file == path for edit in it.edits}
@@ -56,10 +54,7 @@ def _verify(
     new: tuple[bytes, Sequence[Finding]],
     edits: Sequence[Edit],
 ) -> None:
-    """Raise ProofError unless a fix changes only what it edits, and causes no finding.
-
-    Elements without an edit in their tag or text are unchanged or, between versions of URDF, mean the
-    same."""
+    """Raise ProofError unless all but the edited elements means the same, and no finding is new."""
     before, after = (read_document(data, path) for data, _ in (old, new))
     # For each element: is there an edit between its start tag and the next one?
     numbers = {bisect_right(before.starts, it.start) - 1 for it in edits}
@@ -79,7 +74,6 @@ def _is_alike(old: _Element, new: _Element, touched: bool) -> bool:
 
 
 def _codes_and_messages(findings: Iterable[Finding]) -> set[tuple[str, str]]:
-    """Return code and message of each finding, without the numbers of lines."""
     # Lines move where an edit takes one out; what is said of an element is said of its copy.
     return {(it.code, _LINE.sub("line N", it.message)) for it in findings}
 
@@ -104,7 +98,6 @@ def same_meaning(one: _Element, other: _Element) -> bool:
 
 
 def _is_same(one: Meaning, other: Meaning) -> bool:
-    """Return whether two elements mean the same, with all below them."""
     if one._replace(numbers=(), children=()) != other._replace(numbers=(), children=()):
         return False
     if len(one.numbers) != len(other.numbers) or len(one.children) != len(other.children):
@@ -142,5 +135,4 @@ def _half_spheres(link: _Element) -> Iterator[Meaning]:
 
 
 def _bare_element(tag: str, attributes: Mapping[str, str] | None = None) -> Meaning:
-    """Return an element with a tag and attributes only."""
     return Meaning(tag, attributes or {}, (), ("", ""), ())

@@ -76,7 +76,6 @@ def _level_if_sent(it: Finding, document: Document) -> str:
 
 
 def _is_below_gazebo(it: Finding, document: Document) -> bool:
-    """Return whether the finding is in a ``<gazebo>`` of the description."""
     starts = zip(document.elements, document.starts, strict=True)
     tops = ((top, at) for top, at in starts if top.getparent() is document.root)
     before = [top for top, at in tops if locate(document.source, at)[0] <= it.line]
@@ -213,7 +212,6 @@ def bridge_findings(launched: Launched) -> Iterator[Finding]:
 
 
 def _bridge_texts(it: Run) -> Iterator[_BridgeText]:
-    """Yield the rows of a bridge: those of its file, and those in its arguments."""
     given = it.values.get("config_file") if is_bridge(it) else None
     if given and os.path.isfile(str(given.value)):
         path = os.path.realpath(str(given.value))
@@ -225,7 +223,6 @@ def _bridge_texts(it: Run) -> Iterator[_BridgeText]:
 def _bridge_text_findings(
     told: _BridgeText, release: str, known: Mapping[str, bridges.GzTopic]
 ) -> Iterable[Finding]:
-    """Return the findings about the rows of a bridge; ``known`` are the simulator's topics by name."""
     context = context_of({}, Settings(distro=release))
     try:
         file = read_named(BRIDGE, told.text.encode(), told.file, context)
@@ -236,7 +233,6 @@ def _bridge_text_findings(
 
 
 def _simulator_topics(models: Iterable[InSimulator]) -> dict[str, bridges.GzTopic]:
-    """Return the topics of the models in the simulator, and its clock, by name."""
     found = (it for model in models for it in model.topics)
     own = {f"/{it.gz.lstrip('/')}": bridges.GzTopic(it.gz_type, it.direction) for it in found}
     return {CLOCK: _CLOCK, **own}

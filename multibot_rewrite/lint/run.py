@@ -55,7 +55,6 @@ def lint_files(
 
 
 def _kept_findings(cache: Cache, path: str, settings: Settings) -> list[Finding] | None:
-    """Return the kept findings of a file; None if there are none."""
     from multibot_rewrite.lint.cache.cache import findings_from
 
     return findings_from(cache.recall(_group(path), _key(path, settings)))
@@ -74,10 +73,7 @@ def _key(path: str, settings: Settings) -> str:
 
 
 def among(paths: Sequence[str], settings: Settings, cache: Cache | None = None) -> Settings:
-    """Return the settings with what one of several files has to know of the others.
-
-    That is what the others include, the URDFs of SRDFs, and the arguments of xacro files. A xacro file
-    alone may be included in its package."""
+    """Return the settings with what the files include, the URDFs of SRDFs, and xacro arguments."""
     if len(paths) == 1 and not paths[0].endswith(".xacro"):
         return settings
     from multibot_rewrite.lint.cache.cache import among_from, among_written

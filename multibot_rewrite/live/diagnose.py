@@ -63,10 +63,7 @@ class Diagnosis(NamedTuple):
 def diagnose(
     graph: System, messages: Mapping[str, int] = NO_COUNTS, names: System | None = None
 ) -> Diagnosis:
-    """Return what a graph is by itself, and the findings about it.
-
-    ``messages`` counts those of each topic, if they were counted. Where there is a plan ``names``,
-    it says to which robot each name belongs."""
+    """Return what a graph is by itself, of the robots of the plan ``names`` if there is one."""
     robots = guess_robots(surely(graph))
     if names:
         robots = tuple(GuessedRobot(it.name, f"/{it.space}") for it in names.robots)
@@ -88,9 +85,7 @@ def diagnose(
 
 
 def diagnose_domains(each: Mapping[int, Diagnosis]) -> Diagnosis:
-    """Return what is wrong in several ROS domains: in each by itself, and between their robots.
-
-    The robot of a domain without names is called by the domain's number."""
+    """Return what is wrong in several ROS domains: in each by itself, and between their robots."""
     views = {at: it.graph if it.robots else named(it.graph, at) for at, it in each.items()}
     together = diagnose(side_by_side(views))
     spaces = {at: "" if it.robots else space_of(at) for at, it in each.items()}
@@ -118,10 +113,7 @@ def diagnose_domains(each: Mapping[int, Diagnosis]) -> Diagnosis:
 
 
 def _carried_across(each: Mapping[int, Diagnosis]) -> Iterator[Finding]:
-    """Yield a finding for each command that a node in two domains carries to a driver of another robot.
-
-    A robot's node sends the command, its driver obeys it. The carrier sends it in the other domain as
-    well, where a driver obeys it too: one sender drives two."""
+    """Yield commands of a robot that a node in two domains carries to another robot's driver."""
     pairs = ((at, other) for at in each for other in each if at != other)
     for at, other in pairs:
         for name, ends in each[at].whose.orders.items():
@@ -190,7 +182,6 @@ def _tf_topics(seen: Diagnosis) -> Iterator[str]:
 
 
 def _layout_in_words(seen: Diagnosis) -> str:
-    """Return what a user is told about the layout of a graph."""
     if seen.layout and seen.whose.of_names.robots:
         return seen.layout.name
     if seen.layout:

@@ -70,10 +70,7 @@ def played(
 
 
 def stub_nodes(table: Table, edges: Edges, left_out: Collection[str] = ()) -> Iterator[Stub]:
-    """Yield the stub nodes; ``edges`` are by robot and node.
-
-    Rules at one of the ways ``left_out`` are not given; without any a node gets only its namespace
-    and its name."""
+    """Yield the stub nodes; ``edges`` are by robot and node, ``left_out`` ways pass no rules."""
     types = {name: end.type for _, end, name in table.ends if end.type}
     # What a node does that nobody knows is not played.
     names = lists_by_key(
@@ -145,10 +142,7 @@ def _stub_endpoint(end: Endpoint, name: str, types: Mapping[str, str]) -> Endpoi
 
 
 def split_over_processes(nodes: Iterable[Stub]) -> list[list[Stub]]:
-    """Return the stub nodes by process: one process for each robot, but no more than PROCESSES.
-
-    A participant of DDS refuses a topic under a second type: a stub with another type is in another
-    process."""
+    """Return the stub nodes by process: one for each robot, another for a topic's second type."""
     processes: dict[int, list[Stub]] = defaultdict(list)
     process_of: dict[str, int] = {}
     types: dict[tuple[int, str, str], str] = {}
@@ -183,10 +177,7 @@ def _substituted(planned: End, replaced: Mapping[str, str]) -> Iterator[End]:
 
 
 def with_own_types(it: System, plan: System, replaced: Mapping[str, str]) -> System:
-    """Return a snapshot of stub nodes with the types of the plan in place of their substitutes.
-
-    With substitutes all topics have one type. An end with another name than planned is found by its
-    node's code."""
+    """Return a snapshot of stub nodes with the types of the plan in place of their substitutes."""
     types: dict[tuple[str, ...], str] = {(TOPIC, one.name): one.type for one in plan.topics}
     for end in plan.ends:
         last = end.code_name.rpartition("/")[2]
@@ -260,9 +251,7 @@ class Started(NamedTuple):
 
 
 def isolated_environment(domain: int | None) -> dict[str, str]:
-    """Return an environment without other nodes: of this machine only, in a domain of its own.
-
-    That is the domain of the environment if it is free, otherwise one that is hardly used."""
+    """Return an environment for ROS on this machine alone, in a domain without other nodes."""
     environ = {k: v for k, v in os.environ.items() if k not in _ELSEWHERE}
     asked = settings(os.environ).domain if os.environ.get("ROS_DOMAIN_ID") else None
     free = asked is not None and participants_here(asked) == 0
@@ -286,10 +275,7 @@ def isolated_environments(domain: int | None, count: int) -> list[dict[str, str]
 def graph_of_stubs(
     nodes: Iterable[Stub], environ: Mapping[str, str], seconds: float
 ) -> tuple[System, dict[str, str]]:
-    """Return the graph of the stub nodes, and which types are replaced by which.
-
-    On a busy machine messages of the discovery are lost, so a snapshot that lacks what the nodes
-    announce is taken again. Raises Unusable where the nodes do not start or the graph is not read."""
+    """Return the graph of the stub nodes, and which types are replaced by which; raises Unusable."""
     request = Request(seconds, substitutes=True)
     with _started(nodes, environ) as started:
         for _ in range(LOOKS):

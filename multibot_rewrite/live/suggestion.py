@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is seen -> files to begin a fleet with: fleet file, nodes, description, plan. Pure.
-
-The description has the frames that were heard, and nothing else: it stands in for the robot's own.
-"""
+"""What is seen -> files to begin a fleet with: fleet file, nodes, description of frames, plan. Pure."""
 
 from __future__ import annotations
 
@@ -59,7 +56,6 @@ def suggestion(seen: Diagnosis, library: NodeLibrary) -> dict[str, str]:
 
 
 def _fleet_lines(seen: Diagnosis, nodes: Sequence[str], learned: bool) -> Iterator[str]:
-    """Yield the lines of the fleet file."""
     robots = robots_to_plan(seen)
     namespaced = any(robot.namespace for robot in robots)
     fallback = LAYOUTS[0] if namespaced else LAYOUTS[-1]

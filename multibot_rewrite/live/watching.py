@@ -48,10 +48,7 @@ def verdict_words(
     planned: bool = True,
     gaps: Sequence[Finding] = (),
 ) -> str:
-    """Return the verdict in words, which say no more than was seen.
-
-    ``planned`` is whether there was a plan to compare with, ``gaps`` are the findings about that plan.
-    """
+    """Return the verdict in words, which say no more than was seen; ``gaps``: findings of the plan."""
     is_open = any(it.level != NOTE for it in gaps)
     words = _WORDS.get((verdict, planned)) or _WORDS[verdict, True]
     if verdict == Verdict.PLANNED and (levels := {it.level for it in findings}):
@@ -91,9 +88,7 @@ def judge(found: Iterable[Finding], graph: System) -> Verdict:
 def with_found(
     graph: System, held: Coverage, findings: Iterable[Finding], before: WatchState | None
 ) -> WatchState:
-    """Return the state of the graph with these findings, after the state before.
-
-    What was missing while the fleet started was never reported, so it is not solved either."""
+    """Return the state of the graph with these findings, after the state before."""
     found = tuple(findings)
     was_complete = before is not None and before.complete
     old = before.findings if before and was_complete else ()

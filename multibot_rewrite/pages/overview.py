@@ -97,7 +97,6 @@ def _grid_of(number: int) -> tuple[int, int, int, int]:
 
 
 def _boxes_in_rows(tiles: Sequence[Tile], top: float) -> dict[str, _Box]:
-    """Return the boxes of tiles in rows below ``top``, by the tiles' keys."""
     columns, wide, high, gap = _grid_of(len(tiles))
     cell = WIDTH / min(columns, max(len(tiles), 1))
     return {
@@ -112,7 +111,6 @@ def _boxes_in_rows(tiles: Sequence[Tile], top: float) -> dict[str, _Box]:
 
 
 def _tile_svg(tile: Tile, box: _Box) -> str:
-    """Return the SVG of a box."""
     room = int((box.wide - 16) / LETTER)
     middle = f'x="{box.x + box.wide / 2:g}"'
     return (

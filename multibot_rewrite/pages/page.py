@@ -110,7 +110,6 @@ def source_hash(text: str) -> str:
 def _header_html(
     scene: Scene, sections: Sequence[PageSection], rules: Mapping[str, Rule]
 ) -> Iterator[str]:
-    """Yield the head of the page: layout, counts, verdict, doubts, robots."""
     about = next((one.about for one in LAYOUTS if scene.layout in (one.name, one.short)), "")
     layout = "layout" if scene.outcome.planned else "looks like layout"
     # The count that the command prints, and in how many rows it is shown.
@@ -139,7 +138,6 @@ def _header_html(
 
 
 def _environment_html(scene: Scene) -> Iterator[str]:
-    """Yield the section on how the graph was read."""
     around = scene.environment
     why = "no more changes" if around.settled == QUIET else around.settled
     server = around.discovery_server or "none"
@@ -223,7 +221,6 @@ def _legend(scene: Scene) -> Iterator[str]:
 
 
 def _group_html(section: PageSection, scene: Scene, ids: Ids) -> Iterator[str]:
-    """Yield the section of a robot, with its drawing."""
     title = section.group.robot or "shared and others"
     nodes = plural(sum(not node.is_robot for node in section.group.nodes), "node")
     counts = f"{nodes}, {plural(len(section.group.names), 'name')}"
@@ -274,7 +271,6 @@ def trees(scene: Scene, ids: Ids) -> Iterator[str]:
 
 
 def _tree_panel(tree: FrameTree, scene: Scene, ids: Ids) -> str:
-    """Return the drawing of a tf tree with its title."""
     frames = plural(len({row.frame for row in tree.rows}), "frame")
     wrong = any(row.faults for row in tree.rows)
     title = f"<b>{safe(tree.robot or 'no robot')}</b> <span>{frames}</span>"

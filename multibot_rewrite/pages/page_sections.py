@@ -69,9 +69,7 @@ def ids_of(about: Targets, ids: Ids) -> list[str]:
 
 
 def make_sections(scene: Scene) -> list[PageSection]:
-    """Return a section for each robot, then one for what belongs to no robot.
-
-    Of robots with the same findings the first is unfolded."""
+    """Return a section for each robot, the first of equal ones open, then one for no robot."""
     concerns = concerns_of(scene)
     met: set[tuple[int, ...]] = set()
     sections, left = [], MOST_OPEN
@@ -117,10 +115,7 @@ def ids_in(section: PageSection, ids: Ids) -> set[str]:
 def link_to(
     finding: Finding, targets: Iterable[str], sections: Mapping[str, tuple[str, set[str]]]
 ) -> str:
-    """Return the link to a finding: in its robot's section, or in another one.
-
-    ``targets`` are the ids of what it is about. ``sections`` has by robot the id of its section and the
-    ids in it."""
+    """Return the link to a finding about ``targets``; ``sections``: section and ids, by robot."""
     own = sections.get(finding.robot) or sections[""]
     for target in targets:
         if target.startswith("f"):
@@ -137,9 +132,7 @@ def summarize(levels: Mapping[str, int]) -> str:
 
 
 def without_common(group: DrawnGroup) -> DrawnGroup:
-    """Return a group without the endpoints that every node has, unless they are faulty.
-
-    These are parameter services and the like; those of a missing node are left out as well."""
+    """Return a group without the endpoints that every node has, unless they are faulty."""
     missing = {node.name for node in group.nodes if node.state == MISSING}
     edges = [
         edge
@@ -226,7 +219,6 @@ def robot_cards(
 def _card_html(
     card: _Card, scene: Scene, order: Mapping[str, int], rules: Mapping[str, Rule]
 ) -> str:
-    """Return the card of robots of which the same is true."""
     numbers = " ".join(str(order.get(it.group.robot, -1)) for it in card.sections)
     links = [
         f'<a href="#{it.id}">{safe(it.group.robot or "shared, or of no robot")}</a>'
@@ -257,7 +249,6 @@ def _card_html(
 
 
 def _card_state(card: _Card, scene: Scene) -> str:
-    """Return in words what is found about the robots of a card, and how many nodes run."""
     levels = Counter(scene.rows[at].finding.level for at in card.rows)
     sure = scene.outcome.planned and scene.outcome.verdict != Verdict.INCONCLUSIVE
     robots = {it.group.robot for it in card.sections}

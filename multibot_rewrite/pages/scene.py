@@ -66,10 +66,7 @@ class DrawnEdge(NamedTuple):
 
 
 class DrawnNode(NamedTuple):
-    """A node. With ``is_robot`` it stands for a whole robot, in the group of what is shared.
-
-    ``is_tool`` nodes are neither planned nor in a finding.
-    """
+    """A node, or with ``is_robot`` a whole robot; ``is_tool``: neither planned nor in a finding."""
 
     name: str
     robot: str
@@ -99,11 +96,7 @@ class DrawnGroup(NamedTuple):
 
 
 class Crossing(NamedTuple):
-    """What connects two groups: a node of robot ``source`` uses ``names`` of robot ``target``.
-
-    Without ``source`` the node is ``node``, of no robot; without ``target`` the names are of no
-    robot.
-    """
+    """A node of robot ``source`` (else ``node``) uses ``names`` of robot ``target``, or of none."""
 
     source: str
     node: str
@@ -126,10 +119,7 @@ class FindingRow(NamedTuple):
 
 
 class Scene(NamedTuple):
-    """All that is drawn; ``rows`` are the ``findings``, those of several robots as one.
-
-    Of each group of nodes in ``one_of`` one should run; those that do are ``running``.
-    """
+    """All that is drawn; of each group in ``one_of`` one node should run, ``running`` do."""
 
     outcome: Outcome
     layout: str
@@ -188,7 +178,6 @@ def make_scene(
 
 
 def _finding_rows(plan: Index, targets: Mapping[Finding, Targets]) -> Iterator[FindingRow]:
-    """Yield a row for each finding, one for those of several robots, the worst first."""
     each = with_members(targets, robot_words(plan.system))
     for finding, members in sorted(each, key=lambda it: _ORDER.index(it[0].level)):
         concerned = {robot for it in members for robot in robots_of(plan, it)}
@@ -233,9 +222,7 @@ def _drawn_edges(plan: Index, seen: Index, states: States) -> Iterator[DrawnEdge
 
 
 def _is_expected(plan: Index, key: EndKey, bridged: Container[tuple[str, str]]) -> bool:
-    """Return whether the plan has an endpoint of the graph, by itself or in another form.
-
-    An action may be planned as its parts. Helpers of a robot's nodes have what these have."""
+    """Return whether the plan has an endpoint, as itself or as parts of an action, or of a helper."""
     node, kind, role, name = key
     if key in plan.by_key or node in plan.own[""] or (role, name) in bridged:
         return True
@@ -247,7 +234,6 @@ def _is_expected(plan: Index, key: EndKey, bridged: Container[tuple[str, str]]) 
 def _drawn_nodes(
     plan: Index, seen: Index, states: States, edges: Sequence[DrawnEdge], robot_of: _RobotOf
 ) -> dict[str, DrawnNode]:
-    """Return the nodes to draw by name, each with its state."""
     planned = {*plan.robot_of, *plan.own[""]}
     edge_states = sets_by_key((it.node, it.state) for it in edges)
     own_states = sets_by_key((it.node, it.state) for it in edges if not it.common)
@@ -314,7 +300,6 @@ def combined_state(states: Collection[str]) -> str:
 
 
 def _crossings(edges: Iterable[DrawnEdge], robot_of: _RobotOf) -> Iterator[Crossing]:
-    """Yield what connects the groups of two robots."""
     found: dict[tuple[str, str, str, str], dict[str, None]] = defaultdict(dict)
     for edge in edges:
         source, target = robot_of.nodes[edge.node], robot_of.names[edge.name]

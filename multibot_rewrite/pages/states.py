@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What findings are about, the states that follow from it, and the tf trees of a graph as rows.
-
-Endpoints, nodes and frames have states; a row is a frame, its depth, and what is wrong with it."""
+"""What findings are about, the states that follow from it, and tf trees as rows of frames."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
@@ -42,10 +40,7 @@ def merged(targets: Iterable[Targets]) -> Targets:
 
 
 class States(NamedTuple):
-    """States by (node, name) and by node, and the codes of the findings about a frame.
-
-    ``names`` are all that findings are about.
-    """
+    """States of ends and nodes, codes of frames, and all ``names`` that findings are about."""
 
     endpoints: Mapping[tuple[str, str], str]
     nodes: Mapping[str, str]
@@ -96,7 +91,6 @@ def make_states(findings: Iterable[Finding], targets: Sequence[Targets]) -> Stat
 
 
 def _endpoint_targets(plan: Index, seen: Index, finding: Finding) -> Targets:
-    """Return the nodes and names that a finding without frames is about."""
     # Nothing else is called like a node of which the finding speaks.
     one_of = {node for group in alternatives(plan.system) for node in group}
     nodes = tuple(
@@ -150,10 +144,7 @@ class FrameRow(NamedTuple):
 
 
 class FrameTree(NamedTuple):
-    """One tree on ``topic`` and its tf_static.
-
-    Without ``received`` it has the frames of ``robot`` that are declared and were not received.
-    """
+    """One tree on ``topic`` and its tf_static, or what of ``robot`` was not ``received`` there."""
 
     topic: str
     robot: str
@@ -245,5 +236,4 @@ def _tree_rows(
 
 
 def _rule_names(codes: Iterable[str]) -> tuple[str, ...]:
-    """Return the names of the rules, as words."""
     return tuple(RULES[code].name.replace("-", " ") for code in codes)

@@ -103,7 +103,6 @@ def _edges_svg(group: DrawnGroup, place: "GroupLayout", ids: Ids) -> Iterator[st
 
 
 def _boxes_svg(group: DrawnGroup, place: "GroupLayout", ids: Ids, prefix: str) -> Iterator[str]:
-    """Yield the boxes of nodes and names."""
     drawn = set()
     sides = ((LEFT, place.left), (RIGHT, place.right))
     for (x, wide), node, y in ((column, *it) for column, things in sides for it in things):
@@ -131,7 +130,6 @@ def _id_attributes(id_: str | None, ids: Ids, prefix: str) -> str:
 
 
 def _name_box(name: DrawnName, robot: str, y: float, id_attributes: str) -> str:
-    """Return the box of a name with its middle at ``y``."""
     x, wide = MIDDLE
     badge = {SERVICE: "srv", ACTION: "act"}.get(name.kind, "")
     many = plural(len(name.merged), name.kind)
@@ -239,10 +237,7 @@ OFFERING = (PUBLISHES, SERVES)
 
 
 class GroupLayout(NamedTuple):
-    """The nodes and names of each column with their vertical middle, and the total height.
-
-    A node that offers and uses names is in both columns.
-    """
+    """The nodes and names of each column with their vertical middle, and the total height."""
 
     left: tuple[tuple[DrawnNode, float], ...]
     names: tuple[tuple[DrawnName, float], ...]
@@ -276,7 +271,6 @@ def lay_out(group: DrawnGroup) -> GroupLayout:
 
 
 def _names_by_node(edges: Iterable[DrawnEdge]) -> dict[str, list[_NameKey]]:
-    """Return the names that each node uses."""
     return lists_by_key((edge.node, (edge.kind, edge.name)) for edge in edges)
 
 

@@ -49,11 +49,11 @@ def _place_after(line: int, column: int, text: bytes) -> tuple[int, int]:
     """Return line and column behind a text that starts at these."""
     lines = text.count(b"\n")
     if not lines:
-        return line, column + _characters(text)
-    return line + lines, _characters(text[text.rfind(b"\n") + 1 :]) + 1
+        return line, column + _count_characters(text)
+    return line + lines, _count_characters(text[text.rfind(b"\n") + 1 :]) + 1
 
 
-def _characters(text: bytes) -> int:
+def _count_characters(text: bytes) -> int:
     """Return how many characters a text in UTF-8 has."""
     return len(text) if text.isascii() else len(text.translate(None, _FOLLOWING))
 

@@ -107,7 +107,6 @@ def _sides(
 
 
 def _unexpected_character(text: str, at: int, wanted: str) -> NameFault:
-    """Return the fault of a rule with another character than the ``wanted`` one at ``at``."""
     found = next((hint for key, hint in _HINTS.items() if text.startswith(key, at)), "")
     if not found:
         found = repr(text[at]) if at < len(text) else "the end"
@@ -158,7 +157,6 @@ def _first_target(rules: Iterable[RemapRule], keys: tuple[str, ...], node: str) 
 
 
 def _raise_fault(what: str, name: str, fault: NameFault | None) -> None:
-    """Raise UsageError for a fault, if there is one."""
     if fault is not None:
         raise UsageError(f"{what} {name!r}: {fault.reason}")
 

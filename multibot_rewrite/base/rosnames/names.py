@@ -129,7 +129,6 @@ def _full_name_fault(name: str) -> NameFault | None:
 
 
 def _slash_or_digit_fault(name: str) -> NameFault | None:
-    """Return the fault of two slashes in a row, or of a part that begins with a digit."""
     for at, (letter, following) in enumerate(pairwise(name), 1):
         if letter == following == "/":
             return _fault_at(name, at, "is a slash right after a slash")
@@ -139,7 +138,6 @@ def _slash_or_digit_fault(name: str) -> NameFault | None:
 
 
 def _letter_fault(name: str, allowed: frozenset[str], words: str) -> NameFault | None:
-    """Return the fault of the first letter that is not allowed; ``words`` say which are."""
     for at, letter in enumerate(name):
         if letter not in allowed:
             return _fault_at(name, at, f"is not {words}")

@@ -169,7 +169,6 @@ class Cache:
             bound(self.folder)
 
     def _path(self, group: str) -> str:
-        """Return the path of the file for a group of results."""
         return os.path.join(self.folder, f"{digest(f'{self.run} {group}'.encode())}.json")
 
 
@@ -230,7 +229,6 @@ def plain(value: object) -> object:
 
 
 def _file_states(folder: str) -> Iterator[tuple[str, int, int]]:
-    """Yield path, time and size of each file below a folder."""
     with os.scandir(folder) as found:
         for it in found:
             if not it.is_dir(follow_symlinks=False):

@@ -105,6 +105,5 @@ def _key(finding: Finding, path: str) -> Key:
 
 
 def _relative_path(file: str, path: str) -> str:
-    """Return a file as seen from the folder of the baseline at ``path``."""
     folder = os.path.dirname(os.path.abspath(path))
     return os.path.relpath(file, folder).replace(os.sep, "/")

@@ -182,7 +182,6 @@ def _files_called(path: str, asked: Iterable[str], there: dict[str, list[str]]) 
 
 
 def _matching(pattern: str, names: Collection[str]) -> list[str]:
-    """Return the names that a pattern matches."""
     found = [pattern] if pattern in names else []
     if not any(it in pattern for it in "*?["):
         return found

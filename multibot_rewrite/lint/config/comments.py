@@ -44,10 +44,7 @@ def after_comments(
     sources: Mapping[str, bytes],
     settings: Settings,
 ) -> list[Finding]:
-    """Return the findings that no comment suppresses, and those about comments.
-
-    ``codes`` are all that were found. The first of ``sources`` is the file that is linted, the others
-    are those it includes."""
+    """Return the findings that no comment suppresses, and those about comments of the first source."""
     comments = [it for file, source in sources.items() for it in _comments(file, source)]
     left, used = _unsuppressed(findings, comments)
     faults = ((it, fault) for it in comments for fault in it.it.faults)
@@ -127,7 +124,6 @@ def _is_whole(comment: Comment, settings: Settings) -> bool:
 def _unused_comments(
     comments: Iterable[Comment], used: set[tuple[str, int]], settings: Settings
 ) -> Iterator[Finding]:
-    """Yield a finding for each code of a comment that suppresses nothing."""
     for comment in comments:
         codes = comment.it.codes
         idle = [it for it in codes if (comment.file, it.start) not in used]

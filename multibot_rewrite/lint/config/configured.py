@@ -60,7 +60,6 @@ def configured(near: str, file: str | None) -> Configured:
 
 
 def _configurations_above(near: str) -> Iterator[str]:
-    """Yield the configuration files in the folder of a file and above, the nearest first."""
     for folder in config.folders_above(near):
         own, project = os.path.join(folder, OWN), os.path.join(folder, PROJECT)
         if os.path.isfile(own):

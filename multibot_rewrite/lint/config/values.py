@@ -36,7 +36,6 @@ def _texts(given: KeyValue) -> tuple[str, ...]:
 
 
 def _non_empty_text(given: KeyValue) -> str:
-    """Return a text; raises UsageError for another value, or an empty one."""
     if not isinstance(given.value, str):
         raise UsageError(f"{given.where} is {type_name(given.value)}, write a text in quotes")
     if not given.value:
@@ -67,7 +66,6 @@ def find_lint_codes(words: Sequence[str], where: str) -> tuple[str, ...]:
 
 
 def _levels_by_code(given: KeyValue) -> dict[str, str]:
-    """Return the level of each code in a table."""
     levels = {}
     for word, it in _table_of(given):
         (code,) = find_lint_codes((word,), given.where)
@@ -76,7 +74,6 @@ def _levels_by_code(given: KeyValue) -> dict[str, str]:
 
 
 def _allowed_text(given: KeyValue, allowed: Sequence[str]) -> str:
-    """Return the text; raises UsageError unless it is allowed."""
     word = _non_empty_text(given)
     if word not in allowed:
         raise UsageError(f"{given.where} is {word!r}, use one of {', '.join(allowed)}")
@@ -129,19 +126,16 @@ def _seconds(given: KeyValue) -> float:
 
 
 def _codes_by_pattern(given: KeyValue) -> tuple[tuple[str, tuple[str, ...]], ...]:
-    """Return pairs of a pattern for paths and the codes that are off there."""
     return tuple(
         (pattern, _codes(it)) for key, it in _table_of(given) for pattern in _patterns(key, given)
     )
 
 
 def _excluded_patterns(given: KeyValue) -> tuple[str, ...]:
-    """Return patterns for the paths that a list excludes."""
     return tuple(it for key in _texts(given) for it in _patterns(key, given))
 
 
 def _argument_sets(given: KeyValue) -> tuple[ArgumentSet, ...]:
-    """Return the sets of xacro arguments, each for the files that a pattern matches."""
     if not isinstance(given.value, list):
         raise UsageError(f"{given.where} is {type_name(given.value)}, write tables [[xacro]]")
     found: list[ArgumentSet] = []
@@ -215,7 +209,6 @@ def anchored(pattern: str, folder: str, where: str) -> tuple[str, ...]:
 
 
 def _check_pattern(pattern: str, where: str) -> None:
-    """Raise UsageError for a pattern that cannot be used."""
     if not pattern:
         raise UsageError(f"{where}: a pattern is empty")
     if pattern.startswith("!"):

@@ -59,9 +59,7 @@ def named_urdfs(paths: Sequence[str], included: frozenset[str]) -> tuple[tuple[s
 
 
 def find_pair(path: str, srdf: Inventory, settings: Settings) -> Pair:
-    """Return the description that an SRDF belongs to: the one that has most of its names.
-
-    One that lacks more than a few of them is that of another robot or another variant."""
+    """Return the description with most of an SRDF's names, unless it lacks more than a few."""
     if settings.urdf:
         return _pair_with(settings.urdf, srdf, settings)
     name = srdf.document.root.get("name", "").strip()
@@ -81,9 +79,7 @@ def find_pair(path: str, srdf: Inventory, settings: Settings) -> Pair:
 
 
 def _candidates(path: str, name: str, settings: Settings) -> list[str]:
-    """Return files with that robot's name, the nearest first, otherwise files near the SRDF.
-
-    Of those near it on disk, they have the robot's name, otherwise the file name of the SRDF."""
+    """Return files with that robot's name, the nearest first, else with the SRDF's file name."""
     folder = os.path.dirname(os.path.abspath(path))
     named = [urdf for robot, urdf in settings.urdfs if robot == name]
     if named:

@@ -98,9 +98,7 @@ def _expansions(path: str, data: bytes, settings: Settings) -> Iterator[Subject 
 
 
 def _only_defines(root: _Element) -> bool:
-    """Return whether a file only defines what others use: expanded alone it is an empty robot.
-
-    One that only includes may be a whole robot; one that defines macros as well is read by others."""
+    """Return whether a file only defines what others use: expanded alone it is an empty robot."""
     parts = (str(child.tag).rpartition("}") for child in root.iterchildren("*"))
     tags = {name if "xacro" in space else "" for space, _, name in parts}
     return tags <= DEFINITIONS and ("include" not in tags or "macro" in tags)

@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which nodes of a graph to learn, and which of their ends are one in a node's code.
-
-Tools are not learned, nor helper nodes of others. One in the code is an action, an image, a known
-part."""
+"""Which nodes of a graph to learn, without tools, and which of their ends are one in their code."""
 
 import re
 from collections import Counter, defaultdict
@@ -31,10 +28,9 @@ class Helpers(NamedTuple):
 
 
 def choose_nodes(graph: System, names: Sequence[str], namespace: str) -> tuple[str, ...]:
-    """Return the full names of the nodes to learn: ``names``, or all below ``namespace`` but tools.
+    """Return the sorted full names of the nodes to learn: ``names``, or all below ``namespace``.
 
-    They are sorted. Raises UsageError for a node that is not in the graph, not below the namespace,
-    or in the graph twice, and if there is no node at all."""
+    Raises UsageError for a node that is not there, not below it, or there twice, and for no node."""
     base = namespace_prefix(namespace)
     times = Counter(node.name for node in graph.nodes)
     for name in names:
@@ -135,9 +131,7 @@ Seen = Mapping[EndpointId, tuple[str, ...]]
 
 
 def fold_actions(seen: Seen) -> dict[EndpointId, tuple[str, ...]]:
-    """Return ``seen`` with each action in place of the services and topics it is made of.
-
-    A node with only the topics of an action is not its client: those topics stay."""
+    """Return ``seen`` with each action in place of the services and topics it is made of."""
     kinds = defaultdict(set)
     found = {}
     for key, types in seen.items():
@@ -180,9 +174,7 @@ def fold_images(seen: Seen) -> tuple[dict[EndpointId, tuple[str, ...]], frozense
 def fold_parts(
     endpoints: Iterable[Endpoint], parts: Mapping[str, tuple[Endpoint, ...]], in_root: bool
 ) -> tuple[list[Endpoint], tuple[str, ...]]:
-    """Return ``endpoints`` without those of complete parts, and the names of these parts.
-
-    With ``in_root`` the graph name ``/x`` may be ``x`` in the code."""
+    """Return ``endpoints`` without those of complete parts, and the names of these parts."""
     left = {_signature(end, end.name): end for end in endpoints}
     complete = []
     for name, part in parts.items():

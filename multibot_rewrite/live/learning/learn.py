@@ -84,10 +84,7 @@ class _SeenPlace(NamedTuple):
 def learn(
     graph: System, names: Sequence[str], namespace: str, library: NodeLibrary
 ) -> tuple[LearnedNode, ...]:
-    """Return facts of the nodes ``names`` below ``namespace``, the robot's namespace.
-
-    ``library`` has the known parts, and the names in the code of known nodes. Raises UsageError for an
-    endpoint that no node can have."""
+    """Return facts of nodes below the robot's ``namespace``; UsageError for an impossible endpoint."""
     base = namespace_prefix(namespace)
     ends = lists_by_key((end.node, end) for end in graph.ends)
     helpers = helpers_of(graph, names)
@@ -99,7 +96,6 @@ def learn(
 def _learn_node(
     name: str, base: str, ends: Mapping[str, Sequence[End]], helpers: Helpers, library: NodeLibrary
 ) -> LearnedNode:
-    """Return what was learned of one node; ``base`` is the robot's namespace."""
     node = name.removeprefix(f"{base}/")
     known = library.nodes.get(node)
     place = _SeenPlace(base, node)
@@ -160,7 +156,6 @@ def _endpoints(ends: Iterable[End], place: _SeenPlace) -> dict[_Slot, Endpoint]:
 
 
 def _types_by_endpoint(ends: Iterable[End]) -> Seen:
-    """Return the types of each endpoint; raises UsageError for one that no node can have."""
     types: dict[EndpointId, set[str]] = defaultdict(set)
     for end in ends:
         check_seen_name(end.kind, end.name)
@@ -176,9 +171,7 @@ def _types_by_endpoint(ends: Iterable[End]) -> Seen:
 
 
 def _name_in_code(name: str, types: Sequence[str], place: _SeenPlace) -> str:
-    """Return a name that the code may have, whose remap rule is right for other possible names too.
-
-    In the root namespace ``x`` and ``/x`` are one name, and the rule for ``/x`` remaps both."""
+    """Return a name that the code may have, whose remap rule is right for other possible names too."""
     full = f"{place.base}/{place.node}"
     above = full.rpartition("/")[0]
     level = name.removeprefix(place.base) if name.startswith(f"{place.base}/") else name
@@ -193,9 +186,7 @@ def _name_in_code(name: str, types: Sequence[str], place: _SeenPlace) -> str:
 
 
 def _merge(first: Endpoint, second: Endpoint, key: EndpointId) -> Endpoint:
-    """Return one endpoint for two with the same name in the code; an action for it and a service.
-
-    The rules of the action are right for both."""
+    """Return one endpoint for two with the same name in the code; of action and service the action."""
     if first.kind != second.kind:
         return first._replace(note=f"there is a {key.kind} with this name too")
     types = sorted({*filter(None, (first.type, *first.also, second.type, *second.also))})

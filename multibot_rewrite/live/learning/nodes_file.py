@@ -33,9 +33,7 @@ _NO_WRAP = 1 << 30
 
 
 def to_yaml(learned: Sequence[LearnedNode], node_set: str, library: NodeLibrary) -> str:
-    """Return the text of a file with the nodes and one node set of them.
-
-    Raises ProofError if reading it does not give the same nodes."""
+    """Return the text of a file with the nodes and a node set; raises ProofError if not read back."""
     text = "".join(f"{line}\n" for line in _lines(learned, node_set))
     facts = tuple(node.facts for node in learned)
     try:
@@ -105,7 +103,6 @@ def _flow(value: object) -> str:
 
 
 def _comment(text: str, indent: str) -> list[str]:
-    """Return the lines of a comment."""
     lead = f"{indent}# "
     return wrap(
         text, WIDTH, initial_indent=lead, subsequent_indent=f"{lead}  ", break_long_words=False
@@ -118,9 +115,7 @@ KEEP_LAST = "KEEP_LAST"
 def to_nodl(
     node: LearnedNode, graph: System, namespace: str, library: NodeLibrary, json: bool = False
 ) -> NodlFile:
-    """Return the NoDL document of a learned node; raises ProofError if reading it gives another one.
-
-    ``namespace`` is the robot's. QoS is as seen; what a graph does not show is SYSTEM_DEFAULT."""
+    """Return the NoDL document of a learned node, with QoS as seen; raises ProofError."""
     usual = {(it.role, it.name) for it in library.parts[EVERY_NODE]} | {("subscribes", CLOCK)}
     ends = [it for it in node.facts.endpoints if (it.role, it.name) not in usual]
     # One entry for each of its types.
@@ -161,7 +156,6 @@ class _Seen(NamedTuple):
 
 
 def _nodl_qos(qos: Qos | None) -> dict[str, object]:
-    """Return the QoS as NoDL has it."""
     if qos is None:
         return dict(UNKNOWN_QOS)
     found: dict[str, object] = {"history": DEFAULT, "reliability": DEFAULT}

@@ -73,10 +73,7 @@ class Model(NamedTuple):
 
 
 class Mesh(NamedTuple):
-    """Vertices and triangles, and the colours of the vertices where the file has materials.
-
-    A vertex is x, y, z as 32-bit floats, a triangle three 32-bit numbers of vertices, a colour red,
-    green, blue, a byte each."""
+    """Vertices (x, y, z: 32-bit floats), triangles (three 32-bit numbers), colours (a byte each)."""
 
     vertices: bytes
     faces: bytes
@@ -155,9 +152,7 @@ def matrix_of(pose: Pose) -> Matrix:
 
 
 def three_js() -> str:
-    """Return three.js with its trackball controls, from trimesh; raises Unusable.
-
-    Source: trimesh resources/templates/viewer.zip (three.js, MIT)."""
+    """Return three.js with trackball controls, of trimesh's viewer.zip (MIT); raises Unusable."""
     import zipfile
 
     prepare_meshes()
@@ -173,9 +168,7 @@ def three_js() -> str:
 
 
 def load_urdf(root: _Element, source: str) -> Model:
-    """Return the model of a URDF as yourdfpy reads it; ``source`` is the file it was made from.
-
-    Raises InputError for one that yourdfpy does not read, Unusable without yourdfpy."""
+    """Return the model of a URDF as yourdfpy reads it; raises InputError, Unusable."""
     prepare_meshes()
     import yourdfpy
 
@@ -216,7 +209,6 @@ def _matrix(origin: Any) -> Matrix:
 
 
 def _shapes(link: Any, named: Mapping[str, Colour], source: str) -> Iterator[Shape]:
-    """Yield the shapes of a link; ``named`` has the colours of the robot's materials."""
     for it in link.visuals:
         colour = _rgba(it.material) or (it.material and named.get(it.material.name)) or UNCOLOURED
         pose, own = _matrix(it.origin), it.geometry
@@ -235,7 +227,6 @@ def _shapes(link: Any, named: Mapping[str, Colour], source: str) -> Iterator[Sha
 
 
 def _joint(it: Any) -> Joint:
-    """Return a joint with its limits, and what it mimics."""
     kind, lower, upper = it.type or "", 0.0, 0.0
     if kind == "continuous":
         lower, upper = -round(pi, 4), round(pi, 4)

@@ -22,9 +22,7 @@ Meshes = Mapping[str, Mesh | str]
 
 
 def meshes_of(scene: ShownScene, tell: Callable[[str], None] = lambda _: None) -> Meshes:
-    """Return the meshes of all robots, each read once; ``tell`` gets the name of the one being read.
-
-    A worker with limits reads them: a small file may need too much memory or time."""
+    """Return the meshes of all robots, each read once by a worker with limits; ``tell`` gets names."""
     shapes = (it for robot in scene.robots for its in robot.model.links.values() for it in its)
     paths = [path for path in dict.fromkeys(it.mesh for it in shapes) if path]
     prepare_meshes()
@@ -100,7 +98,6 @@ def _asset(name: str) -> str:
 
 
 def _scene_json(scene: ShownScene, meshes: Meshes) -> dict[str, Any]:
-    """Return what the script draws, as JSON has it."""
     numbers = {path: at for at, path in enumerate(meshes)}
     return {
         "meshes": [
@@ -116,12 +113,10 @@ def _scene_json(scene: ShownScene, meshes: Meshes) -> dict[str, Any]:
 
 
 def _base64(data: bytes) -> str:
-    """Return bytes as text in base64."""
     return base64.b64encode(data).decode()
 
 
 def _robot_json(it: ViewedRobot, numbers: Mapping[str, int], meshes: Meshes) -> Any:
-    """Return a robot as the script reads it; ``numbers`` has the index of each mesh."""
     names = {one.after: [one.before, one.line] for one in it.names}
     links: dict[str, list[Any]] = {}
     for link, shapes in it.model.links.items():

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A planned fleet -> the scene: each robot's model at its pose, and what every name was before.
-
-The transforms of a snapshot are trees to be drawn over the robots."""
+"""A planned fleet -> the scene: models at their poses, old names, and a snapshot's tf trees."""
 
 import os
 from collections import defaultdict
@@ -84,7 +82,6 @@ def scene_of(plan: FleetPlan, graph: System | None = None) -> ShownScene:
 
 
 def _viewed_robot(it: RewrittenRobot, template: Template, graph: System | None) -> ViewedRobot:
-    """Return a robot as it is shown: its model, names and changes, and what was heard of it."""
     spec = it.spec
     root, source = it.member.described.document.root, os.path.abspath(spec.description)
     model = (load_sdf if root.tag == "sdf" else load_urdf)(root, source)
@@ -127,9 +124,7 @@ def _viewed_robot(it: RewrittenRobot, template: Template, graph: System | None) 
 
 
 def _names_before(it: RewrittenRobot, model: Model) -> dict[tuple[str, str], tuple[str, int]]:
-    """Return the old name of each link and joint, and the line that declares it.
-
-    Names within nested models of an SDF are matched by their order, which a rewrite keeps."""
+    """Return the old name and line of each link and joint; nested models are matched by order."""
     root = it.member.source.root
     if root.tag == it.member.described.document.root.tag == "sdf":
         old, lines = load_sdf(root, ""), lines_by_name(root)
@@ -159,9 +154,7 @@ class HeardFrame(NamedTuple):
 
 
 class HeardTree(NamedTuple):
-    """Frames below ``root`` on a tf topic, parents first.
-
-    It is where ``robot`` is planned to be, at the world's origin for none."""
+    """Frames below ``root``, parents first; drawn at the pose of ``robot``, or at the origin."""
 
     topic: str
     root: str
@@ -202,7 +195,6 @@ def transform_of(edge: Edge) -> tuple[float, ...]:
 
 
 def _frames_below(root: str, above: Mapping[str, Edge]) -> Iterator[HeardFrame]:
-    """Yield the frames below a root, parents first, as far as they have a pose."""
     children = lists_by_key((it.parent, it) for it in above.values())
     todo = [root]
     for name in todo:  # grows

@@ -75,7 +75,6 @@ def line_of(element: _Element) -> int:
 
 
 def _joint(frames: Frames, ends: JointEnds, at: dict[str, Pose]) -> Joint:
-    """Return a joint as the view draws it; ``at`` has the poses of the links."""
     it = frames.named[ends.joint]
     written = it.element.find("axis/xyz")
     axis = (None if written is None else vector(written.text or "")) or (0.0, 0.0, 1.0)
@@ -99,7 +98,6 @@ def _limits(it: Named, kind: str) -> tuple[float, float]:
 
 
 def _shapes(link: Named, frames: Frames, at: Pose) -> Iterator[Shape]:
-    """Yield the shapes of a link whose frame is ``at``."""
     for visual in link.element.iterchildren("visual"):
         written = visual.find("pose")
         relative = "" if written is None else written.get("relative_to", "")
@@ -114,7 +112,6 @@ def _shapes(link: Named, frames: Frames, at: Pose) -> Iterator[Shape]:
 def _shapes_of(
     it: _Element, pose: Matrix, colour: Vector | tuple[float, ...], source: str
 ) -> Iterator[Shape]:
-    """Yield the shape of a geometry."""
     size = [numbers(it.findtext(name) or "") for name in ("size", "radius", "length", "scale")]
     box, radius, long, scale = (values or () for values in size)
     if it.tag == "box" and len(box) == 3:

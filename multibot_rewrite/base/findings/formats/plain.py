@@ -180,7 +180,6 @@ def as_json(findings: Sequence[Finding], report: Report) -> str:
 
 
 def _json_finding(finding: Finding, report: Report) -> dict[str, Any]:
-    """Return a finding as the object of the JSON report."""
     it, edits = finding, []
     for edit in it.edits:
         text = (edit.before + (edit.after or b"")).decode("utf-8", "replace")
@@ -262,7 +261,6 @@ def _markdown_parts(findings: Sequence[Finding], report: Report) -> Iterator[tup
 
 
 def _without_markup(text: str) -> str:
-    """Return a text on one line with Markdown's characters escaped."""
     return _MARKUP.sub(r"\\\1", one_line(text))
 
 

@@ -57,7 +57,6 @@ def as_sarif(findings: Sequence[Finding], report: Report) -> str:
 
 
 def _sarif_rule(rule: Rule) -> Json:
-    """Return a rule as SARIF's reportingDescriptor."""
     both = (("Bad", rule.page.bad), ("Good", rule.page.good))
     examples = [(title, it) for title, it in both if it]
     prose = [rule.what, f"Why: {rule.why}", f"Fix: {rule.fix}"]
@@ -129,7 +128,6 @@ def _locations(finding: Finding, report: Report) -> list[Json]:
 
 
 def _location(path: str, region: Json) -> Json:
-    """Return the SARIF location of a region in a file."""
     return {"physicalLocation": {"artifactLocation": _file(path), "region": region}}
 
 
