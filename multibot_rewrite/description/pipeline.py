@@ -38,8 +38,9 @@ def prepare(
     own: OwnSource = OF_ALL,
 ) -> Template:
     """Return everything that does not depend on a robot's name; raises InputError, RewriteRefused.
-    ``urdf_declarations`` is what the URDF of an SRDF declares. ``own`` says more of a source that
-    is one robot's own."""
+
+    ``urdf_declarations`` is what an SRDF's URDF declares; ``own`` is of a source made for one
+    robot."""
     inventory = collect(read_document(source, file), tree, urdf_declarations, naming.read_as)
     check_urdf(inventory, urdf_declarations)
     plan = make_plan(inventory, naming)

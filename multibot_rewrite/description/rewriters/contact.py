@@ -27,8 +27,7 @@ LUMP = "_fixed_joint_lump__"
 def respell_collisions(
     root: etree._Element, claims: Iterable[Claim], declared: Declared, respell: Respell
 ) -> list[tuple[Claim, str]]:
-    """Return each contact collision whose name changes, with its new text. ``respell(kind, name)``
-    is the new spelling of a link, joint or shape."""
+    """Return each renamed contact collision and its text, by the new names of ``respell``."""
     contacts = [claim for claim in claims if claim.site.form == "collision"]
     if not contacts:
         return []

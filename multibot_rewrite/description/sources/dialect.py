@@ -53,8 +53,7 @@ def _is_inserted(element: _Element) -> bool:
 
 @outside
 def ros_of_package(file: str) -> str:
-    """Return the ROS that builds the package of a file, ROS 2 for what `multibot build` wrote; empty
-    for a file of no package."""
+    """Return the ROS that builds the package of a file, or wrote it; empty without a package."""
     if release_of_build(file):
         return ROS_2
     folder = os.path.dirname(os.path.abspath(file)) if os.path.isfile(file) else ""

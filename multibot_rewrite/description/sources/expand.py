@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Expand xacro in a process of its own, which reaches no further than it may."""
+"""Expands xacro in a process of its own, which can only reach what it may."""
 
 import os
 import re
@@ -40,8 +40,7 @@ class Expanded(NamedTuple):
 
 
 class Expansion(NamedTuple):
-    """A text, the origin of each of its elements, the XML files that were read, by their names; all
-    files that were ``read``, as they were asked for; and the pieces of its values, if they were."""
+    """An expanded text with origins of its elements, XML ``sources``, files ``read``, pieces."""
 
     data: bytes
     origins: Origins
@@ -110,8 +109,7 @@ def expand_traced(
     in_pieces: bool = False,
     changed: Mapping[str, bytes] = MappingProxyType({}),
 ) -> Expansion:
-    """Return the URDF text of a file with ``data``, with the origins of the elements, and of the pieces
-    of their values if requested. Files that are ``changed`` have these texts, by real path."""
+    """Return the URDF text of ``data`` with origins; ``changed`` files have these texts instead."""
 
     def expanded() -> Expansion:
         sources = Sources(Access(path, reach, find), {path: data}, changed)
@@ -140,7 +138,7 @@ def _text(path: str, result: Result, trace: Trace) -> bytes:
         if len(text) < LONG:
             text = re.sub(r"(.{9,}) \1(?= |$)", r"\1", text, flags=re.DOTALL)
         reason = " ".join((text or said).split())
-        message = _message(path, result.failure, reason, trace)
+        message = _failure_message(path, result.failure, reason, trace)
         raise model.InputError(message, *_cause(reason))
     # xacro expands what is inside the root, and drops the declaration of its own prefix.
     prefix, tag = result.root
@@ -176,7 +174,7 @@ def _cause(reason: str) -> tuple[str, str]:
     return (model.NOT_DEFINED, found[1] or found[2] or "") if found else (model.XACRO_FAILED, "")
 
 
-def _message(path: str, failure: Failure, reason: str, trace: Trace) -> str:
+def _failure_message(path: str, failure: Failure, reason: str, trace: Trace) -> str:
     inner = alike(failure.file, path)
     inner = path if inner == os.path.normpath(path) else inner
     if not os.path.isabs(path):

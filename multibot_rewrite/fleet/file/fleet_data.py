@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A fleet file with those it includes, or a dict -> checked data, with the place of each value;
-paths are relative to the file's folder, and there."""
+"""Reads a fleet file with its includes, or a dict, as checked data with places of values.
+
+Paths are relative to the file's folder, and must exist."""
 
 import json
 import os
@@ -227,8 +228,7 @@ def schema() -> dict[str, Any]:
 def given_arguments(
     data: Mapping[str, Any], own: Mapping[str, Any], described: Sequence[str], place: str
 ) -> dict[str, str]:
-    """Return the xacro arguments of a robot, over those of the fleet; only for xacro files. Raises
-    InputError for arguments without a xacro, and for an unknown placeholder."""
+    """Return a robot's xacro arguments and the fleet's; raises InputError without a xacro."""
     files = (*described, *(own.get(it, data.get(it, "")) for it in ("srdf", "simulated")))
     if not any(is_xacro(it) for it in files):
         if own.get("arguments"):

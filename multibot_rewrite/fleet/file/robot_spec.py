@@ -226,9 +226,8 @@ _MADE = "robot.urdf"
 
 
 def described(read: FleetData, at: int) -> tuple[str, tuple[Part, ...]]:
-    """Return the description of a robot, by its number, and the parts that it is joined from. A
-    list in the fleet file gets a path as if it were a file below. Raises InputError for a robot
-    with both."""
+    """Return the description of a robot by number, and the parts that it is joined from."""
+    # A list of parts in the fleet file gets a path as if it were a file below.
     data, own = read.data, read.data["robots"][at]
     file, line = read.places["robots", at]
     if any(JOIN in it and DESCRIPTION in it for it in (own, data)):

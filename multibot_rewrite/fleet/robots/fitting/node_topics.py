@@ -22,8 +22,7 @@ _OF_A_PERSON = ("key", "teleop", "manual", "joy")
 
 
 class CommandEnd(NamedTuple):
-    """A node that sends or obeys velocities on a topic; the parameter that has the topic, and its name
-    in the code of the node."""
+    """A node that sends or obeys velocities on a topic, with its parameter and name in the code."""
 
     node: str
     role: str
