@@ -94,7 +94,7 @@ def numbered(robots: Mapping[str, tuple[bytes, Sequence[Port]]]) -> Numbered:
             taken.add(new[it.number])
             given.setdefault(it.name, []).append((robot, new[it.number]))
         held |= {*new.values()}
-        edits = _numbering_edits(robot, ((it, new[it.number]) for it in own))
+        edits = _port_edits(robot, ((it, new[it.number]) for it in own))
         changed |= {it.name for it in own if new[it.number] != it.number}
         texts.append(b"".join(cut(text, edits)) if edits else text)
     notes = tuple(numbers_message(it, given[it]) for it in sorted(changed))
@@ -158,7 +158,7 @@ def _default(
         yield Port(value or opened.path, number, *opened.numbers, inside, at, at, at, text)
 
 
-def _numbering_edits(robot: str, given: Iterable[tuple[Port, int]]) -> list[Edit]:
+def _port_edits(robot: str, given: Iterable[tuple[Port, int]]) -> list[Edit]:
     edits = []
     # What is put at the begin of another element stands before its comment.
     for it, number in sorted(given, key=lambda pair: pair[0].is_written):
@@ -179,9 +179,7 @@ def without_numbers(source: bytes, file: str, robot: str, tree: Tree) -> bytes:
         return source
     text = b"".join(cut(source, edits))
     before, now = (ports_of(collect(it, tree)) for it in (read_document(text, file), document))
-    again = _numbering_edits(
-        robot, ((it, new.number) for it, new in zip(before, now, strict=False))
-    )
+    again = _port_edits(robot, ((it, new.number) for it, new in zip(before, now, strict=False)))
     if b"".join(cut(text, again)) != source:
         raise _edited_by_hand(document, robot)
     return text

@@ -89,9 +89,7 @@ def make_plan(
     anything, and launch files run. Raises as ``rewrite_all``, and UsageError for an unknown node
     set."""
     file, joined = with_joined(file, trust)
-    file, notes = with_launched_files(
-        _with_trusted_launches(with_shape(file)) if trust else with_shape(file)
-    )
+    file, notes = with_launched_files(_with_trust(with_shape(file)) if trust else with_shape(file))
     file = with_launched_world(with_one_map(with_bridge_namespaces(file)))
     with gc_paused():
         naming = make_naming(**file.policy)
@@ -138,7 +136,7 @@ def _evidence(
     return found, frozenset(it.spec.namespace for it in real)
 
 
-def _with_trusted_launches(file: FleetFile) -> FleetFile:
+def _with_trust(file: FleetFile) -> FleetFile:
     robots = (
         it._replace(launch=tuple(order._replace(trusted=True) for order in it.launch))
         for it in file.robots

@@ -73,11 +73,11 @@ def prefix_only(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
         own = any((it.kind, it.text) in naming.own for it in names)
         if claim.site.form in IN_FRONT and not own:
             yield about(claim, "MB422", _in_front(claim.site.path, claim.value), hint)
-    for section, host in _hosts_with_section(inventory):
+    for section, host in _known_plugins(inventory):
         for site in (it for it in section.sites if it.form in IN_FRONT and it.default):
             if host.element.find(site.path) is None:
                 message = _in_front(site.path, site.default)
-                yield _problem_at_host(host, "MB422", message, hint)
+                yield _at_host(host, "MB422", message, hint)
 
 
 def _in_front(path: str, value: str) -> str:
@@ -115,19 +115,19 @@ def shared_below(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
         for it in names if claim.site.namespaced else ():
             if it.kind in TOPIC_KINDS and it.text in shared:
                 yield about(claim, "MB430", f"{it.text!r} {says}", f"write /{it.text}")
-    for section, host in _hosts_with_section(inventory):
+    for section, host in _known_plugins(inventory):
         rules = (split_remap(text_of(it)) for it in host.element.iter("remapping", "argument"))
         ruled = {it.source.strip("/") for it in rules if it}
         left = (it.name for it in section.wired if not it.is_moved)
         for name in (it for it in left if it in shared and it not in ruled):
             hint = f"write the rule {name}:=/{name}"
-            yield _problem_at_host(host, "MB430", f"{name!r} of {section.names[0]} {says}", hint)
+            yield _at_host(host, "MB430", f"{name!r} of {section.names[0]} {says}", hint)
 
 
 def bare_lookups(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
     """Yield consumers that find things by name in the whole world, where no robot's name is added."""
     declared = {claim.site.kinds[0] for claim in inventory.claims if claim.site.role == "declares"}
-    for section, host in _hosts_with_section(inventory):
+    for section, host in _known_plugins(inventory):
         kind = section.unique
         # Hardware looks for the sensors that it is given, not for all that the robot has.
         element = host.element
@@ -138,7 +138,7 @@ def bare_lookups(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
                 "it may find that of another robot"
             )
             hint = f"use --layout both, which renames {kind}s for each robot"
-            yield _problem_at_host(host, "MB425", message, hint)
+            yield _at_host(host, "MB425", message, hint)
 
 
 def process_wide(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
@@ -147,15 +147,13 @@ def process_wide(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
     # since Jazzy each manager has its own (gz_ros2_control_plugin.cpp, ``options.arguments``).
     if not controller_way(inventory.release).process_wide:
         return
-    wide = [
-        (section, host) for section, host in _hosts_with_section(inventory) if section.process_wide
-    ]
+    wide = [(section, host) for section, host in _known_plugins(inventory) if section.process_wide]
     if naming.topics != NAMESPACE:
         for section, host in wide:
             plugin = section.names[0]
             message = f"remap rules of {plugin} apply to the whole process, also to other robots"
             hint = "with several robots in one Gazebo use --topics namespace"
-            yield _problem_at_host(host, "MB426", message, hint)
+            yield _at_host(host, "MB426", message, hint)
         return
     inside = {host.element for _, host in wide}
     for claim in inventory.claims if inside else ():
@@ -183,7 +181,7 @@ def one_description(
 
 def world_systems(inventory: Inventory) -> Iterator[Problem]:
     """Yield systems of the whole world that each robot loads again; in a world they are right."""
-    for section, host in _hosts_with_section(inventory):
+    for section, host in _known_plugins(inventory):
         above = host.element.getparent()
         if WORLD not in section.opens or (above is not None and above.tag in (WORLD, "gui")):
             continue
@@ -201,7 +199,7 @@ def system_key(plugin: _Element) -> str:
 
 def hardwired(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
     """Yield plugins whose code looks for a literal name: under another one they find nothing."""
-    for section, host in _hosts_with_section(inventory):
+    for section, host in _known_plugins(inventory):
         for entry in section.hardwired:
             kind, _, name = entry.partition(":")
             path, _, name = name.removeprefix("{").rpartition("}")
@@ -213,9 +211,7 @@ def hardwired(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
                 bare = "the name is fixed in its code: use --layout tf-per-robot or frame-prefix"
                 alone = kind in (section.unique, "light")  # renamed in every layout
                 given = f"write an empty <{path}> for it and use --affix prefix"
-                yield _problem_at_host(
-                    host, "MB428", message, given if path else ALONE if alone else bare
-                )
+                yield _at_host(host, "MB428", message, given if path else ALONE if alone else bare)
 
 
 def of_px4(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
@@ -230,11 +226,11 @@ def of_px4(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
             yield about(sensors[it], "MB428", message, hint)
 
 
-def _problem_at_host(host: Host, code: str, message: str, hint: str) -> Problem:
+def _at_host(host: Host, code: str, message: str, hint: str) -> Problem:
     return Problem(host.element, message, None, hint, (), code)
 
 
-def _hosts_with_section(inventory: Inventory) -> Iterator[tuple[PluginDefinition, Host]]:
+def _known_plugins(inventory: Inventory) -> Iterator[tuple[PluginDefinition, Host]]:
     for host in inventory.hosts:
         if host.node.section is not None:
             yield host.node.section, host
@@ -296,7 +292,7 @@ def used_namespaces(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     release = tree.definitions.release
     below = [
         host.element
-        for section, host in (_hosts_with_section(inventory) if models else ())
+        for section, host in (_known_plugins(inventory) if models else ())
         if section.model_namespace and has_release(section.model_namespace, release)
     ]
     for model in models:

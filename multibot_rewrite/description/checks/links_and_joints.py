@@ -174,9 +174,7 @@ def loops(robot: Robot) -> list[list[Joint]]:
         name = start
         while name not in done:
             done.add(name)
-            path[name] = next(
-                it for it in robot.above[name] if _joins_two_links(it) and it.parent in rest
-            )
+            path[name] = next(it for it in robot.above[name] if _is_edge(it) and it.parent in rest)
             name = path[name].parent
         if name in path:
             found.append(list(path.values())[list(path).index(name) :][::-1])
@@ -185,17 +183,17 @@ def loops(robot: Robot) -> list[list[Joint]]:
 
 def _not_of_a_tree(robot: Robot) -> dict[str, None]:
     """Return the links in loops and below them, in document order."""
-    open_ = {name: sum(map(_joins_two_links, joints)) for name, joints in robot.above.items()}
+    open_ = {name: sum(map(_is_edge, joints)) for name, joints in robot.above.items()}
     ready = [it for it in robot.below if not open_.get(it)]
     for name in ready:  # grows
-        for joint in filter(_joins_two_links, robot.below.get(name, ())):
+        for joint in filter(_is_edge, robot.below.get(name, ())):
             open_[joint.child] -= 1
             if not open_[joint.child]:
                 ready.append(joint.child)
     return {name: None for name, count in open_.items() if count}
 
 
-def _joins_two_links(joint: Joint) -> bool:
+def _is_edge(joint: Joint) -> bool:
     return bool(joint.parent) and bool(joint.child) and joint.parent != joint.child
 
 

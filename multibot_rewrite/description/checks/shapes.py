@@ -113,11 +113,9 @@ def way_out(shape: _Element, start: Vector, along: Vector) -> float:
     if half is None:
         return 0.0
     if shape.tag == "sphere":
-        return _distance_to_round_face(start, along, half[0])
+        return _to_round_face(start, along, half[0])
     if shape.tag == "cylinder":
-        flat = _distance_to_round_face(
-            (start[0], start[1], 0.0), (along[0], along[1], 0.0), half[0]
-        )
+        flat = _to_round_face((start[0], start[1], 0.0), (along[0], along[1], 0.0), half[0])
         return min(flat, _distance_to_flat_face(start[2], along[2], half[2]))
     return min(map(_distance_to_flat_face, start, along, half))
 
@@ -128,7 +126,8 @@ def _distance_to_flat_face(start: float, along: float, half: float) -> float:
     return inf if along == 0 else (half - start * (1 if along > 0 else -1)) / abs(along)
 
 
-def _distance_to_round_face(start: Vector, along: Vector, radius: float) -> float:
+def _to_round_face(start: Vector, along: Vector, radius: float) -> float:
+    """Return the distance from a point inside to the round face; 0 if outside."""
     rest = radius * radius - dot(start, start)
     square, middle = dot(along, along), dot(start, along)
     if rest < 0:

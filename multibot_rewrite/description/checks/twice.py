@@ -58,7 +58,7 @@ def already_rewritten(
         looked = robot in text and (not again or robot in marked)
         found = carrying(_names(inventory, kinds), robot, own) if looked else []
         if found or robot in marked:
-            yield _already_rewritten_problem(inventory, robot, found, robot in marked)
+            yield _problem(inventory, robot, found, robot in marked)
 
 
 def rewritten_before(inventory: Inventory) -> Iterator[Problem]:
@@ -131,9 +131,8 @@ def _is_in_most(found: Iterable[UsedName], known: Iterable[UsedName], robot: str
     return any(2 * carried[kind] > all_[kind] for kind in COUNTED)
 
 
-def _already_rewritten_problem(
-    inventory: Inventory, robot: str, found: list[UsedName], marked: bool
-) -> Problem:
+def _problem(inventory: Inventory, robot: str, found: list[UsedName], marked: bool) -> Problem:
+    """Return the problem that a description is already rewritten for a robot."""
     carried = f"its name is in {_names_in_words(inventory, found)}" if found else ""
     added = "elements were added for it" if marked else ""
     why = " and ".join(filter(None, (carried, added)))

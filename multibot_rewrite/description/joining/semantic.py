@@ -97,7 +97,7 @@ def joined_srdf(
         files = {link: it.part.file for it in parts for link in it.part.robot.link}
         found = touching(described, others, files, samples)
         reasons |= found.reasons
-        notes = list(_sampling_notes(others, found, samples))
+        notes = list(_notes(others, found, samples))
     for (one, other), why in reasons.items():
         etree.SubElement(root, "disable_collisions", link1=one, link2=other, reason=why)
     told = dict.fromkeys(str(it) for part in parts for it in part.findings if it.level == WARNING)
@@ -160,9 +160,7 @@ def _between(described: _Element, parts: Sequence[PartSemantics]) -> Iterator[tu
         yield from ((min(it), max(it)) for it in product(some, more))
 
 
-def _sampling_notes(
-    pairs: Sequence[tuple[str, str]], found: Touching, samples: int
-) -> Iterator[str]:
+def _notes(pairs: Sequence[tuple[str, str]], found: Touching, samples: int) -> Iterator[str]:
     many = Counter(found.reasons.values())
     what = f"of {plural(len(pairs), 'pair')} of links of two parts {many[NEVER]} never touch"
     yield f"SRDF: {what} in {samples} random poses; the others are checked for collisions"

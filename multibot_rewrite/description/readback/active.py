@@ -42,7 +42,7 @@ def plugin_section(
             continue
         # Nothing in ROS 1 reads a <ros>.
         if found and not (with_ros and all(it.ros == ROS_1 for it in found)):
-            return _section_of_loading_ros(found, plugin), True
+            return _section_by_ros(found, plugin), True
     if not with_ros:
         return None, False
     return definitions.find("plugin", WITH_ROS)[0], False
@@ -60,9 +60,7 @@ def _definition_keys(plugin: _Element) -> Iterator[str]:
     yield plugin.get("type", "").strip()
 
 
-def _section_of_loading_ros(
-    found: Sequence[PluginDefinition], plugin: _Element
-) -> PluginDefinition:
+def _section_by_ros(found: Sequence[PluginDefinition], plugin: _Element) -> PluginDefinition:
     """Return the definition for the ROS that loads a plugin."""
     # Only ROS 2 reads <ros>; without one the ROS that reads more of the parameters counts.
     by_release = {section.ros: section for section in found}

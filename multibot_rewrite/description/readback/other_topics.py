@@ -51,7 +51,7 @@ def resolved(
     stems = [site for site in section.sites if site.kinds[:1] == ("stem",) and site.form == "whole"]
     words = [(site.path, value) for site in stems for value in values_of(host, site)]
     if above is not None:
-        yield from ((BELOW, _topic_below(above, word), path) for path, word in words)
+        yield from ((BELOW, _join(above, word), path) for path, word in words)
     # A word that topics are made of and that is there and empty: it takes the place of the model's
     # name, so that no robot is in them (gz-sim Thruster.cc: HasElement("namespace")).
     for site in stems:
@@ -62,7 +62,7 @@ def resolved(
         kind = SERVICE if site.kinds[0] == SERVICE else TOPIC
         below = above
         if site.kinds[0] == "subtopic" and stems and above is not None:
-            below = _topic_below(above, words[0][1]) if words else None
+            below = _join(above, words[0][1]) if words else None
         yield from ((kind, it, site.path) for it in _full_names(host, section, site, below))
     # The names in the code of what is no ROS 2 node, as those of ROS 1: roscpp puts the namespace
     # in front of relative ones (names.cpp), and tf's broadcaster has an absolute one (tf2_ros
@@ -71,9 +71,7 @@ def resolved(
     for wired, path in wired_of(host, section):
         if wired.name not in off and (above is not None or wired.name.startswith("/")):
             kind = SERVICE if wired.role == SERVES else TOPIC
-            name = (
-                wired.name if wired.name.startswith("/") else _topic_below(above or "", wired.name)
-            )
+            name = wired.name if wired.name.startswith("/") else _join(above or "", wired.name)
             yield TRANSFORMS_ON if wired.name in TF_TOPICS else kind, name, path or wired.name
 
 
@@ -86,7 +84,7 @@ def of_others(host: _Element, section: PluginDefinition) -> Iterator[tuple[str, 
     above = None if of_model else _namespace(host, section)
     for site in filter(is_of_others, section.sites):
         if "model" in section.opens:
-            yield from ((_topic_below(model, it), site.path) for it in values_of(host, site))
+            yield from ((_join(model, it), site.path) for it in values_of(host, site))
         else:
             yield from ((it, site.path) for it in _full_names(host, section, site, above))
 
@@ -101,7 +99,7 @@ def _full_names(
         if name.startswith("/"):
             yield name
         elif above is not None and not name.startswith("~"):
-            yield _topic_below(above, name)
+            yield _join(above, name)
 
 
 def as_valid_topic(name: str) -> str:
@@ -121,7 +119,7 @@ def _namespace(host: _Element, section: PluginDefinition) -> str | None:
     return values[0] if values else None if sites else "/"
 
 
-def _topic_below(above: str, name: str) -> str:
+def _join(above: str, name: str) -> str:
     return f"/{above.strip('/')}/{name.strip('/')}".replace("//", "/")
 
 

@@ -107,7 +107,7 @@ def _explained_claims(
     recomputed = {claim.start: new.replace(ROBOT_SLOT, robot) for claim, new in plan.collisions}
     values = zip(inventory.claims, inventory.names, plan.renames.values, strict=True)
     for claim, names, spelling in values:
-        place = _value_position(inventory, claim.start, claim.attribute, claim.value)
+        place = _position(inventory, claim.start, claim.attribute, claim.value)
         if place[0] != line:
             continue
         new = respelled(claim.value, spelling, robot)
@@ -165,7 +165,7 @@ def _others(inventory: Inventory, tree: Tree, line: int) -> Iterator[Explanation
         slots = [(str(key), str(value)) for key, value in element.items()]
         slots.append(("", text_of(element)))
         for attribute, value in slots:
-            place = _value_position(inventory, start, attribute, value)
+            place = _position(inventory, start, attribute, value)
             if value and place[0] == line and (start, attribute) not in claimed:
                 site = kept(element, attribute, tree, {})
                 name = mentioned(value, names)
@@ -199,9 +199,7 @@ def _inserted(inventory: Inventory, plan: Plan, robot: str, line: int) -> Iterat
                 yield Explanation(*place, path, name, None, reason, name, (text,))
 
 
-def _value_position(
-    inventory: Inventory, start: int, attribute: str, value: str
-) -> tuple[int, int]:
+def _position(inventory: Inventory, start: int, attribute: str, value: str) -> tuple[int, int]:
     source = inventory.document.source
     slot = value_slot(source, start, attribute, value) if value else None
     return locate(source, slot[0] if slot else start)

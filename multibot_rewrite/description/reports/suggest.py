@@ -112,12 +112,10 @@ def loaded_by(host: Host) -> Loaded | None:
 def _section_name(type_: str, element: "_Element") -> str:
     """Return the first name by which the element is looked up and that a section can have."""
     keys = tree.plugin_keys(element) if type_ == "plugin" else tree.hardware_keys(element)
-    return next(
-        (key for key in keys if key != tree.ANY_WITH_ROS and _is_section_header(type_, key)), ""
-    )
+    return next((key for key in keys if key != tree.ANY_WITH_ROS and _is_header(type_, key)), "")
 
 
-def _is_section_header(type_: str, name: str) -> bool:
+def _is_header(type_: str, name: str) -> bool:
     try:
         return read_header("", f"{type_} {name}]") == (type_, name)
     except DefinitionsError:

@@ -65,7 +65,7 @@ def insertions(hosts: Hosts, declared: Declared, naming: Naming) -> list[Inserti
         home = ros_home(host, section)
         # What stands in the host itself has no step for it in its path.
         hidden = "ros/" if home is host else ""
-        found = list(_default_insertions(host, section, declared, naming, hidden))
+        found = list(_of_defaults(host, section, declared, naming, hidden))
         if any(site.path == "ros/remapping" for site in section.sites):
             found += _remaps(host, section, naming, home)
         if naming.separators:
@@ -126,9 +126,7 @@ def lacks_namespace(
         return False
     hidden = "ros/" if ros_home(host, section) is host else ""
     asked = section._replace(sites=sites)
-    return any(
-        it.kind == "namespace" for it in _default_insertions(host, asked, declared, naming, hidden)
-    )
+    return any(it.kind == "namespace" for it in _of_defaults(host, asked, declared, naming, hidden))
 
 
 def without(item: Insertion, release: str) -> str:
@@ -142,13 +140,14 @@ def without(item: Insertion, release: str) -> str:
     return "tf would not have" if item.kind in FRAME_KINDS else "topics would move with the sensor"
 
 
-def _default_insertions(
+def _of_defaults(
     host: etree._Element,
     section: PluginDefinition,
     declared: Declared,
     naming: Naming,
     hidden: str,
 ) -> Iterator[Insertion]:
+    """Yield the defaults of a plugin that must differ for each robot."""
     for site in section.sites:
         default = default_of(host, site.default, naming) if site.default else ""
         if not default:

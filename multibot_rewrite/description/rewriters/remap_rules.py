@@ -159,11 +159,7 @@ def _names_in_left_side(source: str, at: int, node: _Node) -> Iterator[NamePart]
             yield NamePart(at, source, (asked.kind,))
         return
     stem = next((it for it in node.stems if f"{full}/".startswith(f"{node.full(it)}/")), "")
-    if (
-        source.startswith("/")
-        and not stem.startswith("/")
-        and _goes_with_namespace(full, asked, stem, node)
-    ):
+    if source.startswith("/") and not stem.startswith("/") and _is_moved(full, asked, stem, node):
         yield NamePart(at, source, ("namespace",))
     # What is behind the namespace is the same in a relative and an absolute left side.
     rest = full.removeprefix(node.root)
@@ -179,7 +175,7 @@ def _names_in_left_side(source: str, at: int, node: _Node) -> Iterator[NamePart]
         yield NamePart(behind, rest, (asked.kind,))
 
 
-def _goes_with_namespace(full: str, asked: _Asked | None, stem: str, node: _Node) -> bool:
+def _is_moved(full: str, asked: _Asked | None, stem: str, node: _Node) -> bool:
     """Return whether a name moves with its node's namespace, as most of an unknown node's do."""
     if not full.startswith(node.root):
         return False

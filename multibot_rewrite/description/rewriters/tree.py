@@ -205,7 +205,7 @@ class Tree:
 
         def select(element: _Element) -> TreeNode:
             for key in keys(element):
-                found = _section_of_ros(self.definitions.find(type_, key), element)
+                found = _by_ros(self.definitions.find(type_, key), element)
                 if found is not None and not _is_gz_sim_class(element, key, found):
                     return self._node_with_section(base, found)
             return base
@@ -300,9 +300,7 @@ SELECTORS: dict[str, Callable[[_Element], list[str]]] = {
 }
 
 
-def _section_of_ros(
-    found: Sequence[PluginDefinition], element: _Element
-) -> PluginDefinition | None:
+def _by_ros(found: Sequence[PluginDefinition], element: _Element) -> PluginDefinition | None:
     """Return the ROS 1 or ROS 2 definition of plugins with one file name, by the children."""
     # ROS 2 if they do not tell. Nothing in ROS 1 reads a ``ros`` child. What decides for the whole
     # document: ``sources/release_said.py``. Source: gazebo_ros_pkgs branches noetic-devel

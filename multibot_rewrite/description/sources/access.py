@@ -117,9 +117,7 @@ class Access:
             beside = []
             for folder in found:
                 self.readable(folder or os.curdir)
-                names = [
-                    it for it in _names_in_folder(folder) if it[0] != "." and fnmatchcase(it, part)
-                ]
+                names = [it for it in _listing(folder) if it[0] != "." and fnmatchcase(it, part)]
                 beside += [os.path.join(folder, it) for it in names]
                 seen += len(names)
                 if seen > MOST_FILES:
@@ -190,9 +188,7 @@ def _own_folders(path: str) -> tuple[str, ...]:
 
 def _folder_with(folder: str, mark: str) -> str:
     """Return the nearest folder above that holds ``mark``; empty if there is none."""
-    return next(
-        (it for it in _folder_and_parents(folder) if os.path.lexists(os.path.join(it, mark))), ""
-    )
+    return next((it for it in _upwards(folder) if os.path.lexists(os.path.join(it, mark))), "")
 
 
 def _repository(folder: str) -> str:
@@ -202,13 +198,14 @@ def _repository(folder: str) -> str:
     if known := _folder_with(folder, ".git"):
         return known
     package = _folder_with(folder, "package.xml")
-    above = list(_folder_and_parents(os.path.dirname(package))) if package else []
+    above = list(_upwards(os.path.dirname(package))) if package else []
     marks = (os.path.join(it, mark) for it in above for mark in _OF_REPOSITORY)
     found = next((os.path.dirname(it) for it in marks if os.path.lexists(it)), "")
     return found or next((it for it in above if os.path.basename(it) == "src"), "")
 
 
-def _folder_and_parents(folder: str) -> Iterator[str]:
+def _upwards(folder: str) -> Iterator[str]:
+    """Yield a folder and those above it."""
     for _ in range(HIGHEST):
         yield folder
         folder = os.path.dirname(folder)
@@ -236,7 +233,7 @@ def _installed(name: str) -> str:
 
 
 @outside
-def _names_in_folder(folder: str) -> list[str]:
+def _listing(folder: str) -> list[str]:
     try:
         return os.listdir(folder or os.curdir)
     except OSError:

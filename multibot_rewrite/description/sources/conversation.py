@@ -139,7 +139,7 @@ def _answer_to(data: bytes, sources: Sources) -> bytes:
         frames.ENVIRONMENT: lambda variable: json.dumps(access.variable(variable)).encode(),
     }
     try:
-        return frames.framed(frames.VALUE, ways[what](_checked_text(name)))
+        return frames.framed(frames.VALUE, ways[what](_to_text(name)))
     except NotAllowedError as error:
         said: list[object] = ["refused", str(error)]
     except OSError as error:
@@ -155,24 +155,22 @@ def _result(it: XacroChild, data: bytes) -> Result:
     """Return the rest of a child's answer; raises the errors that converse catches."""
     report = load_json(data)
     if "missing" in report:
-        raise InputError(f"{_checked_text(report['missing'])}; pip install xacro, or source ROS 2")
+        raise InputError(f"{_to_text(report['missing'])}; pip install xacro, or source ROS 2")
     failed = report.get("error")
     text = b"" if failed else _next_frame(it, frames.TEXT)
     origins = b"" if failed else _next_frame(it, frames.ORIGINS)
     return Result(
-        _checked_text(report["notes"]),
-        tuple(_checked_text(name) for name in report["fences"]),
-        tuple((_checked_text(name), int(count)) for name, count in report["files"]),
-        tuple(_checked_text(name) for name in report["macros"]),
+        _to_text(report["notes"]),
+        tuple(_to_text(name) for name in report["fences"]),
+        tuple((_to_text(name), int(count)) for name, count in report["files"]),
+        tuple(_to_text(name) for name in report["macros"]),
         _parsed_failure(failed) if failed else None,
-        ("", "")
-        if failed
-        else (_checked_text(report["root"][0] or ""), _checked_text(report["root"][1])),
+        ("", "") if failed else (_to_text(report["root"][0] or ""), _to_text(report["root"][1])),
         text,
         _checked_numbers(origins, _TRIPLE),
         _checked_numbers(_next_frame(it, frames.CALLS), _QUADRUPLE),
         _checked_numbers(_next_frame(it, frames.PIECES), _EIGHT),
-        tuple(_checked_text(word) for word in report["words"]),
+        tuple(_to_text(word) for word in report["words"]),
     )
 
 
@@ -183,15 +181,15 @@ def _next_frame(it: XacroChild, kind: bytes) -> bytes:
 def _parsed_failure(told: Any) -> Failure:
     position, place = told["position"], told["place"]
     return Failure(
-        _checked_text(told["reason"]),
-        _checked_text(told["file"]),
+        _to_text(told["reason"]),
+        _to_text(told["file"]),
         (int(position[0]), int(position[1])) if position else None,
-        (int(place[0]), int(place[1]), _checked_text(place[2])) if place else None,
+        (int(place[0]), int(place[1]), _to_text(place[2])) if place else None,
         int(told["call"]),
     )
 
 
-def _checked_text(value: object) -> str:
+def _to_text(value: object) -> str:
     if not isinstance(value, str):
         raise frames.GarbageError
     return value

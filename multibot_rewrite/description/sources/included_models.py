@@ -40,9 +40,7 @@ def with_includes(data: bytes, file: str, above: tuple[str, ...] = ()) -> bytes:
 
     ``above``: the files that include this one. Raises InputError if a model includes itself.
     """
-    document = (
-        _document_or_none(data, file) if b"<include" in data and len(above) <= _DEEPEST else None
-    )
+    document = _try_read(data, file) if b"<include" in data and len(above) <= _DEEPEST else None
     if document is None or document.root.tag != "sdf" or document.root.find("world") is not None:
         return data
     above = (*above, real_path(file))
@@ -90,14 +88,14 @@ def _included_text(include: _Element, file: str, above: tuple[str, ...]) -> byte
     return b"".join(_SPACES.sub(b" ", etree.tostring(it, with_tail=False)) for it in parts)
 
 
-def _document_or_none(data: bytes, path: str) -> Document | None:
+def _try_read(data: bytes, path: str) -> Document | None:
     with suppress(InputError):
         return read_document(data, path)
     return None
 
 
 def _root_without_comments(data: bytes, path: str) -> _Element | None:
-    document = _document_or_none(data, path)
+    document = _try_read(data, path)
     if document is None:
         return None
     etree.strip_tags(document.root, etree.Comment)

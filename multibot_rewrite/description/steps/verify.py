@@ -236,14 +236,12 @@ def added_once(it: Evidence) -> None:
     for marker in it.markers:
         behind = list(marker.comment.itersiblings("*"))
         added = behind[: marker.elements]
-        _check_not_doubled(it, added, [*behind, *marker.comment.itersiblings("*", preceding=True)])
+        _check_single(it, added, [*behind, *marker.comment.itersiblings("*", preceding=True)])
         for element in added:
-            _check_not_doubled(it, list(element), list(element))
+            _check_single(it, list(element), list(element))
 
 
-def _check_not_doubled(
-    it: Evidence, added: list[etree._Element], beside: list[etree._Element]
-) -> None:
+def _check_single(it: Evidence, added: list[etree._Element], beside: list[etree._Element]) -> None:
     there = Counter(map(_key, beside))
     for element in added:
         if there[_key(element)] > 1:
@@ -302,17 +300,14 @@ def strips_to_source(it: Evidence) -> None:
     """Check that undoing the rewrite, by the output alone, gives the input back."""
     own = strip.own_places(it.inventory, it.naming)
     fills = any(marker.filled for marker in it.markers)
-    if not (
-        _gives_source_back(it, own)
-        if own or fills or _replaces_text(it.plan)
-        else _adds_affixes(it)
-    ):
+    if not (_undoes(it, own) if own or fills or _replaces_text(it.plan) else _adds_affixes(it)):
         raise ProofError(
             f"{it.file}: stripping {it.robot} from the output does not give the input back"
         )
 
 
-def _gives_source_back(it: Evidence, own: frozenset[strip.Place]) -> bool:
+def _undoes(it: Evidence, own: frozenset[strip.Place]) -> bool:
+    """Return whether undoing the rewrite gives the source."""
     edits = strip.strip_edits(it.result, it.naming, it.robot, own)
     return b"".join(cut(it.result.document.source, edits)) == it.inventory.document.source
 

@@ -527,13 +527,11 @@ def _spawn_starts(given: _Given) -> Iterator[Start]:
         spaces = {it.namespace for it in given.names.nodes.values()}
         namespace = min(spaces, key=len, default="/")
         name = "" if namespace != "/" else f"ros_gz_bridge_{robot.spec.namespace}"
-        qos = dict(_qos_of_topics(given.plan, robot, robot.spec.namespace))
+        qos = dict(_qos_rows(given.plan, robot, robot.spec.namespace))
         yield Start(*_BRIDGE, namespace, name, ({"config_file": File(path), **qos},))
 
 
-def _qos_of_topics(
-    plan: FleetPlan, robot: RewrittenRobot, space: str
-) -> Iterator[tuple[str, object]]:
+def _qos_rows(plan: FleetPlan, robot: RewrittenRobot, space: str) -> Iterator[tuple[str, object]]:
     """Yield settings of launched bridges for the robot's topics; without ``space`` for shared."""
     for key, value in plan.evidence_of(robot).qos.items():
         topic = key.split(".")[1]
@@ -567,7 +565,7 @@ def of_all(
     shared = (*_shared_starts(plan, names, known, values, files), *found)
     if BRIDGE_FILE not in files:
         return shared
-    qos = {key: it for robot in plan.robots for key, it in _qos_of_topics(plan, robot, "")}
+    qos = {key: it for robot in plan.robots for key, it in _qos_rows(plan, robot, "")}
     rows, served = ({"config_file": File(BRIDGE_FILE), **qos},), services_in(plan.launched_words)
     bridge = Start(*_BRIDGE, parameters=rows, arguments=tuple(served))
     # It is of no use without the simulator.

@@ -43,9 +43,7 @@ def relays(robot: str, naming: Naming, file: FleetFile) -> list[Relay]:
     if not file.relayed:
         return []
     copied = naming.layout.frames
-    return [
-        *(_relays_to_tf(robot, naming) if copied else _bridge_relays(robot, naming, file.world))
-    ]
+    return [*(_relays_to_tf(robot, naming) if copied else _bridges(robot, naming, file.world))]
 
 
 def _relays_to_tf(robot: str, naming: Naming) -> Iterator[Relay]:
@@ -59,7 +57,8 @@ def _relays_to_tf(robot: str, naming: Naming) -> Iterator[Relay]:
         yield Relay(run, Start(*_RELAY, run.namespace, run.name, (told,)))
 
 
-def _bridge_relays(robot: str, naming: Naming, world: str) -> Iterator[Relay]:
+def _bridges(robot: str, naming: Naming, world: str) -> Iterator[Relay]:
+    """Yield the relays of tf to ``/tf``, and of the world frame."""
     reads, writes = (tuple(f"{above}/{it}" for it in TF_TOPICS) for above in (f"/{robot}", ""))
     run = _relay_run(robot, BRIDGE, naming, reads, writes, _IN_CODE)
     yield Relay(run, Start(BRIDGE, BRIDGE, run.namespace, run.name, needs=BRIDGE))

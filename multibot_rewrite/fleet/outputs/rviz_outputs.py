@@ -97,9 +97,7 @@ def _robot_displays(shown: Shown, at: int, prefixed: bool) -> dict[str, Any]:
     """Return the displays of a robot, in its colour."""
     robot = shown.robot
     model = {
-        **_topic_display(
-            "RobotModel", "RobotModel", {**_LATCHED, "Value": shown.description}, True
-        ),
+        **_of_topic("RobotModel", "RobotModel", {**_LATCHED, "Value": shown.description}, True),
         "Description Source": "Topic",
         "TF Prefix": (robot.tag or robot.name) if prefixed else "",
     }
@@ -114,7 +112,7 @@ def _displays_of(shown: Shown, colour: str) -> Iterator[dict[str, Any]]:
     for topic in sorted(shown.of_type(kinds)):
         kind = kinds[shown.sent[topic]]
         enabled = kind != "Map" or shown.is_called(topic, _MAP)
-        made = _topic_display(kind, topic, {**_QOS.get(kind, {}), "Value": topic}, enabled)
+        made = _of_topic(kind, topic, {**_QOS.get(kind, {}), "Value": topic}, enabled)
         if colour and kind in _COLOURED:
             made |= {"Color": colour}
         if colour and kind in _FLAT:
@@ -122,7 +120,8 @@ def _displays_of(shown: Shown, colour: str) -> Iterator[dict[str, Any]]:
         yield made
 
 
-def _topic_display(kind: str, name: str, topic: dict[str, str], enabled: bool) -> dict[str, Any]:
+def _of_topic(kind: str, name: str, topic: dict[str, str], enabled: bool) -> dict[str, Any]:
+    """Return the display of a topic."""
     kind = f"rviz_default_plugins/{kind}"
     return {"Class": kind, "Name": name, "Enabled": enabled, "Topic": topic}
 

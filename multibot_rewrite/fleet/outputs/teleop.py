@@ -46,9 +46,7 @@ def teleops(plan: FleetPlan) -> tuple[Teleop, ...]:
     for robot in plan.robots:
         # Something reads velocity commands, or sends them to a base that is not in the plan.
         own = _robot_ends(plan, robot)
-        sends = any(
-            end.role == PUBLISHES and name == _usual_command_topic(robot) for _, end, name in own
-        )
+        sends = any(end.role == PUBLISHES and name == _usual_topic(robot) for _, end, name in own)
         if sends or _obeyed_topics([*_command_ends(plan, robot)]):
             found.append(teleop(plan, robot))
     return tuple(found)
@@ -59,7 +57,7 @@ def _robot_ends(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, E
     yield from ((run.full_name, end, name) for run in runs for end, name in run.names)
 
 
-def _usual_command_topic(robot: RewrittenRobot) -> str:
+def _usual_topic(robot: RewrittenRobot) -> str:
     return robot_topic(robot.topics, f"/{COMMAND}")
 
 
@@ -67,7 +65,7 @@ def teleop(plan: FleetPlan, robot: RewrittenRobot) -> Teleop:
     """Return how to drive a robot: by a ``cmd_vel`` that is obeyed, another topic, or an input."""
     # A mux, a smoother or a monitor that sends there is driven by an input of it.
     ends = [*_command_ends(plan, robot)]
-    usual, obeyed = _usual_command_topic(robot), _obeyed_topics(ends)
+    usual, obeyed = _usual_topic(robot), _obeyed_topics(ends)
     topic = entry_of(usual if usual in obeyed or not obeyed else obeyed[0], ends)
     types = {it.type for it in ends if it.role == SUBSCRIBES and it.topic == topic}
     if STAMPED not in types or PLAIN in types:

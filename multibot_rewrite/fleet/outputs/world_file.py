@@ -183,18 +183,17 @@ def _new_value(value: str, robot: RewrittenRobot, names: frozenset[str], tied: b
     if value in names:
         return robot.spec.model
     if scope and model in names:
-        return _SCOPE.join(
-            (robot.spec.model, *(_renamed_part(it, robot) for it in rest.split(_SCOPE)))
-        )
+        return _SCOPE.join((robot.spec.model, *(_new_part(it, robot) for it in rest.split(_SCOPE))))
     made = value
     for name in names:
         made = re.sub(_BELOW_MODEL.format(re.escape(name)), rf"\g<1>{robot.spec.model}", made)
     if made == value and tied:
-        made = _renamed_part(value, robot)
+        made = _new_part(value, robot)
     return made if made != value else ""
 
 
-def _renamed_part(value: str, robot: RewrittenRobot) -> str:
+def _new_part(value: str, robot: RewrittenRobot) -> str:
+    """Return the robot's name of a link, joint or sensor; any other text as it is."""
     for kind in ("link", "joint", "sensor"):
         if is_declared(robot.names, kind, value):
             return spell(robot.names, kind, value)

@@ -154,11 +154,11 @@ def robot_rules(given: Rights, side: str = SESSION) -> list[Rule]:
     out, back = _FLOWS[side]
     name = given.robot
     found = [
-        _allowing_rule(f"{name}_own", [*_SENDS, *_ASKS], (OUT, IN), given.own),
-        _allowing_rule(f"{name}_sends", _SENDS, out, given.sends),
-        _allowing_rule(f"{name}_is_asked", _ASKS, back, given.sends),
-        _allowing_rule(f"{name}_hears", _SENDS, back, given.hears),
-        _allowing_rule(f"{name}_asks", _ASKS, out, given.hears),
+        _allow(f"{name}_own", [*_SENDS, *_ASKS], (OUT, IN), given.own),
+        _allow(f"{name}_sends", _SENDS, out, given.sends),
+        _allow(f"{name}_is_asked", _ASKS, back, given.sends),
+        _allow(f"{name}_hears", _SENDS, back, given.hears),
+        _allow(f"{name}_asks", _ASKS, out, given.hears),
     ]
     return [*found, graph_rule(f"{name}_graph", given.domains)]
 
@@ -166,20 +166,17 @@ def robot_rules(given: Rights, side: str = SESSION) -> list[Rule]:
 def graph_rule(name: str, domains: Iterable[int]) -> Rule:
     """Return the rule that lets everybody see which nodes run, and what is latched."""
     keys = [key for it in domains for key in (f"{SPACE}/{it}/**", f"{it}/**/@adv/**")]
-    return _allowing_rule(name, _LIVELINESS, (OUT, IN), keys)
+    return _allow(name, _LIVELINESS, (OUT, IN), keys)
 
 
 def all_rule(name: str, domains: Iterable[int]) -> Rule:
     """Return the rule for an operator of all robots."""
     keys = [key for it in domains for key in (f"{it}/**", f"{it}/**/@adv/**")] + [f"{SPACE}/**"]
-    return _allowing_rule(
-        name, list(dict.fromkeys([*_SENDS, *_ASKS, *_LIVELINESS])), (OUT, IN), keys
-    )
+    return _allow(name, list(dict.fromkeys([*_SENDS, *_ASKS, *_LIVELINESS])), (OUT, IN), keys)
 
 
-def _allowing_rule(
-    name: str, messages: Sequence[str], flows: Sequence[str], keys: Sequence[str]
-) -> Rule:
+def _allow(name: str, messages: Sequence[str], flows: Sequence[str], keys: Sequence[str]) -> Rule:
+    """Return a rule that allows these messages at these keys."""
     return {
         "id": name,
         "messages": list(messages),

@@ -296,10 +296,8 @@ def _final_description(text: Rewrite, robot: RobotSpec, naming: Naming) -> bytes
         return text.data
     template = text.template
     source, file = template.inventory.document.source, template.inventory.document.file
-    data = _rewritten_half(
-        source, file, robot.namespace, _naming_of_kinds(naming, graph=True), template
-    )
-    return _rewritten_half(data, file, robot.tag, _naming_of_kinds(naming, graph=False), template)
+    data = _half_text(source, file, robot.namespace, _naming_of_kinds(naming, graph=True), template)
+    return _half_text(data, file, robot.tag, _naming_of_kinds(naming, graph=False), template)
 
 
 def _naming_of_kinds(naming: Naming, graph: bool) -> Naming:
@@ -307,9 +305,8 @@ def _naming_of_kinds(naming: Naming, graph: bool) -> Naming:
     return naming._replace(separators=kept)
 
 
-def _rewritten_half(
-    source: bytes, file: str, robot: str, naming: Naming, template: Template
-) -> bytes:
+def _half_text(source: bytes, file: str, robot: str, naming: Naming, template: Template) -> bytes:
+    """Return a description rewritten with one half of the naming."""
     # The second rewrite finds names that the first one has rewritten for the other word.
     prepared = pipeline.prepare(source, file, naming, template.tree, template.urdf_declarations)
     return next(pipeline.render(prepared, [robot], again=True))

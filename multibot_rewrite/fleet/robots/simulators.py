@@ -146,16 +146,14 @@ def unread_drives(robot: RewrittenRobot, hardware: bool) -> Iterator[Finding]:
     alone = bool(unread) and not _has_drive(robot, parts)
     for it in unread:
         # Hardware without a joint is a sensor's.
-        why = _named_part(it, root) or (
-            "is all that may move it" if alone and it.kind == PLUGIN else ""
-        )
+        why = _part(it, root) or ("is all that may move it" if alone and it.kind == PLUGIN else "")
         if why:
             who = f"robot {robot.spec.name!r}: {it.kind} {it.name}"
             message = f"{who} {why}, and its code is not known: whether it drives is not shown"
             yield at_robot(UNREAD_DRIVE, robot, message, SAY_IT)
 
 
-def _named_part(part: ActivePart, root: etree._Element) -> str:
+def _part(part: ActivePart, root: etree._Element) -> str:
     """Return the joint or link that a plugin or class names, for a message."""
     inner = part.element.iterdescendants()
     texts = (text for it in inner for text in (it.text or "", *map(str, it.attrib.values())))
@@ -176,11 +174,7 @@ def _has_drive(robot: RewrittenRobot, parts: Iterable[ActivePart]) -> bool:
     topics, _ = bridged_topics({"": robot.member.inventory}, robot.topics.naming)
     return (
         # A plugin of a state tells where joints are, and moves none.
-        any(
-            it.is_known and "joint " in _named_part(it, root)
-            for it in parts
-            if "state" not in it.name
-        )
+        any(it.is_known and "joint " in _part(it, root) for it in parts if "state" not in it.name)
         or any(moves(it.code_name, it.type) for it in ends if it.role != PUBLISHES)
         or any(it.direction == DIRECTIONS["out"] for it in topics)
     )

@@ -99,7 +99,7 @@ def _start_of_robot(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Itera
     if not world:
         hint = "set world: or shared_frames:"
         what = "it has a pose, but no frame is shared by all robots"
-        yield _pose_finding(NO_SHARED_FRAME, robot, what, hint)
+        yield _at_pose(NO_SHARED_FRAME, robot, what, hint)
         return
     sent = _sent_transforms(plan, robot)
     shared = naming.shared_frames
@@ -118,7 +118,7 @@ def _start_of_robot(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Itera
         hint, level = "remove the pose: a second parent would make the frame jump", WARNING
         if is_simulated(robot):
             hint, level = "the simulator starts it there, which is enough", NOTE
-        yield _pose_finding(LOCALISED_ALREADY, robot, what, hint)._replace(level=level)
+        yield _at_pose(LOCALISED_ALREADY, robot, what, hint)._replace(level=level)
         return
     if held := placing[""]:
         if pose != ORIGIN:
@@ -132,13 +132,11 @@ def _start_of_robot(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Itera
     if len(roots) != 1:
         frames = f"{len(roots)} root frames ({', '.join(roots)})" if roots else "no root frame"
         what = f"its pose is not published, because it has {frames} instead of one"
-        yield _pose_finding(NO_SINGLE_ROOT, robot, what, "connect them by a joint")
+        yield _at_pose(NO_SINGLE_ROOT, robot, what, "connect them by a joint")
         return
     if own := _odometry_sender(plan, robot):
         what = f"its pose is not published, because {own} may send where its base is"
-        yield _pose_finding(
-            OWN_ODOMETRY, robot, what, "describe it in a file of nodes, with sends:"
-        )
+        yield _at_pose(OWN_ODOMETRY, robot, what, "describe it in a file of nodes, with sends:")
         return
     local = AMCL in sent
     if local:
@@ -214,7 +212,8 @@ def _fixed_to_world_finding(robot: RewrittenRobot, held: Edge) -> Finding:
     return at_robot(POSE_ON_WORLD, robot, f"robot {robot.spec.name!r}: {what}", hint, level)
 
 
-def _pose_finding(rule: Rule, robot: RewrittenRobot, what: str, hint: str) -> Finding:
+def _at_pose(rule: Rule, robot: RewrittenRobot, what: str, hint: str) -> Finding:
+    """Return a finding at the robot whose pose it is about."""
     return at_robot(rule, robot, f"robot {robot.spec.name!r}: {what}", hint)
 
 

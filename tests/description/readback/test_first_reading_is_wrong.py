@@ -80,12 +80,8 @@ def unseen(path: str) -> Callable[[TreeNode, Any], None]:
 
 
 FAULTS = {
-    "no default is inserted": Fault(
-        insert, "_default_insertions", nothing, DRIVE % "", "frame 'odom'"
-    ),
-    "no namespace is inserted": Fault(
-        insert, "_default_insertions", nothing, IMU % "", "node '/imu'"
-    ),
+    "no default is inserted": Fault(insert, "_of_defaults", nothing, DRIVE % "", "frame 'odom'"),
+    "no namespace is inserted": Fault(insert, "_of_defaults", nothing, IMU % "", "node '/imu'"),
     "no rule is inserted": Fault(insert, "_remaps", nothing, DRIVE % ODOM, "topic '/tf'"),
     "no rule is inserted for a wired topic": Fault(
         insert, "_remaps", nothing, DRIVE % ODOM, "topic '/odom'", "postfix"
@@ -210,7 +206,7 @@ def test_the_second_reading_names_what_is_shared(
 # The release is chosen by tags.
 BY_TAGS = Fault(
     tree,
-    "_section_of_ros",
+    "_by_ros",
     majority,
     IMU % "<ros/><topicName>imu</topicName><bodyName>base</bodyName>",
     "node '/imu'",

@@ -75,7 +75,7 @@ class Definitions:
             return self._found.get(key, ())
         made: list[PluginDefinition] = []
         for raw in self._raw[key]:
-            section = self._section_from_text(*raw, within)
+            section = self._parse(*raw, within)
             if not self._is_in_release(section.releases):
                 continue
             here = [
@@ -165,25 +165,22 @@ class Definitions:
 
     def sections(self, *types: str) -> list[PluginDefinition]:
         """Return all rewriters of these types, parsed and checked, in file order."""
-        return self._unique_sections(key for key in self._raw if key[0] in types)
+        return self._all_parsed(key for key in self._raw if key[0] in types)
 
     def sections_in(self, files: Container[str]) -> list[PluginDefinition]:
         """Return all rewriters with a part in these files, parsed and checked, and their values."""
         raws = self._raw.items()
-        found = self._unique_sections(
-            key for key, raw in raws if any(part[0] in files for part in raw)
-        )
+        found = self._all_parsed(key for key, raw in raws if any(part[0] in files for part in raw))
         own = (part for _, parts in raws for part in parts if part[0] in files)
         tuple(self._value_rows(own))
         return found
 
-    def _unique_sections(self, keys: Iterable[tuple[str, str]]) -> list[PluginDefinition]:
+    def _all_parsed(self, keys: Iterable[tuple[str, str]]) -> list[PluginDefinition]:
         found = [section for key in keys for section in self.find(*key)]
         return list({(section.file, section.line): section for section in found}.values())
 
-    def _section_from_text(
-        self, file: str, line: int, chunk: str, within: tuple[str, ...]
-    ) -> PluginDefinition:
+    def _parse(self, file: str, line: int, chunk: str, within: tuple[str, ...]) -> PluginDefinition:
+        """Return the section of a text that begins at a line."""
         rows = chunk.split("\n")
         settings, own = read_section(file, line, rows)
         sites: dict[str, SiteRow] = {}
