@@ -129,20 +129,20 @@ def _swap(folder: str, write: Mapping[str, bytes], remove: Collection[str], note
 
 def _link_all(folder: str, stage: str, but: Collection[str]) -> None:
     """Make all of a folder again, files as links, except the given paths."""
-    _be_like(stage, folder)
+    _copy_attributes(stage, folder)
     for path, entry in _walk(folder):
         target = os.path.join(stage, path)
         try:
             if entry.is_dir(follow_symlinks=False):
                 os.mkdir(target)
-                _be_like(target, entry.path)
+                _copy_attributes(target, entry.path)
             elif path not in but and not _LEFT.fullmatch(entry.name):
                 os.link(entry.path, target, follow_symlinks=False)
         except OSError:
             raise _CannotSwapError from None
 
 
-def _be_like(folder: str, other: str) -> None:
+def _copy_attributes(folder: str, other: str) -> None:
     """Set mode, times and, where permitted, owner like those of another folder."""
     shutil.copystat(other, folder)
     there = os.stat(other)

@@ -104,17 +104,19 @@ def _parts(options: argparse.Namespace) -> list[Part]:
         else:
             files[-1][1][name] = text
     many = len(files)
-    ends = _for_each("--at", options.at, many)
-    poses = _for_each("--pose", options.pose, many)
-    prefixes = _for_each("--prefix", options.prefix, many, of_all=True)
+    ends = _values_for_parts("--at", options.at, many)
+    poses = _values_for_parts("--pose", options.pose, many)
+    prefixes = _values_for_parts("--prefix", options.prefix, many, of_all=True)
     every = zip(files, ends, poses, prefixes, strict=True)
     return [
-        Part(file, at, _numbers(pose), prefix, "", given)
+        Part(file, at, _pose_numbers(pose), prefix, "", given)
         for (file, given), at, pose, prefix in every
     ]
 
 
-def _for_each(option: str, values: Sequence[str], many: int, of_all: bool = False) -> list[str]:
+def _values_for_parts(
+    option: str, values: Sequence[str], many: int, of_all: bool = False
+) -> list[str]:
     """Return the option's value for each part: those given from the second part on, or one for all."""
     if of_all and len(values) == many:
         return list(values)
@@ -125,7 +127,7 @@ def _for_each(option: str, values: Sequence[str], many: int, of_all: bool = Fals
     raise UsageError(f'{what}; write it once for each, in their order, {option} "" for none')
 
 
-def _numbers(pose: str) -> Sequence[float]:
+def _pose_numbers(pose: str) -> Sequence[float]:
     if not pose:
         return ZERO
     try:

@@ -68,7 +68,7 @@ def run(options: argparse.Namespace) -> int:
         note(options, f"warning: {doubt}")
     alone = config
     config = with_options(config, **given(options))
-    paths, unreadable = _files(options, config)
+    paths, unreadable = _files_to_lint(options, config)
     told = release_chosen_here(asked)
     said = release_of_all(told, (it for it in paths if it.endswith(_TELLING)))
     settings = config.settings._replace(distro=said.release, ros=ROS_2 if told else "")
@@ -88,12 +88,14 @@ def run(options: argparse.Namespace) -> int:
 
         text = baseline_text(findings, options.write_baseline)
         write_files(options, [(options.write_baseline, text)])
-        note(options, f"{options.write_baseline}: {_count(findings)} are known from now on")
+        note(options, f"{options.write_baseline}: {_counted(findings)} are known from now on")
         return DONE
     return _conclude(options, config, paths, findings, said.why or why_here(asked))
 
 
-def _files(options: argparse.Namespace, config: Configured) -> tuple[list[str], list[Finding]]:
+def _files_to_lint(
+    options: argparse.Namespace, config: Configured
+) -> tuple[list[str], list[Finding]]:
     """Return the files to lint, and findings for folders that cannot be read."""
     paths = plain_words(options)
     if paths == [STDIN]:
@@ -159,13 +161,15 @@ def _lint(options: argparse.Namespace, settings: Settings, paths: Sequence[str])
     watch = partial(watched, total=len(paths), doing="linting")
     with cached(options, settings) as cache:
         findings = lint_files(paths, settings, watch=watch, cache=cache)
-    if not options.fix or not _fixed(options, among(paths, settings), findings):
+    if not options.fix or not _apply_fixes(options, among(paths, settings), findings):
         return findings
     # Anew, and all: what is written in one file is found through others.
     return lint_files(paths, settings)
 
 
-def _fixed(options: argparse.Namespace, settings: Settings, findings: list[Finding]) -> list[str]:
+def _apply_fixes(
+    options: argparse.Namespace, settings: Settings, findings: list[Finding]
+) -> list[str]:
     """Apply fixes and return the fixed files. With --diff print the changes and fix none."""
     from multibot_rewrite.cli.output import diff
     from multibot_rewrite.description.sources.read import read_file
@@ -221,10 +225,10 @@ def _summary(
     fixable = sum(bool(it.edits) for it in findings)
     hint = f"; --fix fixes {fixable}" if fixable and not options.fix else ""
     old = f"; {stale} in the baseline are gone" if stale else ""
-    return f"{files}{changed}: {_count(findings)}{hint}{old}"
+    return f"{files}{changed}: {_counted(findings)}{hint}{old}"
 
 
-def _count(findings: Sequence[Finding]) -> str:
+def _counted(findings: Sequence[Finding]) -> str:
     return in_words(counts(findings)) or "no findings"
 
 

@@ -44,7 +44,7 @@ def find_command(word: str) -> Command:
     if word in COMMANDS:
         return COMMANDS[word]
     if word.startswith("-"):
-        raise UsageError(f"{word}: write the command first, for example: {_with_option(word)}")
+        raise UsageError(f"{word}: write the command first, for example: {_command_with(word)}")
     from multibot_rewrite.base.nearest import other_words  # a mistake alone needs it
 
     if meant := other_words("commands").get(word):
@@ -53,7 +53,7 @@ def find_command(word: str) -> Command:
     raise UsageError(f"unknown command {word!r}; {near or 'see multibot --help'}")
 
 
-def _with_option(word: str) -> str:
+def _command_with(word: str) -> str:
     """Return a command line with the option, for the first command that has it."""
     from multibot_rewrite.cli.hints import commands_of  # a mistake alone needs it
 

@@ -43,7 +43,7 @@ TABLE, BRIDGE = "table", "bridge"
 def run(options: argparse.Namespace) -> int:
     """Make the plan and write what is asked for of it; returns the exit code."""
     if any(map(_LAUNCH.fullmatch, [options.input, *options.words[:1]])):
-        return _of_launch(options)
+        return _plan_launch(options)
     fleet.check_use(options, "plan", printed=not goes_to_file(options))
     # A robot that is called nothing; a layout, or rules, are for one with a name.
     unnamed = not options.input.endswith(fleet.FLEET_FILES) and not robots(options)
@@ -77,7 +77,7 @@ def _write(options: argparse.Namespace, plan: System) -> None:
         deliver(options, to_yaml(plan).encode(), PLAN_SCHEMA)
 
 
-def _of_launch(options: argparse.Namespace) -> int:
+def _plan_launch(options: argparse.Namespace) -> int:
     """Write the plan of what a launch file starts; returns the exit code."""
     given = given_options(options, NOT_OF_LAUNCH)
     if given or options.output_kind != PLAN:
@@ -119,12 +119,12 @@ def deliver_rules(options: argparse.Namespace, made: Fleet) -> None:
         grid = Grid(("robot", "node", "runs as", "rule", "given to"), rows)
         deliver_report(options, (head, grid))
     elif options.output_kind == BRIDGE:
-        deliver(options, _bridge(options, made).encode())
+        deliver(options, _bridge_text(options, made).encode())
     else:
         deliver(options, FORMS[options.output_kind](table).encode())
 
 
-def _bridge(options: argparse.Namespace, made: Fleet) -> str:
+def _bridge_text(options: argparse.Namespace, made: Fleet) -> str:
     carried, left = bridged_topics(
         made.inventories, made.naming, made.models, made.table.runs, made.placed
     )

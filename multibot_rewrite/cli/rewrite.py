@@ -174,8 +174,7 @@ def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:
 def summary(
     first: Rewrite, robots: list[str], own_arguments: str = "", of_release: str = ""
 ) -> str:
-    """Return one line: the number of renamed names of each kind, the names that arguments of the xacro
-    set, whether the result is verified, and the release with the reason for it."""
+    """Return one line: renamed names of each kind, those by arguments, verification, release."""
     inventory, plan = first.template.inventory, first.template.plan
     names = {
         (kind, claim.value)

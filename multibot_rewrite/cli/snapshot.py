@@ -167,7 +167,7 @@ def is_asked(options: argparse.Namespace) -> bool:
 
 
 def write_nodes(options: argparse.Namespace, graph: System) -> int:
-    """Learn, write_nodes, note what is left out; returns the exit code."""
+    """Describe the nodes of a graph and write that; return the exit code."""
     doubtful = doubts(graph)
     for caveat in doubtful:
         say(f"incomplete: {caveat.message}", PROGRAM)

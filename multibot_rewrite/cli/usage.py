@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the options say, in the terms of the library: robots, xacro arguments, the naming policy."""
+"""Reads the options as the library takes them: robots, xacro arguments, the naming policy."""
 
 from __future__ import annotations
 
