@@ -74,5 +74,6 @@ def one_launch_each(apart: Apart, starts: FleetStarts) -> Iterator[Finding]:
 
 
 def _finding(apart: Apart, message: str, hint: str, level: str) -> Finding:
+    """Return a finding at the domains in the fleet file."""
     file, line = apart.place
     return NOT_ACROSS.finding(message, hint, level=level, file=file, line=line)

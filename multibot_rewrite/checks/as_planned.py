@@ -88,12 +88,12 @@ def not_as_planned(
 
 
 def is_of_sources(it: Finding) -> bool:
-    """Return whether one robot may have the fault by its sources already, by the code."""
+    """Return whether a finding's code is for a fault that one robot's sources may have."""
     return bool(it.robot) and it.code in (*_OF_SOURCES, *_MISSED)
 
 
 def _identity(by_plan: Index, it: Finding) -> tuple[str, ...]:
-    """Return the code and the names without those of robots."""
+    """Return the code of a finding, and its names without the robot's."""
     return (it.code, *map(by_plan.plain, it.names)) if it.names else (it.code, str(it))
 
 
@@ -129,7 +129,7 @@ def _level(it: Finding, planned: System, seen: System, started: Set[str]) -> str
 
 
 def _names_what_a_node_lacks(it: Finding, planned: System, seen: System, started: Set[str]) -> bool:
-    """Return whether it is about a planned name that a node of the launch file lacks."""
+    """Return whether a finding names what a started node lacks, compared with the plan."""
     there = {(one.node, one.kind, one.role, one.name) for one in seen.ends}
     named = (one for one in surely(planned).ends if one.name in it.names)
     lacks = [one.node for one in named if (one.node, one.kind, one.role, one.name) not in there]

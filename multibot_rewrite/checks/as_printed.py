@@ -157,7 +157,7 @@ class _Planned(NamedTuple):
         yield from self.processes(self.starts.windows)
 
     def is_on(self, condition: str) -> bool:
-        """Return whether each word of a condition holds."""
+        """Return whether all parts of a condition hold."""
         return all(holds(it, self.arguments.get(name_in(it), "")) for it in condition.split())
 
     def chosen(self) -> list[RobotStarts]:
@@ -298,7 +298,7 @@ def _transition_keywords(number: int, transition: int) -> dict[str, Any]:
 
 
 def not_as_commanded(starts: FleetStarts, text: str) -> list[str]:
-    """Return in words what the lines of ``commands.md`` and the planned processes do not share."""
+    """Return messages about planned processes and lines of ``commands.md`` that differ."""
     above, *sections = ([*_commands(section)] for section in _SECTION.split(text))
     both = zip(starts.robots, sections, strict=False)
     opened = [it for section in (above, *sections) for it in section if it[:2] == _RVIZ]
@@ -323,7 +323,7 @@ def _start_differences(planned: Iterable[Start], printed: Iterable[Start]) -> It
 
 
 def _as_commanded(it: Start) -> Start:
-    """Return a planned process as its line has it: values that are no texts are no words of it."""
+    """Return a planned process as its line has it, without arguments that are no texts."""
     rows = [row for row in it.parameters if isinstance(row, Mapping)]
     values = {name: one for row in rows for name, one in row.items() if isinstance(one, str)}
     names = {"__node": it.name, **dict(it.remappings)}
@@ -337,7 +337,7 @@ def _as_commanded(it: Start) -> Start:
 
 
 def _commands(text: str) -> Iterator[Start]:
-    """Yield the processes of the lines; one under a condition is for a person to judge."""
+    """Yield the processes of the lines, except those under a condition."""
     for line in text.splitlines():
         words: list[str] = []
         with suppress(ValueError):

@@ -139,6 +139,7 @@ def _check_paths_differ(files: Sequence[OutputFile]) -> None:
 
 
 def _descriptions(plan: FleetPlan, folder: str) -> FilesAndFindings:
+    """Yield the rewritten description, SRDF and model of each robot."""
     for robot in plan.robots:
         spec = robot.spec
         loading, findings = with_own_controllers(robot, folder)
@@ -158,7 +159,7 @@ def _descriptions(plan: FleetPlan, folder: str) -> FilesAndFindings:
 
 
 def _portable_plan(plan: FleetPlan, fleet: Fleet) -> System:
-    """Return the plan with its places relative to the fleet file: equal for every working directory."""
+    """Return the plan with places relative to the fleet file, equal for any working directory."""
     folder = os.path.dirname(os.path.abspath(plan.file.file))
     made = expected(fleet)
     nodes = (
@@ -170,6 +171,7 @@ def _portable_plan(plan: FleetPlan, fleet: Fleet) -> System:
 
 
 def _tables(plan: FleetPlan, fleet: Fleet, planned: System) -> Iterator[OutputFile]:
+    """Yield the plan and the files that are made of it."""
     yield OutputFile(PLAN, f"{editors.schema_line(editors.PLAN)}\n{to_yaml(planned)}".encode())
     yield OutputFile(editors.schema_name(editors.PLAN), editors.schema_text(editors.PLAN))
     if plan.file.sros2:
@@ -186,7 +188,7 @@ def _tables(plan: FleetPlan, fleet: Fleet, planned: System) -> Iterator[OutputFi
 
 
 def _relative(folder: str, place: Place) -> Place:
-    """Return the place relative to a folder; names without line or folder stay as they are."""
+    """Return the place relative to a folder; one without line or folder is unchanged."""
     is_moved = place.line and os.path.dirname(place.file)
     return place._replace(file=os.path.relpath(place.file, folder)) if is_moved else place
 

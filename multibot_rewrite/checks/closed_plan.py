@@ -280,7 +280,7 @@ def sorted_out(made: Iterable[OutputFile | Finding]) -> tuple[list[OutputFile], 
 def _gaps_of_robots(
     plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputFile], known: Collection[Finding]
 ) -> Iterator[Finding]:
-    """Yield what is open; robots of the same sources are judged once, and all of them are named."""
+    """Yield what is open in robots; those of the same sources are checked once."""
     groups = [*group_robots(plan)]
     # Of robots that differ in their names alone two show where they meet.
     few = _plan_of_some(plan._replace(fleet=fleet), [one for it in groups for one in it.robots[:2]])

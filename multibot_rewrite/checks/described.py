@@ -58,14 +58,14 @@ def wrong_in_descriptions(
 
 
 def as_known(it: Finding, what: str) -> Finding:
-    """Return a finding about what one robot has by itself as a warning that says so."""
+    """Return a finding as a warning that says what one robot has by itself already."""
     already = ALREADY.format(what)
     hint = f"{it.hint}; {already}" if it.hint else already
     return it._replace(level=WARNING, hint=hint)
 
 
 def _lint_findings(document: Document, made: Document, settings: Settings) -> Iterator[Finding]:
-    """Return what is wrong with a document, except what is right in the one ``made`` of it."""
+    """Yield the errors in a document, except those that are mended in ``made``."""
     from multibot_rewrite.lint.check import lint_subject, unsuppressed
     from multibot_rewrite.lint.files.subjects import make_subject
     from multibot_rewrite.lint.launched import in_use, may_stop

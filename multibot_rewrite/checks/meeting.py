@@ -101,7 +101,7 @@ def _run_names(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence
 
 
 def _finding(met: Meeting, member: Member | None, written: Written | None) -> Finding:
-    """Return a finding at the element of the description that has the name first, else at the node."""
+    """Return a finding at the element of a description with the name, or else at the node."""
     name, code = met.name, code_of(met.name)
     message = said(f"{met.robot} and {met.other} would both", name, met.twin)
     found = Finding(code, _level(code), message, advice(name, together=True), names=(name.name,))

@@ -145,6 +145,7 @@ def _one_device_each(plan: FleetPlan) -> Iterator[Finding]:
 
 
 def _conflicts(robots: Sequence[RewrittenRobot], addresses: Sequence[Address]) -> Iterator[Finding]:
+    """Yield the addresses that several robots use."""
     named = tuple(Robot(it.spec.name, namespace=it.spec.namespace) for it in robots)
     fleet = System(robots=named, addresses=tuple(addresses))
     found = judge(index(fleet, whose_by_plan(fleet))) if addresses else ()
@@ -158,7 +159,7 @@ def _of_the_fleet(it: Finding, hint: str) -> Finding:
 def _hardware_addresses(
     robot: RewrittenRobot, told: Collection[str], definitions: Definitions
 ) -> Iterator[Address]:
-    """Yield the addresses of a robot's devices, at its line of the fleet file; none if simulated."""
+    """Yield the addresses of a robot's devices; none if it is simulated."""
     spec = robot.spec
     if spec.simulator != "gazebo":
         node, place = f"/{spec.namespace}/{MANAGER}", Place(spec.file, spec.line, 1)

@@ -161,7 +161,7 @@ def _launch_errors(
 
 
 def _not_open(found: list[Finding], made: Outputs) -> list[Finding]:
-    """Return the findings without what nothing sends by the plan either: robots may differ."""
+    """Return the findings, except missing senders that the plan does not have either."""
     code = nothing_known_sends.code
     if all(it.code != code for it in found):
         return found

@@ -298,7 +298,7 @@ def _with_interfaces(
 
 
 def _names_by_argument_text(robot: RewrittenRobot) -> Mapping[str, str]:
-    """Return by what an argument makes the name without it, which may begin with a slash: /imu."""
+    """Return names without a xacro argument, by the names with it."""
     return {text: name.lstrip("/") for (_, name), text in robot.names.own.items()}
 
 
@@ -316,7 +316,7 @@ def _plain_export(robot: RewrittenRobot, export: Exported) -> Exported:
 
 
 def _plain_run(robot: RewrittenRobot, given: Run) -> Run:
-    """Return a node's parameters without what a launch argument makes, which a launch file fills in."""
+    """Return a node's parameters without what a launch file's argument fills in."""
     own = _names_by_argument_text(robot)
     own = {**{name: own[text] for (_, name), text in robot.names.own.items()}, **own}
     values = {}
@@ -331,4 +331,5 @@ def _plain_run(robot: RewrittenRobot, given: Run) -> Run:
 
 
 def _documents(robot: RewrittenRobot, kind: str) -> list[YamlText]:
+    """Return the robot's related files of a kind."""
     return [own_yaml(robot.spec, path) for path in robot.spec.related_files.get(kind, ())]

@@ -118,7 +118,7 @@ def _are_alike(one: _Sort, other: _Sort) -> bool:
 
 
 def _same_but_pose(poses: Collection[tuple[float, float]], one: str, other: str) -> bool:
-    """Return whether two texts are the same but for numbers of the poses."""
+    """Return whether two texts are equal except for numbers of the poses."""
     ours, theirs = _NUMBER.split(one), _NUMBER.split(other)
     if len(ours) != len(theirs) or ours[::2] != theirs[::2]:
         return False

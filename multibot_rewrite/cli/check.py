@@ -209,6 +209,7 @@ def _watch(
     domains: Sequence[int] = (),
     before: System | None = None,
 ) -> int:
+    """Compare with the plan at each change; return the exit code."""
     gaps = _shown_gaps(options, plan)
     print_lines(map(str, gaps))
 

@@ -71,7 +71,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def plan_beside(orders: Sequence[LaunchOrder]) -> System | None:
-    """Return the plan that a build wrote next to the one launch file; None without such a plan."""
+    """Return the plan that a build wrote next to the launch file; None without one."""
     path = os.path.join(os.path.dirname(orders[0].file), PLAN)
     if len(orders) > 1 or not (release_of_build(orders[0].file) and os.path.isfile(path)):
         return None

@@ -84,7 +84,7 @@ def _signals_held() -> Iterator[None]:
 
 
 def _commit(staged: dict[str, str]) -> None:
-    """Rename all, or give every target back what it was."""
+    """Rename all staged files to their targets, or restore every target on an error."""
     done: list[tuple[str, str]] = []
     try:
         for target, temporary in list(staged.items()):

@@ -90,7 +90,7 @@ def _fleet_of_file(options: argparse.Namespace) -> Fleet:
 
 
 def check_own(options: argparse.Namespace) -> None:
-    """Raise UsageError for an option that says what a fleet file says itself."""
+    """Raise UsageError for an option that the fleet file sets."""
     known = {name: written for name, written in OF_FLEET_FILE.items() if name in vars(options)}
     if given := given_options(options, known):
         raise UsageError(f"{options.input}: a fleet file has its own, leave out {given[0]}")
@@ -143,6 +143,6 @@ def report_table(options: argparse.Namespace, made: Fleet) -> bool:
 
 
 def orders_of(options: argparse.Namespace, words: Sequence[str]) -> list[LaunchOrder]:
-    """Return the launch files in the words, with their arguments; raises UsageError."""
+    """Return launch files with their arguments; raises UsageError for anything else."""
     orders = orders_in_words(words, shlex.join(words), options.roots)
     return [it._replace(trusted=options.trust) for it in orders]

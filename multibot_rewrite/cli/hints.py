@@ -54,7 +54,7 @@ def _hint_for(
 
 
 def _fleet_keys(wrong: str) -> list[str]:
-    """Return the keys of a fleet file that the option may mean: one, those that begin so, or none."""
+    """Return the keys of a fleet file that an option may mean, equal or with that beginning."""
     from multibot_rewrite.fleet.file.fleet_data import schema
 
     word = wrong.lstrip("-").replace("-", "_")

@@ -246,7 +246,7 @@ def _with_files_asked_for(
 def _ask_which(
     shown: Sequence[str], question: str, default: str, or_none: bool = True
 ) -> int | None:
-    """Return which of these was chosen by its number; None for the word ``none``."""
+    """Return the index of the chosen item; None for the answer ``none``."""
     for at, it in enumerate(shown, 1):
         say(f"  {at}: {it}", PROGRAM)
     numbers = [str(at) for at in range(1, len(shown) + 1)]
@@ -261,7 +261,7 @@ def _with_count(wanted: Wanted) -> Wanted:
 
 
 def _with_names(wanted: Wanted) -> Wanted:
-    """Return ``wanted`` with names of robots; a number stands for robot1, robot2 and so on."""
+    """Return ``wanted`` with names of robots; for a number N they are robot1 to robotN."""
     if wanted.names:
         return wanted
     given = "2" if not wanted.each else ", ".join(names_of([""], wanted.each)[0])
@@ -359,6 +359,7 @@ def _ask_until_valid(question: str, default: str, fits: Callable[[str], bool]) -
 
 
 def _ask(question: str, default: str, words: Sequence[str] | None = None) -> str:
+    """Ask on the terminal and return the answer."""
     from rich.console import Console  # only a question needs it
     from rich.prompt import Prompt
 

@@ -115,7 +115,7 @@ def show(options: argparse.Namespace, name: str | None) -> int:
 
 
 def _class_lines(name: str, bases: Mapping[str, str]) -> Iterator[str | Grid]:
-    """Yield what a class is that a package registers for pluginlib, and the parameters that it has."""
+    """Yield what is known of a class registered for pluginlib, and its parameters."""
     for base, releases in bases.items():
         yield f"{name}  a plugin of {base}, in {releases or 'all releases'}"
     rows = [(it.path, it.type, it.releases, it.source) for it in declared_by(name)]
@@ -238,7 +238,7 @@ _CODE = re.compile(r"M[A-Z](\d\w*)?", re.IGNORECASE)
 
 
 def are_codes(words: Sequence[str]) -> bool:
-    """Return whether a code is among these words, or they are the name of a rule."""
+    """Return whether there is a code among the arguments, or they are the name of a rule."""
     return any(map(_CODE.fullmatch, _split_codes(words)))
 
 
@@ -307,7 +307,7 @@ def try_arguments(options: argparse.Namespace, words: Sequence[str]) -> int:
 
 
 def _only_xacro(options: argparse.Namespace, words: Sequence[str]) -> str:
-    """Return the only word, which is a xacro file; raises UsageError."""
+    """Return the only argument, a xacro file; raises UsageError."""
     missing = next((it for it in words if not os.path.lexists(it)), None)
     if missing is not None:
         raise UsageError(f"{missing}: there is no such file or folder")

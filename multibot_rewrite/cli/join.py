@@ -29,6 +29,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _join(options: argparse.Namespace) -> int:
+    """Join the parts and write the robot; return the exit code."""
     first, *others = options.words
     if first.endswith(JOIN):
         more = [*others, *(f"--{it}" for it in _OF_PARTS if getattr(options, it))]
@@ -71,7 +72,7 @@ def _deliver(options: argparse.Namespace, made: Joined, parts: Sequence[Part]) -
 def _write(
     options: argparse.Namespace, items: Sequence[tuple[str, bytes]], read: Sequence[str]
 ) -> None:
-    """Write all or none, and nothing over a file that is read."""
+    """Write all files or none, and none over a file that is read."""
     for path, _ in items:
         check_target(path, read)
         check_link(path)
@@ -79,6 +80,7 @@ def _write(
 
 
 def _split(options: argparse.Namespace) -> int:
+    """Write the parts of a joined description; return the exit code."""
     if len(options.words) != 1:
         raise UsageError("--undo takes one file, which multibot join made")
     if given := next((it for it in _OF_PARTS if getattr(options, it)), None):
@@ -93,7 +95,7 @@ def _split(options: argparse.Namespace) -> int:
 
 
 def _parts(options: argparse.Namespace) -> list[Part]:
-    """Return the parts in the words: each file with the xacro arguments after it."""
+    """Return the parts on the command line, each file with the xacro arguments after it."""
     files: list[tuple[str, dict[str, str]]] = []
     for word in options.words:
         name, is_argument, text = word.partition(":=")

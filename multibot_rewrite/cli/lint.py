@@ -127,7 +127,7 @@ def _files_to_lint(
 
 
 def _check_selecting(options: argparse.Namespace, paths: Sequence[str]) -> None:
-    """Raise UsageError for an option that none of the files is for."""
+    """Raise UsageError for an option that does not apply to any of the files."""
     if STDIN in paths or not paths:
         return
     check_xacro(options, paths)
@@ -154,6 +154,7 @@ def _check_shared(
 
 
 def _lint(options: argparse.Namespace, settings: Settings, paths: Sequence[str]) -> list[Finding]:
+    """Return the findings in the files, or in standard input."""
     if list(paths) == [STDIN]:
         from multibot_rewrite.lint.check import lint_data
 
@@ -194,6 +195,7 @@ def _conclude(
     findings: Sequence[Finding],
     why: str,
 ) -> int:
+    """Report the findings beyond the baseline; return the exit code."""
     stale = 0
     if config.baseline:
         from multibot_rewrite.lint.config.baseline import beyond, read_baseline

@@ -30,7 +30,7 @@ def is_program(word: str) -> bool:
 
 
 def run(options: argparse.Namespace, word: str) -> int:
-    """Read the source of a program; returns the exit code. Raises UsageError where there is none."""
+    """Read the source of a program; returns the exit code, raises UsageError without a program."""
     folder, program = os.path.split(os.path.abspath(word))
     name, _ = package_of(os.path.join(folder, MANIFEST)) or ("", "")
     packages = packages_for(os.path.join(folder, MANIFEST), ())

@@ -174,7 +174,7 @@ def wrapped(text: str, width: int = 80) -> str:
 
 
 def parsed(parser: Parser, words: Sequence[str]) -> argparse.Namespace:
-    """Return the options in the words; a mistake ends the process with one line."""
+    """Return the parsed options; a mistake ends the process with one line."""
     parser.colour = _colour_asked(words)
     if wrong := _first_unknown_option(words, parser.known()):
         from multibot_rewrite.cli.hints import option_hint  # a mistake alone needs it
@@ -212,7 +212,7 @@ def _tell_sources(options: argparse.Namespace) -> None:
 
 
 def _kind_of(word: str, program: str) -> str:
-    """Return the kind of a file that a command does not take, with the command for it."""
+    """Return what a refused file is, and the command that takes it."""
     from multibot_rewrite.base.bounded import read_bytes
     from multibot_rewrite.base.file_kinds import refuse_others
 
@@ -235,7 +235,7 @@ def _first_unknown_option(words: Sequence[str], known: Collection[str]) -> str:
 
 
 def _colour_asked(words: Sequence[str]) -> str:
-    """Return the value of ``--color``, which ``--help`` may come before."""
+    """Return the value of ``--color``, which may be behind ``--help``."""
     asked = [it for name, it in pairwise(words) if name == "--color"]
     asked += [it.partition("=")[2] for it in words if it.startswith("--color=")]
     return asked[-1] if asked else AUTO

@@ -65,12 +65,13 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _note_coverage(options: argparse.Namespace, held: Coverage) -> None:
-    """Say how much the plan holds, unless that is all."""
+    """Print how much of the robots the plan has, unless it has all."""
     if not held.is_whole:
         note(options, held.in_words)
 
 
 def _write(options: argparse.Namespace, plan: System) -> None:
+    """Write the plan as YAML or JSON."""
     if (options.output or "").endswith(".json"):
         deliver(options, to_json(plan))
     else:

@@ -42,7 +42,7 @@ def leave(code: int) -> NoReturn:
 
 
 def start(command: Command, words: Sequence[str], prog: str = "") -> int:
-    """Read the words of a command and run it; returns the exit code."""
+    """Parse the arguments of a command and run it; returns the exit code."""
     begun = time.monotonic()
     options = parsed(make_parser(command, prog), words)
     try:
@@ -83,7 +83,7 @@ def _report_refusal(options: argparse.Namespace, error: RewriteRefused) -> int:
 
 
 def run_alone(command: Command, arguments: Sequence[str] | None) -> int:
-    """Run a command that is a program; ``arguments`` are those of the process if they are None."""
+    """Run a command that is a program; without ``arguments`` with those of the process."""
     words = sys.argv[1:] if arguments is None else arguments
     return guarded(command.name, partial(start, command, words), own_process=arguments is None)
 

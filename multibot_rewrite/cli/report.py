@@ -104,7 +104,7 @@ def report_findings_too(
 
 
 def _few_of_a_kind(findings: Sequence[Finding]) -> Iterator[Finding]:
-    """Yield the findings; of many of one kind in a file one, with the lines of the others."""
+    """Yield the findings; many of one kind in a file as one with all lines."""
     lines = lists_by_key((_shared_kind(it), it.line) for it in findings)
     met: Counter[tuple[str, ...]] = Counter()
     for it in findings:

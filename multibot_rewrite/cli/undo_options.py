@@ -64,7 +64,7 @@ def _best_options(options: argparse.Namespace, undo: Undo, robot: str) -> tuple[
 
 
 def _missing_options(options: argparse.Namespace) -> Iterator[dict[str, Any]]:
-    """Yield combinations of options that were not given, those of fewest options first."""
+    """Yield combinations of missing options, the smallest ones first."""
     given = vars(options)
     open_ = {name: values for name, values in _TRIED.items() if not given[name]}
     every = (dict(zip(open_, values, strict=True)) for values in product(*open_.values()))

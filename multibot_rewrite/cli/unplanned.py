@@ -119,6 +119,7 @@ def _report(
 
 
 def _about(options: argparse.Namespace, seen: Diagnosis) -> About:
+    """Return what the findings are about."""
     return About(options.snapshot, by_themselves(seen.whose.robots), coverage=seen.coverage)
 
 
@@ -130,7 +131,7 @@ def _nothing_seen(seen: Diagnosis) -> Iterator[str]:
 
 
 def _write_suggestion(options: argparse.Namespace, each: Mapping[int, Diagnosis]) -> None:
-    """Write what a fleet begins with, for each domain by itself: a name may be in several of them."""
+    """Write a first fleet file and plan, for each domain by itself."""
     if not options.suggest:
         return
     from multibot_rewrite.knowledge.node_sets import built_in
@@ -149,6 +150,7 @@ def _write_suggestion(options: argparse.Namespace, each: Mapping[int, Diagnosis]
 
 
 def _watch(options: argparse.Namespace, domains: Sequence[int] = ()) -> int:
+    """Report at each change; return the exit code."""
     each: dict[int, Diagnosis] = {}
     last = follow(_judging(each), live.watched(options, domains=domains), planned=False)
     if last is None:

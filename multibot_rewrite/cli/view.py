@@ -97,6 +97,7 @@ def framed(options: argparse.Namespace, graph: System) -> Framed | None:
 
 
 def _meshes(scene: ShownScene) -> Meshes:
+    """Return the meshes of a scene, with progress on the terminal."""
     show = status()
     try:
         return meshes_of(scene, show)

@@ -27,7 +27,7 @@ class FoundFiles(NamedTuple):
 
     @property
     def left_out(self) -> str:
-        """What was left out, and how to read it all the same; "" for nothing."""
+        """What was left out, and how to include it; "" for nothing."""
         folders = f"{plural(len(self.folders), 'folder')} ({shorten(self.folders)})"
         files = f"{plural(len(self.ignored), 'file')} that git ignores"
         parts = [folders] * bool(self.folders) + [files] * bool(self.ignored)

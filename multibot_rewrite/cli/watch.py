@@ -92,7 +92,7 @@ def _line_for_more(count: int, what: str) -> Iterator[str]:
 
 
 def _headline(planned: bool, state: WatchState) -> str:
-    """Return one line: how much is there, and what it comes to."""
+    """Return one line: how much is seen, and the result."""
     moving = state.graph.environment.settled == CHANGING
     words = verdict_words(state.verdict, state.findings, state.coverage, planned)
     found = plural(len(state.findings), "finding")

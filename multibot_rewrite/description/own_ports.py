@@ -110,7 +110,7 @@ def numbers_message(name: str, given: Iterable[tuple[str, int]]) -> tuple[str, s
 
 
 def _next_free_number(port: Port, held: set[int], taken: set[int]) -> int:
-    """Return the next free number; its own where no other is left, which the second reading finds."""
+    """Return the next free number for a port; the robot's own if none is left."""
     number = port.number
     while number in held or (number in taken and number != port.number):
         number += port.step

@@ -116,7 +116,7 @@ def render(prepared: Template, robots: Sequence[str], again: bool = False) -> It
 
 
 def check_new(prepared: Template, robots: Sequence[str], kinds: Collection[str]) -> None:
-    """Raise RewriteRefused where names of these kinds carry a robot's name already."""
+    """Raise RewriteRefused if names of these kinds contain a robot's name already."""
     inventory, own = prepared.inventory, prepared.naming.own
     found = already_rewritten(inventory, robots, False, own, kinds)
     _stop_on_errors([*to_findings(inventory.document, found, ERROR)])

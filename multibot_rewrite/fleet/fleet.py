@@ -74,7 +74,7 @@ class Fleet(NamedTuple):
 
     @property
     def words(self) -> dict[str, str]:
-        """The words that stand for robots in texts, each with the name of its robot."""
+        """The names, prefixes and postfixes of robots, each with the robot's name."""
         return words_of({self.name(it): (it, self.tags.get(it, it)) for it in self.inventories})
 
     def name(self, robot: str) -> str:

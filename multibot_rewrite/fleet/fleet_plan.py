@@ -73,7 +73,7 @@ class FleetPlan(NamedTuple):
 
     @property
     def words(self) -> dict[str, str]:
-        """Return the words that stand for robots in texts, each with the name of its robot."""
+        """The names, prefixes and postfixes of robots, each with the robot's name."""
         specs = (it.spec for it in self.robots)
         return words_of({it.name: (it.namespace, it.tag, it.model) for it in specs})
 

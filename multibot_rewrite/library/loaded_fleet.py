@@ -95,7 +95,7 @@ class LoadedFleet:
 
     @cached_property
     def _with_full_names(self) -> Mapping[str, OutputFile]:
-        """The same files, parameter files with the full names of nodes whatever the fleet file says."""
+        """The files of the build, with full names of nodes in parameter files."""
         return {it.path: it for it in self._named_outputs.files}
 
     @cached_property
@@ -111,12 +111,12 @@ class LoadedFleet:
 
     @cached_property
     def files(self) -> Mapping[str, OutputFile]:
-        """The same files by path, such as ``robot1/params.yaml``; raises as ``made``."""
+        """The files of the build by path, as ``robot1/params.yaml``; raises as ``made``."""
         return {it.path: it for it in self.made.files}
 
     @checked
     def text(self, path: str) -> str:
-        """Return the text of one of these files; raises UsageError for an unknown path, as ``made``."""
+        """Return the text of a file; raises UsageError for an unknown path, and as ``made``."""
         if path not in self.files:
             hint = "list it under related_files: in the fleet file"
             raise UsageError(f"{self.file}: {unknown('file', path, self.files)}; {hint}")
@@ -170,7 +170,7 @@ def load_fleet(
 
 
 def _unpickled(file: FleetFile, jobs: Mapping[Sources, Jobs]) -> LoadedFleet:
-    """Return the fleet of a pickle, rewritten again from the descriptions that it includes."""
+    """Return the fleet of a pickle, rewritten from the descriptions in it."""
     return LoadedFleet(plan_fleet(file, jobs=jobs))
 
 

@@ -47,7 +47,7 @@ class Candidate(NamedTuple):
 
     @property
     def kind(self) -> tuple[bool, bool, bool]:
-        """The first of these are robots: several links, no part, something that moves."""
+        """A sort key: has several links, is no part, has something that moves."""
         return self.robot.links < 2, self.part, not self.moving
 
     @property
@@ -116,6 +116,7 @@ def acts(it: Looked) -> bool:
 
 
 def _candidate(it: Looked, said: frozenset[str], found: Found) -> Candidate:
+    """Return a description with what speaks for it."""
     links, moving = frozenset(_link_names(it)), frozenset(_moving_joints(it))
     return Candidate(
         it,

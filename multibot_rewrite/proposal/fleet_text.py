@@ -94,6 +94,7 @@ def _lines_of_rows(rows: Iterable[Row], folder: str) -> Iterator[str]:
 
 
 def _capped(lines: Iterable[str]) -> Iterator[str]:
+    """Yield the first lines as comments, and how many more there are."""
     yield from (f"# {line}" for line in _first_rows(lines))
 
 

@@ -205,7 +205,7 @@ def in_its_world(it: Looked, simulated: bool, reach: Reach) -> Looked:
 
 
 def with_hardware_loaded(it: Looked, reach: Reach) -> Looked:
-    """Return the same with the argument by which a simulator's plugin loads its hardware, if any."""
+    """Return it with the argument that makes a simulator's plugin load its hardware."""
     return _with_switch(it, lambda root: loads_hardware(root) and suits_simulator(root), reach)
 
 
@@ -237,7 +237,7 @@ def with_controllers(it: Looked, files: Sequence[str], reach: Reach) -> Looked:
 
 
 def _loads_nothing(root: etree._Element | None) -> bool:
-    """Return whether the plugin that makes a controller manager has a file that nothing names."""
+    """Return whether all parameter files of a controller manager's plugin are empty."""
     parts = _gazebo_parts(root) if root is not None else []
     plugins = (it for part in parts for it in part.iter("plugin"))
     made = (it for it in plugins if "ros2_control" in (it.get("filename") or ""))

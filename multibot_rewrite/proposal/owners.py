@@ -120,7 +120,7 @@ def _nearer_to_others(robot: str, found: Found) -> Iterator[tuple[str, str]]:
 
 
 def _naming_others(robot: Looked, found: Found, files: Iterable[str]) -> Iterator[tuple[str, str]]:
-    """Yield files that are not nearer to the robot and name parts of another description."""
+    """Yield files that name parts of another description and are not nearer to the robot."""
     own = frozenset(_expanded_names(robot)) | _names_in(robot.path)
     names = {it: _names_in(it) for it in found.every[:MOST] if it != robot.path}
     others = {path: its for path, its in names.items() if not its <= own}
@@ -139,7 +139,7 @@ def _naming_others(robot: Looked, found: Found, files: Iterable[str]) -> Iterato
 
 
 def _known_names(words: _Words, names: frozenset[str]) -> frozenset[str]:
-    """Return the names that a file has: a plain word such as camera only as a value."""
+    """Return the names that a file has; a plain name such as camera counts only as a value."""
     return frozenset(it for it in names & words.all if it in words.values or _is_specific(it))
 
 
@@ -172,7 +172,7 @@ def own_names(robot: Looked) -> frozenset[str]:
 
 
 def _without_prefixes(robot: Looked, names: frozenset[str]) -> frozenset[str]:
-    """Return the names without what the arguments for its names put in front."""
+    """Return names without the prefixes that the robot's arguments add."""
     given = [it.rstrip("_/") for _, it in filled_for_any(robot) if ANY in it]
     fronts = tuple(f"{it}{end}" for it in given for end in "_/")
     front = {name: next((it for it in fronts if name.startswith(it)), "") for name in names}
@@ -230,7 +230,7 @@ def _names_in(path: str) -> frozenset[str]:
 
 
 def names_of_files(found: Found) -> frozenset[str]:
-    """Return the words that descriptions' related files have as values, and specific ones as keys."""
+    """Return the values in related files, and their keys if these are specific names."""
     words = [_words_in(it) for it in _related_files(found)]
     keys = (name for it in words for name in it.all if _is_specific(name))
     return frozenset(keys).union(*(it.values for it in words)) - {*SENT_FRAMES}

@@ -182,7 +182,7 @@ def names_of(stems: Sequence[str], count: int) -> list[tuple[str, ...]]:
 
 
 def unlike(words: Iterable[str]) -> list[str]:
-    """Return the words as names of robots, made different where they are equal."""
+    """Return names for robots that are made of these and differ from each other."""
     found: list[str] = []
     for word in words:
         plain = "".join(it if it.isalnum() else "_" for it in word.lower()).strip("_") or "robot"

@@ -93,7 +93,7 @@ class Found(NamedTuple):
 
     @property
     def words(self) -> list[str]:
-        """What says the launch file that was named; raises nothing."""
+        """The arguments that name the launch files, ``--launch FILE ...``; raises nothing."""
         words = (shlex.split(order_text(it, os.curdir)) for it in self.named)
         return [word for it in words for word in ("--launch", *it)]
 
@@ -288,7 +288,7 @@ def _field_of(path: str, data: bytes) -> str:
 
 
 def _kind_of_model(_: str, data: bytes) -> str:
-    """Return the kind of a file by what also recognizes a file that is named."""
+    """Return the kind of a file by its contents, as for a named file."""
     kind = recognised(data)
     if kind == SDF and (b"<model" not in data or _STATIC.search(data)):
         return ""

@@ -177,7 +177,7 @@ def errors_of(
 def _build_results(
     source: FleetSource, trust: bool
 ) -> tuple[FleetPlan, Set[Finding], Set[Finding]]:
-    """Return a fleet as a build has it: what is found in it, and what is found when it is read back."""
+    """Return a plan, its findings as in a build, and those of reading it back."""
     folder = os.path.abspath("out")
     plan = plan_fleet(read_fleet(source, "", os.environ), trust=trust)
     made = make_outputs(plan, folder)

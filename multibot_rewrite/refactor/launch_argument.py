@@ -244,7 +244,7 @@ def _lists_of(tree: ast.Module, called: str) -> Iterator[ast.List]:
 
 
 def _called_name(node: ast.Call) -> str:
-    """Return the last word of what is called."""
+    """Return the last name of what is called."""
     named = node.func.attr if isinstance(node.func, ast.Attribute) else node.func
     return named if isinstance(named, str) else getattr(named, "id", "")
 

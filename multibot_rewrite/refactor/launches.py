@@ -143,6 +143,7 @@ def _link_copy(home: str, root: str, files: Mapping[str, bytes]) -> None:
 
 
 def _verdict(order: LaunchOrder, how: Trial, filled: "Sequence[Filled]") -> _Verdict:
+    """Return what is wrong with a launch file that was tried with the argument."""
     argument, prefix = how.argument, how.prefix
     try:
         graph = launch_graph(order)
@@ -181,7 +182,7 @@ def _space_fault(order: LaunchOrder, graph: LaunchGraph, space: Space | None) ->
 
 
 def _gets_file(graph: LaunchGraph, path: str, wanted: bytes) -> bool:
-    """Return whether some node gets a parameter file with what is ``wanted``, and none another."""
+    """Return whether nodes get a parameter file as ``wanted``, and no node another version."""
     name = os.path.basename(path)
     given = [it for node in graph.nodes for it in node.parameters]
     texts = [it.text for it in given if name == os.path.basename(it.source or it.file)]

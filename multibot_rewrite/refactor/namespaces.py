@@ -216,7 +216,7 @@ def _added_by_element(template: Template) -> dict[etree._Element, _Added]:
 def _element_edits(
     file: str, source: bytes, start: int, added: _Added, argument: str
 ) -> Iterator[SourceEdit]:
-    """Yield the edits with what the condition guards; xacro writes ``<a/>`` where nothing is in it."""
+    """Yield the edits that add conditional elements; ``<a/>`` gets an end tag."""
     end = tag_end(source, start)
     is_empty = source[end - 2 : end] == b"/>"
     # White space alone would be left in an element that had none.

@@ -45,7 +45,7 @@ class Description(NamedTuple):
 
     @property
     def words(self) -> str:
-        """Its path, with its arguments."""
+        """Its path with its arguments, for messages."""
         return " ".join((self.path, *(f"{name}:={it}" for name, it in self.arguments.items())))
 
     @property
@@ -191,7 +191,7 @@ def _aliases(elements: Iterable[_Element]) -> Iterator[tuple[str, str]]:
 
 
 def _compared_words(text: str) -> Iterator[tuple[str, str]]:
-    """Yield names with the words that an expression compares them with."""
+    """Yield names with the values that an expression compares them with."""
     for it in _COMPARED.finditer(text):
         yield from ((it[1], word[1]) for word in _WORD.finditer(it[2] or it[3]))
     yield from ((it[2], it[1][1:-1]) for it in _BEHIND.finditer(text))

@@ -81,7 +81,7 @@ def placed(
 
 
 def _places_in(of: int, it: Description, changes: Iterable[ValueEdit]) -> Iterator[_Name]:
-    """Return each change, and each value that is made at the same places and does not change."""
+    """Yield the places of changes, and of values at the same places that do not change."""
     assert it.read is not None
     read = it.read
     real = {file: os.path.realpath(file) for file in read.sources}
@@ -160,7 +160,7 @@ def _spot_of_copy(
 
 
 def _made_elsewhere(names: Sequence[_Name]) -> set[Spot | None]:
-    """Return the spots of use at which no prefix can go: it comes from where the names are made."""
+    """Return the spots of use where no prefix can go, as the name is made elsewhere."""
     groups = lists_by_key((it.used, it) for it in names)
     deep = {it for it, group in groups.items() if len({name.change is None for name in group}) > 1}
     while True:

@@ -159,7 +159,7 @@ def _renaming_of(symbol: _Symbol, package: Package, folder: str, how: Expanding)
 def _check_free(
     symbol: _Symbol, package: Package, changes: Mapping[str, Sequence[ValueEdit]]
 ) -> None:
-    """Refuse a new name that the folder has or uses: the two would be one. A link is a frame, too."""
+    """Raise UsageError if the folder has or uses the new name, as a link or frame, too."""
     kinds = next(it for it in KINDS.values() if symbol.kind in it)
     for it in package.descriptions:
         for one in chain.from_iterable(it.inventory.names):

@@ -130,7 +130,7 @@ def spans(
 
 
 def edited(sources: Mapping[str, bytes], edits: Iterable[SourceEdit]) -> dict[str, bytes]:
-    """Return the files that change, with their new bytes; raises ValueError where two edits meet."""
+    """Return the changed files with their new bytes; raises ValueError for overlapping edits."""
     made: dict[str, bytes] = {}
     every = sorted(set(edits))
     for file in dict.fromkeys(it.file for it in every):

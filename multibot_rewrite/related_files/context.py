@@ -34,7 +34,7 @@ def number_slot(first: int) -> str:
 
 
 def check_no_slots(text: str, file: str) -> None:
-    """Raise InputError for a file that already holds one of the words that slots are made of."""
+    """Raise InputError for a file that contains the text of a slot."""
     found = _SLOT.search(text)
     if found:
         raise InputError(f"{file}: the word {found[0]} is reserved for this tool; use another word")

@@ -106,7 +106,7 @@ def moved_tf(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
 
 
 def shared_below(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
-    """Yield relative names that all robots are said to share, and that the namespace of each moves."""
+    """Yield relative names that should be shared, but are below each robot's namespace."""
     shared = naming.shared_topics - OF_EVERYBODY
     if not shared or naming.topics != NAMESPACE:
         return
@@ -237,7 +237,7 @@ def _known_plugins(inventory: Inventory) -> Iterator[tuple[PluginDefinition, Hos
 
 
 def outside_frames(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
-    """Yield renamed frames that an SRDF fixes its robot to."""
+    """Yield renamed frames to which an SRDF fixes the robot."""
     for claim, spelling in zip(inventory.claims, renames.values, strict=True):
         if claim.site.path != "virtual_joint@parent_frame" or claim.element.get("type") != "fixed":
             continue

@@ -107,6 +107,7 @@ def _firsts(things: Sequence[_Named]) -> dict[str, _Named]:
 
 
 def _joint(element: _Element) -> Joint:
+    """Return a joint of a URDF as a record."""
     return Joint(
         element.get("name", ""),
         element.get("type", ""),
@@ -165,7 +166,7 @@ def is_tree(robot: Robot) -> bool:
 
 
 def loops(robot: Robot) -> list[list[Joint]]:
-    """Return loops of joints, one of those that share links; a joint from a link to itself is none."""
+    """Return the loops of joints; of loops that share links only one."""
     rest = _not_of_a_tree(robot)
     done: set[str] = set()
     found = []

@@ -223,7 +223,7 @@ def _unclaimed(
 
 
 def _has_one(element: etree._Element, suspects: set[str]) -> bool:
-    """Return whether one of an element's values or texts is suspect; a quick test."""
+    """Return whether one of an element's values or texts is suspect, for a quick test."""
     if not suspects.isdisjoint(element.values()):
         return True
     texts = [element.text, *[it.tail for it in element]] if len(element) else [element.text]

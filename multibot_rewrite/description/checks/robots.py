@@ -47,7 +47,7 @@ def taken_names(
 def _shared_names(
     inventory: Inventory, renames: RenameMap, robots: Iterable[str]
 ) -> Iterator[Problem]:
-    """Yield names that become a shared one: ``base`` where all robots share ``robot1/base``."""
+    """Yield names that become a shared name: ``base``, if ``robot1/base`` is shared."""
     naming = renames.naming
     shared = dict.fromkeys(FRAME_KINDS, naming.shared_frames)
     shared |= dict.fromkeys(TOPIC_KINDS, naming.shared_topics)

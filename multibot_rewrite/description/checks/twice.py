@@ -71,7 +71,7 @@ def rewritten_before(inventory: Inventory) -> Iterator[Problem]:
 
 
 def _in_every_name(inventory: Inventory) -> Iterator[str]:
-    """Yield what every link has behind a slash, or in front of one, and the model next to a ``_``."""
+    """Yield prefixes or postfixes that all links have, and those of the model."""
     model = next((it.text for it in _names(inventory, ("model",))), "")
     links = [it.text for it in _names(inventory, ("link",))]
     for at, beside in ((-1, model.endswith), (0, model.startswith)):
@@ -81,7 +81,7 @@ def _in_every_name(inventory: Inventory) -> Iterator[str]:
 
 
 def _names(inventory: Inventory, kinds: Collection[str]) -> list[UsedName]:
-    """Return every name of these kinds that some rewrite changes, once."""
+    """Return each name of these kinds that a rewrite changes, with its first value."""
     found: dict[tuple[str, str], UsedName] = {}
     for claim, names in zip(inventory.claims, inventory.names, strict=True):
         for name in names if claim.site.role != "keep" else ():

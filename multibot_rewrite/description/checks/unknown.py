@@ -98,5 +98,5 @@ def _message_and_hint(
 
 
 def not_here(definitions: Definitions, releases: Iterable[str]) -> str:
-    """Return the words for something that is in other releases only."""
+    """Return the message that something is in other releases only."""
     return f"is not in {definitions.release}, only in {', '.join(releases)}"

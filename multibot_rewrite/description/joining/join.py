@@ -192,7 +192,7 @@ def _check_parts(given: Sequence[GivenPart], parts: Sequence[ReadPart]) -> None:
 def _added(
     data: bytes, spec: Part, part: ReadPart, first: ReadPart, tree: Tree
 ) -> tuple[bytes, Mounted, Sequence[str]]:
-    """Return the text with one more part, the part, and notes."""
+    """Return the text with one more part, the part in place, and notes."""
     joined = collect(read_document(data, JOINED), tree)
     robot = read_robot(joined.document.root)
     _check_link_exists(spec.at, part, robot)
@@ -255,7 +255,7 @@ def own_spaces(joined: Document, spans: Spans, others: Collection[Edit]) -> list
 
 
 def _declared(document: Document) -> set[tuple[bytes, bytes]]:
-    """Return prefixes and namespaces that the root's start tag has itself."""
+    """Return the XML prefixes and namespaces that the root's start tag declares."""
     start = document.starts[0]
     tag = document.source[start : tag_end(document.source, start)]
     found = ((prefix, uri) for prefix, uri in document.root.nsmap.items() if prefix)

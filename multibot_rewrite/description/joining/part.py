@@ -91,7 +91,7 @@ class ReadPart(NamedTuple):
 
 
 def prefixing(kinds: Iterable[str] = PREFIXED, topics: str | None = None) -> Naming:
-    """Return the naming that puts a literal prefix before names of these kinds."""
+    """Return the naming that puts a literal prefix before these kinds of names."""
     named = make_naming("frames-per-robot", PREFIX, topics)
     return named._replace(separators=dict.fromkeys(kinds, ""))
 
@@ -176,7 +176,7 @@ def _reasons_against_joining(inventory: Inventory) -> Iterator[str]:
 
 
 def names_of(inventory: Inventory) -> Iterator[tuple[str, str]]:
-    """Yield kind and name of all that a robot has once; sensors are those of ros2_control."""
+    """Yield kind and name of what a robot has only once; sensors are those of ros2_control."""
     for claim in inventory.claims:
         site = claim.site
         if site.role != "declares" or not claim.attribute or site.kinds[0] not in ONCE:

@@ -161,6 +161,7 @@ def _between(described: _Element, parts: Sequence[PartSemantics]) -> Iterator[tu
 
 
 def _notes(pairs: Sequence[tuple[str, str]], found: Touching, samples: int) -> Iterator[str]:
+    """Yield notes on links that touch always or never in the random poses."""
     many = Counter(found.reasons.values())
     what = f"of {plural(len(pairs), 'pair')} of links of two parts {many[NEVER]} never touch"
     yield f"SRDF: {what} in {samples} random poses; the others are checked for collisions"

@@ -128,13 +128,13 @@ class ActivePart(NamedTuple):
 
     @property
     def opens_something(self) -> bool:
-        """False only where it is known to open nothing but what a value says, which is compared."""
+        """False only if all that it opens is named by values, which are compared."""
         words = self.section.opens if self.section else ()
         return not words or any(it != NOTHING and not split_opens(it).path for it in words)
 
     @property
     def is_apart(self) -> bool:
-        """Return whether a namespace keeps apart what it opens, apart from values."""
+        """Return whether all that it opens, besides names in values, is below a namespace."""
         words = self.section.opens if self.section else ()
         return {NAMESPACE} == {it for it in words if not split_opens(it).path}
 
@@ -173,7 +173,7 @@ def plugin_name(plugin: _Element) -> str:
 
 
 def _is_simulated(sensor: _Element) -> bool:
-    """Return whether it is a sensor of Gazebo; those of urdfdom and of ros2_control run nothing."""
+    """Return whether it is a sensor of Gazebo, not of urdfdom or ros2_control."""
     parent = sensor.getparent()
     if parent is None or parent.tag in ("robot", "ros2_control"):
         return False

@@ -76,7 +76,7 @@ class Meeting(NamedTuple):
 
 
 def same_for_all(names: Iterable[RuntimeName], word: str, naming: Naming) -> Iterator[RuntimeName]:
-    """Yield the names without ``word``, the robot's name: every robot would have them.
+    """Yield the names that do not contain ``word``, the robot's name.
 
     Each name once, at its first place.
     """
@@ -88,7 +88,7 @@ def same_for_all(names: Iterable[RuntimeName], word: str, naming: Naming) -> Ite
 
 
 def meetings(named: Mapping[str, Iterable[RuntimeName]], naming: Naming) -> Iterator[Meeting]:
-    """Yield the names that two of these robots have, each once."""
+    """Yield the names that two robots have, each once."""
     first: dict[tuple[str, str], tuple[str, RuntimeName]] = {}
     seen: set[tuple[str, str]] = set()
     for robot, names in named.items():
@@ -133,7 +133,7 @@ def code_of(name: RuntimeName) -> str:
 
 
 def said(who: str, *names: RuntimeName) -> str:
-    """Return the message that these robots share a name, and which of their parts have it."""
+    """Return the message that robots share a name, with the parts that have it."""
     name, by = names[0], " and ".join(dict.fromkeys(it.path for it in names))
     if code_of(name) == LOOKUP:
         return (
@@ -160,7 +160,7 @@ def advice(name: RuntimeName, together: bool = False) -> str:
 
 
 def _for_code(name: RuntimeName) -> str:
-    """Return what to do about a shared name that only the code of a plugin has."""
+    """Return the hint for a shared name that is fixed in a plugin's code."""
     if name.path == IN_CODE:
         return f"{_FIXED}: use --layout tf-per-robot, or {_OF_FRAME}"
     if name.tag == "ros2_control":

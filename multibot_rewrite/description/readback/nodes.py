@@ -66,7 +66,7 @@ class RuntimeName(NamedTuple):
     off: str = ""
 
     def element_in(self, root: _Element) -> _Element:
-        """Return what it comes from in a text with the same elements, else the root."""
+        """Return its element in a text with the same elements, or else the root."""
         return next(islice(root.iter(self.tag), self.number, None), root)
 
 
@@ -148,7 +148,7 @@ def node_of(
 
 
 def _manager(plugin: _Element, section: PluginDefinition, name: str, namespace: str) -> str:
-    """Return the controller manager: the plugin's node; Classic's plugin is another node."""
+    """Return the full name of a plugin's controller manager; empty without one."""
     site = next((it for it in section.sites if it.path == "controller_manager_name"), None)
     if site is None:
         return ""
@@ -174,7 +174,7 @@ def wheels_in(element: _Element) -> bool:
 
 
 def _turns_on(joint: _Element | None) -> bool:
-    """Return whether it may be a wheel's joint. Limits reached after some turns are an arm's."""
+    """Return whether it may be a wheel's joint, without limits or with wide ones."""
     if joint is None:
         return True
     limit = joint.find("limit") if joint.get("type") == "revolute" else None
@@ -292,7 +292,7 @@ def _asked_for(
 
 
 def holds_topic(site: SiteRow) -> bool:
-    """Return whether its value is a topic or service, or a word that topics are below."""
+    """Return whether its value is a topic or service, or topics are below it."""
     whole = site.form == "whole" and site.role != "keep" and site.when != SENT
     return whole and site.kinds[0] in TOPIC_KINDS and "qos" not in site.path
 

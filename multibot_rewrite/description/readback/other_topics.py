@@ -120,6 +120,7 @@ def _namespace(host: _Element, section: PluginDefinition) -> str | None:
 
 
 def _join(above: str, name: str) -> str:
+    """Return an absolute topic below another name."""
     return f"/{above.strip('/')}/{name.strip('/')}".replace("//", "/")
 
 

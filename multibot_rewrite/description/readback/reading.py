@@ -119,7 +119,7 @@ def _ros_nodes(hosts: Iterable[_Host], release: str) -> tuple[ReadNode, ...]:
 def _of_first_senders(
     missed: tuple[RuntimeName, ...], hosts: list[_Host]
 ) -> tuple[RuntimeName, ...]:
-    """Return the names without those of systems whose transform another one sends, or sends first."""
+    """Return the names without those of transforms that another system sends already."""
     numbers = {it.number for it in missed}
     models = {it.number: parameters.around(it.element) for it in hosts}
     sent: set[_Element] = set()

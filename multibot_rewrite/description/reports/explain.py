@@ -141,7 +141,7 @@ def _reasons(
 
 
 def _stays(naming: Naming, kind: str, name: str, namespaced: bool) -> str:
-    """Return why a name is not renamed; empty where it is, or where only its form forbids it."""
+    """Return why a name is not renamed; empty if it is, or if only its form prevents it."""
     bare = name.strip("/")
     reasons = (
         (not kind, "not declared, so it is not renamed"),
@@ -258,7 +258,7 @@ class _Line(NamedTuple):
 
 
 def _made_on(it: _Line, document: Document, explain: OnLine) -> Iterator[Explanation]:
-    """Yield the values that a line makes, each at its place there."""
+    """Yield explanations of the values that a line makes, each at its place there."""
     for number, element in enumerate(document.elements):
         origin = it.read.origins.of(number)
         written = None

@@ -177,7 +177,7 @@ def _row(path: str, values: Sequence[str], declared: Declared) -> SuggestedRow:
 
 
 def tag_kind(path: str) -> str:
-    """Return the kind that the words of a path suggest: ``left/jointName`` a joint; empty for none."""
+    """Return the kind of name that a path suggests: ``left/jointName`` a joint; or empty."""
     steps, attribute = split_path(path)
     names = [split_step(step)[2] or split_step(step)[0] for step in steps]
     for name in reversed([*names, attribute]):
@@ -221,7 +221,7 @@ def _held_names_text(value: str, named: Sequence[tuple[str, str]]) -> str:
 
 
 def _readings(value: str) -> Iterator[tuple[str, Sequence[str]]]:
-    """Yield forms that the value may have, and the names in it then."""
+    """Yield the forms that a value may have, each with the names in it."""
     yield "whole", [value]
     if _NO_NAME.match(value):
         return
@@ -236,7 +236,7 @@ def _readings(value: str) -> Iterator[tuple[str, Sequence[str]]]:
 
 
 def _by_tag(value: str, word: str) -> Guess | None:
-    """Return the guess by the tag, if the value can be a name at all."""
+    """Return the guess by the tag, if the value can be a name."""
     if not word or _NO_NAME.match(value):
         return None
     several = len(value.replace(",", " ").split()) > 1

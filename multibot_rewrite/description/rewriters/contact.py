@@ -65,7 +65,7 @@ def collision_map(root: etree._Element, respell: Respell) -> dict[str, str]:
 
 
 def _names(left: str, links: Links, lumped: Lumped, spell: Respell) -> dict[tuple[str, int], str]:
-    """Return the name of each collision that ends up in link ``left``, by link and index."""
+    """Return the names of collisions that end up in link ``left``, by link and index."""
     found: dict[tuple[str, int], str] = {}
     there = spell("link", left)
     waiting = [left]

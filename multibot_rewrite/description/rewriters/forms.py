@@ -103,7 +103,7 @@ def _names_with_starts(value: str) -> Iterator[tuple[int, str]]:
 
 
 def words(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
-    """Return every word of a text such as ``(key value ...)`` that the file declares."""
+    """Return the declared names in a text such as ``(key value ...)``."""
     found = ((word.start(), word[0]) for word in _WORD.finditer(value))
     known = ((at, text, [k for k in kinds if text in declared.get(k, ())]) for at, text in found)
     return tuple(NamePart(at, text, tuple(of), True) for at, text, of in known if of)

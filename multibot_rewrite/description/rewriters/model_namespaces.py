@@ -161,7 +161,7 @@ def given_topics(claims: Iterable[Claim]) -> frozenset[str]:
 
 
 def words_of(claims: Iterable[Claim]) -> Stems:
-    """Return the words that systems build topics from, each with the joints that are named with it."""
+    """Return the names that systems build topics from, each with its joints."""
     beside: dict[object, list[str]] = defaultdict(list)
     words: list[tuple[str, object]] = []
     for claim in claims:
@@ -178,7 +178,7 @@ def words_of(claims: Iterable[Claim]) -> Stems:
 
 
 def parts_of(value: str, stems: Stems, declared: Declared) -> Iterator[NamePart]:
-    """Yield the names in a topic, in order; none if it begins with no model or word of this file."""
+    """Yield the names in a topic, in order; none if its first name is not of this file."""
     bare = len(value) - len(value.lstrip().lstrip("/"))
     head = _HEAD.match(value, bare)
     at = head.end() if head else bare

@@ -96,7 +96,7 @@ class Pattern:
         return 0 in self._reached(here, {_END})
 
     def _reached(self, states: Iterable[int], places: Container[str]) -> frozenset[int]:
-        """Return these states and all that follow without a character."""
+        """Return these states and all that follow without reading a character."""
         found = set(states)
         waiting = list(found)
         while waiting:
@@ -180,6 +180,7 @@ def _least_and_most(count: str) -> tuple[int, int | None]:
 
 
 def _repeated(piece: _Piece, least: int, most: int | None) -> _Piece:
+    """Return a piece that is repeated so often."""
     if most is not None and most < least:
         raise PatternError(f"{{{least},{most}}} is no count")
 

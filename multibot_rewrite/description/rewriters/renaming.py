@@ -124,7 +124,7 @@ def takes_empty(site: SiteRow) -> bool:
 
 
 def spell_default(site: SiteRow, value: str, declared: Declared, naming: Naming) -> Spelling:
-    """Return the changes in a value that would be at a site if the file had it."""
+    """Return the changes in a default value, as if it were written at a site."""
     if site.form in IN_FRONT and naming.affix != PREFIX:
         return ()
     result = []

@@ -88,7 +88,7 @@ class Access:
         return folder
 
     def _package_in_workspace(self, name: str) -> str:
-        """Return a package of the same repository or workspace: no ROS has to be sourced."""
+        """Return the folder of a package in the file's repository or workspace."""
         repository = _repository(os.path.dirname(_real_paths(self.path)[0]))
         # A workspace has its repositories side by side in src.
         above = os.path.dirname(repository)
@@ -152,7 +152,7 @@ def check_file(path: str) -> None:
 
 @outside
 def _content(path: str, trust: bool) -> bytes | None:
-    """Return the bytes of a file, one more than allowed; None for an untrusted device or pipe."""
+    """Return a file's bytes, one more than allowed if larger; None for a device or pipe."""
     flags = os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC
     with open(path, "rb", opener=lambda it, _: os.open(it, flags)) as file:
         is_regular = stat.S_ISREG(os.fstat(file.fileno()).st_mode)
@@ -234,6 +234,7 @@ def _installed(name: str) -> str:
 
 @outside
 def _listing(folder: str) -> list[str]:
+    """Return the names in a folder; none if it cannot be read."""
     try:
         return os.listdir(folder or os.curdir)
     except OSError:

@@ -71,7 +71,7 @@ class Sources:
         self.left = MOST_READ
 
     def read(self, name: str) -> bytes:
-        """Return the bytes of a file, the same each time; raises NotAllowedError and OSError."""
+        """Return a file's bytes, always the first read; raises NotAllowedError and OSError."""
         if name not in self.texts:
             path = self.access.readable(name)
             other = self.changed.get(real_path(path)) if self.changed else None
@@ -118,7 +118,7 @@ def converse(
 
 
 def _answered(it: XacroChild, sources: Sources) -> bytes:
-    """Answer questions until there is a report."""
+    """Answer a child's questions, and return its report."""
     for _ in range(MOST_QUESTIONS):
         kind, data = frames.received(it.read, frames.LONGEST)
         if kind == frames.REPORT:

@@ -45,7 +45,7 @@ def ros_shown(data: bytes, file: str, tree: Tree) -> str:
 
 
 def _is_inserted(element: _Element) -> bool:
-    """Return whether it is one of the elements that a rewrite counts in the comment before them."""
+    """Return whether a rewrite inserted the element, by the comment before it."""
     marks = (_MARK.match(it.text or "") for it in element.itersiblings(Comment, preceding=True))
     number = next((int(it[1]) for it in marks if it), 0)
     return sum(1 for _ in element.itersiblings("*", preceding=True)) < number

@@ -51,7 +51,7 @@ class Expansion(NamedTuple):
 
 @contextmanager
 def kept_expansions() -> Iterator[None]:
-    """Expand a file with the same arguments once in the block, while nobody changes it."""
+    """Keep expansions for equal arguments as long as the block runs."""
     before = _KEPT.set({})
     try:
         yield
@@ -60,7 +60,7 @@ def kept_expansions() -> Iterator[None]:
 
 
 def once_kept(key: object, expanded: Callable[[], _T]) -> _T:
-    """Return what was made for this key before in the block, or raise the same error."""
+    """Return the kept result for a key, or raise the kept error; make it at first."""
     kept = _KEPT.get()
     if kept is None:
         return expanded()
@@ -127,7 +127,7 @@ def expand_traced(
 
 
 def _text(path: str, result: Result, trace: Trace) -> bytes:
-    """Return what xacro made, and print its warnings; raises InputError, placed by ``trace``."""
+    """Return the expanded text and print warnings; raises InputError with its place."""
     # What xacro warns about, without what a terminal would obey.
     for line in result.notes.splitlines():
         sys.stderr.write("".join(it if it.isprintable() else "?" for it in line) + "\n")
@@ -163,7 +163,7 @@ def _tell_once() -> None:
 
 
 def _cause(reason: str) -> tuple[str, str]:
-    """Return the cause in what xacro said, and the name that is not defined."""
+    """Return the cause of a failure that xacro reported, and the undefined name."""
     if _UNREADABLE.search(reason):
         return model.UNREADABLE, ""
     if reason.startswith("package '") and "is not found" in reason:

@@ -101,7 +101,7 @@ def _xacro_files(folder: str) -> list[str]:
 
 
 def _may_include(included: str, path: str, by: str) -> bool:
-    """Return whether the included file may be this one; with a xacro's parts by the base name."""
+    """Return whether an include may mean this file; with ``${...}`` the base name counts."""
     if path == by:
         return False
     package = _FIND.match(included)

@@ -134,7 +134,7 @@ def _merged(include: _Element, model: _Element) -> Iterator[_Element]:
 
 
 def _placed(part: _Element, proxy: str) -> None:
-    """Change the references of a part to its model into references to the frame for it."""
+    """Redirect the references of a part to its model to the frame for the model."""
     if part.tag in ("link", "model") and part.find("pose") is None:
         etree.SubElement(part, "pose").text = "0 0 0 0 0 0"
     if part.tag == "frame" and part.get("attached_to", _OWN) == _OWN:

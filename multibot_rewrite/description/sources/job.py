@@ -144,7 +144,7 @@ def read_jobs(
 
 
 def _check_meant(given: Arguments, own: Iterable[str], others: Sequence[str]) -> None:
-    """Raise UsageError if an argument that makes names of one robot is given for another one."""
+    """Raise UsageError if an argument is given to a robot and names another one."""
     for robot in own:
         named = {name: text for name, text in given.items() if name_robot({name: text}, [robot])}
         values = " ".join(f"{name}:={text}" for name, text in named.items())
@@ -206,7 +206,7 @@ def _files_read(args: Arguments, texts: Sequence[SourceText]) -> FilesRead:
 def job_for(
     read: Reader, given: Arguments, words: Sequence[str], common: Collection[str] = ()
 ) -> Job:
-    """Return the job of the robot with these words; ``common`` arguments do not name a robot."""
+    """Return the job of the robot with these names; ``common`` arguments do not name a robot."""
     job = read(filled(given, *words[:1]))
     if not name_robot(given, words, common):
         return job
@@ -253,7 +253,7 @@ def _unnamed_job(
 
 
 def _check_links(job: Job, own: OwnNames, given: Arguments, words: Sequence[str]) -> None:
-    """Raise InputError if an argument puts the robot's name before links and nodes do it, too."""
+    """Raise InputError if arguments and nodes both put the robot's name before links."""
     links = sorted(text for kind, text in own if kind == "link")
     if job.naming.layout.at_run_time and links:
         named = [f"{it}:={text}" for it, text in given.items() if words[0] in text or "{" in text]
@@ -265,7 +265,7 @@ def _check_links(job: Job, own: OwnNames, given: Arguments, words: Sequence[str]
 def _marked_job(
     read: Reader, given: Arguments, words: Sequence[str], common: Collection[str]
 ) -> Job:
-    """Return the sources with marks for the robot's words in every argument that takes them."""
+    """Return the job with marks in place of the robot's name in all arguments."""
     with suppress(InputError):
         return read(marked(given, words, common))
     # Some file takes only words that it knows for one of them.

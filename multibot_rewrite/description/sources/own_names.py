@@ -59,7 +59,7 @@ def filled(arguments: Arguments, robot: str = "") -> dict[str, str]:
 def marked(
     arguments: Arguments, words: Sequence[str], common: Collection[str] = ()
 ) -> dict[str, str]:
-    """Return the arguments with a mark for each word of a robot; the first word fills ``{robot}``.
+    """Return the arguments with a mark for each name of a robot; the first fills ``{robot}``.
 
     Those that are ``common`` to robots name none of them.
     """
@@ -86,12 +86,12 @@ def templates(arguments: Arguments, robot: str) -> dict[str, str]:
 
 
 def name_robot(arguments: Arguments, words: Sequence[str], common: Collection[str] = ()) -> bool:
-    """Return whether any of the arguments holds a word of the robot."""
+    """Return whether an argument contains a name of the robot."""
     return marked(arguments, words, common) != dict(arguments)
 
 
 def common_to(robots: Sequence[tuple[Arguments, Sequence[str]]]) -> frozenset[str]:
-    """Return arguments equal for several robots that name a part with a robot's word."""
+    """Return arguments equal for several robots, in which a robot's name is a part's name."""
     # In ``left_finger`` left is a side: the fingers of all robots have that name.
     first = robots[0][0] if len(robots) > 1 else {}
     alike = {name for name in first if all(it.get(name) == first[name] for it, _ in robots)}
@@ -102,7 +102,7 @@ def common_to(robots: Sequence[tuple[Arguments, Sequence[str]]]) -> frozenset[st
 
 
 def own_names(inventory: "Inventory", words: Sequence[str]) -> OwnNames:
-    """Return the names with a mark in them, as they are for the robot with these words.
+    """Return the names with a mark in them, as they are for the robot with these names.
 
     Raises UsageError for a name that has the robot's name twice in a row.
     """
@@ -154,7 +154,7 @@ def _names_by_kind(inventory: "Inventory") -> dict[str, list[str]]:
 
 
 def own_texts(texts: NameTexts, words: Sequence[str]) -> NameTexts:
-    """Return the texts for the robot with these words."""
+    """Return the texts for the robot with these names."""
     return {key: _unmarked_text(text, words) for key, text in texts.items()}
 
 
@@ -174,7 +174,7 @@ def _inserted_affix(plain: str, marked: str) -> Affix | None:
 
 
 def as_twin(data: bytes) -> bytes:
-    """Return the text for a robot whose words are all ``TWIN``."""
+    """Return the text for a robot that is called ``TWIN`` everywhere."""
     for mark in MARKS:
         data = data.replace(mark.encode(), TWIN.encode())
     return data

@@ -218,7 +218,7 @@ def _installed(folder: str) -> tuple[tuple[str, str], ...]:
 
 
 def _of_install(folder: str, words: list[str]) -> Iterator[tuple[str, str]]:
-    """Yield what one ``install(DIRECTORY a b/ DESTINATION c)`` puts where: of ``b/`` what is in it."""
+    """Yield the sources and targets of one ``install(DIRECTORY a b/ DESTINATION c)``."""
     if words[:1] not in (["DIRECTORY"], ["FILES"]) or words[-1:] == ["DESTINATION"]:
         return
     at = words.index("DESTINATION") if "DESTINATION" in words else 0

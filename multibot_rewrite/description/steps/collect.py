@@ -57,7 +57,7 @@ class Inventory(NamedTuple):
 
     @property
     def topics_in_full(self) -> frozenset[str]:
-        """Return the topics that no ROS namespace reaches, such as those of a simulated sensor."""
+        """The topics that no ROS namespace reaches, as those of a simulated sensor."""
         pairs = zip(self.claims, self.names, strict=True)
         found = (name for claim, names in pairs if not claim.site.namespaced for name in names)
         return frozenset(name.text for name in found if name.kind == "topic")

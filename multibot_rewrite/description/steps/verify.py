@@ -126,7 +126,7 @@ def _replaces_text(plan: Plan) -> bool:
 
 
 def same_names(it: Evidence) -> None:
-    """Raise ProofError unless the same sites are there in order, with the values by the naming."""
+    """Raise ProofError unless each site has the value that the naming gives it."""
     claims, file = it.inventory.claims, it.inventory.document.file
     if len(it.found) != len(claims):
         raise ProofError(f"{file}: {len(claims)} names went in, {len(it.found)} came out")
@@ -249,13 +249,13 @@ def _check_single(it: Evidence, added: list[etree._Element], beside: list[etree.
 
 
 def _key(element: etree._Element) -> tuple[str, str | None, str]:
-    """Return the subject of an element: the name that a rule is for, otherwise tag and name."""
+    """Return what an element is about: the name of its rule, or else tag and name."""
     rule, is_rule, _ = (element.text or "").strip().partition(":=")
     return str(element.tag), element.get("name"), rule if is_rule else ""
 
 
 def as_decided(it: Evidence) -> None:
-    """Raise ProofError unless the edits write what the plan decided to insert."""
+    """Raise ProofError unless the text has the insertions that the plan decided on."""
     output, robot, every = it.result.document.source, it.robot, it.plan.insertions
     inserted = b"".join(output[edit.start : edit.end] for edit in it.inserted)
     for item in every:

@@ -105,7 +105,7 @@ def _errors(data: Any, schema: Mapping[str, Any]) -> list[Any]:
 def _faults(
     error: Any, lines: Mapping[Path, int], schema: Mapping[str, Any]
 ) -> Iterator[tuple[int, str]]:
-    """Yield the lines of an error, each with its words."""
+    """Yield the line and the message of each fault in an error."""
     path = tuple(error.absolute_path)
     line = next(lines[path[:end]] for end in range(len(path), -1, -1) if path[:end] in lines)
     where = "".join(f"[{it}]" if isinstance(it, int) else f".{it}" for it in path).lstrip(".")

@@ -57,7 +57,7 @@ def with_robots(read: FleetData, choice: Choice) -> FleetData:
 
 
 def _repeated(read: FleetData, at: int, asked: int) -> Iterator[_Row]:
-    """Yield a robot of the file, or the robots of its pattern."""
+    """Yield a robot of the file, or all robots of its pattern."""
     robot = read.data["robots"][at]
     file, line = read.places["robots", at]
     if COUNT not in robot:
@@ -116,7 +116,7 @@ def _without(robot: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _chosen(text: str, rows: list[_Row], given: list[dict[str, Any]]) -> Iterator[_Row]:
-    """Yield the robots that a text names: as the file has them, otherwise like its pattern or first."""
+    """Yield the robots that a text names, as in the file or like its pattern or first robot."""
     known = {robot[NAME]: (at, robot) for at, robot in rows}
     like = next((at for at, it in enumerate(given) if COUNT in it), 0)
     base = like, {key: it for key, it in _without(given[like]).items() if key not in OWN}

@@ -99,7 +99,7 @@ class RobotSpec(NamedTuple):
 
     @property
     def words(self) -> tuple[str, str, str]:
-        """What stands for it in names; the first one is ``{robot}`` in its arguments."""
+        """The texts that stand for it in names; the first is ``{robot}`` in its arguments."""
         return self.name, self.namespace, self.tag
 
     def bridge_namespace_of(self, path: str) -> str:
@@ -185,7 +185,7 @@ def robot_spec(read: FleetData, naming: Naming, at: int, release: str) -> RobotS
 
 
 def _launch(data: Mapping[str, Any], own: Mapping[str, Any], place: str) -> Iterator[LaunchOrder]:
-    """Yield the launch files of a robot; raises InputError for words that are no arguments."""
+    """Yield the launch files of a robot; raises InputError for wrong arguments."""
     roots = listed(data.get("launch_roots", []))
     try:
         for text in listed(own.get("launch", data.get("launch", []))):
@@ -201,6 +201,7 @@ def _launch(data: Mapping[str, Any], own: Mapping[str, Any], place: str) -> Iter
 
 
 def _pose(own: Mapping[str, Any], place: str) -> Pose | None:
+    """Return the start pose of a robot; None without one, raises InputError."""
     if "pose" not in own:
         return None
     values = {key: float(value) for key, value in own["pose"].items()}
@@ -211,6 +212,7 @@ def _pose(own: Mapping[str, Any], place: str) -> Pose | None:
 
 
 def _colour(own: Mapping[str, Any], place: str) -> str | tuple[int, ...]:
+    """Return the colour of a robot as written; raises InputError if there is none such."""
     value = own.get("colour", "")
     colour = value if isinstance(value, str) else tuple(value)
     try:

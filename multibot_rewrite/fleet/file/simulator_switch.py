@@ -97,7 +97,7 @@ def suits_real(root: _Element) -> bool:
 
 
 def _lacks_a_class(root: _Element) -> bool:
-    """Return whether another argument names the class of some hardware."""
+    """Return whether some hardware has no class, which another argument may give it."""
     return any(it.find("plugin") is None for it in root.iterfind(".//ros2_control/hardware"))
 
 
@@ -144,7 +144,7 @@ def _switches(sources: Mapping[str, bytes], given: Mapping[str, str]) -> Iterato
 
 
 def _compared(name: str, text: str) -> list[str]:
-    """Return the words that an argument is compared with, those of simulators first."""
+    """Return the values that an argument is compared with, those of simulators first."""
     found = re.findall(rf"""\b{re.escape(name)}\)?["']?\s*==\s*["']([\w-]+)["']""", text)
     return sorted(dict.fromkeys(found), key=lambda it: _SIMULATED.search(it.lower()) is None)
 

@@ -146,7 +146,7 @@ class _Merging(NamedTuple):
         return first
 
     def label(self, owner: Any, field: str, above: str) -> str:
-        """Return a variable's name for a value; a node's is not the robot's, a path's is its role."""
+        """Return a variable's name for a value: without the robot's name, a path's by its role."""
         if isinstance(owner, Start):
             return "node_name" if field == _NAME else field
         return above if field == "path" else field
@@ -182,12 +182,12 @@ class _Merging(NamedTuple):
 
 
 def _split_at_name(text: str, robot: str) -> list[str]:
-    """Return a text cut where the robot's name is a word of it."""
+    """Return a text split at each occurrence of the robot's name."""
     return re.split(rf"(?<![A-Za-z0-9]){re.escape(robot)}(?![A-Za-z0-9])", text)
 
 
 def _is_number(text: str) -> bool:
-    """Return whether it is the text of a number that gives this text again."""
+    """Return whether it is a number that Python writes in the same way."""
     try:
         return str(float(text)) == text and text.strip("-")[0].isdigit()
     except ValueError:
@@ -202,7 +202,7 @@ def _parameter_name(label: str) -> str:
 
 
 def _any_of(texts: Sequence[str], what: str) -> str:
-    """Return a text for people: the one of all, or that they have several."""
+    """Return the text of all robots for a comment, or that they have several."""
     return texts[0] if len(set(texts)) == 1 else f"its own {what}"
 
 

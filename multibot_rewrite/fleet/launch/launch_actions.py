@@ -301,7 +301,7 @@ def _processes(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[Start]:
 
 
 def _own_command(it: LaunchedNode, space: str, naming: Naming) -> tuple[str, ...]:
-    """Return a command and its words; names of nodes and topics for ``ros2`` are its robot's."""
+    """Return a command; nodes and topics in ``ros2`` commands are the robot's."""
     words, verb = (it.executable, *it.arguments), ""
     found: list[str] = []
     for at, word in enumerate(words):

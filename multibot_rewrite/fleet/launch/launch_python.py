@@ -114,7 +114,7 @@ def _function_lines(it: Function) -> Iterator[str]:
 
 
 def _call_lines(it: Function, name: str) -> Iterator[str]:
-    """Yield the lines of the table of robots that say what starts one."""
+    """Yield the lines of the robots' table for the start of one robot."""
     if len(it.calls) == 1:
         yield f"    {value(name)}: {it.title},"
         return

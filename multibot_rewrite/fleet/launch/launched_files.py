@@ -55,7 +55,7 @@ def with_launched_files(file: FleetFile) -> tuple[FleetFile, Mapping[str, Sequen
 
 
 def _named_files(spec: RobotSpec) -> Iterator[_Named]:
-    """Yield the parameter files that exist without the launch, each once."""
+    """Yield the parameter files that launch files name and that exist, each once."""
     seen: set[str] = set()
     graph = launch_of(spec.launch, spec.words[0])
     robot = graph.robots[0] if graph.robots else ""
@@ -135,7 +135,7 @@ def _with_files(spec: RobotSpec, named: Sequence[_Named]) -> tuple[RobotSpec, li
 
 
 def _is_filled(it: _Named, text: str, spec: RobotSpec) -> bool:
-    """Return whether the launch makes the same of the file for all robots, line by line that file."""
+    """Return whether the launch makes one text of the file for all robots, line by line."""
     same = len(it.text.splitlines()) == len(text.splitlines())
     named = {word for word in spec.words if word in it.text and word not in text}
     return same and not named and _SUBSTITUTED not in it.text
@@ -190,7 +190,7 @@ def _with_namespaces(spec: RobotSpec, robots: Collection[str]) -> RobotSpec:
 
 
 def _below(node: LaunchedNode, words: Collection[str]) -> str:
-    """Return the namespace of a launched node without the robot's, which is one of the words."""
+    """Return a launched node's namespace below the robot's."""
     own = node.namespace.strip("/")
     for word in sorted(words, key=len, reverse=True):
         if f"{own}/".startswith(f"{word}/"):

@@ -64,7 +64,7 @@ def _conditional(
 
 
 def _grouped(words: Sequence[str], inner: Iterable[str], indent: int) -> Iterator[str]:
-    """Yield what is started in a group below a group, one for each launch argument."""
+    """Yield actions in nested groups, one for each launch argument."""
     if not words:
         yield from inner
         return

@@ -134,7 +134,7 @@ NO_TOPIC = declare("MF509", "sensor-without-gz-topic", WARNING, formats=("fleet-
 def _is_carried(
     topic: UnbridgedTopic, made: Iterable[OutputFile], others: Iterable[BridgedTopic]
 ) -> bool:
-    """Return whether a user's file has a row for a topic, which only who knows the world can write."""
+    """Return whether a user's file has a row for a topic that depends on the world."""
     known = {it.gz.lstrip("/") for it in others}
     for row in (row for it in made for row in items(read_yaml(it.data, it.path).root)):
         name = text_of(row, GZ) or text_of(row, BOTH)

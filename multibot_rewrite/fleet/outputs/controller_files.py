@@ -100,7 +100,7 @@ def is_same(path: str, file: str, description: str) -> bool:
 
 
 def _in_sources(path: str, description: str) -> Iterator[str]:
-    """Yield the file of a package's sources that a build installs as the path, which is not there."""
+    """Yield the source file that a build installs as a path that does not exist."""
     match = IN_PACKAGE.fullmatch(path)
     if match:
         *names, rest = match.groups()

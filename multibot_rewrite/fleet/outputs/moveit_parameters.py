@@ -74,7 +74,7 @@ def has_moveit(robot: RewrittenRobot) -> bool:
 
 
 def moveit_commands(plan: FleetPlan) -> Iterator[Start]:
-    """Yield what a person starts of the one robot of a plan: move_group and servo_node."""
+    """Yield what a user starts for the one robot of a plan: move_group and servo_node."""
     (robot,) = plan.robots
     servo = any(
         file_kind(own_yaml(robot.spec, it)) == OF_SERVO

@@ -145,6 +145,7 @@ def _router_endpoint(setup: Setup) -> str:
 
 
 def _subject(enclave: str) -> Config:
+    """Return the subject of access control for an enclave."""
     return {"id": enclave, "cert_common_names": [enclave]}
 
 

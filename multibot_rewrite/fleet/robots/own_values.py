@@ -77,7 +77,7 @@ def _by_trying(
 
 
 def _sources_of_piece(read: Expansion, piece: Piece) -> Iterator[Source]:
-    """Yield what wrote a piece; nothing for blanks and for what is computed."""
+    """Yield what wrote a piece; nothing for blanks and computed pieces."""
     if piece.kind == EXPRESSION or not piece.text.strip():
         return
     if piece.kind == GIVEN:

@@ -192,7 +192,7 @@ def _runs_of_lua(spec: RobotSpec) -> Iterator[Run]:
 def _without_wheel_controllers(
     nodes: tuple[NodeFacts, ...], given: Iterable[Run], member: Member
 ) -> tuple[NodeFacts, ...]:
-    """Return the nodes; for a robot without wheels not the wheel controllers of a node set."""
+    """Return the nodes, without wheel controllers if the robot has no wheels."""
     root = member.source.root
     held = root.iterfind("joint[@type='fixed']/parent")
     if wheels_in(root) and not any(it.get("link") == WORLD for it in held):
@@ -295,7 +295,7 @@ def _srdf_nodes(
 
 
 def _known_nodes(given: Iterable[Run], file: FleetFile) -> dict[str, NodeFacts]:
-    """Return the known nodes; those that the robot's files name as their packages declare them."""
+    """Return the known nodes; those in the robot's files as their packages declare them."""
     facts = known_nodes(file.nodes, file.distro, file.nodl)
     nodes = dict(facts.library.nodes)
     named = {it.fact.known for it in given} & nodes.keys()
@@ -349,7 +349,7 @@ NOT_MANAGED = declare("MF803", "shared-node-not-managed", NOTE, formats=("fleet"
 def apart(
     nodes: Sequence[NodeFacts], file: FleetFile
 ) -> tuple[tuple[NodeFacts, ...], tuple[Finding, ...]]:
-    """Return the nodes, those that all robots share marked; and findings about managers of these."""
+    """Return the nodes, shared ones marked, and findings about lifecycle managers of these."""
     marked = [it._replace(shared=_runs_once(it.name, it.shared, file)) for it in nodes]
     shared = {it.name: None for it in marked if it.shared}
     managers = [it for it in marked if it.package == MANAGERS and not it.shared]
@@ -372,7 +372,7 @@ def _runs_once(name: str, once: bool, file: FleetFile) -> bool:
 
 
 def check_shared(file: FleetFile, run: Mapping[str, object]) -> None:
-    """Raise InputError for a node of these keys that is not among the nodes that robots ``run``."""
+    """Raise InputError for a node of the file's lists that robots do not ``run``."""
     for key, names in (("shared_nodes", file.shared_nodes), ("own_nodes", file.own_nodes)):
         for name in (it for it in names if it not in run):
             near = did_you_mean_one_of(name, tuple(run)) or "name a node of a robot's node set"

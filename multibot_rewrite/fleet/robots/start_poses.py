@@ -185,7 +185,7 @@ def _sent_transforms(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, list[E
 
 
 def _odometry_sender(plan: FleetPlan, robot: RewrittenRobot) -> str:
-    """Return the beginning of a sentence: an unknown node with an odometry frame of its own; or ""."""
+    """Return the start of a message about an unknown node with an odometry frame, or ""."""
     described = {it.name for it in plan.fleet.facts}
     own = (edges for (name, _), edges in plan.fleet.edges.items() if name == robot.spec.namespace)
     frames = {frame for edges in own for it in edges for frame in (it.parent, it.child)}

@@ -180,7 +180,7 @@ def _match_of_known(
 
 
 def _has_name(names: RelatedNames, kind: str, word: str) -> bool:
-    """Return whether the description declares it, without a launch file's ``$(var prefix)``."""
+    """Return whether the description declares a name, without a ``$(var prefix)``."""
     return is_declared(names, kind, without_robot(word))
 
 
@@ -207,6 +207,7 @@ def _scalars(root: yaml.Node | None) -> Iterator[yaml.ScalarNode]:
 
 
 def _nodes(root: yaml.Node | None) -> Iterator[yaml.Node]:
+    """Yield every node of a document once."""
     seen: set[int] = set()
     waiting = [root] if root is not None else []
     while waiting:

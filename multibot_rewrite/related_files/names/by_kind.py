@@ -179,6 +179,7 @@ def output(_: Context, value: str) -> str:
 
 
 def _speller(kind: str) -> Speller:
+    """Return the function that renames names of a kind."""
     return lambda context, value: spell(context.names, kind, value)
 
 

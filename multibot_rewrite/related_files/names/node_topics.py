@@ -153,7 +153,7 @@ def robot_topic(names: RelatedNames, value: str, known: Mapping[str, str] = NOTH
 
 
 def fleet_topics(table: Table, facts: Iterable[NodeFacts], robot: str) -> dict[str, str]:
-    """Return by the topics of a single robot's nodes those of ``robot`` in a fleet's table."""
+    """Return the topics of ``robot`` in a fleet, by those of a single robot's nodes."""
     ours = {node.name for node in facts if not node.shared}
     node_set = {
         node.full_name: node.node

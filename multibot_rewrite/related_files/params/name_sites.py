@@ -108,7 +108,7 @@ def _walk_mapping(job: _Job, body: yaml.MappingNode, states: list[_State]) -> No
 
 
 def _children(states: list[_State], word: str, key: yaml.ScalarNode, at: int = 0) -> list[_State]:
-    """Return the known places below with the word of a key."""
+    """Return the known places below for a key."""
     if "." in word:
         for place, part in enumerate(word.split(".")):
             states = _children(states, part, key, place)
@@ -129,7 +129,7 @@ def _children(states: list[_State], word: str, key: yaml.ScalarNode, at: int = 0
 def _claim_parameter(
     job: _Job, key: yaml.ScalarNode, value: yaml.Node, states: list[_State], layer: yaml.MappingNode
 ) -> None:
-    """Note the names in one parameter: known, guessed from its name, or unclaimed."""
+    """Record the names in one parameter: known, guessed or unclaimed."""
     names = job.names
     if value.tag == NULL and not value.value:
         names.empty.append(key)

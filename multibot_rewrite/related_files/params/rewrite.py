@@ -106,7 +106,7 @@ def rewrite_values(job: ParamsJob) -> RelatedFile:
 
 
 def _once_each(made: Iterable[Splice | Finding]) -> tuple[Finding, ...]:
-    """Return the findings, one for those that are the same at many places; slots read ``<robot>``."""
+    """Return findings, equal ones once, with ``<robot>`` in place of slots."""
     findings = [it for it in made if isinstance(it, Finding)]
     first: dict[tuple[str, str], Finding] = {}
     for found in sorted(findings, key=lambda it: (it.line, it.column, it.code)):
@@ -121,7 +121,7 @@ def _once_each(made: Iterable[Splice | Finding]) -> tuple[Finding, ...]:
 def read_params(
     document: YamlText, context: Context, known: KnownNodes, own: Collection[str] = ()
 ) -> NamedFile:
-    """Return the names of a parameter file; ``own`` are words for its one robot."""
+    """Return the names of a parameter file; ``own`` are the names of its one robot."""
     # Raises InputError for another file, or one that rcl rejects.
     found = without_own(raw_sections(document), own)
     sections = identify_sections(found, context, known)

@@ -95,7 +95,7 @@ def _other_kind(document: YamlText) -> InputError:
 
 
 def _looks_like(root: yaml.Node | None) -> str:
-    """Return what a file without parameters seems to be; empty where nothing says it."""
+    """Return what a file without parameters seems to be; empty if unknown."""
     if root is None:
         return f"it is empty; {_TO_DO}"
     if isinstance(root, yaml.SequenceNode):

@@ -262,7 +262,7 @@ def _own_windows(job: RvizJob) -> list[RvizItem]:
 
 
 def _moved_paths(job: RvizJob) -> re.Pattern[str]:
-    """Return how paths to displays start that are in groups now: a name and its number."""
+    """Return a pattern for paths to displays that are in groups now."""
     shown = job.config.displays
     kept = {one.name for one in shown if any(it.block.start not in job.own for it in leaves([one]))}
     names = sorted({one.name for one in shown} - kept)

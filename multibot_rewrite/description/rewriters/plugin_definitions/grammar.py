@@ -110,7 +110,7 @@ class PluginDefinition(NamedTuple):
 
     @property
     def publishes(self) -> tuple[str, ...]:
-        """Those of ``topics`` that it publishes."""
+        """The ones of ``topics`` that it publishes."""
         return tuple(it.name for it in self.wired if it.role == WIRES[0] and not it.is_moved)
 
 
@@ -202,7 +202,7 @@ def assemble(
 
 
 def _checkout_source(words: str) -> str:
-    """Return "repository path" of a setting ``read``, which is "repository tag path"."""
+    """Return the repository and path in the setting ``read``, without the tag."""
     repository, _, rest = words.partition(" ")
     return f"{repository} {rest.partition(' ')[2]}".strip()
 
@@ -316,7 +316,7 @@ class Opened(NamedTuple):
 
 
 def split_opens(word: str) -> Opened:
-    """Return the parts of a word of ``opens:``."""
+    """Return the parts of an entry of ``opens:``."""
     found = None if word in _BARE_OPENS else _OPENS.fullmatch(word)
     return Opened(*found.groups(default="")) if found else Opened()
 

@@ -103,7 +103,7 @@ class Definitions:
         return (name for of, name in self._raw if of == type_)
 
     def rows_elsewhere(self, type_: str, name: str) -> Iterator[SiteRow]:
-        """Yield the rows that this release lacks, with the words for those that have it."""
+        """Yield the rows that this release lacks, with the releases that have them."""
         for file, line, chunk in self._raw.get((type_, name), ()):
             if "releases" in chunk:
                 settings, own = read_section(file, line, chunk.split("\n"))
@@ -146,7 +146,7 @@ class Definitions:
                 yield from self._value_rows(self._raw.get(("block", block), ()))
 
     def valued(self) -> Iterator[tuple[str, bool]]:
-        """Yield the names that have values; with true for those of ROS 1."""
+        """Yield the names that have values, each with whether it is for ROS 1."""
         named = ((name, raws) for (type_, name), raws in self._raw.items() if type_ in VALUED)
         for name, raws in named:
             found = {_is_of_ros_1(it[2]) for it in raws if has_values(it[2])}
@@ -202,7 +202,7 @@ class Definitions:
 
 
 def _released(chunk: str) -> str:
-    """Return the release words of a section that is not read yet; wrong ones are found when it is."""
+    """Return the unchecked release setting of a section that is not read yet."""
     words = next((row.strip() for row in _rows_of_setting(chunk, "releases")), "")
     return words if words and is_release_words(words) else ""
 

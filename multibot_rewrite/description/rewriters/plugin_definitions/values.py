@@ -53,7 +53,7 @@ class Values(NamedTuple):
 
 
 def is_typed(word: str) -> bool:
-    """Return whether this word of a row is about the value's type, not about its kind of name."""
+    """Return whether this option of a row is about the value's type."""
     option, given, _ = word.partition("=")
     return bool(given) and option in OPTIONS
 

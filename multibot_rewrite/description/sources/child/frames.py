@@ -108,7 +108,7 @@ def connect(xacro: Any, substitution: Any, ask: Ask) -> None:
 
 
 def _known(look_up: Callable[..., str], ask: Ask) -> Callable[..., str]:
-    """Return a function for the parent's value of a variable, or for ``look_up`` if it is not set."""
+    """Return a function that asks the parent for a variable, or else calls ``look_up``."""
 
     def known(name: str, *more: str, **named: str) -> str:
         found = json.loads(ask(ENVIRONMENT, name))

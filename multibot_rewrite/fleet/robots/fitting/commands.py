@@ -114,6 +114,7 @@ def _choices(
     given: Sequence[Run],
     known: Mapping[str, NodeFacts],
 ) -> Iterator[_Choice]:
+    """Yield the nodes whose parameter decides if commands are stamped."""
     for node in nodes:
         ends = [*_ends_of_either_type(known.get(node.kind, node)), *_ends_of_either_type(node)]
         if ends:
@@ -127,7 +128,7 @@ def _choices(
 
 
 def _ends_of_either_type(node: NodeFacts) -> Iterator[Endpoint]:
-    """Yield the ends of a node that are of either type, as a parameter says; no open ones."""
+    """Yield the ends of a node whose type a parameter chooses."""
     ends = (it for it in node.endpoints if it.types and not it.when)
     yield from (it for it in ends if {it.type, *it.also}.issuperset(COMMANDS))
 
@@ -253,7 +254,7 @@ def _with_own_inputs(node: NodeFacts, taken: Collection[str]) -> tuple[NodeFacts
 
 
 def _input_role(topic: str, usual: Usual) -> str:
-    """Return the id of the input that the node set has for a topic; that of a planner for any other."""
+    """Return the id of the node set's input for a topic; the planner's for any other topic."""
     ids = (_input_id(name) for name, value in usual.items() if value == topic)
     return next(ids, _OF_PLANNER)
 

@@ -63,7 +63,7 @@ def is_led_elsewhere(member: Member, spec: RobotSpec) -> bool:
 
 
 def _sent_by_systems(member: Member) -> Iterator[tuple[str, Edge]]:
-    """Yield the transforms of the simulator's systems, each with the last word of its topic there."""
+    """Yield the transforms of simulator systems, each with the last name of its topic."""
     for host, section in collect(member.source, member.tree).served:
         sites = frame_sites(host, section, _NAMING)
         frames = [text_at(host, it.path) or default_of(host, it.default, _NAMING) for it in sites]
@@ -78,7 +78,7 @@ def brings_transforms(spec: RobotSpec) -> bool:
 
 
 def _led_elsewhere(spec: RobotSpec) -> set[str]:
-    """Return last words of gz topics with transforms that bridge files put on no tf topic."""
+    """Return last names of gz topics whose transforms are bridged to another topic than tf."""
     led: dict[str, set[str]] = defaultdict(set)
     for it in bridge_rows_of(spec):
         if it.end.type == TF_TYPE and it.end.role != SUBSCRIBES:
@@ -123,7 +123,7 @@ def have_two_parents(sent: Iterable[Edge]) -> bool:
 
 
 def _placed_body(edge: Edge, bodies: Collection[str]) -> tuple[str, str]:
-    """Return what a transform places, and where; a robot has one place under any of its frames."""
+    """Return what a transform places and where; all frames of the body count as one."""
     return edge.parent, "" if edge.child in bodies else edge.child
 
 
