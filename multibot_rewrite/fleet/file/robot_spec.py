@@ -228,7 +228,7 @@ _MADE = "robot.urdf"
 
 
 def described(read: FleetData, at: int) -> tuple[str, tuple[Part, ...]]:
-    """Return the description of a robot by number, and the parts that it is joined from."""
+    """Return a robot's description and the parts that it is joined from; raises InputError."""
     # A list of parts in the fleet file gets a path as if it were a file below.
     data, own = read.data, read.data["robots"][at]
     file, line = read.places["robots", at]

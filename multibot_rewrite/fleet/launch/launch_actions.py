@@ -605,4 +605,4 @@ def _shared_starts(
     if started:
         manager = known_program(LIFECYCLE_MANAGER, plan.file.distro)
         own = {"autostart": True, "node_names": started}
-        yield Start(*manager[:2], "", f"{LIFECYCLE_MANAGER}_shared_starts", (own,))
+        yield Start(*manager[:2], "", f"{LIFECYCLE_MANAGER}_shared", (own,))

@@ -18,7 +18,7 @@ _WORD = lazy_compile(r"[\w./-]+")
 # What the code of a node puts between a joint_stem and a name.
 STEM_END = "_"
 # Names that nodes put a prefix of the robot before, and the kind of these by that of the prefix.
-_PREFIXES = {f"{kind}_prefix_for_kind": kind for kind in ("link", "joint", "gpio")}
+_PREFIXES = {f"{kind}_prefix": kind for kind in ("link", "joint", "gpio")}
 PREFIXED = {"stem": "frame", "joint_stem": "joint", **_PREFIXES}
 
 
