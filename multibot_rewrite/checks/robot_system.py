@@ -32,7 +32,7 @@ from multibot_rewrite.planning.plan import tf_topic
 from multibot_rewrite.planning.records import Run
 from multibot_rewrite.planning.table import plugin_nodes
 from multibot_rewrite.planning.transforms import STATE_PUBLISHER, sent_by, tree_joints
-from multibot_rewrite.planning.way_checks import is_stand_in
+from multibot_rewrite.planning.way_checks import is_controller_topic
 from multibot_rewrite.planning.ways import merged
 from multibot_rewrite.producers.ends import (
     BRIDGE_FILE,
@@ -110,7 +110,7 @@ def of_sources(robot: RewrittenRobot, evidence: RobotEvidence, srdf: Job | None 
     plugins = []
     for it in plugin_nodes(reading, ""):
         # What one with a controller manager would publish, its controllers do.
-        kept = tuple(end for end in it.fact.endpoints if not is_stand_in(it, end))
+        kept = tuple(end for end in it.fact.endpoints if not is_controller_topic(it, end))
         plugins.append(with_names(it._replace(fact=it.fact._replace(endpoints=kept))))
     tree = [it for _, it in tree_joints(robot.member.sent.root)]
     children = {it.child for it in tree}

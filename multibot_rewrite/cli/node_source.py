@@ -14,7 +14,7 @@ from multibot_rewrite.cli.output import deliver
 from multibot_rewrite.cli.process import DONE
 from multibot_rewrite.cli.tables import JSON, Grid, deliver_report, json_bytes
 from multibot_rewrite.description.sources.packages import MANIFEST, package_of
-from multibot_rewrite.knowledge.conditions import said
+from multibot_rewrite.knowledge.conditions import readable
 from multibot_rewrite.knowledge.node_sets import every_release
 from multibot_rewrite.knowledge.packages import older, versions_of
 from multibot_rewrite.knowledge.records import Endpoint, NodeFacts, NodeParameters, Param
@@ -73,7 +73,14 @@ def _printed_details(found: NodeSource, folder: str) -> Iterator[str | Grid]:
     facts = found.facts
     yield f"node {facts.name} of {facts.package}, by {plural(len(found.files), 'file')} of its source"
     own = [
-        (it.role, it.name, _types_text(it), it.parameter, said(it.when), _source_text(it, folder))
+        (
+            it.role,
+            it.name,
+            _types_text(it),
+            it.parameter,
+            readable(it.when),
+            _source_text(it, folder),
+        )
         for it in facts.endpoints
     ]
     if own:
@@ -95,7 +102,7 @@ def _printed_details(found: NodeSource, folder: str) -> Iterator[str | Grid]:
 
 def _types_text(end: Endpoint) -> str:
     """Return the type of an end, and its other types with their conditions."""
-    return "; ".join((end.type, *(f"{type_} if {said(it)}" for it, type_ in end.types)))
+    return "; ".join((end.type, *(f"{type_} if {readable(it)}" for it, type_ in end.types)))
 
 
 def _source_text(it: Endpoint | Param, folder: str = "") -> str:

@@ -19,8 +19,8 @@ from multibot_rewrite.live.rehearsal import (
     Stub,
     bridge_stub,
     domain_bridge_stubs,
-    staged,
-    stages,
+    graph_of_stubs,
+    isolated_environments,
     stub_nodes,
     with_own_types,
     with_substitutes,
@@ -78,7 +78,7 @@ def _play(
     """Play the stubs; return the graph of each domain of the plan, and the replaced types."""
     # The domains they are played in are free ones of this machine.
     parts, numbers = by_domain(plan) or {ONE: plan}, domain_of(plan)
-    environs = stages(options.domain, len(parts))
+    environs = isolated_environments(options.domain, len(parts))
     casts = {
         it: [
             *(stub for stub in nodes if numbers.get(stub[0].robot, ONE) == it),
@@ -90,7 +90,7 @@ def _play(
     where = ", ".join(it["ROS_DOMAIN_ID"] for it in environs)
     count = plural(sum(map(len, casts.values())), "node")
     started = f"{count} in domain{'s' * (len(environs) > 1)} {where}"
-    play = partial(staged, seconds=options.timeout or live.LOOK_SECONDS)
+    play = partial(graph_of_stubs, seconds=options.timeout or live.LOOK_SECONDS)
     with shown(f"{started} are looked for"), ThreadPoolExecutor(len(parts)) as pool:
         played = dict(zip(parts, pool.map(play, casts.values(), environs), strict=True))
     note(options, started)

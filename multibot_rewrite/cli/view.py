@@ -23,8 +23,15 @@ from multibot_rewrite.fleet.file.robot_choice import Choice
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
 from multibot_rewrite.fleet.outputs.manifest import hash_of, inputs_of
 from multibot_rewrite.pages.page import Framed
-from multibot_rewrite.pages.view.page import Meshes, bare, meshes_of, title_of, to_frame, to_html
-from multibot_rewrite.pages.view.scene import ShownScene, ViewedRobot, moved, scene_of
+from multibot_rewrite.pages.view.page import (
+    Meshes,
+    meshes_of,
+    remark_if_empty,
+    title_of,
+    to_frame,
+    to_html,
+)
+from multibot_rewrite.pages.view.scene import ShownScene, ViewedRobot, moved_links, scene_of
 from multibot_rewrite.planning.plan import is_fleet
 from multibot_rewrite.producers.bags.read import read_bag
 from multibot_rewrite.producers.bags.recording import as_snapshot
@@ -67,9 +74,9 @@ def _scene_notes(robots: Sequence[ViewedRobot], meshes: Meshes) -> Iterator[str]
     for missing in sorted({*(it.missing for it in shapes if it.missing), *unread}):
         yield f"{missing}, it is shown as a box"
     for robot in robots:
-        if nothing := bare(robot.model):
+        if nothing := remark_if_empty(robot.model):
             yield f"{robot.name}: {nothing}"
-        if off := list(moved(robot.model.joints, robot.transforms)):
+        if off := list(moved_links(robot.model.joints, robot.transforms)):
             yield (
                 f"{robot.name}: on tf, fixed joints are not as in the description"
                 f" ({shorten(off, SEVERAL)}): robot_state_publisher has another description, or another"

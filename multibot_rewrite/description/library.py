@@ -14,7 +14,7 @@ from multibot_rewrite.base.conventions import SHARED_TOPICS, WORLD_FRAMES
 from multibot_rewrite.base.findings.finding import WARNING, Finding
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.model import Change
-from multibot_rewrite.base.naming import DEFAULT_LAYOUT, leaves, make_naming
+from multibot_rewrite.base.naming import DEFAULT_LAYOUT, leaves_world_systems, make_naming
 from multibot_rewrite.base.releases import release_chosen_here
 from multibot_rewrite.base.rosnames import check_robot_name, check_robot_names
 from multibot_rewrite.description import pipeline
@@ -145,7 +145,7 @@ def rewrite(
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
     given = (urdf, xacro_args, definitions, file, [robot], trust)
-    aside = leaves(world_systems, [robot])
+    aside = leaves_world_systems(world_systems, [robot])
     job = read_job(source, naming, *given, release=release_chosen_here(distro), aside=aside)
     return next(rewrite_job(job, [robot], again))
 
@@ -189,7 +189,7 @@ def rewrite_all(
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     names = check_robot_names(robots)
     given = (urdf, xacro_args, definitions, file, trust, release_chosen_here(distro))
-    jobs = read_jobs(names, source, naming, *given, leaves(world_systems, names))
+    jobs = read_jobs(names, source, naming, *given, leaves_world_systems(world_systems, names))
     return _with_own_ports(rewrite_jobs(jobs, again))
 
 

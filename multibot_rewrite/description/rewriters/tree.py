@@ -60,12 +60,12 @@ class TreeNode:
     is what a walk asks of each element, in one look: select, active, attributes and text.
     """
 
-    __slots__ = ("_element_node", "element_name", "visit", *_CONTENT)
+    __slots__ = ("_make", "element_name", "visit", *_CONTENT)
 
     def __init__(
         self, section: PluginDefinition | None = None, sites: tuple[SiteRow, ...] = ()
     ) -> None:
-        self._element_node: Callable[[str], TreeNode] | None = None
+        self._make: Callable[[str], TreeNode] | None = None
         self.element_name = ""
         self.section = section
         self.children: dict[str, TreeNode] = {}
@@ -83,7 +83,7 @@ class TreeNode:
     def later(cls, element_name: str, make: Callable[[str], TreeNode]) -> TreeNode:
         """Return a node that becomes the result of ``make`` for its name when more of it is needed."""
         node = cls.__new__(cls)
-        node.element_name, node._element_node = element_name, make
+        node.element_name, node._make = element_name, make
         return node
 
     def __getattr__(self, name: str) -> Any:
@@ -91,9 +91,9 @@ class TreeNode:
         if name == "visit":
             self.visit = self.select, self.active, self.attributes, self.text
             return self.visit
-        if self._element_node is None:
+        if self._make is None:
             raise AttributeError(name)
-        whole = self._element_node(self.element_name)
+        whole = self._make(self.element_name)
         # A thread that comes in between finds a whole value, or none and makes the same again.
         for slot in _CONTENT:
             setattr(self, slot, getattr(whole, slot))

@@ -32,7 +32,7 @@ from multibot_rewrite.fleet.robots import start_poses
 from multibot_rewrite.fleet.robots.node_names import NodeNames, names_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.simulators import is_simulated
-from multibot_rewrite.knowledge.conditions import UNSENT, said
+from multibot_rewrite.knowledge.conditions import UNSENT, readable
 from multibot_rewrite.knowledge.controller_ways import names_its_process
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.programs import (
@@ -180,7 +180,7 @@ def _not_started(given: _Given) -> Iterator[tuple[str, str]]:
         elif it is None:
             yield name, f"nothing is known of its program; {_DESCRIBE.format('programs')}"
         elif it.when and not _is_needed(given, it):
-            yield name, f"nothing in the fleet file starts it: {said(it.when)}; {_NAME}"
+            yield name, f"nothing in the fleet file starts it: {readable(it.when)}; {_NAME}"
         elif given.plan.file.params_style == BRINGUP and name != STATE:
             yield name, "parameter files are in the form of nav2_bringup, which starts it"
         elif it.kind == LIFECYCLE_MANAGER and not any(_managed(given, name)):

@@ -16,7 +16,7 @@ from multibot_rewrite.fleet.outputs.relays import relays
 from multibot_rewrite.fleet.outputs.shape_outputs import vendor_commands
 from multibot_rewrite.fleet.robots.simulators import is_simulated
 from multibot_rewrite.fleet.robots.start_poses import InitialPose, start_poses
-from multibot_rewrite.knowledge.conditions import said
+from multibot_rewrite.knowledge.conditions import readable
 from multibot_rewrite.planning.start import Start, shell_line
 from multibot_rewrite.planning.transforms import STATE_PUBLISHER
 from multibot_rewrite.planning.ways import SPAWNER, started
@@ -81,7 +81,7 @@ def _controllers(plan: FleetPlan) -> Iterator[str]:
     # What a launch file spawns is started, if later.
     spawned = plan.evidence_of(robot).spawned
     facts = (it for it in plan.fleet.facts if it.when and it.name not in spawned)
-    when = {it.name: said(it.when) for it in facts}
+    when = {it.name: readable(it.when) for it in facts}
     for it in started(plan.fleet.table):
         if it.way == SPAWNER:
             condition = when.get(it.node.node, "")

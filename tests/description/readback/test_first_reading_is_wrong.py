@@ -69,7 +69,7 @@ def majority(found: Any, element: Any) -> Any:
 
 def without(*kinds: str) -> Callable[..., dict[str, str]]:
     """Return the kinds that are renamed, without some."""
-    right = naming._active
+    right = naming._active_separators
     return lambda *given: {k: it for k, it in right(*given).items() if k not in kinds}
 
 
@@ -131,15 +131,17 @@ FAULTS = {
         IMU % "<ros><namespace>/a</namespace></ros>",
         "node '/a/imu'",
     ),
-    "nodes stay": Fault(naming, "_active", without("node"), IMU % "", "node '/imu'", "postfix"),
+    "nodes stay": Fault(
+        naming, "_active_separators", without("node"), IMU % "", "node '/imu'", "postfix"
+    ),
     "frames stay": Fault(
         naming,
-        "_active",
+        "_active_separators",
         without("frame"),
         DRIVE % "<odometry_frame>o</odometry_frame>",
         "frame 'o'",
     ),
-    "links stay": Fault(naming, "_active", without("link"), "", "frame 'base'"),
+    "links stay": Fault(naming, "_active_separators", without("link"), "", "frame 'base'"),
     "a rule is not read": Fault(
         remap_rules,
         "remap",
