@@ -61,7 +61,7 @@ _NO_BRACKETS = bytes(set(range(256)) - _STEPS.keys() - {ord('"')})
 
 @outside
 def read_bytes(path: str, limit: int = MAX_BYTES) -> bytes:
-    """Return the bytes of a file or device; raises OSError, also if too large, and ValueError."""
+    """Return the bytes of a file or device; raises OSError (also if too large) and ValueError."""
     _refuse_pipe(path)
     with open(path, "rb") as file:
         # Not the limit at once: the memory for it takes longer to get than most files to read.

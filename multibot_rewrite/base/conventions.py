@@ -86,7 +86,7 @@ USUAL_FRAMES = tuple(it.name for it in FRAMES if it.expected)
 
 
 class ToolNode(NamedTuple):
-    """Nodes in addition to any fleet, by a name pattern; ``looks``: it is no sender of its own."""
+    """Nodes in addition to any fleet, by a pattern; ``looks``: only to observe, so no own sender."""
 
     pattern: str
     looks: bool

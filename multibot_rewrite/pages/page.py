@@ -98,7 +98,6 @@ def to_html(
 
 @cache
 def _asset(name: str) -> str:
-    """Return the text of a file of this package."""
     return files(__package__).joinpath(name).read_text("utf-8")
 
 

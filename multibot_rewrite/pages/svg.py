@@ -150,7 +150,6 @@ def _name_box(name: DrawnName, robot: str, y: float, id_attributes: str) -> str:
 
 
 def _meaning(state: str) -> str:
-    """Return what a state means; empty for one without fault."""
     return "" if state == OK else MEANINGS[state]
 
 
@@ -299,7 +298,6 @@ def _ordered_names(
 
 
 def _middle(values: Sequence[float]) -> float:
-    """Return the mean of the values, 0 for none."""
     return sum(values) / len(values) if values else 0.0
 
 

@@ -134,7 +134,10 @@ def check(
     messages: Mapping[str, int] = NO_COUNTS,
     before: System | None = None,
 ) -> list[Finding]:
-    """Return what is wrong with a system or differs from its plan; ``before``: an older snapshot."""
+    """Return what is wrong with a system or differs from its plan.
+
+    ``messages`` has the counted messages of each topic; ``before`` is the snapshot that the plan
+    was made from, if any."""
     _, seen = side_by_side(plan, graph, messages, before)
     return inconclusive_where_in_doubt(judge(seen), graph)
 
@@ -154,7 +157,7 @@ def side_by_side(
 
 
 def _with_patterns(plan: System, graph: System) -> System:
-    """Return the graph, with the plan's pattern in place of each node name that fits it."""
+    """Return the graph, with a pattern of the plan in place of each node name that fits it."""
     patterns = {it.name: _compiled_pattern(it.name) for it in plan.nodes if ANY in it.name}
     if not patterns:
         return graph

@@ -33,7 +33,9 @@ _NO_WRAP = 1 << 30
 
 
 def to_yaml(learned: Sequence[LearnedNode], node_set: str, library: NodeLibrary) -> str:
-    """Return the text of a file with the nodes and a node set; raises ProofError if not read back."""
+    """Return the text of a file with the nodes and one node set of them.
+
+    Raises ProofError if reading it does not give the same nodes."""
     text = "".join(f"{line}\n" for line in _lines(learned, node_set))
     facts = tuple(node.facts for node in learned)
     try:
@@ -49,7 +51,6 @@ def to_yaml(learned: Sequence[LearnedNode], node_set: str, library: NodeLibrary)
 
 
 def _lines(learned: Sequence[LearnedNode], node_set: str) -> Iterator[str]:
-    """Yield the lines of the file of nodes."""
     yield from HEAD.splitlines()
     yield from _comment(f"Of: {' '.join(node.seen for node in learned)}", "")
     yield from ("", "nodes:")
@@ -115,7 +116,7 @@ KEEP_LAST = "KEEP_LAST"
 def to_nodl(
     node: LearnedNode, graph: System, namespace: str, library: NodeLibrary, json: bool = False
 ) -> NodlFile:
-    """Return the NoDL document of a learned node, with QoS as seen; raises ProofError."""
+    """Return the NoDL document of a learned node; raises ProofError if reading it gives another one."""
     usual = {(it.role, it.name) for it in library.parts[EVERY_NODE]} | {("subscribes", CLOCK)}
     ends = [it for it in node.facts.endpoints if (it.role, it.name) not in usual]
     # One entry for each of its types.

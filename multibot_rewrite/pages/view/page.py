@@ -22,7 +22,7 @@ Meshes = Mapping[str, Mesh | str]
 
 
 def meshes_of(scene: ShownScene, tell: Callable[[str], None] = lambda _: None) -> Meshes:
-    """Return the meshes of all robots, each read once by a worker with limits; ``tell`` gets names."""
+    """Return the meshes of all robots, each read once by a limited worker; ``tell`` gets its name."""
     shapes = (it for robot in scene.robots for its in robot.model.links.values() for it in its)
     paths = [path for path in dict.fromkeys(it.mesh for it in shapes) if path]
     prepare_meshes()
@@ -93,7 +93,6 @@ def title_of(robots: Sequence[ViewedRobot], layout: str) -> str:
 
 
 def _asset(name: str) -> str:
-    """Return the text of a file of this package."""
     return files(__package__).joinpath(name).read_text("utf-8")
 
 

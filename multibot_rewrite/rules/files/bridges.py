@@ -125,7 +125,10 @@ class GzTopic(NamedTuple):
 
 @rule("MB879", "bridge-row-without-gz-topic", WARNING, formats=(BRIDGE,), options={"build": True})
 def no_gz_topic(file: NamedFile) -> Iterator[Finding]:
-    """Report rows whose gz topic the description lacks, or has with another type or direction."""
+    """Report rows whose gz topic the description has with another type or direction, or lacks.
+
+    A missing one only if it is read and another of its type exists: senders of other types are
+    unknown."""
     known: GzTopics | None = file.memo.get(GzTopics)
     for row in map(row_of, _rows(file) if known else ()):
         _, node = row.get(GZ) or row.get(BOTH) or (None, None)

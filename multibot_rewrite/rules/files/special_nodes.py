@@ -106,7 +106,7 @@ _Filters = Mapping[str, Mapping[str, Setting]]
 def broken_chains(file: NamedFile) -> Iterator[Finding]:
     """Report every chain of a node of laser_filters."""
     own = (it for it in sections(file) if it.node and it.node.package == "laser_filters")
-    for section, filters in ((it, chain) for it in own for chain in _chains(it).values()):
+    for section, filters in ((it, chain) for it in own for chain in _filters_by_chain(it).values()):
         last = next(at for at in range(1, len(filters) + 2) if str(at) not in filters) - 1
         for number, parts in filters.items():
             if not number or int(number) > last:
@@ -117,8 +117,7 @@ def broken_chains(file: NamedFile) -> Iterator[Finding]:
         yield from _incomplete_filters(section, filters)
 
 
-def _chains(section: Section) -> Mapping[str, _Filters]:
-    """Return the filters of each chain by their numbers."""
+def _filters_by_chain(section: Section) -> Mapping[str, _Filters]:
     found: dict[str, dict[str, dict[str, Setting]]] = {}
     for it in section.whole.values():
         if part := FILTER.fullmatch(it.name):

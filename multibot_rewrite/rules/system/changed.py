@@ -52,7 +52,7 @@ def changed_since(plan: Index, seen: Index) -> Iterator[Finding]:
 
 
 def untold(found: Iterable[Finding]) -> list[Finding]:
-    """Return the findings without changes that others explain; those of an error's names are errors."""
+    """Return the findings without changes that others explain, at the level of errors about them."""
     every = [*found]
     errors = {
         name

@@ -282,7 +282,7 @@ def _silent_or_slow(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG322", "driver-missing", ERROR, absence=True, drawn="leak")
 def driver_missing(seen: Index) -> Iterator[Finding]:
-    """Report a missing driver by its readers, and another robot that has it, once a node."""
+    """Report a missing driver by its readers, with another robot's node that does the same."""
     lost: dict[tuple[str, str], list[Ends]] = defaultdict(list)
     actions = [it for it in seen.by_name.values() if it.kind == ACTION]
     for ends in (*seen.topics, *actions) if len(seen.robots) > 1 else ():

@@ -89,7 +89,10 @@ def probable_matches(
     unplanned: Iterable[str],
     ownership: NameOwnership,
 ) -> dict[str, str]:
-    """Return missing node -> the one of ``others`` that it probably is; ``unplanned``: no tools."""
+    """Return missing node -> the running node that it probably is, for nodes that have one.
+
+    ``others`` are all running nodes that are not in the plan, ``unplanned`` those of them that are
+    no tools: only these are compared by similar name."""
     by_robot: dict[str, list[str]] = defaultdict(list)
     for node in unplanned if missing else ():
         by_robot[ownership.robot(node)].append(node)

@@ -342,7 +342,7 @@ def _subscriptions(seen: Index, node: str) -> Sequence[End]:
 
 
 def _can_send(seen: Index, node: str, edge: Edge) -> bool:
-    """Return whether a node can send a transform: a drive sends nothing below the map."""
+    """Return whether a node can send a transform, by its name and what it reads."""
     above, word = seen.plain_frame(edge.parent), last_word(node)
     if word.startswith(_STATE_PUBLISHER):
         return above not in SENT_FRAMES

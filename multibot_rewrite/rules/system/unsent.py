@@ -65,7 +65,7 @@ def nothing_known_sends(seen: Index) -> Iterator[Finding]:
 
 
 def _is_of_like_robot(seen: Index, name: str, robot: str) -> bool:
-    """Return whether a name is of a robot that is alike but for what sends that name."""
+    """Return whether a name is of another robot that is alike except for the name's sender."""
     other, nodes = seen.robot(name), nodes_of_each(seen)
     theirs, own = _frames(seen).get(other, {}), _frames(seen).get(robot, {})
     both = theirs.keys() & own.keys()

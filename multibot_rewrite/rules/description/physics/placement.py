@@ -156,7 +156,6 @@ def _is_written_alike(
 
 
 def _pose(subject: Subject, element: _Element) -> Pose | None:
-    """Return the pose of a visual, collision or joint; None for one that cannot be read."""
     return pose_in(subject.elements.first("origin").get(element))
 
 
