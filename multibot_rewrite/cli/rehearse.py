@@ -57,7 +57,7 @@ def run(options: argparse.Namespace) -> int:
         (run._replace(robot=made.name(run.robot)), sent)
         for run, sent in without_doubles(stub_nodes(made.table, edges, ways), plan)
     ]
-    seen, replaced = _played(options, plan, nodes)
+    seen, replaced = _play(options, plan, nodes)
     for it in added:
         note(options, f"note: {it} comes from a driver or simulator; the rehearsal sends it")
     seen = {it: with_own_types(graph, plan, replaced) for it, graph in seen.items()}
@@ -72,11 +72,11 @@ def run(options: argparse.Namespace) -> int:
     return conclude(options, plan, graph, found, table)
 
 
-def _played(
+def _play(
     options: argparse.Namespace, plan: System, nodes: Sequence[Stub]
 ) -> tuple[dict[int, System], dict[str, str]]:
-    """Play the stubs and return the graph seen in each domain of the plan, and the replaced types. The
-    domains they are played in are free ones of this machine."""
+    """Play the stubs; return the graph of each domain of the plan, and the replaced types."""
+    # The domains they are played in are free ones of this machine.
     parts, numbers = by_domain(plan) or {ONE: plan}, domain_of(plan)
     environs = isolated_environments(options.domain, len(parts))
     casts = {

@@ -21,7 +21,7 @@ from multibot_rewrite.planning.domain_bridge import DOMAIN_BRIDGE
 from multibot_rewrite.planning.of_runs import ACTION_PARTS
 from multibot_rewrite.planning.records import Rules, Run, Table
 from multibot_rewrite.planning.transforms import Edges
-from multibot_rewrite.planning.way_checks import bound_to, is_stand_in, running_nodes
+from multibot_rewrite.planning.way_checks import bound_to, is_controller_topic, running_nodes
 from multibot_rewrite.planning.ways import ros_arguments
 from multibot_rewrite.producers.ros.child import RUN_STUBS, observe, running
 from multibot_rewrite.producers.ros.participants import participants_here
@@ -127,7 +127,7 @@ def domain_bridge_stubs(plan: System) -> Iterator[Stub]:
 
 def _rules_with_handed_on(node: Run, names: Iterable[tuple[Endpoint, str]]) -> Rules:
     """Return the rules of a node; a controller manager that plays its controllers has theirs."""
-    theirs = {end.name for end, _ in names if is_stand_in(node, end)}
+    theirs = {end.name for end, _ in names if is_controller_topic(node, end)}
     if not theirs:
         return node.rules
     bare = bound_to(node, ())

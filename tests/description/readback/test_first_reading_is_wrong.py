@@ -75,13 +75,13 @@ def without(*kinds: str) -> Callable[..., dict[str, str]]:
 
 def unseen(path: str) -> Callable[[TreeNode, Any], None]:
     """Return a tree that has no place for the sites at a path."""
-    right = TreeNode._add
+    right = TreeNode._add_site
     return lambda node, site: None if site.path == path else right(node, site)
 
 
 FAULTS = {
-    "no default is inserted": Fault(insert, "_defaults", nothing, DRIVE % "", "frame 'odom'"),
-    "no namespace is inserted": Fault(insert, "_defaults", nothing, IMU % "", "node '/imu'"),
+    "no default is inserted": Fault(insert, "_of_defaults", nothing, DRIVE % "", "frame 'odom'"),
+    "no namespace is inserted": Fault(insert, "_of_defaults", nothing, IMU % "", "node '/imu'"),
     "no rule is inserted": Fault(insert, "_remaps", nothing, DRIVE % ODOM, "topic '/tf'"),
     "no rule is inserted for a wired topic": Fault(
         insert, "_remaps", nothing, DRIVE % ODOM, "topic '/odom'", "postfix"
@@ -151,14 +151,14 @@ FAULTS = {
     ),
     "a parameter has no place in the tree": Fault(
         TreeNode,
-        "_add",
+        "_add_site",
         unseen("topicName"),
         LASER % "<topicName>/scan</topicName>",
         "topic '/scan'",
     ),
     "a namespace has no place in the tree": Fault(
         TreeNode,
-        "_add",
+        "_add_site",
         unseen("ros/namespace"),
         IMU % "<ros><namespace>/a</namespace></ros>",
         "node '/a/imu'",
@@ -208,7 +208,7 @@ def test_the_second_reading_names_what_is_shared(
 # The release is chosen by tags.
 BY_TAGS = Fault(
     tree,
-    "_flavour",
+    "_by_ros",
     majority,
     IMU % "<ros/><topicName>imu</topicName><bodyName>base</bodyName>",
     "node '/imu'",
