@@ -153,10 +153,10 @@ def _meaning(state: str) -> str:
     return "" if state == OK else MEANINGS[state]
 
 
-def _label(name: str, robot: str, room: float) -> str:
-    """Return a name cut to ``room`` pixels, with the robot's name in it dimmed."""
+def _label(name: str, robot: str, width: float) -> str:
+    """Return a name cut to ``width`` pixels, with the robot's name in it dimmed."""
     text = visible(name)
-    spaces = int(room / LETTER)
+    spaces = int(width / LETTER)
     for own in (f"/{robot}", f"_{robot}"):
         if robot and text.startswith(f"{own}/") and own[0] == "/":
             rest = clipped(text[len(own) :], spaces - columns(own))
@@ -206,12 +206,12 @@ def visible(text: str) -> str:
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
-def clipped(text: str, room: int) -> str:
-    """Return ``text`` in at most ``room`` columns, cut in the middle: names differ at their ends."""
-    if len(text) * 2 <= room or columns(text) <= room:
+def clipped(text: str, width: int) -> str:
+    """Return ``text`` in at most ``width`` columns, cut in the middle: names differ at their ends."""
+    if len(text) * 2 <= width or columns(text) <= width:
         return text
-    back = _fitting(text[::-1], room // 2)[::-1]
-    return f"{_fitting(text, room - 1 - columns(back))}…{back}"
+    back = _fitting(text[::-1], width // 2)[::-1]
+    return f"{_fitting(text, width - 1 - columns(back))}…{back}"
 
 
 def columns(text: str) -> int:
@@ -221,12 +221,12 @@ def columns(text: str) -> int:
     return sum(2 if east_asian_width(c) in "WF" else 1 for c in text)
 
 
-def _fitting(text: str, room: int) -> str:
-    """Return the longest beginning of ``text`` that fits into ``room`` columns."""
+def _fitting(text: str, width: int) -> str:
+    """Return the longest beginning of ``text`` that fits into ``width`` columns."""
     at = 0
-    while at < len(text) and room > 0:
-        room -= columns(text[at])
-        at += room >= 0
+    while at < len(text) and width > 0:
+        width -= columns(text[at])
+        at += width >= 0
     return text[:at]
 
 
