@@ -115,7 +115,7 @@ def _boxes_svg(group: DrawnGroup, place: "GroupLayout", ids: Ids, prefix: str) -
             f'<g class="n {node.state}{foreign}"{own}>'
             f'<rect x="{x}" y="{y - NODE_HIGH / 2:g}" width="{wide}" height="{NODE_HIGH}" rx="5"/>'
             f'<text x="{x + 9}" y="{y + 4:g}">{label}</text>'
-            f"{tooltip(node.name, _meaning(node.state))}</g>"
+            f"{tooltip(node.name, _state_meaning(node.state))}</g>"
         )
     for name, y in place.names:
         yield _name_box(name, group.robot, y, _id_attributes(ids.names.get(name.name), ids, prefix))
@@ -140,7 +140,7 @@ def _name_box(name: DrawnName, robot: str, y: float, id_attributes: str) -> str:
     )
     shape = "2" if badge else f"{NAME_HIGH / 2:g}"
     end = f'<text class="badge" x="{x + wide - 7}" y="{y + 4:g}">{badge}</text>' if badge else ""
-    about = (f"{name.kind} {name.name}", " and ".join(name.types), _meaning(name.state))
+    about = (f"{name.kind} {name.name}", " and ".join(name.types), _state_meaning(name.state))
     return (
         f'<g class="t {name.state}"{id_attributes}>'
         f'<rect x="{x}" y="{y - NAME_HIGH / 2:g}" width="{wide}" height="{NAME_HIGH}"'
@@ -149,7 +149,7 @@ def _name_box(name: DrawnName, robot: str, y: float, id_attributes: str) -> str:
     )
 
 
-def _meaning(state: str) -> str:
+def _state_meaning(state: str) -> str:
     return "" if state == OK else MEANINGS[state]
 
 
@@ -290,14 +290,14 @@ def _ordered_names(
         pulls: dict[_NameKey, list[float]] = defaultdict(list)
         for side in (offers, uses):
             for keys in side.values():
-                middle = _middle([rank[key] for key in keys])
+                middle = _mean([rank[key] for key in keys])
                 for key in keys:
                     pulls[key].append(middle)
-        names.sort(key=lambda key: (severity[key], _middle(pulls[key]), key))
+        names.sort(key=lambda key: (severity[key], _mean(pulls[key]), key))
     return names
 
 
-def _middle(values: Sequence[float]) -> float:
+def _mean(values: Sequence[float]) -> float:
     return sum(values) / len(values) if values else 0.0
 
 
@@ -305,7 +305,7 @@ def _column(
     joined: Mapping[str, Sequence[_NameKey]], at: Mapping[_NameKey, float], height: float
 ) -> dict[str, float]:
     """Return each node at the middle of its names, moved where two would overlap."""
-    wish = {node: _middle([at[key] for key in keys]) for node, keys in joined.items()}
+    wish = {node: _mean([at[key] for key in keys]) for node, keys in joined.items()}
     order = sorted(wish, key=lambda node: (wish[node], node))
     places: dict[str, float] = {}
     low = -NODE_ROW / 2

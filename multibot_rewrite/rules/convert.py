@@ -210,10 +210,10 @@ def _is_plain(text: Spanned, link: _Element, shape: _Element, holder: _Element) 
         return False
     sizes = [number(shape.get(it)) for it in ("length", "radius")]
     known = {it.tag for it in holder.iterchildren("*")} <= _PLAIN
-    return known and all(it is not None and it > 0 for it in sizes) and _pose(holder) is not None
+    return known and all(it is not None and it > 0 for it in sizes) and _pose_of(holder) is not None
 
 
-def _pose(holder: _Element) -> poses.Pose | None:
+def _pose_of(holder: _Element) -> poses.Pose | None:
     return poses.pose_of(next(holder.iterchildren("origin"), None))
 
 
@@ -225,7 +225,7 @@ def _cylinder_edits(text: Spanned, shape: _Element) -> Iterator[Edit]:
 
 
 def _sphere_texts(text: Spanned, shape: _Element, holder: _Element) -> Iterator[bytes]:
-    pose, length = _pose(holder), number(shape.get("length"))
+    pose, length = _pose_of(holder), number(shape.get("length"))
     spans = ((text.starts[it], end_of(text, it)) for it in holder.iterchildren("material"))
     material = b"".join(text.source[start:end] for start, end in spans)
     radius = f'<geometry><sphere radius="{shape.get("radius")}"/></geometry>'

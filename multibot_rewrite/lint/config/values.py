@@ -96,14 +96,14 @@ def _path_from_folder(given: KeyValue) -> str:
     return os.path.join(given.folder, _non_empty_text(given))
 
 
-def _file(given: KeyValue) -> str:
+def _existing_file(given: KeyValue) -> str:
     path = _path_from_folder(given)
     if not os.path.isfile(path):
         raise UsageError(f"{given.where}: no file {given.value!r} in {given.folder}")
     return path
 
 
-def _folders(given: KeyValue) -> tuple[str, ...]:
+def _existing_folders(given: KeyValue) -> tuple[str, ...]:
     paths = tuple(os.path.join(given.folder, it) for it in _texts(given))
     wrong = next((it for it in paths if not os.path.isdir(it)), None)
     if wrong is not None:
@@ -173,9 +173,9 @@ READERS: Mapping[str, Callable[[KeyValue], object]] = {
     "shared-frames": _texts,
     "shared-topics": _texts,
     "targets": targets,
-    "roots": _folders,
+    "roots": _existing_folders,
     "distro": partial(_allowed_text, allowed=RELEASES),
-    "urdf": _file,
+    "urdf": _existing_file,
     "definitions": lambda it: listed_files(*it),
     "xacro": _argument_sets,
     "exclude": _excluded_patterns,

@@ -49,8 +49,8 @@ def to_html(scene: ShownScene, meshes: Meshes, title: str) -> bytes:
 
 def to_frame(scene: ShownScene, meshes: Meshes, title: str) -> Framed:
     """Return the page, to be put into another; raises Unusable without trimesh."""
-    library, own = three_js(), _asset("viewer.js") + _asset("heard.js")
-    style = _asset("viewer.css")
+    library, own = three_js(), _asset_text("viewer.js") + _asset_text("heard.js")
+    style = _asset_text("viewer.css")
     scripts = f"{source_hash(library)} {source_hash(own)}"
     policy = (
         f"default-src 'none'; style-src {source_hash(style)}; img-src data: blob:;"
@@ -92,7 +92,7 @@ def title_of(robots: Sequence[ViewedRobot], layout: str) -> str:
     return f"{plural(len(robots), 'robot')}, layout {layout}"
 
 
-def _asset(name: str) -> str:
+def _asset_text(name: str) -> str:
     return files(__package__).joinpath(name).read_text("utf-8")
 
 

@@ -123,7 +123,7 @@ def wheel_joints(subject: Subject) -> Iterator[tuple[_Element, Joint]]:
     for plugin, section in subject.inventory.served:
         kinds = next((TAGS[it] for it in section.names if it in TAGS), ())
         names = {tag for it in kinds for tag in (*it.left, *it.right)}
-        model = _model_of(plugin) if names else None
+        model = _wheels_of_model(plugin) if names else None
         for element in plugin.iterchildren(*names) if names else ():
             name = text_of(element)
             of_model = model.wheels.get(name) if model else None
@@ -132,14 +132,14 @@ def wheel_joints(subject: Subject) -> Iterator[tuple[_Element, Joint]]:
                 yield element, joint
 
 
-def _model_of(plugin: _Element) -> ModelWheels | None:
+def _wheels_of_model(plugin: _Element) -> ModelWheels | None:
     above = plugin.getparent()
     return model_wheels(above) if above is not None and above.tag == "model" else None
 
 
 def _drive(subject: Subject, plugin: _Element, kinds: Sequence[Tags]) -> Drive | None:
     """Return the drive that a plugin is; None if it names no wheels on both sides."""
-    model = _model_of(plugin)
+    model = _wheels_of_model(plugin)
     for tags in kinds:
         left, right = (tuple(_wheels(subject, model, plugin, it)) for it in (tags.left, tags.right))
         if left and right:

@@ -112,6 +112,7 @@ def words_of(given: Setting) -> list[str]:
 def _class_findings(
     node: yaml.Node, where: str, name: str, base: str, release: str
 ) -> Iterator[Finding]:
+    """Yield the finding about a class that no package of the release registers."""
     known = plugin_bases()[base]
     if name in known.classes and has_release(known.classes[name], release):
         return

@@ -151,14 +151,14 @@ def _sections(file: NamedFile) -> Iterator[Section]:
             return
         given = _settings_below(file.document, it.body)
         if name in ANY or PLACEHOLDER.search(it.path):
-            yield _section(it.path, None, given, declared_by(EVERY_NODE), _by_name(given))
+            yield _section(it.path, None, given, declared_by(EVERY_NODE), _settings_by_name(given))
             continue
         type_ = types.get(name) or next((str(at.value) for at in given if at.name == "type"), "")
         node = it.node
         if node is not None and not _is_this_controller(node, name, type_, given):
             node = None
         facts = facts_of_node(node, type_, file.file, file.roots)
-        whole = _by_name(given)
+        whole = _settings_by_name(given)
         below, rest = _plugin_sections(it.path, given, whole)
         yield _section(it.path, node, rest, (*facts, *declared_by(EVERY_NODE)), whole)
         yield from below
@@ -175,10 +175,10 @@ def _moveit_section(file: NamedFile) -> Iterator[Section]:
     read = _settings_below(file.document, root, above) if root is not None else ()
     given = tuple(it._replace(value=_moveit_value(it.node, it.value)) for it in read)
     facts = facts_of_node(node, "", file.file, file.roots)
-    yield _section(node.name, node, given, facts, _by_name(given))
+    yield _section(node.name, node, given, facts, _settings_by_name(given))
 
 
-def _by_name(given: Sequence[Setting]) -> Mapping[str, Setting]:
+def _settings_by_name(given: Sequence[Setting]) -> Mapping[str, Setting]:
     return {it.name: it for it in given}
 
 

@@ -54,7 +54,7 @@ def broken_commands(file: NamedFile) -> Iterator[Finding]:
 
 
 def _command_faults(values: _Values) -> Iterator[tuple[str, str]]:
-    type_ = _text(values, "type")
+    type_ = _text_of(values, "type")
     if type_ not in _TYPES:
         said = f"is of type {type_!r}" if type_ else "has no type"
         yield said, f"write one of {', '.join(_TYPES)}"
@@ -62,7 +62,7 @@ def _command_faults(values: _Values) -> Iterator[tuple[str, str]]:
     middle, named, starts = _TYPES[type_]
     for word in (it for it in ("interface_type", named) if it not in values):
         yield f"has no {word}", f"add {word}"
-    kind = _text(values, "interface_type")
+    kind = _text_of(values, "interface_type")
     parts = kind.split("/")
     if kind and (len(parts) != 3 or parts[1] != middle):
         yield f"has the interface_type {kind!r}", f"write PACKAGE/{middle}/{parts[-1]}"
@@ -93,7 +93,7 @@ def _topic_command_faults(values: _Values, kind: str) -> Iterator[tuple[str, str
             yield f"sets {field} of a {kind}, which has {' and '.join(known)}", "use one of these"
 
 
-def _text(values: _Values, name: str) -> str:
+def _text_of(values: _Values, name: str) -> str:
     value = values[name].value if name in values else None
     return value if isinstance(value, str) else ""
 

@@ -127,6 +127,7 @@ def alike(nodes: Mapping[str, Mapping[str, str]]) -> Iterator[Sequence[str]]:
 
 
 def _are_alike(one: Set[str], other: Set[str]) -> bool:
+    """Return whether two sets of nodes share more than half, and enough, of their names."""
     same = len(one & other)
     return same >= _ENOUGH and 2 * same > len(one) + len(other) - same
 

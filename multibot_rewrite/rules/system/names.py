@@ -91,6 +91,7 @@ def _robots_topics(seen: Index, end: End) -> Sequence[str]:
 
 
 def _outside_reader(seen: Index, end: End, names: Sequence[str]) -> Finding:
+    """Return the finding about a node of no robot that reads what only robots publish."""
     sender = nodes_of(seen.by_name[TOPIC, names[0]].publishers)[0]
     several = f" (or that of another of the {len(names)} robots)" if len(names) > 1 else ""
     lost = f"subscribes to {end.name}, which {seen.nobody} publishes"

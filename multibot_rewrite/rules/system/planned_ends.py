@@ -280,6 +280,7 @@ def _used_instead(plan: Index, seen: Index, planned: End) -> str:
 
 
 def _same_type_names(plan: Index, seen: Index, planned: End) -> list[str]:
+    """Return the unplanned names that the node has with the planned type."""
     return [it.name for it in _unplanned(plan, seen, planned) if it.type == planned.type != ""]
 
 

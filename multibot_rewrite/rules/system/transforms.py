@@ -137,6 +137,7 @@ def _may_collide(seen: Index, tree: Tree) -> bool:
 
 
 def _bare_frames(seen: Index, tree: Tree) -> list[str]:
+    """Return the frames of a tree without a robot's name, those of several robots first."""
     met = (it.parent for it in tree.edges if _is_of_several(seen, it))
     frames = unique((*met, *(edge.child for edge in tree.edges)))
     return [it for it in frames if not seen.frame_robot(it) and it not in WORLD_FRAMES]
