@@ -114,7 +114,9 @@ class Naming(NamedTuple):
 
 
 def leaves_world_systems(world_systems: str | None, robots: Sequence[str]) -> bool:
-    """Return whether a rewrite leaves the world's systems out: by default for several robots."""
+    """Return whether world systems are left to the world; raises UsageError.
+
+    By default those of several robots are: each robot would load them again."""
     if world_systems is None:
         return len(robots) > 1
     _refuse_unknown("world_systems", world_systems, WORLD_SYSTEMS)
@@ -203,7 +205,9 @@ def _active_separators(layout: Layout, topics: str, separators: dict[str, str]) 
 
 
 def affix(naming: Naming, kind: str, text: str, namespaced: bool = False) -> Affix | None:
-    """Return where the robot's name goes in a name of ``kind``; None where it is not renamed."""
+    """Return where the robot's name goes in a name of ``kind``; None where it is not renamed.
+
+    ``namespaced`` is true where a ROS namespace reaches the value."""
     if naming.own and (kind, text) in naming.own:
         return naming.own[kind, text]
     separator = naming.separators.get(kind)

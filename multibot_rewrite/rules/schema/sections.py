@@ -47,7 +47,7 @@ class Child(NamedTuple):
 
 
 class UrdfPart(NamedTuple):
-    """One element of the schema; ``later``: ``@attributes`` and children of later versions."""
+    """One element of the schema; ``later``: attributes (``@name``) and children of later versions."""
 
     name: str
     attributes: Mapping[str, Kind]

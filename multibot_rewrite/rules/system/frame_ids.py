@@ -44,7 +44,10 @@ def frame_id_of_another_robot(seen: Index) -> Iterator[Finding]:
     for (frame, robot, senders), messages in _by_sender(seen).items():
         # A sender of the frame's robot has the wrong topic, not the wrong frame.
         whose = {*map(seen.robot, senders)}
-        if _is_of_another(seen, frame, robot, messages) and seen.frame_robot(frame) not in whose:
+        if (
+            _is_of_other_robot(seen, frame, robot, messages)
+            and seen.frame_robot(frame) not in whose
+        ):
             topics = [it.topic for it in messages if it.type.startswith(_MEASURED)]
             owner = seen.frame_robot(frame)
             message = f"{messages[0].field} of {shorten(topics)} is {frame}, a frame of {owner}"
@@ -63,8 +66,7 @@ def _with_frame(messages: Iterable[_Message], frame: str) -> tuple[Setting, ...]
     return tuple(Setting(it.senders[0], it.field, frame, it.topic) for it in own)
 
 
-def _is_of_another(seen: Index, frame: str, robot: str, messages: Sequence[_Message]) -> bool:
-    """Return whether measured messages are in a frame of another robot."""
+def _is_of_other_robot(seen: Index, frame: str, robot: str, messages: Sequence[_Message]) -> bool:
     measured = any(it.type.startswith(_MEASURED) for it in messages)
     return bool(robot) and measured and seen.frame_robot(frame) not in ("", robot)
 
@@ -78,7 +80,7 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
     for (frame, robot, senders), messages in _by_sender(seen).items():
         heard = [frames[it.topic] for it in trees_of(seen, robot) if it.edges]
         there = not heard or any(frame in it.get(seen.frame_robot(frame), ()) for it in heard)
-        if there or _is_of_another(seen, frame, robot, messages):
+        if there or _is_of_other_robot(seen, frame, robot, messages):
             continue
         own = sorted({it for tree in heard for who in ("", robot) for it in tree.get(who, ())})
         # Those of the robot that have this name beside the robot's, or without it.
@@ -175,7 +177,7 @@ def _nodes_by_robot(seen: Index) -> Mapping[tuple[str, str], str]:
 
 
 def _without_frame(seen: Index) -> Iterator[Finding]:
-    """Yield sensor and odometry messages without a frame, which tf2 refuses."""
+    """Yield sensor and odometry messages without a frame: tf2 refuses an empty frame_id."""
     for it in seen.system.heard:
         type_, senders = sent_on(seen, it.topic)
         # Of odometry: its pose is known where all of the message was read.

@@ -60,7 +60,9 @@ def _unjoined_body(seen: Index, tree: Tree, robot: str) -> _Body | None:
     above: dict[str, str] = {it.child: it.parent for it in tree.edges}
     if len({(it.child, it.parent) for it in tree.edges}) > len(above):
         return None
-    frames = [it for it in {**above, **dict.fromkeys(above.values())} if _is_of(seen, it, robot)]
+    frames = [
+        it for it in {**above, **dict.fromkeys(above.values())} if _may_be_of(seen, it, robot)
+    ]
     # What hangs on the map and has nothing below it.
     ends = above.keys() - {*above.values()}
     loose = [it for it in frames if it in ends and above[it] in WORLD_FRAMES]
@@ -71,7 +73,7 @@ def _unjoined_body(seen: Index, tree: Tree, robot: str) -> _Body | None:
     return _Body(next(iter(roots)), tuple(loose)) if is_one else None
 
 
-def _is_of(seen: Index, frame: str, robot: str) -> bool:
+def _may_be_of(seen: Index, frame: str, robot: str) -> bool:
     return seen.frame_robot(frame) in ("", robot)
 
 
