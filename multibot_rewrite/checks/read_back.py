@@ -17,7 +17,7 @@ from tempfile import TemporaryDirectory
 from multibot_rewrite.base.findings.finding import ERROR, Finding
 from multibot_rewrite.base.lazy import gc_paused
 from multibot_rewrite.base.model import MultibotError
-from multibot_rewrite.checks.as_planned import is_for_driver, not_as_planned, open_names
+from multibot_rewrite.checks.as_planned import not_as_planned, open_names
 from multibot_rewrite.checks.as_printed import not_as_commanded, not_as_printed
 from multibot_rewrite.checks.build import Outputs
 from multibot_rewrite.checks.lacking import LACKING
@@ -128,7 +128,6 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
             for it in _of_launch(start, by_plan, codes, elsewhere)
             # Robots may share a topic which the fleet file shares.
             if it.code not in (COMMAND, DATA) or not {*it.names} <= shared
-            if it.robot not in real or not is_for_driver(it, made.planned, started)
         ]
         alone = _not_open(alone, made)
         # What is an error without the plan is one line, of that level.

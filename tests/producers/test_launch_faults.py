@@ -545,7 +545,8 @@ SEEN: dict[str, tuple[str, bool, str, tuple[str, ...]]] = {
     # mokh94519/new_mobile_manipulator: xacro of the launch itself writes it.
     "what a program may write": ("MG713", False, "", (_SPAWN.format('"/tmp/not_made_yet.urdf"'),)),
     "what nobody installs": ("MG713", True, "", (_SPAWN.format('str(HERE / "lost.urdf")'),)),
-    "no odometry": ("MG406", True, "", (_AMCL, _BASE)),
+    "no odometry": ("MG406", True, "", (_AMCL, _BASE, _SPAWN_AS.format("--z=0"))),
+    "no odometry of a real robot": ("MG406", False, "", (_AMCL, _BASE)),
     "no odometry, beside a driver": ("MG406", False, "", (_AMCL, _BASE, _DRIVER)),
     # Nothing that is not known changes what a parameter says.
     "a time of its own, beside what is not known": ("MG503", True, "", (*_MIXED, _DRIVER)),

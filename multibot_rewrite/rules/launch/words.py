@@ -83,14 +83,17 @@ def _faults(it: Run) -> Iterator[tuple[str, str]]:
 
 def _matches_nothing(launched: Launched) -> Iterator[Finding]:
     """Report rules only for a mistyped name: the code of a node may have more than is known. A rule
-    is harmless if a parameter of the node already has its name or target."""
+    is harmless if a parameter of the node already has its name or target, or switches it off."""
+    library = built_in(launched.release).nodes
     for it in launched.nodes:
         above = f"{it.full_name.rpartition('/')[0]}/"
-        known = it.fact.endpoints
-        names = [end.name.removeprefix(above).lstrip("/~") for end in known]
+        ends = (*it.fact.endpoints, *library.get(it.fact.known, it.fact).endpoints)
+        names = [end.name.removeprefix(above).lstrip("/~") for end in ends]
         for old, new in it.rules:
             bare = old.lstrip("/~")
-            asked = ":" not in old and not {bare, new.lstrip("/~")} & {*names}
+            # Of an image the names of its transports are below its own.
+            real = {bare, bare.rpartition("/")[0], new.lstrip("/~")}
+            asked = ":" not in old and real.isdisjoint(names)
             near = nearest(bare, names, SLIP) if asked else ""
             if near and not bare.startswith("__"):
                 message = f"{it.full_name}: the remap rule for {old} matches nothing"

@@ -146,11 +146,13 @@ NO_FRAMES: Frames = {}
 
 
 def fitting_frames(member: Member, nodes: Iterable[NodeFacts], sent: Sequence[Edge]) -> Frames:
-    """Return the usual frames that the robot lacks, each with its drive's frame for that place."""
-    placed = next((it for it in sent if it.child in BODY_FRAMES or it.parent == ODOM), None)
+    """Return the usual frames that the robot lacks, each with its drive's frame for that place, or
+    with the usual link that it has."""
+    links = {it.get("name", "") for it in member.source.root.iter("link", "frame")}
+    own = next((edge_of(ODOM, it) for it in BODY_FRAMES if it in links), None)
+    placed = next((it for it in sent if it.child in BODY_FRAMES or it.parent == ODOM), own)
     if placed is None:
         return NO_FRAMES
-    links = {it.get("name", "") for it in member.source.root.iter("link", "frame")}
     given = {frame.default for it in nodes for frame in it.frames if frame.given}
     has = links | given | {frame for it in sent for frame in it[:2]}
     wanted = {**dict.fromkeys(BODY_FRAMES, placed.child), ODOM: placed.parent}
