@@ -27,9 +27,11 @@ from multibot_rewrite.fleet.robots.fitting.commands import (
 )
 from multibot_rewrite.fleet.robots.fitting.node_topics import controllers, plugins, usual_values
 from multibot_rewrite.fleet.robots.fitting.sensors import (
+    alone,
     bridge_rows_of,
     bridged_commands,
     by_sensor,
+    command_rows,
     hearing_sensors,
     offered_topics,
     with_odometry,
@@ -256,7 +258,8 @@ def fitted(
         led = driving(settled, muxes, has.bridged)
         settled = [*through_a_mux(led, own, usual, known[TWIST_MUX])]
     routed = by_way_of_relays(driving(settled, own, has.bridged), own)
-    typed = of_one_type(routed, own, free, given, known, spec)
+    rows = [it.end.type for it in command_rows(spec) if alone(it.end.name) in has.bridged]
+    typed = of_one_type(routed, own, free, given, known, rows)
     return tuple(without_second_senders(typed, free, has.sent))
 
 
