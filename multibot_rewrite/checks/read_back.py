@@ -133,6 +133,9 @@ def _read(plan: FleetPlan, made: Outputs, folder: str) -> tuple[list[Finding], L
         # What is an error without the plan is one line, of that level.
         errors = {(it.code, it.robot) for it in alone if it.robot}
         wrong = [it for it in wrong if (it.code, it.robot) not in errors] + alone
+        # What two robots both have by their descriptions is one line, with what to do.
+        both = {it.names for it in plan.fleet.table.problems if it.level == ERROR and it.names}
+        wrong = [it for it in wrong if it.names not in both]
         if any(it.code == NO_MANAGER.code for it in wrong):
             remedy = _remedy(plan)
             wrong = [it._replace(hint=remedy) if it.code == NO_MANAGER.code else it for it in wrong]
