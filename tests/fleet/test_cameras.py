@@ -160,8 +160,8 @@ def test_of_two_ends_none_is_surely_the_one_camera(
 def test_infos_beside_the_images_of_two_robots_are_one_error_with_its_remedy(
     kind: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """ThermalCameraSensor.cc, DepthCameraSensor.cc: AdvertiseInfo asks a CameraSensor that was not loaded
-    for <camera_info_topic>, and takes the place beside the image."""
+    """ThermalCameraSensor.cc, DepthCameraSensor.cc: AdvertiseInfo asks a CameraSensor that was not
+    loaded for <camera_info_topic>, and takes the place beside the image."""
     description = robot(tmp_path, camera("eye", kind))
     built(tmp_path, "jazzy", "postfix", "rviz", description, "topics: namespace\n")
     capsys.readouterr()
