@@ -27,9 +27,8 @@ from multibot_rewrite.description.sources.own_names import (
     own_texts,
     templates,
 )
-from multibot_rewrite.description.sources.read import Source, SourceText, args_for
+from multibot_rewrite.description.sources.read import Source, SourceText, args_for, read_whole
 from multibot_rewrite.description.sources.release_said import release_said
-from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.description.sources.world_systems import set_aside
 from multibot_rewrite.description.steps.apply import cut, fill
 from multibot_rewrite.description.steps.collect import NOTHING, Inventory, collect, declarations
