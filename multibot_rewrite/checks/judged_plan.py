@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A fleet file, or a description and its robots -> the plan, with what is wrong between the robots and
-in their descriptions; nodes that their own files leave idle: in no list of a lifecycle manager, or
-controllers without a joint, by the rules of ``check-launch``."""
+"""Makes the plan of a fleet file or of robots, with what is wrong between and in them, and what the
+nodes of one leave idle: without a lifecycle manager or a joint, by the rules of ``check-launch``."""
 
 from __future__ import annotations
 
@@ -57,8 +56,7 @@ from multibot_rewrite.rules.launch.started import (
 def plan_fleet(
     file: FleetFile, jobs: Mapping[Sources, Jobs] | None = None, trust: bool = False
 ) -> FleetPlan:
-    """Return the plan of a fleet file with all problems of its table. Arguments and errors are those
-    of ``make_plan``."""
+    """Return the plan of a fleet file with all problems of its table; raises as ``make_plan``."""
     plan = make_plan(file, jobs, trust)
     with gc_paused():
         file, table, robots = plan.file, plan.fleet.table, plan.robots
@@ -108,13 +106,12 @@ def make_fleet(
     launch: Sequence[LaunchOrder] = (),
     release: str,
 ) -> Fleet:
-    """Rewrite a description for every robot and return the fleet with its table, by the facts of the
-    release that the rewrite is for: ``release``, or where it is empty what ``rewrite_all`` takes.
+    """Rewrite a description for every robot and return the fleet with its table.
 
-    ``nodes`` is a file with more nodes and node sets, ``nodl`` are NoDL files, see
-    ``find_interfaces``; ``trust`` lets a xacro file do anything; ``launch`` are the launch files
-    that start each robot's nodes. Raises as ``rewrite_all``, and UsageError for an unknown node
-    set."""
+    An empty ``release`` is that which ``rewrite_all`` takes. ``nodes`` is a file with more nodes
+    and node sets, ``nodl`` are NoDL files, see ``find_interfaces``; ``launch`` are the launch
+    files that start each robot's nodes. Raises as ``rewrite_all``, and UsageError for an unknown
+    node set."""
     how: dict[str, Any] = {
         "definitions": definitions,
         "xacro_args": xacro_args,
@@ -162,7 +159,7 @@ def left_idle(
     """Yield what starts and does nothing, by the robot's own parameter files."""
     own = {it.node: it for it in given}
     yield from _unlisted(nodes, own)
-    yield from _unbonded(nodes, own)
+    yield from _without_bond(nodes, own)
     running = {it.name for it in nodes if not it.when}
     for it in own.values():
         facts = known.get(it.fact.known)
@@ -177,7 +174,7 @@ def _unlisted(nodes: Sequence[NodeFacts], own: Mapping[str, Run]) -> Iterator[Fi
     """Report managed nodes that no lifecycle manager lists, if a file has the list."""
     managers = [it for it in nodes if it.kind == LIFECYCLE_MANAGER]
     place = next((own[it.name].place for it in managers if it.name in own), None)
-    listed = _listed(managers)
+    listed = _listed_nodes(managers)
     for it in nodes if place else ():
         idle = is_managed(it.kind) and it.name not in listed and not (it.when or it.shared)
         if idle and place:
@@ -185,10 +182,10 @@ def _unlisted(nodes: Sequence[NodeFacts], own: Mapping[str, Run]) -> Iterator[Fi
             yield at(not_listed, place, message, "add it to node_names", level=WARNING)
 
 
-def _unbonded(nodes: Sequence[NodeFacts], own: Mapping[str, Run]) -> Iterator[Finding]:
+def _without_bond(nodes: Sequence[NodeFacts], own: Mapping[str, Run]) -> Iterator[Finding]:
     """Report nodes that keep no bond with the manager that lists them, if a file has the list."""
     for manager in (it for it in nodes if it.kind == LIFECYCLE_MANAGER and it.name in own):
-        given, listed = own[manager.name], _listed([manager])
+        given, listed = own[manager.name], _listed_nodes([manager])
         timeout = given.values.get("bond_timeout")
         for it in nodes if timeout is None or timeout.value != 0 else ():
             if it.name in listed and keeps_no_bond(it):
@@ -196,6 +193,6 @@ def _unbonded(nodes: Sequence[NodeFacts], own: Mapping[str, Run]) -> Iterator[Fi
                 yield at(not_listed, given.place, *said, level=WARNING)
 
 
-def _listed(managers: Sequence[NodeFacts]) -> Set[str]:
+def _listed_nodes(managers: Sequence[NodeFacts]) -> Set[str]:
     """Return the nodes whose services managers call."""
     return {end.name.strip("/").partition("/")[0] for it in managers for end in it.endpoints}

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where the robots of a fleet meet: by the second reading of what was written for each, and the plan;
-names that all are to share, and that none of them has; names that two of them declare, or that have
-the robot's name twice; and controller managers that plugins make under another name."""
+"""Where the robots of a fleet collide, and names to be shared that none of them has; names that two
+declare, or that have a robot's name twice; and unused controller managers."""
 
 from __future__ import annotations
 
@@ -55,9 +54,9 @@ def robots_meet(
     written: Mapping[str, Written] = NOTHING,
     domains: Mapping[str, int] = ONE_DOMAIN,
 ) -> Iterator[Finding]:
-    """Yield an error for each name that two robots have and that is not shared. ``written`` are the
-    files of robots, by namespace, ``domains`` theirs by name if they are not in one. Controllers of
-    a node set are in the table, with their spawners' rules."""
+    """Yield an error for each name that two robots have and that is not shared.
+
+    ``written`` are the robots' files, by namespace, ``domains`` theirs by name, if not in one."""
     shared = [it for member in members for it in member.shared]
     spawned = {it.robot for it in table.runs if it.fact.is_controller}
     if not spawned.issuperset(it.robot for it in members):
@@ -70,7 +69,7 @@ def robots_meet(
         return
     by_robot = {it.robot: it for it in members}
     names = {it.robot: it.name for it in members}
-    for it in meetings(_named(table, members), naming):
+    for it in meetings(_run_names(table, members), naming):
         robot, other = (names.get(one, one) for one in (it.robot, it.other))
         if it.name.kind in _OF_ROS and domains.get(robot) != domains.get(other):
             continue
@@ -78,7 +77,7 @@ def robots_meet(
         yield _finding(called, by_robot.get(it.robot), written.get(it.robot))
 
 
-def _named(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence[RuntimeName]]:
+def _run_names(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence[RuntimeName]]:
     """Return what each robot has at run time, first by its description."""
     made = (it for it in table.runs if it.fact.of_hardware)
     ruled = sets_by_key((run.robot, end.name) for run in made for end, _ in run.names)
@@ -109,7 +108,7 @@ def _named(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence[Run
 
 
 def _finding(met: Meeting, member: Member | None, written: Written | None) -> Finding:
-    """Return a finding at the element of the description that has the name first, else at the node."""
+    """Return a finding at the element of a description with the name, or else at the node."""
     name, code = met.name, code_of(met.name)
     message = said(f"{met.robot} and {met.other} would both", name, met.twin)
     found = Finding(code, _level(code), message, advice(name, together=True), names=(name.name,))
@@ -177,7 +176,7 @@ def shared_by_nothing(
     asked_frames = sorted(fleet.naming.shared_frames - {*WORLD_FRAMES})
     if not asked_topics and not asked_frames:
         return
-    frames, topics = _described(fleet, FRAME_KINDS), _described(fleet, TOPIC_KINDS)
+    frames, topics = _described_names(fleet, FRAME_KINDS), _described_names(fleet, TOPIC_KINDS)
     frames |= {
         it for sent in fleet.edges.values() for edge in sent for it in (edge.child, edge.parent)
     }
@@ -202,7 +201,7 @@ def shared_by_nothing(
             yield found._replace(file=file, line=line, column=min(line, 1))
 
 
-def _described(fleet: NamesOfFleet, kinds: Collection[str]) -> set[str]:
+def _described_names(fleet: NamesOfFleet, kinds: Collection[str]) -> set[str]:
     """Return the names of some kinds in the descriptions, with and without the robot's name."""
     found: set[str] = set()
     for robot, inventory in fleet.inventories.items():
@@ -226,8 +225,7 @@ _KINDS = ("topic", "service")
 def declared_twice(
     robots: Iterable[RewrittenRobot], naming: Naming, told: Iterable[Finding]
 ) -> Iterator[Finding]:
-    """Yield what two robots declare though it is not shared, each in its description, except frames
-    that are reported (``told``) to collide."""
+    """Yield what two robots declare, but no shared name and no frame that ``told`` reports."""
     met = {name for it in told if it.code == FRAMES_COLLIDE for name in it.names}
     first: dict[tuple[str, str], RewrittenRobot] = {}
     kinds = [it for it in _DECLARED if it in naming.separators]

@@ -579,6 +579,15 @@ def test_a_file_that_includes_itself_is_refused(
     assert "it includes or calls itself without an end" in capsys.readouterr().err
 
 
+def test_a_link_to_itself_in_the_folder_is_passed_over(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "loop.yaml").symlink_to("loop.yaml")
+    of_nodes(tmp_path, _TIMED, head=_HEAD)
+    assert main(["check-launch", str(tmp_path / LAUNCH)]) == 0
+    assert "cannot be read" not in capsys.readouterr().err
+
+
 def test_a_file_says_what_it_has_to_be_given(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -59,19 +59,8 @@ def has_xacro(data: bytes) -> bool:
     return any(b"<" + prefix + b":" in text for prefix in _SPACE.findall(text))
 
 
-def read_whole(source: Source, xacro_args: Mapping[str, str], trust: bool = False) -> SourceText:
-    """Return the bytes of a source, with the files that were read, whatever it is: URDF, xacro, SDF or
-    a list of parts that are joined; ``trust`` lets a xacro file do anything."""
-    if not isinstance(source, bytes) and str(source).endswith(JOIN) and not xacro_args:
-        from multibot_rewrite.description.joining.from_file import read_joined
-
-        return read_joined(str(source), trust)
-    return read_alone(source, xacro_args, trust)
-
-
 def read_alone(source: Source, xacro_args: Mapping[str, str], trust: bool = False) -> SourceText:
-    """Return the bytes of a source that is no list of parts, with the files that were read; ``trust``
-    lets a xacro file do anything."""
+    """Return a source that is no list of parts, and the files read; ``trust``: no sandbox."""
     if isinstance(source, bytes):
         return SourceText(source, "<bytes>")
     if isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<"):
