@@ -67,6 +67,12 @@ def one_for_a_cause(
     ]
 
 
+def subject_of(plan: Index, it: Finding) -> tuple[str, ...]:
+    """Return the code, and the names without those of robots or the message; equal for what is found
+    in the sources of a plan and in what runs of it."""
+    return (it.code, *map(plan.plain, it.names)) if it.names else (it.code, it.message)
+
+
 def _is_absence(it: Finding, rules: Mapping[str, Rule]) -> bool:
     return bool(rules[it.code].options["absence"])
 

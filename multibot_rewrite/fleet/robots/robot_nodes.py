@@ -279,8 +279,9 @@ def _is_needed(it: NodeFacts, spec: RobotSpec, member: Member) -> bool:
         # On Humble it has the name of Ignition, too.
         loaded = {name.replace("ign_", "gz_", 1) for name in plugin_libraries(member.inventory)}
         return library_key(it.plugin) in loaded
-    of_one = it.name == BRIDGE_NODE and not it.shared
-    return not of_one or bool(spec.related_files.get("bridge")) or is_bridged(member.inventory)
+    if it.name != BRIDGE_NODE or spec.related_files.get("bridge"):
+        return True
+    return spec.simulator != REAL and (it.shared or is_bridged(member.inventory))
 
 
 def _srdf_nodes(

@@ -94,7 +94,9 @@ def _readable(access: Access) -> Iterator[str]:
     # The files in the folder of the launch file, which may be a home.
     for folder in access.beside:
         with os.scandir(folder or os.curdir) as found:
-            yield from (it.path for it in found if it.name[0] != "." and it.is_file())
+            # A link that leads to itself is none.
+            shown = (it.path for it in found if it.name[0] != ".")
+            yield from filter(os.path.isfile, shown)
     yield from access.roots
     for prefix in access.sourced:
         yield prefix

@@ -82,14 +82,17 @@ def _transform_faults(it: Run) -> Iterator[tuple[str, str]]:
 
 
 def _matches_nothing(launched: Launched) -> Iterator[Finding]:
-    """Report rules for a mistyped name of a node, if no parameter has the name or target."""
+    """Report rules for a mistyped name of a node, if no parameter has or switches off the name."""
+    library = built_in(launched.release).nodes
     for it in launched.nodes:
         above = f"{it.full_name.rpartition('/')[0]}/"
-        known = it.fact.endpoints
-        names = [end.name.removeprefix(above).lstrip("/~") for end in known]
+        ends = (*it.fact.endpoints, *library.get(it.fact.known, it.fact).endpoints)
+        names = [end.name.removeprefix(above).lstrip("/~") for end in ends]
         for old, new in it.rules:
             bare = old.lstrip("/~")
-            asked = ":" not in old and not {bare, new.lstrip("/~")} & {*names}
+            # Of an image the names of its transports are below its own.
+            real = {bare, bare.rpartition("/")[0], new.lstrip("/~")}
+            asked = ":" not in old and real.isdisjoint(names)
             near = nearest(bare, names, SLIP) if asked else ""
             if near and not bare.startswith("__"):
                 message = f"{it.full_name}: the remap rule for {old} matches nothing"

@@ -15,8 +15,9 @@ from multibot_rewrite.rules.declaration import last_place, system_rule
 from multibot_rewrite.rules.system.frame_ids import frames_in, trees_of
 from multibot_rewrite.rules.system.instead import is_needed, meant
 from multibot_rewrite.rules.system.likes import nodes_of_each
+from multibot_rewrite.rules.system.localized import map_not_joined
 from multibot_rewrite.rules.system.names import server_names_miss, topic_names_miss
-from multibot_rewrite.rules.system.tf_pieces import is_of_description
+from multibot_rewrite.rules.system.tf_pieces import is_of_description, tf_tree_in_pieces
 from multibot_rewrite.rules.system.tf_trees import root_of
 from multibot_rewrite.system.index import TF, Index, ends_of, once
 from multibot_rewrite.system.records import (
@@ -92,6 +93,20 @@ def _names_without_robot(seen: Index) -> Mapping[str, Sequence[str]]:
         for (_, name), ends in reversed([*seen.by_name.items()])
         if ends.publishers or ends.servers
     )
+
+
+def is_for_driver(seen: Index, it: Finding) -> bool:
+    """Return whether the driver of a real robot may mend it: it places the link at which the tree is in
+    pieces, which no other node's parameters name, and sends what a localizer waits for and a usual
+    frame of the robot."""
+    if it.code == map_not_joined.code:
+        # With another name, a frame below the map is the wrong one.
+        return len(it.names) == 1
+    if it.code == frame_not_sent.code:
+        return seen.plain_frame(it.names[0]) in USUAL_FRAMES
+    edges = (one for one in seen.system.edges if not is_of_description(seen, one))
+    named = {frame for edge in edges for frame in (edge.parent, edge.child)}
+    return it.code == tf_tree_in_pieces.code and not (it.node or named >= {*it.names})
 
 
 def no_longer_sent(end: End) -> Finding:
@@ -214,3 +229,7 @@ def _lookup_finding(seen: Index, it: Lookup, message: str, hint: str, level: str
         message, hint, level=level,
         robot=seen.robot(it.node), node=it.node, names=(it.frame,), **last_place([it]),
     )  # fmt: skip
+
+
+# What is missing where the driver of a real robot, which no file names, may send it.
+FOR_DRIVERS = (tf_tree_in_pieces.code, map_not_joined.code, frame_not_sent.code)
