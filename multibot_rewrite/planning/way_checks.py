@@ -243,21 +243,21 @@ def useless_rules(
         own, wide, node = _asked_names(run), run.process_wide, run.node
         asked = [own, *(others if wide else ())]
         robot = "" if run.robot == PROBE else run.robot
-        seen: set[tuple[str, str]] = set()
+        seen: dict[tuple[str, str], str] = {}
         for left, target in run.rules:
             text, (whose, source) = f"{left}:={target}", _split_left_side(left)
             match = (whose, resolve_bound(source, TOPIC, own.bare))
-            if match in seen:
+            there, result = match in seen, resolve_bound(target, TOPIC, own.bare)
+            if seen.setdefault(match, result) != result:
                 message = f"{text} has no effect: an earlier rule matches first"
                 yield LATER_RULE.finding(message, "remove it", robot=robot, node=node)
-            elif wide and (controllers is None or source.lstrip("/") in TF_TOPICS):
+            elif there or (wide and (controllers is None or source.lstrip("/") in TF_TOPICS)):
                 pass  # the rewrite itself writes those of tf
             elif wide and not whose and _is_for_controllers(source, known, by_file):
                 pass
             elif not any(_rule_matches(left, it) for it in asked):
                 message = f"{text} matches no name of this node"
                 yield RULE_WITHOUT_NAME.finding(message, "remove it", robot=robot, node=node)
-            seen.add(match)
 
 
 @cache

@@ -73,8 +73,6 @@ from multibot_rewrite.system.records import PUBLISHES, TOPIC
 from multibot_rewrite.system.words import START_POSE, last_word
 
 STATE = "robot_state_publisher"
-# Their words name files of the robot.
-_WORDS_OF_BUILD = (STATE, CARTOGRAPHER)
 # What launch files themselves set, by robot and node.
 Values: TypeAlias = Mapping[tuple[str, str], Mapping[str, Any]]
 # Started by hand, or once for all robots.
@@ -242,7 +240,10 @@ def _start_of(given: _Given, name: str) -> Start:
     lua = given.robot.spec.related_files.get("lua", ())
     if facts.kind == CARTOGRAPHER and (lua or facts.usual):
         folder, file = os.path.split(path_for(given.robot, *lua[:1] or (OPTIONS,)))
-        words = (*words, LUA_FLAGS[0], File(folder), LUA_FLAGS[1], file)
+        # In place of the vendor's file.
+        flags = {at + more for at, it in enumerate(words) if it in LUA_FLAGS for more in (0, 1)}
+        kept = (it for at, it in enumerate(words) if at not in flags)
+        words = (*kept, LUA_FLAGS[0], File(folder), LUA_FLAGS[1], file)
     return made._replace(
         arguments=tuple(words),
         components=tuple(
@@ -292,7 +293,7 @@ def _with_launch_settings(plan: FleetPlan, robot: RewrittenRobot, it: Start, nam
         package=package,
         executable="" if it.plugin else program,
         plugin=program if it.plugin else "",
-        arguments=it.arguments if own.kind in _WORDS_OF_BUILD else own.arguments,
+        arguments=it.arguments if own.kind == STATE else own.arguments,
         environment=own.environment,
         process=own.process,
         number=own.number,

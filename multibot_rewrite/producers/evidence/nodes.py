@@ -258,9 +258,9 @@ def under_plugin(node: NodeFacts, rules: Iterable[RemapRule], release: str) -> N
     """Return a controller under the rules of the plugin that loads it, if these reach it."""
     if not (node.is_controller and controller_way(release).of_manager):
         return node
-    own = node.name.rpartition("/")[2]
+    above, _, own = node.name.rpartition("/")
     mine = ((it.source, it.target) for it in rules if it.node in ("", own))
-    return remapped(node, mine, "")
+    return remapped(node, mine, f"/{above}")
 
 
 def _target(new: str, above: str, home: str) -> str:

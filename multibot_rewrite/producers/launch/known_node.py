@@ -76,11 +76,16 @@ def as_named(node: NodeFacts, words: Sequence[str], values: Mapping[str, Given])
 
 def with_options(words: Sequence[str], values: Mapping[str, Given]) -> Mapping[str, Given]:
     """Return the values with those of the Lua file that is in the arguments."""
-    options = dict(pairwise(words))
-    path = os.path.join(*(options.get(it, "") for it in LUA_FLAGS))
+    path = lua_file(words)
     with suppress(InputError):
         values = {**values, **lua_values(read_file(path), path)} if path else values
     return values
+
+
+def lua_file(words: Sequence[str]) -> str:
+    """Return the path of the Lua file that is in the arguments; empty for none."""
+    options = dict(pairwise(words))
+    return os.path.join(*(options.get(it, "") for it in LUA_FLAGS))
 
 
 def as_heard(node: NodeFacts, heard: Collection[str], bound: BoundNode) -> NodeFacts:
