@@ -73,6 +73,25 @@ def test_a_map_that_nothing_joins_with_its_robot_is_one_finding() -> None:
     assert [it.code for it in diagnose(with_map).findings] == ["MG415"]
 
 
+@pytest.mark.parametrize(
+    ("frame", "topic", "codes"),
+    [
+        ("map", "/robot1/map", []),
+        ("robot1/odom", "/robot1/map", ["MG415"]),
+        # A local costmap.
+        ("robot1/odom", "/robot1/costmap", []),
+        # Nothing says that it moves.
+        ("robot3/odom", "/robot3/map", []),
+    ],
+)
+def test_a_map_is_not_in_the_frame_of_odometry(frame: str, topic: str, codes: list[str]) -> None:
+    sent = f"{topic.rpartition('/')[0]}/server publishes {topic} nav_msgs/msg/OccupancyGrid"
+    third = "transform robot3/odom -> robot3/base_link on /tf"
+    told = found(sent, third, f"frame_id {frame} on {topic}")
+    assert [(it.code, it.level) for it in told] == [(it, "warning") for it in codes]
+    assert all(f"is {frame}, which moves in map" in it.message for it in told)
+
+
 def test_another_robots_frame_is_named_with_both() -> None:
     (it,) = found("frame_id robot2/camera_link on /robot1/image")
     assert (it.code, it.robot) == ("MG411", "robot1")

@@ -13,6 +13,7 @@ from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import SEVERAL, only, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule, where
+from multibot_rewrite.rules.system.tf_trees import root_of
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Index, Tree, at_work, nodes_of, once, robots_of, sent_on
 from multibot_rewrite.system.ownership import SEPARATORS
@@ -288,9 +289,13 @@ def description_does_not_fit(seen: Index) -> Iterator[Finding]:
     for it in seen.system.descriptions:
         _, senders = sent_on(seen, it.topic)
         robot = seen.robot(it.topic) or only(robots_of(seen, senders))
-        if senders and (why := _description_fault(seen, it, robot)):
-            node, names = senders[0], (it.topic,)
-            yield description_does_not_fit.finding(*why, robot=robot, node=node, names=names)
+        why = _description_fault(seen, it, robot) if senders else None
+        lost = None if why or not senders else _lost_joints(seen, it, robot)
+        if fault := why or lost:
+            yield description_does_not_fit.finding(
+                *fault, level=WARNING if lost else ERROR,
+                robot=robot, node=senders[0], names=(it.topic,),
+            )  # fmt: skip
 
 
 def _description_fault(seen: Index, it: Description, robot: str) -> tuple[str, str] | None:
@@ -311,32 +316,64 @@ def _description_fault(seen: Index, it: Description, robot: str) -> tuple[str, s
 
 
 def _other_frames(seen: Index, it: Description, robot: str) -> tuple[str, str] | None:
-    """Return a fault if no link of several is a sent frame, with or without a frame_prefix."""
-    trees = [one for one in trees_of(seen, robot) if one.edges]
-    frames = {one for tree in trees for one in frames_in(tree.edges)}
-    own = sorted(one for one in frames if seen.frame_robot(one) in ("", robot))
-    is_of = any(f"/{one}".endswith(f"/{link}") for one in own for link in it.links)
-    if len(it.links) < 2 or not own or is_of:
+    """Return a fault if no link of several is a sent frame."""
+    own, pieces = _sent_frames(seen, it, robot)
+    if len(it.links) < 2 or not own or pieces:
         return None
     links, sent = shorten(it.links, SEVERAL), shorten(own, SEVERAL)
     message = f"no link of {it.topic} ({links}) is a frame that is sent ({sent})"
     return message, "who sends tf has another description: load one in both"
 
 
+def _sent_frames(
+    seen: Index, it: Description, robot: str
+) -> tuple[list[str], Sequence[Sequence[str]]]:
+    """Return the frames that are sent of a robot or of none, and the links by the piece of tf that has
+    them, with or without a frame_prefix, the largest piece first; no piece if none is sent."""
+    edges = [one for tree in trees_of(seen, robot) for one in tree.edges]
+    own = sorted(one for one in frames_in(edges) if seen.frame_robot(one) in ("", robot))
+    above = {one.child.removeprefix("/"): one.parent.removeprefix("/") for one in edges}
+    frames = {
+        name: one for one in own for name in (one.rpartition("/")[2], seen.plain_frame(one), one)
+    }
+    if frames.keys().isdisjoint(it.links):
+        return own, ()
+    pieces = lists_by_key((root_of(frames.get(link, link), above), link) for link in it.links)
+    return own, sorted(pieces.values(), key=len, reverse=True)
+
+
 def _other_joints(seen: Index, it: Description) -> tuple[str, str] | None:
-    """Return what is wrong where no sender of joint states in its namespace has a joint of it. One with
-    joints of its own alone is healthy among others, so each of them has to be heard."""
-    space = it.topic.rpartition("/")[0]
-    heard = [one for one in seen.system.heard if one.joints]
-    for topic in unique(one.topic for one in heard):
-        type_, senders = sent_on(seen, topic)
-        said = [one.joints for one in heard if one.topic == topic]
-        fits = type_ == words.JOINTS and topic.rpartition("/")[0] == space and it.joints
-        if not fits or not senders or len(said) < len(senders):
-            continue
-        named = unique(name for joints in said for name in joints)
-        if {*named}.isdisjoint(it.joints):
+    """Return what is wrong where no sender of joint states in its namespace has a joint of it."""
+    for topic, senders, named in _joint_states(seen, it):
+        if it.joints and {*named}.isdisjoint(it.joints):
             own, who, sent = (shorten(names, SEVERAL) for names in (it.joints, senders, named))
             message = f"{it.topic} has the joints {own}, and {who} sends {sent} on {topic}"
             return message, f"give {who} the names that the description has"
     return None
+
+
+def _lost_joints(seen: Index, it: Description, robot: str) -> tuple[str, str] | None:
+    """Return what is wrong where joints are in no message, and no transform leads to their links."""
+    states = [*_joint_states(seen, it)]
+    said = {name for one in seen.system.heard for name in one.joints}
+    lacking = [name for name in it.joints if name not in said]
+    pieces = _sent_frames(seen, it, robot)[1] if states and lacking else ()
+    if len(pieces) < 2:
+        return None
+    topic, senders, _ = states[0]
+    lost = [links[0] for links in pieces[1:]]
+    who, names, links = (shorten(one, SEVERAL) for one in (senders, lacking, lost))
+    message = f"{who} sends no state of {names} on {topic}, so no transform leads to {links}"
+    return message, f"see which joints {who} is told to send"
+
+
+def _joint_states(seen: Index, it: Description) -> Iterator[tuple[str, tuple[str, ...], list[str]]]:
+    """Yield the topics of joint states in its namespace with their senders and joints. A sender of
+    joints of its own alone is healthy among others, so each of them has to be heard."""
+    heard = [one for one in seen.system.heard if one.joints]
+    for topic in unique(one.topic for one in heard):
+        type_, senders = sent_on(seen, topic)
+        said = [one.joints for one in heard if one.topic == topic]
+        beside = topic.rpartition("/")[0] == it.topic.rpartition("/")[0]
+        if type_ == words.JOINTS and beside and senders and len(said) >= len(senders):
+            yield topic, senders, unique(name for joints in said for name in joints)

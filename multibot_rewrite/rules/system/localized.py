@@ -8,11 +8,12 @@ from math import inf, isfinite
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import BODY_FRAMES, TF_SWITCHES, WORLD_FRAMES, switch
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Setting
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import only, shorten, unique
 from multibot_rewrite.rules.declaration import see, system_rule, where
 from multibot_rewrite.rules.system.causes import Cause, to_set
+from multibot_rewrite.rules.system.frame_ids import trees_of
 from multibot_rewrite.rules.system.states import ACTIVE
 from multibot_rewrite.rules.system.tf_trees import root_of
 from multibot_rewrite.rules.system.transforms import collide
@@ -49,6 +50,27 @@ def map_not_joined(seen: Index) -> Iterator[Finding]:
                     **_why(seen, tree, node, body, start.name if start else "")._asdict(),
                     robot=seen.robot(node), node=node, names=(body.root, *body.loose),
                 )  # fmt: skip
+    yield from _maps_below_the_map(seen)
+
+
+def _maps_below_the_map(seen: Index) -> Iterator[Finding]:
+    """Yield maps in the frame of odometry that is itself sent below a map's: they move with its drift."""
+    for it in seen.system.heard:
+        type_, senders = sent_on(seen, it.topic)
+        is_map = words.kind_of_data(it.topic, type_) == words.MAP and senders
+        if not is_map or seen.plain_frame(it.frame) != _ODOM:
+            continue
+        robot = seen.robot(it.topic) or only(robots_of(seen, senders))
+        edges = (one for tree in trees_of(seen, robot) for one in tree.edges)
+        parent = next((one.parent for one in edges if one.child == it.frame), "")
+        if seen.plain_frame(parent) in WORLD_FRAMES:
+            yield map_not_joined.finding(
+                f"frame_id of {it.topic} is {it.frame}, which moves in {parent} when odometry drifts;"
+                f" sent by {shorten(senders)}",
+                f"set the frame of {shorten(senders)} to {parent}",
+                level=WARNING, robot=robot, node=senders[0], names=(it.topic,),
+                settings=tuple(Setting(one, "frame_id", parent, it.topic) for one in senders[:1]),
+            )  # fmt: skip
 
 
 def _starts_at(seen: Index, node: str) -> End | None:
