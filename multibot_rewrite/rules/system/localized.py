@@ -54,7 +54,7 @@ def map_not_joined(seen: Index) -> Iterator[Finding]:
 
 
 def _maps_below_the_map(seen: Index) -> Iterator[Finding]:
-    """Yield maps in the frame of odometry that is itself sent below a map's: they move with its drift."""
+    """Yield maps in the frame of odometry that is sent below the map's: they move with its drift."""
     for it in seen.system.heard:
         type_, senders = sent_on(seen, it.topic)
         is_map = words.kind_of_data(it.topic, type_) == words.MAP and senders
