@@ -145,26 +145,34 @@ def test_a_description_fits_its_robot(links: str, joints: str, told: str) -> Non
 
 
 @pytest.mark.parametrize(
-    ("links", "heard", "wrong"),
+    ("links", "heard", "level", "more"),
     [
         # robot_state_publisher.cpp sends a moving joint when its state comes.
-        ("base, arm, hand", "a", True),
-        ("base, arm, tool, hand", "a", True),
-        ("robot1/base, robot1/arm, robot1/hand", "a", True),
+        ("base, arm, hand", "a", "warning", ""),
+        ("base, arm, tool, hand", "a", "warning", ""),
+        ("robot1/base, robot1/arm, robot1/hand", "a", "warning", ""),
+        (
+            "base, arm, hand",
+            "a",
+            "error",
+            "serves /robot1/move_action moveit_msgs/action/MoveGroup",
+        ),
         # A mimic joint has no state of its own, and its link is sent.
-        ("base, arm", "a", False),
-        ("base, arm, hand", "a b", False),
-        ("base, arm, hand", "", False),
+        ("base, arm", "a", "", ""),
+        ("base, arm, hand", "a b", "", ""),
+        ("base, arm, hand", "", "", ""),
     ],
 )
-def test_a_joint_whose_state_nobody_sends(links: str, heard: str, wrong: bool) -> None:
+def test_a_joint_whose_state_nobody_sends(links: str, heard: str, level: str, more: str) -> None:
     lines = [it.format(robot) for robot in ("robot1", "robot2") for it in ROBOT]
     lines.append(f"description on /robot1/robot_description: links {links}; joints a, b")
     lines.append("transform robot1/tip -> robot1/tool on /tf_static by /robot1/rsp")
     lines += [f"joints {it} on /robot1/joint_states" for it in heard.split()]
+    lines.append("/robot1/move_group subscribes /robot1/joint_states sensor_msgs/msg/JointState")
+    lines += [f"/robot1/move_group {more}"] if more else []
     found = judge(read_system("\n".join(f"running: {it}" for it in lines)))
     assert [(it.code, it.level, it.node) for it in found] == (
-        [("MG420", "warning", "/robot1/rsp")] if wrong else []
+        [("MG420", level, "/robot1/rsp")] if level else []
     )
     lost = ", ".join(links.split(", ")[2:])
     said = f"no state of b on /robot1/joint_states, so no transform leads to {lost}"

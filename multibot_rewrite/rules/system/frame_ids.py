@@ -17,7 +17,7 @@ from multibot_rewrite.rules.system.tf_trees import root_of
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Index, Tree, at_work, nodes_of, once, robots_of, sent_on
 from multibot_rewrite.system.ownership import SEPARATORS
-from multibot_rewrite.system.records import NOWHERE, TOPIC, Description, Edge, Place
+from multibot_rewrite.system.records import ACTION, NOWHERE, SERVES, TOPIC, Description, Edge, Place
 
 # What a robot measures is in its own frames. A pose, a path or a marker may be in another robot's.
 _MEASURED = ("sensor_msgs/", words.ODOMETRY, "stereo_msgs/", "radar_msgs/")
@@ -42,21 +42,25 @@ class _Message(NamedTuple):
 @system_rule("MG411", "frame-id-of-another-robot", ERROR)
 def frame_id_of_another_robot(seen: Index) -> Iterator[Finding]:
     """Report messages with another robot's frame, by the name of the frame."""
-    frames = _by_topic(seen)
     for (frame, robot, senders), messages in _by_sender(seen).items():
         # A sender of the frame's robot has the wrong topic, not the wrong frame.
         whose = {*map(seen.robot, senders)}
         if _is_of_another(seen, frame, robot, messages) and seen.frame_robot(frame) not in whose:
-            topics = [it.topic for it in messages if it.type.startswith(_MEASURED)]
-            owner = seen.frame_robot(frame)
-            message = f"{messages[0].field} of {shorten(topics)} is {frame}, a frame of {owner}"
-            sent = {one for it in trees_of(seen, robot) for one in frames[it.topic].get(robot, ())}
-            own = only([it for it in sent if seen.plain_frame(it) == seen.plain_frame(frame)])
+            topics = [it.topic for it in messages if it.type.startswith((*_MEASURED, words.MAP))]
+            owner, own = seen.frame_robot(frame), only(_own_frames(seen, frame, robot))
             cause = f"set the frame of {_one_of(senders)} to {own or f'that of {robot}'}"
             yield frame_id_of_another_robot.finding(
-                f"{message}; sent by {_one_of(senders)}", cause,
+                f"{messages[0].field} of {shorten(topics)} is {frame}, a frame of {owner}; sent by"
+                f" {_one_of(senders)}", cause,
                 robot=robot, node=senders[0], names=(frame,), settings=_with_frame(messages, own),
             )  # fmt: skip
+
+
+def _own_frames(seen: Index, frame: str, robot: str) -> list[str]:
+    """Return the frames that a robot has in place of another one's."""
+    frames = _by_topic(seen)
+    sent = {one for it in trees_of(seen, robot) for one in frames[it.topic].get(robot, ())}
+    return [it for it in sent if seen.plain_frame(it) == seen.plain_frame(frame)]
 
 
 def _with_frame(messages: Iterable[_Message], frame: str) -> tuple[Setting, ...]:
@@ -66,8 +70,11 @@ def _with_frame(messages: Iterable[_Message], frame: str) -> tuple[Setting, ...]
 
 
 def _is_of_another(seen: Index, frame: str, robot: str, messages: Sequence[_Message]) -> bool:
-    measured = any(it.type.startswith(_MEASURED) for it in messages)
-    return bool(robot) and measured and seen.frame_robot(frame) not in ("", robot)
+    if not robot or seen.frame_robot(frame) in ("", robot):
+        return False
+    # A robot without a map's frame of its own may be on another one's map.
+    is_map = any(it.type == words.MAP for it in messages) and _own_frames(seen, frame, robot)
+    return bool(is_map) or any(it.type.startswith(_MEASURED) for it in messages)
 
 
 @system_rule("MG412", "frame-id-unknown", ERROR, absence=True)
@@ -291,11 +298,21 @@ def description_does_not_fit(seen: Index) -> Iterator[Finding]:
         robot = seen.robot(it.topic) or only(robots_of(seen, senders))
         why = _description_fault(seen, it, robot) if senders else None
         lost = None if why or not senders else _lost_joints(seen, it, robot)
+        # A wheel that nobody measures is only not shown.
+        level = WARNING if lost and not _is_planned_for(seen, it) else ERROR
         if fault := why or lost:
             yield description_does_not_fit.finding(
-                *fault, level=WARNING if lost else ERROR,
-                robot=robot, node=senders[0], names=(it.topic,),
-            )  # fmt: skip
+                *fault, level=level, robot=robot, node=senders[0], names=(it.topic,)
+            )
+
+
+def _is_planned_for(seen: Index, it: Description) -> bool:
+    """Return whether a planner reads the joint states: move_group plans as if an unknown joint were at
+    its default (planning_scene_monitor.cpp updateSceneWithCurrentState)."""
+    topics = [topic for topic, *_ in _joint_states(seen, it)]
+    readers = {one for topic in topics for one in nodes_of(seen.ends_at(TOPIC, topic).subscribers)}
+    ends = (end for one in readers for end in seen.by_node.get(one, ()))
+    return any((end.kind, end.role) == (ACTION, SERVES) for end in ends)
 
 
 def _description_fault(seen: Index, it: Description, robot: str) -> tuple[str, str] | None:

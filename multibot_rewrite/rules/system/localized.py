@@ -8,7 +8,7 @@ from math import inf, isfinite
 from typing import NamedTuple
 
 from multibot_rewrite.base.conventions import BODY_FRAMES, TF_SWITCHES, WORLD_FRAMES, switch
-from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Setting
+from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import only, shorten, unique
 from multibot_rewrite.rules.declaration import see, system_rule, where
@@ -54,22 +54,20 @@ def map_not_joined(seen: Index) -> Iterator[Finding]:
 
 
 def _maps_below_the_map(seen: Index) -> Iterator[Finding]:
-    """Yield maps in the frame of odometry that is sent below the map's: they move with its drift."""
+    """Yield maps in the frame of odometry, or of a body, that is sent below the map's: they move."""
     for it in seen.system.heard:
         type_, senders = sent_on(seen, it.topic)
         is_map = words.kind_of_data(it.topic, type_) == words.MAP and senders
-        if not is_map or seen.plain_frame(it.frame) != _ODOM:
+        if not is_map or seen.plain_frame(it.frame) not in (_ODOM, *BODY_FRAMES):
             continue
         robot = seen.robot(it.topic) or only(robots_of(seen, senders))
         edges = (one for tree in trees_of(seen, robot) for one in tree.edges)
-        parent = next((one.parent for one in edges if one.child == it.frame), "")
-        if seen.plain_frame(parent) in WORLD_FRAMES:
+        root = root_of(it.frame, {one.child: one.parent for one in edges})
+        if seen.plain_frame(root) in WORLD_FRAMES and _is_of(seen, it.frame, robot):
             yield map_not_joined.finding(
-                f"frame_id of {it.topic} is {it.frame}, which moves in {parent} when odometry drifts;"
-                f" sent by {shorten(senders)}",
-                f"set the frame of {shorten(senders)} to {parent}",
+                f"frame_id of {it.topic} is {it.frame}, which moves in {root}; sent by {senders[0]}",
+                f"set the frame of {senders[0]} to that of the map",
                 level=WARNING, robot=robot, node=senders[0], names=(it.topic,),
-                settings=tuple(Setting(one, "frame_id", parent, it.topic) for one in senders[:1]),
             )  # fmt: skip
 
 
