@@ -13,11 +13,12 @@ from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import SEVERAL, only, shorten, unique
 from multibot_rewrite.rules.declaration import system_rule, where
+from multibot_rewrite.rules.system.sharing import has_planner
 from multibot_rewrite.rules.system.tf_trees import root_of
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Index, Tree, at_work, nodes_of, once, robots_of, sent_on
 from multibot_rewrite.system.ownership import SEPARATORS
-from multibot_rewrite.system.records import ACTION, NOWHERE, SERVES, TOPIC, Description, Edge, Place
+from multibot_rewrite.system.records import NOWHERE, TOPIC, Description, Edge, Place
 
 # What a robot measures is in its own frames. A pose, a path or a marker may be in another robot's.
 _MEASURED = ("sensor_msgs/", words.ODOMETRY, "stereo_msgs/", "radar_msgs/")
@@ -299,20 +300,12 @@ def description_does_not_fit(seen: Index) -> Iterator[Finding]:
         why = _description_fault(seen, it, robot) if senders else None
         lost = None if why or not senders else _lost_joints(seen, it, robot)
         # A wheel that nobody measures is only not shown.
-        level = WARNING if lost and not _is_planned_for(seen, it) else ERROR
+        planned = lost and any(has_planner(seen, topic) for topic, *_ in _joint_states(seen, it))
+        level = WARNING if lost and not planned else ERROR
         if fault := why or lost:
             yield description_does_not_fit.finding(
                 *fault, level=level, robot=robot, node=senders[0], names=(it.topic,)
             )
-
-
-def _is_planned_for(seen: Index, it: Description) -> bool:
-    """Return whether a planner reads the joint states: move_group plans as if an unknown joint were at
-    its default (planning_scene_monitor.cpp updateSceneWithCurrentState)."""
-    topics = [topic for topic, *_ in _joint_states(seen, it)]
-    readers = {one for topic in topics for one in nodes_of(seen.ends_at(TOPIC, topic).subscribers)}
-    ends = (end for one in readers for end in seen.by_node.get(one, ()))
-    return any((end.kind, end.role) == (ACTION, SERVES) for end in ends)
 
 
 def _description_fault(seen: Index, it: Description, robot: str) -> tuple[str, str] | None:
@@ -384,7 +377,7 @@ def _lost_joints(seen: Index, it: Description, robot: str) -> tuple[str, str] | 
     return message, f"see which joints {who} is told to send"
 
 
-def _joint_states(seen: Index, it: Description) -> Iterator[tuple[str, tuple[str, ...], list[str]]]:
+def _joint_states(seen: Index, it: Description) -> Iterator[tuple[str, Sequence[str], Sequence[str]]]:
     """Yield the topics of joint states in its namespace with their senders and joints. A sender of
     joints of its own alone is healthy among others, so each of them has to be heard."""
     heard = [one for one in seen.system.heard if one.joints]
