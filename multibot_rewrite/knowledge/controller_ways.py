@@ -44,7 +44,5 @@ def controller_way(release: str) -> ControllerWay:
 
 
 def names_its_process(kind: str, release: str) -> bool:
-    """Return whether a name given to this node becomes that of every node in its process. A rule
-    __node holds for the process, and the controllers of these releases take its rules
-    (ros2_control#1684)."""
+    """Return whether a rule ``__node`` for this node renames its whole process (ros2_control#1684)."""
     return kind == MANAGER and controller_way(release).process_wide

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""YAML with the file and line of every value, for errors in data files; and what every fact may say
-besides itself: the releases that have it, and where that can be read."""
+"""YAML with the file and line of every value, for errors; and the keys that any fact may have."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple, NoReturn, TypeAlias, TypeVar
@@ -29,8 +28,7 @@ class YamlItem(NamedTuple):
 
 
 def read_yaml_with_lines(text: str, file: str, own: bool = False) -> YamlItem:
-    """Return the one document of a YAML text; raises UsageError naming ``file`` and the line.
-    ``own`` says that it is of this package, so that it needs no limits."""
+    """Return the document of a YAML text, without limits for an own one; raises UsageError."""
     try:
         node = compose_own_yaml(text) if own else compose_yaml(text, file)
         return YamlItem(f"{file}:1", None) if node is None else _yaml_item(node, f"{file}:1", file)
@@ -42,20 +40,20 @@ def _yaml_item(node: "yaml.Node", where: str, file: str) -> YamlItem:
     if isinstance(node.value, str):
         if node.tag == "tag:yaml.org,2002:null":
             return YamlItem(where, None)
-        return YamlItem(where, _truth(node.value) if node.tag == _BOOLEAN else node.value)
+        return YamlItem(where, _is_true(node.value) if node.tag == _BOOLEAN else node.value)
     import yaml
 
     if isinstance(node, yaml.MappingNode):
-        return YamlItem(where, _mapping(node, file))
+        return YamlItem(where, _read_mapping(node, file))
     inner = (_yaml_item(it, f"{file}:{it.start_mark.line + 1}", file) for it in node.value)
     return YamlItem(where, tuple(inner))
 
 
-def _truth(word: str) -> bool:
+def _is_true(word: str) -> bool:
     return word.lower() in ("true", "yes", "on")
 
 
-def _mapping(node: "yaml.Node", file: str) -> dict[str, YamlItem]:
+def _read_mapping(node: "yaml.Node", file: str) -> dict[str, YamlItem]:
     found: dict[str, YamlItem] = {}
     for key, value in node.value:
         where = f"{file}:{key.start_mark.line + 1}"
@@ -73,7 +71,7 @@ def table(item: YamlItem, what: str, allowed: Sequence[str] = ()) -> Mapping[str
     if item.value is None:
         return {}
     if not isinstance(item.value, Mapping):
-        wrong(item, f"{what} is {_shape(item)}; write keys and values")
+        wrong(item, f"{what} is {_type_in_words(item)}; write keys and values")
     for key in item.value if allowed and item.value.keys() - allowed else ():
         if key not in allowed:
             wrong(item.value[key], unknown("key", key, allowed))
@@ -83,7 +81,7 @@ def table(item: YamlItem, what: str, allowed: Sequence[str] = ()) -> Mapping[str
 def word(item: YamlItem, what: str) -> str:
     """Return a text; it may be empty."""
     if not isinstance(item.value, str):
-        wrong(item, f"{what} is {_shape(item)}; write a text, in quotes if needed")
+        wrong(item, f"{what} is {_type_in_words(item)}; write a text, in quotes if needed")
     return item.value
 
 
@@ -102,7 +100,7 @@ def entries(item: YamlItem, what: str) -> tuple[YamlItem, ...]:
     if isinstance(item.value, str):
         return (item,)
     if not isinstance(item.value, tuple):
-        wrong(item, f"{what} is {_shape(item)}; write a list")
+        wrong(item, f"{what} is {_type_in_words(item)}; write a list")
     return item.value
 
 
@@ -122,7 +120,7 @@ def flag_of(keys: Mapping[str, YamlItem], key: str, otherwise: bool = False) -> 
         return otherwise
     value = keys[key].value
     if not isinstance(value, bool):
-        wrong(keys[key], f"{key} is {_shape(keys[key])}; write true or false")
+        wrong(keys[key], f"{key} is {_type_in_words(keys[key])}; write true or false")
     return value
 
 
@@ -153,7 +151,7 @@ def unknown(what: str, name: str, known: Iterable[str], more: Iterable[str] = ()
     return f"{what} {name!r} is not known; {near}{near and ' '}known: {', '.join(known) or 'none'}"
 
 
-def _shape(item: YamlItem) -> str:
+def _type_in_words(item: YamlItem) -> str:
     if isinstance(item.value, str):
         return f"the text {item.value!r}"
     if isinstance(item.value, bool):

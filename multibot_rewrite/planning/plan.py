@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The plan of a fleet: what should run, by its remap table and its descriptions; the file that it
-is."""
+"""The plan of a fleet, by its remap table and its descriptions; and the file that it is."""
 
 from __future__ import annotations
 
@@ -47,15 +46,14 @@ def robot_words(plan: System) -> dict[str, str]:
 
 
 def words_of(others: Mapping[str, Iterable[str]]) -> dict[str, str]:
-    """Return the names of robots, and the ``others`` that stand for each, with the name of the robot;
-    another word only where it stands for one robot alone."""
+    """Return the names of robots, and words that stand for one robot alone, with its name."""
     robots = sets_by_key((word, name) for name, words in others.items() for word in words if word)
     only = {word: min(names) for word, names in robots.items() if len(names) == 1}
     return {name: name for name in others} | {k: it for k, it in only.items() if k not in others}
 
 
 def vacuous(plan: System) -> str:
-    """Return why a graph without nodes would be as planned; empty for a plan that tests something."""
+    """Return why a graph without nodes would be as planned; empty for a plan that expects something."""
     if not plan.robots:
         return "no robot is planned"
     needed = {it.robot for it in plan.nodes if it.sure.word == RUNS.word or it.sure.instead}

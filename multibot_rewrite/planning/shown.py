@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a viewer can show of each robot of a plan: topics, description, the frame it is in; a
-layout of Foxglove that shows it."""
+"""What a viewer can show of each robot of a plan, and a layout of Foxglove that shows it."""
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
@@ -61,16 +60,16 @@ def shown_by_robot(plan: System) -> tuple[list[Shown], Shown]:
     owners = {it.name: it.robot for it in plan.nodes}
     for end in plan.ends:
         if end.kind == TOPIC and end.sure == RUNS:
-            _add(every.get(owners.get(end.node, "")), end.role, end.name, end.type)
+            _add_topic(every.get(owners.get(end.node, "")), end.role, end.name, end.type)
     for topic in plan.topics:
         owner = whose(topic.name)
         for role in topic.bridge if owner else ():
-            _add(every[owner], role, topic.name, topic.type)
+            _add_topic(every[owner], role, topic.name, topic.type)
     shared = every.pop("")
     return list(every.values()), shared
 
 
-def _add(shown: Shown | None, role: str, topic: str, type_: str) -> None:
+def _add_topic(shown: Shown | None, role: str, topic: str, type_: str) -> None:
     if shown and role in (PUBLISHES, SUBSCRIBES):
         (shown.sent if role == PUBLISHES else shown.read).setdefault(topic, type_)
 
@@ -121,7 +120,7 @@ def to_layout(plan: System) -> str:
     every = _scene(robots, shared, world_of_plan(plan), prefixed)
     tabs = [
         _Tab("all robots", {"3D!all": every}),
-        *(_Tab(it.robot.name, _own(it, shared, sent, prefixed)) for it in robots),
+        *(_Tab(it.robot.name, _panels_of_robot(it, shared, sent, prefixed)) for it in robots),
     ]
     config: dict[str, Any] = {name: own for tab in tabs for name, own in tab.panels.items()}
     shown = []
@@ -141,7 +140,7 @@ def to_layout(plan: System) -> str:
     return json.dumps({"configById": config, **rest, "layout": "Tab!robots"}, indent=1) + "\n"
 
 
-def _own(shown: Shown, shared: Shown, sent: set[str], prefixed: bool) -> Panels:
+def _panels_of_robot(shown: Shown, shared: Shown, sent: set[str], prefixed: bool) -> Panels:
     """Return the robot in 3D, its images, and buttons that drive it."""
     name, frames = shown.robot.name, shown.robot.frames
     bodies = [it for it in frames if any(body in it for body in BODY_FRAMES)]
@@ -159,6 +158,7 @@ def _own(shown: Shown, shared: Shown, sent: set[str], prefixed: bool) -> Panels:
 
 
 def _scene(robots: Sequence[Shown], shared: Shown, frame: str, prefixed: bool) -> dict[str, Any]:
+    """Return the settings of a 3D panel."""
     topics = {it for one in (*robots, shared) for it in one.of_type(_SHOWN)}
     layers = {}
     for it in robots:

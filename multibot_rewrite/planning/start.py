@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is started, in one record: launch files, actions, lines for a shell and their checks are made of
-it."""
+"""What is started, as a record: launch files, actions, lines for a shell and checks are made of it."""
 
 import re
 import shlex
@@ -42,9 +41,10 @@ NOTHING: Mapping[str, str] = {}
 
 
 class Switch(NamedTuple):
-    """A launch argument that decides whether a process starts, with the value that it has, and the
-    ``word`` of a condition for those with which it does: ``name`` (true), ``!name`` (false),
-    ``name=a|b`` (one of these), ``name!=a|b`` (none of these)."""
+    """A launch argument that decides whether a process starts, with its ``default``.
+
+    The ``word`` of a condition says with which values it starts: ``name`` (true), ``!name``
+    (false), ``name=a|b`` (one of these), ``name!=a|b`` (none of these)."""
 
     name: str
     default: str
@@ -108,8 +108,7 @@ EVENTS: Mapping[str, str] = {
 
 
 class Start(NamedTuple):
-    """A process: its program, its node's name and namespace (empty for those of its code), and what it
-    is given.
+    """A process: program, name and namespace of its node (empty: as in its code), what it is given.
 
     ``components`` are loaded into it: each has its class as ``plugin`` and no ``executable``.
     ``brought_up`` is true if its node has a life cycle that nobody else configures and activates.
@@ -119,8 +118,7 @@ class Start(NamedTuple):
 
     Without a package the ``executable`` is a command; with ``components`` and without both it loads
     these into the container called ``name``. A launch file of a package has its path in the
-    share folder for one, and names and values of launch arguments as words.
-    """
+    share folder for one, and names and values of launch arguments as words."""
 
     package: str
     executable: str
@@ -184,8 +182,9 @@ class Led(NamedTuple):
 
 
 def in_order(starts: Sequence[Start]) -> Iterator[Led]:
-    """Yield the processes with those that wait for them; one that waits for a missing one, or needs
-    another package than it, waits for nothing."""
+    """Yield the processes with those that wait for them.
+
+    One that waits for a missing one, or needs another package than it, waits for nothing."""
     leaders = {
         it.number: at
         for at, it in enumerate(starts)
@@ -270,5 +269,5 @@ def in_shares(text: str) -> list[str]:
 
 
 def path_of(it: str | File) -> str:
-    """Return a word of a program, for a file its path."""
+    """Return a word of a command line: a text as it is, a file by its path."""
     return it.path if isinstance(it, File) else it

@@ -83,8 +83,7 @@ class Sent(NamedTuple):
 
 
 class Known(NamedTuple):
-    """What is known of a system besides what it shows: how many ``messages`` came on each topic in
-    ``seconds``, where they were counted; how it was ``before``, where its plan is an earlier look."""
+    """What else is known: ``messages`` in ``seconds``; the system ``before``, if that is the plan."""
 
     messages: Mapping[str, int] = NO_COUNTS
     seconds: float = 0.0
@@ -258,7 +257,7 @@ class Index(NamedTuple):
 
     def of_robot(self, robot: str, kind: str, plain: str) -> Ends | None:
         """Return the ends of a robot's name, by the name without the robot's; None without."""
-        return _by_robot(self).get((robot, kind, plain))
+        return _ends_by_robot(self).get((robot, kind, plain))
 
     @property
     @once
@@ -334,7 +333,7 @@ def beside(
 
 
 @once
-def _by_robot(it: Index) -> Mapping[tuple[str, str, str], Ends]:
+def _ends_by_robot(it: Index) -> Mapping[tuple[str, str, str], Ends]:
     return {
         (it.robot(name), kind, it.plain(name)): ends for (kind, name), ends in it.by_name.items()
     }
@@ -380,8 +379,7 @@ def sent_on(it: Index, topic: str) -> tuple[str, tuple[str, ...]]:
 
 
 def robots_of(it: Index, nodes: Iterable[str]) -> tuple[str, ...]:
-    """Return the robots that some nodes belong to, each once. A node outside of all robots that is
-    called like one of theirs counts as one more robot, without a namespace."""
+    """Return the robots of some nodes, and NO_NAMESPACE if one of none is called like one of theirs."""
     known, memo = unique(nodes), it.memo.setdefault(robots_of, {})
     # All nodes that send tf are asked for with each of their frames.
     if known not in memo:

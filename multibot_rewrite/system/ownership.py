@@ -60,8 +60,7 @@ class NameOwnership(NamedTuple):
         return robot if is_known or not self.plain_names else ""
 
     def robot_at_its_place(self, name: str) -> str:
-        """Return the robot whose tag is where this plan has tags, or an empty string; of tags of
-        several levels the longest counts."""
+        """Return the robot whose (longest) tag is where this plan has tags, or an empty string."""
         segments = name.strip("/").split("/")
         if self.robot_is_last:
             return self.robots.get(segments[-1], "") if len(segments) > 1 else ""
@@ -102,10 +101,10 @@ NOBODYS = NameOwnership({}, {}, {}, frozenset(), False)
 
 
 class Whose(NamedTuple):
-    """The robots of a system, and whose each name is: ``robot`` of a node, topic, service or action,
-    ``frame_robot`` of a frame; empty where it is of no robot or of all. ``plain`` and ``plain_frame``
-    have the name without the robot's. ``of_names`` and ``of_frames`` are how a plan has it.
-    """
+    """The robots of a system, and the robot of a node, topic, service or action, or of a frame.
+
+    It is empty where it is of no robot or of all. ``plain`` and ``plain_frame`` have the name
+    without the robot's. ``of_names`` and ``of_frames`` are how a plan has it."""
 
     robots: tuple[str, ...]
     robot: Callable[[str], str]

@@ -94,12 +94,10 @@ def origin_of(text: str) -> Origin:
 
 
 class Sure(NamedTuple):
-    """Whether something is there: ``runs`` always, ``may`` on a condition, is switched ``off``, or
-    it is ``unknown``.
+    """Whether something exists: it ``runs``, ``may`` on a condition, is ``off`` or ``unknown``.
 
     ``why`` is the condition, or why it is not known, for people. Of the nodes ``instead`` exactly one
-    runs.
-    """
+    runs."""
 
     word: Annotated[str, SURE_WORDS]
     why: str = ""
@@ -212,12 +210,13 @@ class End(NamedTuple):
 
 
 class Edge(NamedTuple):
-    """A transform on ``topic``, which is empty in a plan that says who sends it; ``publishers`` are all
-    nodes that may have sent it. A tf message does not say which node sent it; ``several`` is whether
-    more than one did. ``transform`` is the last one: x, y, z in metres and a quaternion x, y, z, w;
-    empty if not known, or if several static ones differ; inf for NaN. ``rate`` is how often it came a
-    second, 0 if not known, ``age`` as in ``Heard``. ``OFF``: a parameter forbids it.
-    """
+    """A transform on ``topic``, which is empty in a plan that says who sends it.
+
+    ``publishers`` are all nodes that may have sent it: a tf message does not say which one did;
+    ``several`` is whether more than one did. ``transform`` is the last one: x, y, z in metres and a
+    quaternion x, y, z, w; empty if not known, or if several static ones differ; inf for NaN.
+    ``rate`` is how often it came a second, 0 if not known, ``age`` as in ``Heard``. ``OFF``: a
+    parameter forbids it."""
 
     child: str
     parent: str
@@ -238,12 +237,14 @@ def edge_of(parent: str, child: str, static: bool = False) -> Edge:
 
 
 class Heard(NamedTuple):
-    """The ``header.frame_id`` of a message that came on ``topic``, stamped ``age`` seconds before; inf
-    for a stamp of 0, and for a stopped clock, 0 for less than a second or not known. ``rate`` are
-    messages a second, 0 if not known, ``child`` the ``child_frame_id`` of odometry, ``joints`` the
-    names in a message about joints, which has no frame, ``back`` by how much a clock went back,
-    ``pose`` that of odometry or a pose, as the numbers of an edge; ``link`` is that of the sensor in a
-    simulator which sends it, and ``place`` where that is written."""
+    """The ``header.frame_id`` of a message that came on ``topic``.
+
+    It was stamped ``age`` seconds before; inf for a stamp of 0, and for a stopped clock, 0 for less
+    than a second or not known. ``rate`` are messages a second, 0 if not known, ``child`` the
+    ``child_frame_id`` of odometry, ``joints`` the names in a message about joints, which has no
+    frame, ``back`` by how much a clock went back, ``pose`` that of odometry or a pose, as the
+    numbers of an edge; ``link`` is that of the sensor in a simulator which sends it, and ``place``
+    where that is written."""
 
     topic: FullName
     frame: str
@@ -258,8 +259,7 @@ class Heard(NamedTuple):
 
 
 class Description(NamedTuple):
-    """The description that came on ``topic``: its links, and its joints that are not fixed; neither of
-    an empty one, or of a text that is no URDF."""
+    """The description on ``topic``: links, and joints that are not fixed; neither if it is no URDF."""
 
     topic: FullName
     links: tuple[str, ...] = ()
@@ -294,9 +294,10 @@ class Controller(NamedTuple):
 
 
 class Interface(NamedTuple):
-    """An interface of ros2_control, ``kind`` is command or state: ``node``, a controller manager,
-    ``exports`` it, or ``node``, a controller, ``claims`` it. A ``joint`` is exported by the controller
-    that moves it for MoveIt, and claimed by the node that plans for it."""
+    """An interface of ros2_control (``kind``: command or state) that ``node`` exports or claims.
+
+    For MoveIt a ``joint`` is exported by the controller that moves it, and claimed by the planning
+    node."""
 
     kind: str
     name: str
@@ -306,8 +307,7 @@ class Interface(NamedTuple):
 
 
 class Address(NamedTuple):
-    """What one process holds: a ``device`` or its ``calibration``, a port of its ``computer``, or what
-    is its ``own`` for another reason; ``name`` is the parameter that has it."""
+    """What only one process can have, such as a device or a port; ``name`` is the parameter with it."""
 
     kind: Annotated[str, ADDRESSES]
     name: str

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What names and types of a system say: which topics move a robot, which say where it is or what it
-sees; which nodes run with any fleet and are no part of a robot: tools, and what simulators start."""
+"""What names and types say: topics that move or locate a robot, nodes that are tools of any fleet."""
 
 from __future__ import annotations
 
@@ -99,8 +98,7 @@ def is_of_one_robot(plain: str, type_: str) -> bool:
 
 
 def is_tool(node: str, more: tuple[str, ...] = ()) -> bool:
-    """Return whether the node with this full name is a tool. ``more`` are patterns in addition to
-    the usual ones; without a slash they are of any namespace."""
+    """Return whether a full name is a tool's; ``more`` patterns without a slash fit any namespace."""
     word = node.rpartition("/")[2]
     if is_tool_word(word):
         return True
