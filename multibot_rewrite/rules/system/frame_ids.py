@@ -12,7 +12,8 @@ from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import SEVERAL, only, shorten, unique
 from multibot_rewrite.rules.declaration import last_place, system_rule
-from multibot_rewrite.rules.system.sharing import has_planner
+from multibot_rewrite.rules.system.likes import nodes_of_each
+from multibot_rewrite.rules.system.sharing import is_planned_with
 from multibot_rewrite.rules.system.tf_trees import root_of
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Index, Tree, at_work, nodes_of, once, robots_of, sent_on
@@ -177,12 +178,6 @@ def _senders_of(seen: Index) -> Mapping[str, str]:
     return {it.child: it.publishers[0] for it in reversed(edges)}
 
 
-@once
-def _nodes_by_robot(seen: Index) -> Mapping[tuple[str, str], str]:
-    """Return the first node by its robot and its name without the robot's."""
-    return {(seen.robot(it), seen.plain(it)): it for it in reversed([*seen.nodes])}
-
-
 def _without_frame(seen: Index) -> Iterator[Finding]:
     """Yield sensor and odometry messages without a frame, which tf2 refuses."""
     for it in seen.system.heard:
@@ -232,7 +227,7 @@ def _elsewhere_hint(seen: Index, frame: str, robot: str, elsewhere: Sequence[str
     """Return which node of another robot sends it, and which one this robot has, or the other place."""
     there = _senders_of(seen).get(frame, "")
     if there and robot and seen.robot(there):
-        mine = _nodes_by_robot(seen).get((robot, seen.plain(there)), "")
+        mine = nodes_of_each(seen).get(robot, {}).get(seen.plain(there), "")
         remedy = f"see the log of {mine}" if mine else f"start such a node for {robot}"
         return f"{there} sends it on its own tf: {remedy}"
     if elsewhere:
@@ -295,42 +290,30 @@ def description_does_not_fit(seen: Index) -> Iterator[Finding]:
     for it in seen.system.descriptions:
         _, senders = sent_on(seen, it.topic)
         robot = seen.robot(it.topic) or only(robots_of(seen, senders))
-        why = _description_fault(seen, it, robot) if senders else None
-        lost = None if why or not senders else _lost_joints(seen, it, robot)
-        # A wheel that nobody measures is only not shown.
-        planned = lost and any(has_planner(seen, topic) for topic, *_ in _joint_states(seen, it))
-        level = WARNING if lost and not planned else ERROR
-        if fault := why or lost:
+        if senders and (fault := _description_fault(seen, it, robot)):
+            message, hint, level = fault
             yield description_does_not_fit.finding(
-                *fault, level=level, robot=robot, node=senders[0], names=(it.topic,)
+                message, hint, level=level, robot=robot, node=senders[0], names=(it.topic,)
             )
 
 
-def _description_fault(seen: Index, it: Description, robot: str) -> tuple[str, str] | None:
-    """Return what is wrong with a description and what to do; None for nothing."""
+def _description_fault(seen: Index, it: Description, robot: str) -> tuple[str, str, str] | None:
+    """Return what is wrong with a description, what to do, and the level; None for nothing."""
     if not it.links:
-        ends = seen.by_name[TOPIC, it.topic]
-        readers = nodes_of(at_work(ends.subscribers))
+        readers = nodes_of(at_work(seen.by_name[TOPIC, it.topic].subscribers))
         wait = f"; {shorten(readers, SEVERAL)} has no model" if readers else ""
-        return (
-            f"{it.topic} is empty, or no URDF{wait}",
-            "see the command that makes it: xacro's log",
-        )
+        message = f"{it.topic} is empty, or no URDF{wait}"
+        return message, "see the command that makes it: xacro's log", ERROR
     others = {seen.frame_robot(link) for link in it.links} - {""}
     if robot and others and robot not in others:
         message = f"{it.topic} has the links of {min(others)}: {shorten(it.links, SEVERAL)}"
-        return message, f"load the description of {robot}"
-    return _other_frames(seen, it, robot) or _other_joints(seen, it)
-
-
-def _other_frames(seen: Index, it: Description, robot: str) -> tuple[str, str] | None:
-    """Return a fault if no link of several is a sent frame."""
+        return message, f"load the description of {robot}", ERROR
     own, pieces = _sent_frames(seen, it, robot)
-    if len(it.links) < 2 or not own or pieces:
-        return None
-    links, sent = shorten(it.links, SEVERAL), shorten(own, SEVERAL)
-    message = f"no link of {it.topic} ({links}) is a frame that is sent ({sent})"
-    return message, "who sends tf has another description: load one in both"
+    if len(it.links) > 1 and own and not pieces:
+        links, sent = shorten(it.links, SEVERAL), shorten(own, SEVERAL)
+        message = f"no link of {it.topic} ({links}) is a frame that is sent ({sent})"
+        return message, "who sends tf has another description: load one in both", ERROR
+    return _joint_fault(seen, it, [links[0] for links in pieces[1:]]) if it.joints else None
 
 
 def _sent_frames(
@@ -341,49 +324,36 @@ def _sent_frames(
     edges = [one for tree in trees_of(seen, robot) for one in tree.edges]
     own = sorted(one for one in frames_in(edges) if seen.frame_robot(one) in ("", robot))
     above = {one.child.removeprefix("/"): one.parent.removeprefix("/") for one in edges}
-    frames = {
-        name: one for one in own for name in (one.rpartition("/")[2], seen.plain_frame(one), one)
-    }
+    named = ((one.rpartition("/")[2], seen.plain_frame(one), one) for one in own)
+    frames = {name: names[-1] for names in named for name in names}
     if frames.keys().isdisjoint(it.links):
         return own, ()
     pieces = lists_by_key((root_of(frames.get(link, link), above), link) for link in it.links)
     return own, sorted(pieces.values(), key=len, reverse=True)
 
 
-def _other_joints(seen: Index, it: Description) -> tuple[str, str] | None:
-    """Return what is wrong where no sender of joint states in its namespace has a joint of it."""
-    for topic, senders, named in _joint_states(seen, it):
-        if it.joints and {*named}.isdisjoint(it.joints):
-            own, who, sent = (shorten(names, SEVERAL) for names in (it.joints, senders, named))
-            message = f"{it.topic} has the joints {own}, and {who} sends {sent} on {topic}"
-            return message, f"give {who} the names that the description has"
-    return None
-
-
-def _lost_joints(seen: Index, it: Description, robot: str) -> tuple[str, str] | None:
-    """Return what is wrong where joints are in no message, and no transform leads to their links."""
-    states = [*_joint_states(seen, it)]
-    said = {name for one in seen.system.heard for name in one.joints}
-    lacking = [name for name in it.joints if name not in said]
-    pieces = _sent_frames(seen, it, robot)[1] if states and lacking else ()
-    if len(pieces) < 2:
-        return None
-    topic, senders, _ = states[0]
-    lost = [links[0] for links in pieces[1:]]
-    who, names, links = (shorten(one, SEVERAL) for one in (senders, lacking, lost))
-    message = f"{who} sends no state of {names} on {topic}, so no transform leads to {links}"
-    return message, f"see which joints {who} is told to send"
-
-
-def _joint_states(
-    seen: Index, it: Description
-) -> Iterator[tuple[str, Sequence[str], Sequence[str]]]:
-    """Yield the topics of joint states in its namespace with their senders and joints. A sender of
-    joints of its own alone is healthy among others, so each of them has to be heard."""
-    heard = [one for one in seen.system.heard if one.joints]
-    for topic in unique(one.topic for one in heard):
+def _joint_fault(seen: Index, it: Description, lost: Sequence[str]) -> tuple[str, str, str] | None:
+    """Return what is wrong where joint states in its namespace have none of its joints, or lack some
+    and links are ``lost`` for it; a link that nobody measures is only not shown, but planned with."""
+    heard = lists_by_key((one.topic, one.joints) for one in seen.system.heard if one.joints)
+    for topic, every in heard.items():
         type_, senders = sent_on(seen, topic)
-        said = [one.joints for one in heard if one.topic == topic]
         beside = topic.rpartition("/")[0] == it.topic.rpartition("/")[0]
-        if type_ == words.JOINTS and beside and senders and len(said) >= len(senders):
-            yield topic, senders, unique(name for joints in said for name in joints)
+        # One with joints of its own alone is healthy among others, so each of them has to be heard.
+        if type_ != words.JOINTS or not (beside and senders and len(every) >= len(senders)):
+            continue
+        named = unique(name for joints in every for name in joints)
+        lacking = [name for name in it.joints if name not in named]
+        own, who, sent, missed, links = (
+            shorten(one, SEVERAL) for one in (it.joints, senders, named, lacking, lost)
+        )
+        if len(lacking) == len(it.joints):
+            message = f"{it.topic} has the joints {own}, and {who} sends {sent} on {topic}"
+            return message, f"give {who} the names that the description has", ERROR
+        if lacking and lost:
+            message = (
+                f"{who} sends no state of {missed} on {topic}, so no transform leads to {links}"
+            )
+            level = ERROR if is_planned_with(seen, topic) else WARNING
+            return message, f"see which joints {who} is told to send", level
+    return None
