@@ -357,16 +357,17 @@ def _unserved_findings(seen: Index, end: End, served: _Served) -> Iterator[Findi
 def _calls_in_vain(seen: Index, end: End) -> bool:
     """Return whether the end is of a user's own program, and calls what nobody serves."""
     theirs = is_viewer(end.node) or seen.is_tool(end.node) or team(end.node) != end.node
-    usual = end.type.startswith(COMMON) or is_from_outside(end.name)
+    # A name below a node that runs is that node's own.
+    below = end.name.rpartition("/")[0] in seen.node
+    common = end.type.startswith(COMMON) and not (below and end.type.startswith("std_srvs/"))
     # Beside other robots it may be one that is not started yet, if it is not its own.
-    own = seen.robot(end.node)
+    own = seen.robot(end.name) if below else seen.robot(end.node)
     others = len(seen.robots) > 1 and not (own and own == seen.robot(end.name))
     # What all robots call in vain is so by their make; goals that another robot takes are MG322.
     vain, served = _called_by_robots(seen).get((end.kind, seen.plain(end.name)), ((), ()))
     others = others or any(it != own for it in (*vain, *(served if end.kind == ACTION else ())))
-    return (
-        not (seen.in_doubt or theirs or usual or end.code_name or others) and "/_" not in end.name
-    )
+    usual = common or is_from_outside(end.name) or "/_" in end.name
+    return not (seen.in_doubt or theirs or usual or end.code_name or others)
 
 
 @once
