@@ -2,6 +2,7 @@
 """Document -> inventory: every value a site claims, the names in it, every symbol declared, every
 plugin met."""
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from lxml import etree
@@ -57,6 +58,12 @@ class Inventory(NamedTuple):
         return [(it.element, it.node.section) for it in self.hosts if it.node.section is not None]
 
     @property
+    def model(self) -> str:
+        """Return the name of the model: that of <robot>, in SDF of the first <model>."""
+        root = self.document.root
+        return str(next(root.iter("robot", "model"), root).get("name", ""))
+
+    @property
     def topics_in_full(self) -> frozenset[str]:
         """Return the topics that no ROS namespace reaches, such as those of a simulated sensor."""
         pairs = zip(self.claims, self.names, strict=True)
@@ -90,6 +97,15 @@ def collect(
     rules = {**rules, **names_in_topics(of_gz, declared, layout.renames_models)}
     apart = layout.at_run_time
     return inventory._replace(names=renaming.resolved_names(claims, declared, apart, rules))
+
+
+def values_with_own_model(inventory: Inventory) -> Iterator[Claim]:
+    """Yield the values that use the name of the description's own model."""
+    model = inventory.model
+    for claim, names in zip(inventory.claims, inventory.names, strict=True):
+        used = names if claim.site.role == "uses" else ()
+        if any(it.kind == naming.MODEL and it.text == model for it in used):
+            yield claim
 
 
 def _walk(document: Document, tree: Tree, format_: str) -> tuple[list[Claim], list[Host]]:
