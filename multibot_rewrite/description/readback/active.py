@@ -93,6 +93,7 @@ _DEVICE = lazy_compile(r"/dev/\S+|v?can\d+|COM\d+")
 # What is of the computer that a driver runs on.
 DEVICE, PORT = "device", "port"
 NOTHING, UNKNOWN, NAMESPACE, TRANSFORMS = "nothing", "unknown", "namespace", "transforms"
+OF_MODEL = "model"
 # What is sent or heard where no rule reaches, on the one topic that all have: frames keep robots apart.
 TRANSFORMS_ON = "transforms on"
 # The kind of what only a namespace keeps apart.
@@ -131,9 +132,13 @@ class ActivePart(NamedTuple):
 
     @property
     def opens_something(self) -> bool:
-        """False only where it is known to open nothing but what a value says, which is compared."""
+        """False only where it is known to open nothing but what a value says, which is compared, and
+        what is below the name that its model is spawned with, as all of a sensor without a topic."""
         words = self.section.opens if self.section else ()
-        return not words or any(it != NOTHING and not split_opens(it).path for it in words)
+        if self.kind == SENSOR and self.section:
+            return False
+        known = (NOTHING, OF_MODEL)
+        return not words or any(it not in known and not split_opens(it).path for it in words)
 
     @property
     def is_apart(self) -> bool:

@@ -97,13 +97,15 @@ CONTROL = """<ros2_control name="a" type="system"><hardware>
         robot(PLUGIN),
         robot("", BODY.replace('<link name="w"/>', f'<link name="w">{PLUGIN}</link>')),
         robot(CONTROL.format(PLUGIN)),
+        robot('<gazebo><plugin name="gazebo_ros_control"/></gazebo>'),
     ],
-    ids=["robot", "link", "ros2_control"],
+    ids=["robot", "link", "ros2_control", "no library"],
 )
 def test_a_plugin_outside_of_gazebo_is_reported(text: str, layout: str) -> None:
     (one, _) = rewrite_all(text, ["robot1", "robot2"], layout=layout)
     found = [it for it in one.findings if it.code == "MB112"]
-    assert len(found) == 1 and "<gazebo>" in found[0].hint
+    assert len(found) == 1 and ("filename" if "gazebo_ros" in text else "<gazebo>") in found[0].hint
+    assert "plugin not known" not in " ".join(one.not_verified)
     assert "multibot robot1" not in one.text
     inside = rewrite(robot(f"<gazebo>{PLUGIN}</gazebo>"), "robot1", layout=layout)
     assert "MB112" not in {it.code for it in inside.findings}
