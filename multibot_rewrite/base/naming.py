@@ -28,6 +28,7 @@ FRAME_KINDS = frozenset({"link", "frame"})
 TOPIC_KINDS = frozenset({"topic", "subtopic", "service"})
 # What a ROS namespace reaches, or is.
 ROS_KINDS = frozenset({*TOPIC_KINDS, "stem", "namespace"})
+MODEL = "model"
 # A use of one of these must be declared in the same file.
 CLOSED_KINDS = frozenset({"link", "joint", "model", "group"})
 # Declarations of these are looked up by name.
@@ -44,6 +45,7 @@ class Layout(NamedTuple):
 
     Where frames are named ``at_run_time`` a description keeps its links and joints: nodes put the
     robot's name in front of frames, as robot_state_publisher does with its ``frame_prefix``.
+    ``models``: it renames those of a description as an exception, since its values name its own.
     """
 
     name: str
@@ -53,11 +55,12 @@ class Layout(NamedTuple):
     namespaced: bool
     about: str
     at_run_time: bool = False
+    models: bool = False
 
     @property
     def renames_models(self) -> bool:
         """Return whether the model has another name for each robot, given by it and not its spawner."""
-        return self.frames and not self.at_run_time
+        return self.models or (self.frames and not self.at_run_time)
 
 
 LAYOUTS = (

@@ -148,12 +148,6 @@ def plugin_libraries(inventory: Inventory) -> list[str]:
     return [library_key(it.get("filename", "")) for it in hosts if it.tag == "plugin"]
 
 
-def model_name(inventory: Inventory) -> str:
-    """Return the name of a description's model: <robot> itself, in SDF the first <model>."""
-    root = inventory.document.root
-    return next(root.iter("robot", "model"), root).get("name", "")
-
-
 def is_for_classic(inventory: Inventory) -> bool:
     """Return whether a description is for Gazebo Classic, whose topics no bridge can reach."""
     known = plugin_libraries(inventory)

@@ -159,8 +159,10 @@ def process_wide(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
     inside = {host.element: section for section, host in wide}
     for claim in inventory.claims if inside else ():
         rule = split_remap(claim.value) if claim.site.form in ("remap", "argument") else None
-        host = next((it for it in claim.element.iterancestors() if it in inside), None)
-        if rule is None or host is None or relative(rule, host, inside[host], naming):
+        plugin_element = next((it for it in claim.element.iterancestors() if it in inside), None)
+        if rule is None or plugin_element is None:
+            continue
+        if relative(rule, plugin_element, inside[plugin_element], naming):
             continue
         if rule.target.startswith("/"):
             message = f"{claim.value!r} applies to the whole process, also to nodes of other robots"

@@ -47,7 +47,8 @@ class RobotSpec(NamedTuple):
     """One robot of a fleet file; paths are absolute or relative to the working directory.
 
     ``namespace`` has no leading slash; ``tag`` is the prefix or postfix of its frames and joints;
-    ``pose`` is None if the file has none. ``related_files`` maps a kind of ``KINDS`` to files; a kind
+    ``pose`` is None if the file has none; ``model`` is empty until the description is rewritten if
+    the file has none. ``related_files`` maps a kind of ``KINDS`` to files; a kind
     without files is not there. ``line``
     is its line in ``file``. ``filled`` are texts of files that are not as on disk, by path: parameters
     in the fleet file itself, parameter files in which a launch replaces something, and what is made of
@@ -166,7 +167,7 @@ def robot_spec(read: FleetData, naming: Naming, at: int, release: str) -> RobotS
         given_arguments(data, own, [description, *(str(it.description) for it in parts)], place),
         namespace,
         str(own.get(side, name)),
-        own.get("model", name),
+        own.get("model", ""),
         _pose(own, place),
         _colour(own, place),
         node_sets,

@@ -327,8 +327,10 @@ def _manager_in_plugin(
     names = {name for it in wide for name in it.names}
     library = built_in(release)
     if any(it.host == MANAGER for it in nodes) or any(it.fact.known == MANAGER for it in own):
-        made = (it for name in library.node_sets for it in nodes_of_set(library, name) if it.plugin)
-        yield from [it for it in made if it.name == MANAGER and it.plugin in names][:1]
+        every = (
+            it for name in library.node_sets for it in nodes_of_set(library, name) if it.plugin
+        )
+        yield from [it for it in every if it.name == MANAGER and it.plugin in names][:1]
 
 
 def related_file_nodes(

@@ -284,9 +284,9 @@ def _controllers(
     if not spawned:
         return
     facts = ((it, None if it.name else known_node(it, (), known.nodes)) for it in started)
-    own = {full_name(it, fact): it.parameters for it, fact in facts}
+    own = {full_name(it, fact): it for it, fact in facts}
     forwarded = controller_way(known.release)
-    for name, texts in texts_of(spawned, own):
+    for name, texts in texts_of(spawned, {name: it.parameters for name, it in own.items()}):
         if name not in managers:
             continue
         manager = managers[name]
@@ -299,9 +299,13 @@ def _controllers(
         for it in {it.name: it for it in active}.values():
             mine = _given_to(it, given)
             wide = manager.rules if forwarded.of_manager else ()
+            # A name that the launch file gives is a rule for every node of the process.
+            is_process = forwarded.process_wide and manager.process != SIMULATED
+            is_named = is_process and own[name].name
             fact = known.nodes.get(mine.fact.known, UNKNOWN)
             yield Run(
-                *("", it.name, manager.namespace, it.name, (*wide, *it.rules)),
+                *("", it.name, manager.namespace, manager.name if is_named else it.name),
+                rules=(*wide, *it.rules),
                 fact=_with_values(mine._replace(fact=fact)),
                 process=manager.process,
                 process_namespace=manager.namespace,

@@ -88,7 +88,7 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
     for (frame, robot, senders), messages in _by_sender(seen).items():
         heard = [frames[it.topic] for it in trees_of(seen, robot) if it.edges]
         there = not heard or any(frame in it.get(seen.frame_robot(frame), ()) for it in heard)
-        if there or _is_of_other_robot(seen, frame, robot, messages):
+        if there or _is_of_another(seen, frame, robot, messages):
             continue
         own = sorted({it for tree in heard for who in ("", robot) for it in tree.get(who, ())})
         # Those of the robot that have this name beside the robot's, or without it.

@@ -61,7 +61,7 @@ def _maps_below_the_map(seen: Index) -> Iterator[Finding]:
         robot = seen.robot(it.topic) or only(robots_of(seen, senders))
         edges = (one for tree in trees_of(seen, robot) for one in tree.edges)
         root = root_of(it.frame, {one.child: one.parent for one in edges})
-        if seen.plain_frame(root) in WORLD_FRAMES and _is_of(seen, it.frame, robot):
+        if seen.plain_frame(root) in WORLD_FRAMES and _may_be_of(seen, it.frame, robot):
             yield map_not_joined.finding(
                 f"frame_id of {it.topic} is {it.frame}, which moves in {root}; sent by {senders[0]}",
                 f"set the frame of {senders[0]} to that of the map",
