@@ -185,7 +185,6 @@ def _with_running_names(plan: System, graph: System) -> System:
 
 
 def _matching_ends(planned: End, by_node: Mapping[str, Sequence[End]]) -> Iterator[End]:
-    """Yield a planned end, once for each name of its node that fits its pattern."""
     if ANY not in planned.name:
         yield planned
         return

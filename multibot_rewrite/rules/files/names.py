@@ -84,7 +84,6 @@ def _undeclared_names(file: NamedFile, kinds: tuple[str, ...]) -> Iterator[Findi
 
 
 def _kind_of(site: Site) -> str:
-    """Return the kind of a name as a message calls it: that of an interface is a joint."""
     return "joint" if site.kind == "interface" else site.kind
 
 

@@ -165,7 +165,6 @@ def _sections(file: NamedFile) -> Iterator[Section]:
 
 
 def _moveit_section(file: NamedFile) -> Iterator[Section]:
-    """Yield the section that a file of MoveIt becomes."""
     kind = find_kind(file.document) if file.document else None
     if file.document is None or kind is None or is_for_ros_1(file.file):
         return
@@ -190,7 +189,6 @@ def _section(
     whole: Mapping[str, Setting],
     at: str = "",
 ) -> Section:
-    """Return a section, with the declarations of each given parameter."""
     exact = lists_by_key((it.path, it) for it in facts if "<" not in it.path)
     wild = [(it.path.rpartition(".")[2], it) for it in facts if "<" in it.path]
     known = tuple(

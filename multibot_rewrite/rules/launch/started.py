@@ -120,7 +120,6 @@ def no_container(launched: Launched) -> Iterator[Finding]:
 
 
 def _is_known_as(it: Run, known: str) -> bool:
-    """Return whether a node is this one of the library."""
     return it.fact.known == known
 
 
