@@ -221,7 +221,7 @@ def test_a_shorter_look_is_enough_where_all_of_this_machine_are_known(
     wanted = {
         "short": observe.assemble.ALL_KNOWN_SECONDS, "long": observe.assemble.QUIET_SECONDS,
     }  # fmt: skip
-    assert observe._enough(session(clock)) == wanted[enough]
+    assert observe._quiet_seconds(session(clock)) == wanted[enough]
 
 
 def test_what_is_subscribed_to(clock: Clock, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -259,7 +259,7 @@ def test_what_is_subscribed_to(clock: Clock, monkeypatch: pytest.MonkeyPatch) ->
 def test_ears_are_those_of_transforms_and_of_headers_where_they_are_asked_for(
     headers: bool, clock: Clock
 ) -> None:
-    made: Any = look.Ears(session(clock, Request(1.0, headers=headers)))
+    made: Any = look.GraphListeners(session(clock, Request(1.0, headers=headers)))
     updated: list[Any] = []
     made.tf = SimpleNamespace(update=lambda *it: updated.append(it), silent=lambda: ["/tf", "/a"])
     made.headers = SimpleNamespace(

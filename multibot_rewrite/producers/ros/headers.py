@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A few messages a sensor topic, for the frame that their header names and for their rate, and the
-latched descriptions; the function that subscribes is passed in.
+"""A few messages a sensor topic, for frame and rate, and descriptions; by a function passed in.
 
-Images are large: of a message only the frame is kept, and their topic is left at once.
-"""
+Images are large: of a message only the frame is kept, and their topic is left at once."""
 
 import math
 import time
@@ -81,7 +79,7 @@ class SensorTopic(NamedTuple):
 
     @property
     def has_rate(self) -> bool:
-        """Whether it is worth more than one message: small ones, of one publisher, now and then."""
+        """Return whether several messages are worth it: small ones of one publisher, now and then."""
         return (
             self.type != CLOCK_TYPE
             and self.publishers == 1
@@ -186,7 +184,7 @@ class HeaderSamples:
             end()
 
     def _spanned(self, topic: SensorTopic, data: bytes, mark: Mark) -> bool:
-        """Count a message; whether more are wanted for a rate."""
+        """Count a message, and return whether more are wanted for a rate."""
         stamp = read_stamp(data)
         if not stamp or not isinstance(mark, int):
             return False

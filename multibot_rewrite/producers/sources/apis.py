@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""``calls.txt``: which calls declare an endpoint, one line, one way to declare one;
-``harmless.txt``: which calls are given a node and declare none."""
+"""Which calls of a package declare an endpoint (``calls.txt``), and which do not (``harmless.txt``)."""
 
 from collections.abc import Mapping
 from functools import cache

@@ -67,8 +67,7 @@ class RouterSession(NamedTuple):
     def subscribe(
         self, key: str, latched: bool, received: Callable[[bytes, bytes], None]
     ) -> Callable[[], None]:
-        """Subscribe to a key: ``received`` gets payload and attachment; with ``latched`` also
-        earlier messages. rmw_zenoh keeps latched samples in the cache of an advanced publisher."""
+        """Subscribe to a key, if ``latched`` with earlier messages; return what ends it."""
         from zenoh import ext
 
         def arrived(sample: Any) -> None:
