@@ -79,7 +79,7 @@ def performed(path: str, launches: Sequence[Launching]) -> list[Performed]:
             module = _loaded(path)
         except (Exception, SystemExit) as error:  # a launch file may raise anything
             return [Performed((), failure(error)) for _ in launches]
-        return [_performed(module, path, it, packages) for it in launches]
+        return [_perform_launch(module, path, it, packages) for it in launches]
 
 
 def share(package: str) -> str:
@@ -122,7 +122,7 @@ class _Packages:
         return f"/{package}"
 
 
-def _performed(module: Any, path: str, it: Launching, packages: _Packages) -> Performed:
+def _perform_launch(module: Any, path: str, it: Launching, packages: _Packages) -> Performed:
     packages.installed = it.installed
     context = LaunchContext(noninteractive=True)
     context.environment.clear()
@@ -227,8 +227,7 @@ class _Seen(NamedTuple):
         return self.of_action(it)
 
     def of_action(self, it: Any) -> Any:
-        """Return a value that is not plain: for a node with a life cycle its number, for what
-        matches such nodes their numbers."""
+        """Return a value that is not plain; a node with a life cycle is its number."""
         if isinstance(it, LifecycleNode):
             return self.managed.index(it)
         if isinstance(it, ComposableNode):

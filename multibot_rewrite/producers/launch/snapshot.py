@@ -124,8 +124,7 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
 
 
 def _parts(nodes: Sequence[Run], inside: Sent) -> tuple[list[_Part], list[str]]:
-    """Return what each node adds, and the nodes that rcl refuses. Some nodes subscribe only while
-    they have subscribers: they are asked again until no topic has a new one."""
+    """Return what each node adds while others subscribe to it, and the nodes that rcl refuses."""
     parts, refused = [], []
     for it in nodes:
         try:
@@ -172,8 +171,7 @@ def _measured(parts: Iterable[_Part], frames: Mapping[str, str]) -> Iterator[Hea
 
 
 def _addresses(it: Run, known: Knowledge, models: Models) -> Iterator[Address]:
-    """Yield what a node alone can have: by its parameters, and by the hardware of its description,
-    unless that is a simulated model."""
+    """Yield what a node alone can have, by its parameters and by hardware that is not simulated."""
     node = known.parameters.nodes.get(it.fact.known)
     params = node.params if node else {}
     # One file is often given to all nodes; what these read is known, but for that of their plugins.
@@ -255,8 +253,7 @@ def _part(it: Run, inside: Sent) -> _Part:
 
 
 def _without_own_time(ends: Sequence[End]) -> Iterator[End]:
-    """Yield the ends without clocks that nobody sends: a simulator around their nodes has the time
-    (gz_ros2_control jazzy gz_ros2_control_plugin.cpp, PostUpdate)."""
+    """Yield the ends without unsent clocks in a simulator, which has the time itself."""
     sent = any(it.role == PUBLISHES and it.name == CLOCK for it in ends if it.sure == RUNS)
     yield from (it for it in ends if sent or it.name != CLOCK or it.process != SIMULATED)
 
@@ -269,9 +266,10 @@ def _frames(parts: Sequence[_Part]) -> Iterator[Edge]:
 
 
 def _clocks(nodes: Iterable[Run], notes: Iterable[LaunchNote]) -> Iterator[Parameter]:
-    """Yield simulated time by parameter; the default is false (rclcpp time_source.cpp), if all
-    parameters are known; a value that only a run shows is unknown. What sends lasting transforms
-    needs no time, and a bridge passes on the time that is in the data."""
+    """Yield use_sim_time by node: as set, false by default, or unknown.
+
+    What sends lasting transforms needs no time, and a bridge passes on the time that is in the
+    data."""
     notes = [it for it in notes if it.parameters]
     # A file that is lost is told where components are loaded, not at each of them.
     unknown, lost = {it.place for it in notes}, {it.place.file for it in notes if it.file}
