@@ -59,6 +59,7 @@ def checks_in(bounds: str) -> tuple[tuple[str, str], ...]:
 
 @lru_cache(maxsize=8192)
 def _fixed_parts(path: str) -> list[str]:
+    """Return the parts of a path between its words in brackets."""
     return _WILD.split(path)
 
 
@@ -168,6 +169,7 @@ def _base_of(section: str) -> Base:
 
 
 def _releases_of(word: str) -> str:
+    """Return the release words in a column; empty for another text."""
     return word.removeprefix(RELEASES) if word.startswith(RELEASES) else ""
 
 

@@ -56,6 +56,7 @@ def by_version(words: str) -> str:
 
 
 def _terms_by_version(term: str) -> Iterator[str]:
+    """Yield the release words that one ``PACKAGE VERSION+`` stands for."""
     name, _, since = term.removesuffix("+").partition(" ")
     if name in RELEASES or not since or name not in packages():
         yield term

@@ -163,6 +163,7 @@ def is_for_classic(inventory: Inventory) -> bool:
 
 
 def _robot_topics(inventory: Inventory, robot: str, model: str, naming: Naming) -> Iterator[Found]:
+    """Yield the topics of a robot's sensors and plugins, bridged or not."""
     elsewhere = OF_BOTH if is_for_classic(inventory) else ()
     for sensor in inventory.document.root.iter("sensor"):
         if sensor.get("type") not in elsewhere:
@@ -319,6 +320,7 @@ def _ros_name(name: str) -> str:
 
 
 def _ros_characters(name: str) -> str:
+    """Return a name with ``_`` for characters that ROS does not allow."""
     return _NUMBER.sub("_", _NOT_ROS.sub("_", name))
 
 

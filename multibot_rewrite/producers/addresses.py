@@ -103,6 +103,7 @@ def held_by(name: str, text: str) -> str:
 
 
 def _kind_of_value(text: str) -> str:
+    """Return COMPUTER for the path of a device; otherwise empty."""
     return COMPUTER if is_device(text) else ""
 
 
@@ -116,6 +117,7 @@ def is_of_network(text: str) -> bool:
 
 
 def _known_parameters() -> Mapping[str, str]:
+    """Return the kind of address by the name of a parameter."""
     kinds = {"address": DEVICE, CALIBRATION: CALIBRATION, COMPUTER: COMPUTER}
     return {name: kind for key, kind in kinds.items() for name in _data()[key]}
 

@@ -275,6 +275,7 @@ def _words_in(name: str) -> Iterator[str]:
 
 
 def _plain_name(name: str, robot: GuessedRobot | None) -> str:
+    """Return a name without the robot's namespace or name."""
     if robot is None:
         return name
     if robot.namespace and name.startswith(f"{robot.namespace}/"):

@@ -73,6 +73,7 @@ def joined(first: System, *others: System) -> System:
 
 
 def _check_one_system(looks: Sequence[Look]) -> None:
+    """Raise UsageError for snapshots of two domains, or of DDS and Zenoh."""
     first = looks[0]
     around = first.snapshot.environment
     for look in looks[1:]:

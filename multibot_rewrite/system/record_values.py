@@ -209,6 +209,7 @@ def _limited(expected: Any, limit: object) -> Reader:
 
 
 def _read_short(kind: type, whole: Reader, value: object) -> object:
+    """Return a record from a value, or from the text that is short for it."""
     return whole(SHORT[kind][1](value)._asdict() if isinstance(value, str) else value)
 
 

@@ -128,6 +128,7 @@ def _recording(reader: Reader) -> Recording:
 
 
 def _topic(reader: Reader, name: str, connections: list[Connection]) -> RecordedTopic:
+    """Return a topic of a bag, with what its first messages say."""
     first = connections[0]
     count = sum(it.msgcount for it in connections)
     type_, frames, joints, back = str(first.msgtype), {}, {}, 0.0

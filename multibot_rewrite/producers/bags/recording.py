@@ -77,6 +77,7 @@ def as_snapshot(found: Recording, plan: System | None = None) -> System:
 
 
 def _heard_on(it: RecordedTopic) -> Iterable[Heard]:
+    """Yield what the messages of a topic name: frames, joints, a clock that went back."""
     yield from (Heard(it.name, frame, pose=it.pose) for frame in it.frames)
     yield from (Heard(it.name, "", joints=names) for names in it.joints)
     if it.back:

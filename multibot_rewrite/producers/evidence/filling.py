@@ -122,6 +122,7 @@ def _endpoint(
 
 
 def _sure_if(endpoint: Endpoint, is_there: bool | None) -> Endpoint:
+    """Return an endpoint without its condition, if that holds."""
     return endpoint._replace(when="") if is_there else endpoint
 
 
@@ -199,6 +200,7 @@ def _items(given: Given | None) -> list[str]:
 
 
 def _with_ids(text: str, binding: Ids) -> str:
+    """Return a text with its ``<id>`` placeholders filled in."""
     return _ID.sub(lambda found: binding.get(found[1], found[0]), text)
 
 
@@ -265,6 +267,7 @@ def _is_numbered(parameter: str) -> bool:
 
 @lru_cache(maxsize=1024)
 def _pattern(parameter: str) -> re.Pattern[str]:
+    """Return the expression for a parameter with placeholders."""
     number = r"\d+" if _is_numbered(parameter) else ""
     name = parameter.removesuffix(_NUMBER) if number else parameter
     return re.compile(with_gaps(_GAP.split(name), "[^.]") + number)

@@ -118,6 +118,7 @@ def _place(element: _Element, file: str) -> Place:
 
 
 def _plugin(hardware: _Element) -> _Plugin | None:
+    """Return what is known of a hardware plugin; None for an unknown one."""
     return _plugins().get((hardware.findtext("plugin") or "").strip())
 
 
@@ -213,6 +214,7 @@ def claimed_twice(claims: Iterable[Claim], node: Run) -> Iterator[tuple[Claimed,
 
 
 def _lookup(values: Mapping[str, Given]) -> Values:
+    """Return a look-up of values by parameter; None for one that is not set."""
     return lambda name: values[name].value if name in values else None
 
 

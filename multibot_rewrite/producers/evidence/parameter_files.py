@@ -74,6 +74,7 @@ def given_nodes(
 
 
 def _check_name(name: str, place: Place) -> None:
+    """Raise InputError for the name of a controller that no node can have."""
     fault = check_node_name(name)
     # Launch files fill in placeholders.
     if not fault or PLACEHOLDER.search(name):
@@ -115,6 +116,7 @@ def _sections(document: YamlText) -> tuple[_Section, ...]:
 
 
 def _flat_values(document: YamlText, body: yaml.Node, above: str) -> Iterator[tuple[str, Given]]:
+    """Yield dotted names of parameters and their values, for any robot."""
     for key, node in pairs(body):
         name = f"{above}{without_robot(str(key.value))}"
         if below := names_below(node):
@@ -176,17 +178,20 @@ def _by_name(sections: Sequence[_Section]) -> Callable[[str], list[_Section]]:
 
 
 def _sections_for(sections: Sequence[_Section], name: str) -> list[_Section]:
+    """Return the sections that a node reads: those of its name, and wildcards."""
     # A section such as /*/NODE is for the node in whatever namespace it is.
     return [it for it in sections if it.name == name or is_for(it.raw.path, f"/{name}")]
 
 
 def _values(sections: Sequence[_Section]) -> dict[str, Given]:
+    """Return the values of sections by name; those of later sections count."""
     return {key: given for it in sections for key, given in it.values.items()}
 
 
 def _run_of_sections(
     name: str, sections: Sequence[_Section], controller: _Controller | None, known: KnownNodes
 ) -> Run:
+    """Return a node with the values of its sections, and what it is known as."""
     own = _sections_for(sections, name)
     values = _values(own)
     named = [it for it in own if it.name]

@@ -149,6 +149,7 @@ def _argument_rows(program: str, words: Sequence[str]) -> Iterator[Row]:
 
 
 def _rows_of(row: re.Match[str]) -> Iterator[Row]:
+    """Yield the rows of an argument ``TOPIC@TYPE[GZ_TYPE`` or ``SERVICE@TYPE``."""
     name, type_, way, _, inside = row.groups()
     if "/srv/" in type_:
         yield Row(Endpoint(SERVICE, SERVES, name, type_), name)
@@ -164,6 +165,7 @@ def _topic_rows(name: str, type_: str, way: str, inside: str) -> Iterator[Row]:
 
 @lru_cache(maxsize=4096)  # a fleet has one a robot, and several rules ask for it
 def _rows_of_text(text: str) -> tuple[Row, ...]:
+    """Return the rows of a bridge file; none for another text."""
     rows: list[Row] = []
     try:
         entries = load_yaml(text, "")

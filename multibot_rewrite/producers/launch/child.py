@@ -98,6 +98,7 @@ def _node_of(full: str, it: Mapping[str, Any], place: Place) -> LaunchedNode:
 
 
 def _parameters(it: Mapping[str, Any], place: Place) -> Iterator[ParameterText]:
+    """Yield the parameter files and values of a node in a system model."""
     for text in it.get("params_files") or ():
         yield ParameterText("", str(text))
     program = f"{it.get('pkg')}/{it.get('exec')}"
@@ -151,6 +152,7 @@ def read_launch_files(
 
 
 def _checked_answer(order: LaunchOrder, answer: Mapping[str, Any]) -> LaunchGraph | InputError:
+    """Return the graph of an answer, or why there is none."""
     why = answer.get("error")
     try:
         if why is None:

@@ -207,6 +207,7 @@ def _cat_text(words: Sequence[str]) -> str:
 
 
 def _ros2_text(words: Sequence[str]) -> str:
+    """Return what ``ros2 param get`` prints for a description: words that stand for it."""
     is_description = [*words[:2], *words[-1:]] == ["param", "get", DESCRIPTION]
     return "the description of a running node" if is_description else ""
 

@@ -144,7 +144,7 @@ class Relay:
             return framed(REFUSAL, json.dumps(["refused", str(error)]).encode())
 
     def _one(self) -> XacroChild:
-        """Return the child that runs; raises GarbageError if there is none."""
+        """Return the child that runs; raises GarbageError without one."""
         if self.child is None:
             raise GarbageError
         return self.child
@@ -215,6 +215,7 @@ class Relayed:
         return self.signal
 
     def _asked(self, what: str, name: str) -> bytes:
+        """Return the parent's answer; raises EOFError if it refuses."""
         try:
             return self.ask(what, name)
         except RefusedError:

@@ -367,6 +367,7 @@ def namespace_of(value: Any, context: Any) -> str:
 
 
 def _namespace(value: Any, who: str, here: Visit) -> str:
+    """Return the full namespace; the one around, with a note, if it is not known."""
     try:
         return namespace_of(value, here.context)
     except UnknownError:
@@ -404,6 +405,7 @@ def parameters(given: Any, here: Visit) -> Iterator[ParameterText]:
 
 
 def _evaluated_texts(given: Any, here: Visit) -> Iterator[ParameterText]:
+    """Yield a parameter file or values of an action, or note why they are not known."""
     try:
         (found,) = of_launch_ros("utilities").evaluate_parameters(here.context, [given])
         if not isinstance(found, dict | pathlib.PurePath):
@@ -460,6 +462,7 @@ def _text_of_values(values: Any) -> ParameterText:
 
 
 def _plain_value(value: Any) -> Any:
+    """Return a value with plain types, and paths that outlast the launch."""
     if isinstance(value, dict):
         return {str(name): _plain_value(it) for name, it in value.items()}
     if isinstance(value, str):

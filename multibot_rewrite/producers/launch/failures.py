@@ -175,6 +175,7 @@ def is_unset(error: BaseException) -> bool:
 
 
 def _name_without_value(error: BaseException) -> str:
+    """Return the launch configuration that an error names as not set; or empty."""
     found = _NO_VALUE.search(str(error))
     return (found[1] or found[2]) if found else ""
 

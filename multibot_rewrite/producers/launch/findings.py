@@ -98,4 +98,5 @@ def not_read(graph: LaunchGraph) -> Iterator[Finding]:
 
 
 def _place(place: Place) -> dict[str, object]:
+    """Return a place as keywords of a finding."""
     return {"file": place.file, "line": place.line, "column": 1}

@@ -149,6 +149,8 @@ def _noting_constructor(made: Callable[..., None]) -> Callable[..., None]:
 
 
 def _note_source(made: Callable[[Any, Any], Any], read: Callable[[Any], Any]) -> Callable[..., Any]:
+    """Return a method that also notes which file it makes another one of."""
+
     @wraps(made)
     def keeping(self: Any, context: Any) -> Any:
         path = made(self, context)

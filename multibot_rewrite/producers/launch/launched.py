@@ -95,6 +95,7 @@ def models_in_simulator(models: Models, release: str) -> tuple[InSimulator, ...]
 
 
 def _model_in_simulator(it: Model, release: str) -> InSimulator | None:
+    """Return a model with its gz topics; None if its description cannot be read."""
     with suppress(MultibotError):
         document = read_document(it.text.encode(), it.place.file)
         name = it.name or document.root.get("name", "")

@@ -324,6 +324,7 @@ def _pair(
     known: Mapping[str, NodeFacts],
     words: Collection[str],
 ) -> _Pair:
+    """Return a launched node and what is known of it, as a node of the robot."""
     base = known_node(it, node_set, known)
     own = own_name(it, base)
     check_names(it)
@@ -470,6 +471,7 @@ def without_robot(given: Run, words: Collection[str]) -> Run:
 
 
 def _without_word(name: str, words: Collection[str]) -> str:
+    """Return a name without the first segment, if that is a word for the robot."""
     above, slash, rest = name.partition("/")
     return rest if slash and above in words else name
 

@@ -31,6 +31,8 @@ def keep_places() -> None:
 
 
 def _noting_place(made: Callable[..., None]) -> Callable[..., None]:
+    """Return a constructor that notes the line of the launch file that calls it."""
+
     @wraps(made)
     def keeping(self: Any, *words: Any, **options: Any) -> None:
         # An action for a robot is made again when it runs.

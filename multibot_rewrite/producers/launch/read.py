@@ -171,6 +171,7 @@ def _share(_self: FindPackageShare, package_name: str) -> str:
 
 
 def _visited_graph(description: Any, order: LaunchOrder) -> LaunchGraph:
+    """Return what visiting a description finds; raises UnreadableError."""
     # Without an argument that the file itself has to be given it is not read.
     for it, includes in getattr(description, ASKED)():
         usual = it.default_value is not None or getattr(it, "_conditionally_included", False)

@@ -200,6 +200,7 @@ def _refused(nodes: Sequence[str]) -> Iterator[Caveat]:
 
 
 def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[Run]) -> Iterator[Caveat]:
+    """Yield why something may be missing in the graph of a launch."""
     # What several nodes lack is said once, where the first one does.
     first: dict[str, Place] = {}
     for note in (it for it in notes if not it.fails):
@@ -237,6 +238,7 @@ def _of_bridges(nodes: Sequence[Run], inside: Sent) -> Iterator[Caveat]:
 
 
 def _part(it: Run, inside: Sent) -> _Part:
+    """Return what a node adds to the graph; raises UsageError for a name that rcl refuses."""
     bound = bound_of(it.name, it.namespace, it.rules)
     name = f"{bound.namespace.rstrip('/')}/{bound.node}"
     bound_of(it.name, it.process_namespace, it.process_rules)

@@ -93,6 +93,7 @@ def _add_prefix(prefix: str) -> None:
 
 
 def _add_share(name: str, prefix: str) -> str:
+    """Register a package below a prefix, and return its share folder."""
     os.makedirs(os.path.join(prefix, _INDEX), exist_ok=True)
     with open(os.path.join(prefix, _INDEX, name), "wb"):
         pass
@@ -158,6 +159,7 @@ def _by_cmake(name: str, folder: str) -> Iterator[tuple[str, str]]:
 
 
 def _by_module(name: str, folder: str) -> Iterator[tuple[str, str]]:
+    """Yield folders of a Python module that are installed as share folders: name and source."""
     module = os.path.join(folder, name)
     if os.path.isfile(os.path.join(folder, "setup.py")) and os.path.isdir(module):
         for it in os.listdir(module):

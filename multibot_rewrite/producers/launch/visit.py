@@ -222,6 +222,7 @@ def _visit_container(entity: Any, seen: Visit) -> Iterable[Any] | None:
 
 
 def _visit_load(entity: Any, seen: Visit) -> Iterable[Any] | None:
+    """Note the components that are loaded into a container of the launch or of another one."""
     if not wants(entity, seen):
         return None
     target = entity._LoadComposableNodes__target_container

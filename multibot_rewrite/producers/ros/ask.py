@@ -129,6 +129,7 @@ def _request(asked: Question) -> Any:
 
 
 def _with_answer(state: Answer, asked: Question, answer: Any) -> Answer:
+    """Return a node's state with the answer to a question."""
     if asked.type == GET_STATE:
         return state._replace(lifecycle=str(answer.current_state.label))
     if asked.type == GET_PARAMETERS:

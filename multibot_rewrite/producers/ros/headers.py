@@ -118,6 +118,7 @@ def sensor_topics(endpoints: Iterable[End]) -> Iterator[SensorTopic]:
 
 
 def _rank(topic: tuple[str, list[End]]) -> tuple[int, str]:
+    """Return the key by which topics are sorted: sensors first."""
     name, ends = topic
     package = ends[0].type.partition("/")[0]
     return PACKAGES.index(package) if package in PACKAGES else -1, name

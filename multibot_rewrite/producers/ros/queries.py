@@ -226,6 +226,7 @@ def _shared_qos(
     liveliness: Any,
     lease: int,
 ) -> Qos:
+    """Return the record of a profile, one object for equal ones."""
     return Qos(
         history.name,
         depth,

@@ -61,6 +61,7 @@ class Voices(NamedTuple):
 
 
 def _goes_back(last: Mark, mark: Mark) -> bool:
+    """Return whether a message's mark shows another sender than the last one."""
     if isinstance(last, bytes) and isinstance(mark, bytes):
         return last != mark
     return isinstance(last, int) and isinstance(mark, int) and mark <= last

@@ -98,6 +98,7 @@ def _without_parameters(value: dict[str, Any]) -> dict[str, Any]:
 
 
 def _checked_name(name: str, file: str) -> str:
+    """Return a full name; raises InputError for another one."""
     if not name.startswith("/"):
         raise InputError(f"{file}: {name!r} is not a full name that starts with /")
     return name

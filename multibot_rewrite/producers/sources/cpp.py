@@ -77,6 +77,7 @@ _COLUMNS = (Class, Call, Value, Alias, Constructor, Plugin)
 
 
 def _outer(node: Node, *types: str) -> Node | None:
+    """Return the nearest node of one of these types around a node; None without."""
     above = node.parent
     while above is not None and above.type not in types:
         above = above.parent
@@ -165,6 +166,7 @@ def _first_exit_in(block: Node) -> float:
 
 
 def _may_return(node: Node) -> bool:
+    """Return whether a function may end in this statement."""
     if node.type in _LEAVES:
         return True
     return any(_may_return(it) for it in node.named_children if it.type != "lambda_expression")

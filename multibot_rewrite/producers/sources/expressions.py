@@ -106,6 +106,7 @@ def callee(function: Node) -> tuple[str, tuple[str, ...], str]:
 
 
 def _text_of_field(field: str) -> Callable[[Any], str]:
+    """Return a function that returns the text of a node's field."""
     return lambda node: evaluated(node.child_by_field_name(field))
 
 
@@ -114,6 +115,7 @@ def _text_of_children(node: Node) -> str:
 
 
 def _text_of_call(node: Node) -> str:
+    """Return the value of a call, such as ``<@parameter>`` or ``<new Class>``."""
     function, arguments = (node.child_by_field_name(it) for it in ("function", "arguments"))
     if function is None:
         return "<?>"

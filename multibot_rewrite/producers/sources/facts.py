@@ -105,6 +105,7 @@ def node_of_program(
 
 
 def _events(names: Names, start: Start) -> Iterator[Event]:
+    """Yield what a program does from its start on."""
     if start.class_:
         found = names.classes.get(start.class_, ())
         own = [it for it in found if it.place.path == start.path] or [*found]
@@ -183,6 +184,7 @@ def _at(place: Place) -> str:
 
 
 def _endpoints(names: Names, it: Declared, release: str) -> Iterator[Endpoint]:
+    """Yield the endpoints that a declaration in a source makes."""
     when = _condition(names, it.spot, it.asked)
     type_ = it.type
     action = "/action/" in type_ or (not type_ and it.api.function in _ACTIONS)
@@ -258,6 +260,7 @@ def _names_by_setting(names: Names, spot: Spot, text: str) -> Iterator[tuple[str
 
 
 def _placeholder(text: str) -> str:
+    """Return a text with ``<name>`` for each value that is not known."""
     return text.replace("<@", "<").replace("{", "").replace("}", "")
 
 

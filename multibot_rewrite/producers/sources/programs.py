@@ -280,6 +280,7 @@ def _setup_strings(text: str) -> Iterator[str]:
 
 
 def _text_of(node: ast.AST, known: dict[str, str]) -> str:
+    """Return the text of an expression of constants; empty for unknown parts."""
     if isinstance(node, ast.Constant):
         return node.value if isinstance(node.value, str) else ""
     if isinstance(node, ast.JoinedStr):
@@ -325,6 +326,7 @@ def _component_start(folder: str, class_: str) -> Start | None:
 
 @lru_cache(maxsize=64)
 def _scripts(folder: str) -> tuple[str, ...]:
+    """Return the Python files and scripts of a package that can be started."""
     found: list[str] = []
     for above, folders, names in os.walk(folder):
         folders[:] = sorted(it for it in folders if it[0] != "." and it not in NOT_RUN)

@@ -178,6 +178,7 @@ def _iterated(node: ast.expr) -> str:
 
 
 def _pairs(target: ast.expr, value: ast.expr | None) -> Iterator[tuple[str, str]]:
+    """Yield the names that an assignment sets, with their values."""
     if isinstance(target, (ast.Tuple, ast.List)):
         same = isinstance(value, (ast.Tuple, ast.List)) and len(value.elts) == len(target.elts)
         each = value.elts if same else [None] * len(target.elts)  # type: ignore[union-attr]
@@ -188,6 +189,7 @@ def _pairs(target: ast.expr, value: ast.expr | None) -> Iterator[tuple[str, str]
 
 
 def _parts_below(part: _Part) -> Iterator[_Part]:
+    """Yield a part and all below it, each with its function and conditions."""
     yield part
     node = part.node
     if isinstance(node, ast.Lambda):
@@ -358,6 +360,7 @@ def _text_of_call(node: ast.Call) -> str:
 
 
 def _text_of_method(name: str, node: ast.Call) -> str:
+    """Return the value of a method call: a node, a filled text or an object."""
     on = _text(node.func.value) if isinstance(node.func, ast.Attribute) else ANY
     if name == "create_node" and node.args:
         return f"<Node:{braced(_text(node.args[0]))}>"

@@ -236,6 +236,7 @@ def type_in(names: Names, spot: Spot, type_: str) -> str:
 
 
 def _type_of_alias(names: Names, spot: Spot, name: str) -> str:
+    """Return the one type that an alias stands for; otherwise empty."""
     rows = names.aliases.get(name, ())
     own = {it.type for it in rows if it.owner in spot.made.owners}
     found = own or {it.type for it in rows}

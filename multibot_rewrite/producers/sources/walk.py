@@ -191,6 +191,7 @@ def _conditions_of(names: Names, spot: Spot, call: Call) -> str:
 
 
 def _events_of_call(walk: _Walk, spot: Spot, call: Call) -> Iterator[Event]:
+    """Yield what a call declares, sends, looks up or makes, or what it runs."""
     names, asked = walk.names, _conditions_of(walk.names, spot, call)
     here = spot._replace(asked=asked)
     name, types = _behind_aliases(names, spot, call)
@@ -405,6 +406,7 @@ def _parameters(names: Names, spot: Spot, call: Call) -> Iterator[Parameter]:
 def _declared_ends(
     names: Names, spot: Spot, call: Call, name: str, types: tuple[str, ...]
 ) -> Iterator[Declared]:
+    """Yield the endpoints that a call declares, by each API of its name."""
     given = [(it, text_in(names, spot, it)) for it in (*call.given, *(it for _, it in call.named))]
     nodes = [text for raw, text in given if is_node(raw) or is_node(text)]
     others = [text for raw, text in given if not (is_node(raw) or is_node(text))]

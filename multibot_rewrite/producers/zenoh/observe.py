@@ -241,6 +241,7 @@ class ZenohTf:
             self._session.deliver()
 
     def _waiting(self, passed: float, seconds: float) -> bool:
+        """Return whether a publisher of tf may still be heard."""
         silent = any(len(self._spoken[it]) < many for it, many in self._publishers.items())
         return passed < min(seconds, TF_LONGEST_SECONDS if silent else TF_SECONDS)
 

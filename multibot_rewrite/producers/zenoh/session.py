@@ -82,6 +82,7 @@ class RouterSession(NamedTuple):
         )
 
     def _keep(self, subscription: Any) -> Callable[[], None]:
+        """Keep a subscription, and return what ends it."""
         self.declared.append(subscription)
 
         def end() -> None:
