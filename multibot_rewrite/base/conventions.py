@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is everybody's, by convention: topics, frames, tools, words, each with its source; and
-tables of words that several packages use.
+"""What is everybody's by convention (topics, frames, tools), and words of several packages.
 
-Rows are in ``conventions.txt``, lines of words and no YAML: the start of every command reads them, and
-none pays for a parser.
-"""
+Each row of ``conventions.txt`` has its source. The rows are lines of words and no YAML: the start of
+every command reads them, and none pays for a parser."""
 
 import os
 import re
@@ -38,8 +36,7 @@ _WHO = {"every": EVERY, "any": ANY, "some": SOME, "one": ONE}
 
 
 class SharedTopic(NamedTuple):
-    """A topic that all robots may have in common. With ``kept`` a rewrite leaves its name as it is,
-    unless the user says otherwise."""
+    """A topic that all robots may share; a rewrite leaves a ``kept`` one unless told otherwise."""
 
     name: str
     senders: int
@@ -66,8 +63,10 @@ _FIXED_TO = {"world": WORLD, "start": START, "body": BODY}
 
 
 class UsualFrame(NamedTuple):
-    """A frame that has the same name on most robots: of the ``WORLD``, which is everybody's, of the
-    ``START`` of one robot, or of its ``BODY``. ``expected``: nearly every robot has it."""
+    """A frame that has the same name on most robots.
+
+    It is of the ``WORLD``, which is everybody's, of the ``START`` of one robot, or of its ``BODY``.
+    ``expected``: nearly every robot has it."""
 
     name: str
     fixed_to: int
@@ -87,8 +86,7 @@ USUAL_FRAMES = tuple(it.name for it in FRAMES if it.expected)
 
 
 class ToolNode(NamedTuple):
-    """Nodes in addition to any fleet, by a pattern of the name without its namespace. ``looks``: it
-    only looks, or passes on what a person asks for, so it is no sender of its own."""
+    """Nodes in addition to any fleet, by a name pattern; ``looks``: it is no sender of its own."""
 
     pattern: str
     looks: bool

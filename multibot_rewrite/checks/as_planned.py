@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A plan and what would run of the folder that was built for it -> where they differ.
+"""Compares a plan with what would run of the folder that was built for it.
 
 What the plan leaves to others is none of it: a simulator, the bringup of a robot, a node that is
 started by hand or on a condition.
@@ -62,15 +62,19 @@ def not_as_planned(
     told: Sequence[Finding],
     real: Set[str] = frozenset(),
 ) -> Iterator[Finding]:
-    """Yield as errors what ``multibot check`` would report of the running fleet. ``started`` are
-    the planned nodes that the launch file starts. What the build has ``told`` is reported as there.
-    Robots that are ``real`` have drivers that no file names."""
+    """Yield as errors what ``multibot check`` would report of the running fleet.
+
+    ``started`` are the planned nodes that the launch file starts. What the build has ``told`` is
+    reported as there. ``real`` robots have drivers that no file names."""
     running = {it.name: it for it in seen.nodes}
     found = check_view(planned, seen._replace(environment=Environment()))
     if not found:
         return
     by_plan = index(planned, whose_by_plan(planned))
-    open_, known = open_names(by_plan, told), lists_by_key((_key(by_plan, it), it) for it in told)
+    open_, known = (
+        open_names(by_plan, told),
+        lists_by_key((_identity(by_plan, it), it) for it in told),
+    )
     for it in found:
         level, place = _level(it, planned, seen, started), Place(it.file, it.line, it.column)
         if not it.file and it.node in running:
@@ -80,22 +84,21 @@ def not_as_planned(
         if not level or any((it.code, name) in open_ for name in it.names):
             continue
         here = it._replace(file=place.file, line=place.line, column=place.column)
-        yield from (one._replace(level=level) for one in known.get(_key(by_plan, it), [here]))
+        yield from (one._replace(level=level) for one in known.get(_identity(by_plan, it), [here]))
 
 
 def is_of_sources(it: Finding) -> bool:
-    """Return whether one robot may have the fault by its sources already, by the code."""
+    """Return whether a finding's code is for a fault that one robot's sources may have."""
     return bool(it.robot) and it.code in (*_OF_SOURCES, *_MISSED)
 
 
-def _key(by_plan: Index, it: Finding) -> tuple[str, ...]:
-    """Return the code and the names without those of robots."""
+def _identity(by_plan: Index, it: Finding) -> tuple[str, ...]:
+    """Return the code of a finding, and its names without the robot's."""
     return (it.code, *map(by_plan.plain, it.names)) if it.names else (it.code, str(it))
 
 
 def open_names(by_plan: Index, told: Iterable[Finding]) -> frozenset[tuple[str, str]]:
-    """Return the codes and names of what is open already: what has no sender or server by the plan
-    or the reports is no fault of the folder, nor is a client without a server."""
+    """Return codes and names of what is open by the plan or the reports already."""
     lacking = [it for it in (*told, *absences(by_plan)) if it.code in ABSENCE]
     alone = (it for it in lacking if it.code not in _MISSED or len(it.names) == 1)
     found = {(it.code, name) for it in alone for name in it.names}
@@ -106,7 +109,7 @@ def open_names(by_plan: Index, told: Iterable[Finding]) -> frozenset[tuple[str, 
 def _level(it: Finding, planned: System, seen: System, started: Set[str]) -> str:
     """Return the level of a finding; empty for what is no fault of the folder."""
     if it.code in _OF_NODES:
-        return ERROR if _is_of_launch(it, planned, seen, started) else ""
+        return ERROR if _is_to_be_started(it, planned, seen, started) else ""
     if it.code in CLAIMS and it.level == WARNING:
         return ERROR
     if it.level != ERROR or it.code == _OF_OTHERS:
@@ -122,21 +125,22 @@ def _level(it: Finding, planned: System, seen: System, started: Set[str]) -> str
     if it.code == planned_nodes.bridged_topic_missing.code:
         return ERROR if _is_read(seen) else ""
     sure = it.code not in ABSENCE or not doubts(seen)
-    return ERROR if sure or _is_of_a_lack(it, planned, seen, started) else ""
+    return ERROR if sure or _names_what_a_node_lacks(it, planned, seen, started) else ""
 
 
-def _is_of_a_lack(it: Finding, planned: System, seen: System, started: Set[str]) -> bool:
-    """Return whether it is about a planned name that a node of the launch file lacks."""
+def _names_what_a_node_lacks(it: Finding, planned: System, seen: System, started: Set[str]) -> bool:
+    """Return whether a finding names what a started node lacks, compared with the plan."""
     there = {(one.node, one.kind, one.role, one.name) for one in seen.ends}
     named = (one for one in surely(planned).ends if one.name in it.names)
     lacks = [one.node for one in named if (one.node, one.kind, one.role, one.name) not in there]
     of_nodes = (it._replace(code=_LACKS, node=node) for node in lacks)
-    return any(_is_of_launch(one, planned, seen, started) for one in of_nodes)
+    return any(_is_to_be_started(one, planned, seen, started) for one in of_nodes)
 
 
 def is_for_driver(it: Finding, planned: System, started: Set[str]) -> bool:
-    """Return whether the driver of a real robot may mend it: it places the link at which the tree is in
-    pieces, which no started node's parameters name, and sends what a localizer waits for."""
+    """Return whether the driver of a real robot may mend a fault: it sends what is missing."""
+    # It places the link at which the tree is in pieces, which no started node's parameters name,
+    # and sends what a localizer waits for.
     if it.code == localized.map_not_joined.code:
         # With another name, a frame below the map is the wrong one.
         return len(it.names) == 1
@@ -150,9 +154,9 @@ def _is_read(seen: System) -> bool:
     return all(it.code != NOT_WHOLE for it in doubts(seen))
 
 
-def _is_of_launch(it: Finding, planned: System, seen: System, started: Set[str]) -> bool:
-    """Return whether the launch file is to start the node, or one of the robot. What a node has
-    depends on its parameters, a controller on its manager; nothing does on an unknown program."""
+def _is_to_be_started(it: Finding, planned: System, seen: System, started: Set[str]) -> bool:
+    """Return whether the launch file is to start the node, or one of the robot."""
+    # What a node has depends on its parameters, a controller on its manager.
     if it.code == planned_nodes.missing_robot.code:
         return any(one.robot == it.robot and one.name in started for one in planned.nodes)
     own = next((one for one in planned.nodes if one.name == it.node), None)

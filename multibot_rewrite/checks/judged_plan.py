@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A fleet file, or a description and its robots -> the plan, with what is wrong between the robots and
-in their descriptions."""
+"""Makes the plan of a fleet file or of robots, with what is wrong between and in them."""
 
 from __future__ import annotations
 
@@ -41,8 +40,7 @@ from multibot_rewrite.producers.launch.records import LaunchOrder
 def plan_fleet(
     file: FleetFile, jobs: Mapping[Sources, Jobs] | None = None, trust: bool = False
 ) -> FleetPlan:
-    """Return the plan of a fleet file with all problems of its table. Arguments and errors are those
-    of ``make_plan``."""
+    """Return the plan of a fleet file with all problems of its table; raises as ``make_plan``."""
     plan = make_plan(file, jobs, trust)
     with gc_paused():
         file, table, robots = plan.file, plan.fleet.table, plan.robots
@@ -92,13 +90,12 @@ def make_fleet(
     launch: Sequence[LaunchOrder] = (),
     release: str,
 ) -> Fleet:
-    """Rewrite a description for every robot and return the fleet with its table, by the facts of the
-    release that the rewrite is for: ``release``, or where it is empty what ``rewrite_all`` takes.
+    """Rewrite a description for every robot and return the fleet with its table.
 
-    ``nodes`` is a file with more nodes and node sets, ``nodl`` are NoDL files, see
-    ``find_interfaces``; ``trust`` lets a xacro file do anything; ``launch`` are the launch files
-    that start each robot's nodes. Raises as ``rewrite_all``, and UsageError for an unknown node
-    set."""
+    An empty ``release`` is that which ``rewrite_all`` takes. ``nodes`` is a file with more nodes
+    and node sets, ``nodl`` are NoDL files, see ``find_interfaces``; ``launch`` are the launch
+    files that start each robot's nodes. Raises as ``rewrite_all``, and UsageError for an unknown
+    node set."""
     how: dict[str, Any] = {
         "definitions": definitions,
         "xacro_args": xacro_args,

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes of a robot that its own files leave idle: in no list of a lifecycle manager, or controllers
-without a joint. What ``check-launch`` says of a launch file, by the same rules."""
+"""Nodes that a robot's own files leave idle: without a lifecycle manager or a joint.
+
+The rules are those of ``check-launch``."""
 
 from __future__ import annotations
 
@@ -27,7 +28,7 @@ def left_idle(
     """Yield what starts and does nothing, by the robot's own parameter files."""
     own = {it.node: it for it in given}
     yield from _unlisted(nodes, own)
-    yield from _unbonded(nodes, own)
+    yield from _without_bond(nodes, own)
     running = {it.name for it in nodes if not it.when}
     for it in own.values():
         facts = known.get(it.fact.known)
@@ -42,7 +43,7 @@ def _unlisted(nodes: Sequence[NodeFacts], own: Mapping[str, Run]) -> Iterator[Fi
     """Report managed nodes that no lifecycle manager lists, if a file has the list."""
     managers = [it for it in nodes if it.kind == LIFECYCLE_MANAGER]
     place = next((own[it.name].place for it in managers if it.name in own), None)
-    listed = _listed(managers)
+    listed = _listed_nodes(managers)
     for it in nodes if place else ():
         idle = is_managed(it.kind) and it.name not in listed and not (it.when or it.shared)
         if idle and place:
@@ -50,10 +51,10 @@ def _unlisted(nodes: Sequence[NodeFacts], own: Mapping[str, Run]) -> Iterator[Fi
             yield at(not_listed, place, message, "add it to node_names", level=WARNING)
 
 
-def _unbonded(nodes: Sequence[NodeFacts], own: Mapping[str, Run]) -> Iterator[Finding]:
+def _without_bond(nodes: Sequence[NodeFacts], own: Mapping[str, Run]) -> Iterator[Finding]:
     """Report nodes that keep no bond with the manager that lists them, if a file has the list."""
     for manager in (it for it in nodes if it.kind == LIFECYCLE_MANAGER and it.name in own):
-        given, listed = own[manager.name], _listed([manager])
+        given, listed = own[manager.name], _listed_nodes([manager])
         timeout = given.values.get("bond_timeout")
         for it in nodes if timeout is None or timeout.value != 0 else ():
             if it.name in listed and keeps_no_bond(it):
@@ -61,6 +62,6 @@ def _unbonded(nodes: Sequence[NodeFacts], own: Mapping[str, Run]) -> Iterator[Fi
                 yield at(not_listed, given.place, *said, level=WARNING)
 
 
-def _listed(managers: Sequence[NodeFacts]) -> Set[str]:
+def _listed_nodes(managers: Sequence[NodeFacts]) -> Set[str]:
     """Return the nodes whose services managers call."""
     return {end.name.strip("/").partition("/")[0] for it in managers for end in it.endpoints}

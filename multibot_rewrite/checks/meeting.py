@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where the robots of a fleet meet: by the second reading of what was written for each, and the plan;
-and names that all are to share, and that none of them has."""
+"""Where the robots of a fleet collide, and names to be shared that none of them has."""
 
 from __future__ import annotations
 
@@ -48,9 +47,9 @@ def robots_meet(
     written: Mapping[str, Written] = NOTHING,
     domains: Mapping[str, int] = ONE_DOMAIN,
 ) -> Iterator[Finding]:
-    """Yield an error for each name that two robots have and that is not shared. ``written`` are the
-    files of robots, by namespace, ``domains`` theirs by name if they are not in one. Controllers of
-    a node set are in the table, with their spawners' rules."""
+    """Yield an error for each name that two robots have and that is not shared.
+
+    ``written`` are the robots' files, by namespace, ``domains`` theirs by name, if not in one."""
     shared = [it for member in members for it in member.shared]
     spawned = {it.robot for it in table.runs if it.fact.is_controller}
     if not spawned.issuperset(it.robot for it in members):
@@ -63,7 +62,7 @@ def robots_meet(
         return
     by_robot = {it.robot: it for it in members}
     names = {it.robot: it.name for it in members}
-    for it in meetings(_named(table, members), naming):
+    for it in meetings(_run_names(table, members), naming):
         robot, other = (names.get(one, one) for one in (it.robot, it.other))
         if it.name.kind in _OF_ROS and domains.get(robot) != domains.get(other):
             continue
@@ -71,7 +70,7 @@ def robots_meet(
         yield _finding(called, by_robot.get(it.robot), written.get(it.robot))
 
 
-def _named(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence[RuntimeName]]:
+def _run_names(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence[RuntimeName]]:
     """Return what each robot has at run time, first by its description."""
     made = (it for it in table.runs if it.fact.of_hardware)
     ruled = sets_by_key((run.robot, end.name) for run in made for end, _ in run.names)
@@ -102,7 +101,7 @@ def _named(table: Table, members: Sequence[Member]) -> Mapping[str, Sequence[Run
 
 
 def _finding(met: Meeting, member: Member | None, written: Written | None) -> Finding:
-    """Return a finding at the element of the description that has the name first, else at the node."""
+    """Return a finding at the element of a description with the name, or else at the node."""
     name, code = met.name, code_of(met.name)
     message = said(f"{met.robot} and {met.other} would both", name, met.twin)
     found = Finding(code, _level(code), message, advice(name, together=True), names=(name.name,))
@@ -170,7 +169,7 @@ def shared_by_nothing(
     asked_frames = sorted(fleet.naming.shared_frames - {*WORLD_FRAMES})
     if not asked_topics and not asked_frames:
         return
-    frames, topics = _described(fleet, FRAME_KINDS), _described(fleet, TOPIC_KINDS)
+    frames, topics = _described_names(fleet, FRAME_KINDS), _described_names(fleet, TOPIC_KINDS)
     frames |= {
         it for sent in fleet.edges.values() for edge in sent for it in (edge.child, edge.parent)
     }
@@ -195,7 +194,7 @@ def shared_by_nothing(
             yield found._replace(file=file, line=line, column=min(line, 1))
 
 
-def _described(fleet: NamesOfFleet, kinds: Collection[str]) -> set[str]:
+def _described_names(fleet: NamesOfFleet, kinds: Collection[str]) -> set[str]:
     """Return the names of some kinds in the descriptions, with and without the robot's name."""
     found: set[str] = set()
     for robot, inventory in fleet.inventories.items():

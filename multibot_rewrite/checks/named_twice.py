@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Names that two robots of a fleet declare, each in its own description; and topics that have a
-robot's name from an argument of its xacro, and once more from its namespace; controller managers
-that a plugin makes under another name than that of the robot's node set."""
+"""Names that two robots declare, that have a robot's name twice, and unused controller managers."""
 
 from __future__ import annotations
 
@@ -25,8 +23,7 @@ _KINDS = ("topic", "service")
 def declared_twice(
     robots: Iterable[RewrittenRobot], naming: Naming, told: Iterable[Finding]
 ) -> Iterator[Finding]:
-    """Yield what two robots declare though it is not shared, each in its description, except frames
-    that are reported (``told``) to collide."""
+    """Yield what two robots declare, but no shared name and no frame that ``told`` reports."""
     met = {name for it in told if it.code == FRAMES for name in it.names}
     first: dict[tuple[str, str], RewrittenRobot] = {}
     kinds = [it for it in _DECLARED if it in naming.separators]

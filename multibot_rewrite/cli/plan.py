@@ -43,7 +43,7 @@ TABLE, BRIDGE = "table", "bridge"
 def run(options: argparse.Namespace) -> int:
     """Make the plan and write what is asked for of it; returns the exit code."""
     if any(map(_LAUNCH.fullmatch, [options.input, *options.words[:1]])):
-        return _of_launch(options)
+        return _plan_launch(options)
     fleet.check_use(options, "plan", printed=not goes_to_file(options))
     # A robot that is called nothing; a layout, or rules, are for one with a name.
     unnamed = not options.input.endswith(fleet.FLEET_FILES) and not robots(options)
@@ -65,19 +65,20 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _note_coverage(options: argparse.Namespace, held: Coverage) -> None:
-    """Say how much the plan holds, unless that is all."""
+    """Print how much of the robots the plan has, unless it has all."""
     if not held.is_whole:
         note(options, held.in_words)
 
 
 def _write(options: argparse.Namespace, plan: System) -> None:
+    """Write the plan as YAML or JSON."""
     if (options.output or "").endswith(".json"):
         deliver(options, to_json(plan))
     else:
         deliver(options, to_yaml(plan).encode(), PLAN_SCHEMA)
 
 
-def _of_launch(options: argparse.Namespace) -> int:
+def _plan_launch(options: argparse.Namespace) -> int:
     """Write the plan of what a launch file starts; returns the exit code."""
     given = given_options(options, NOT_OF_LAUNCH)
     if given or options.output_kind != PLAN:
@@ -119,12 +120,12 @@ def deliver_rules(options: argparse.Namespace, made: Fleet) -> None:
         grid = Grid(("robot", "node", "runs as", "rule", "given to"), rows)
         deliver_report(options, (head, grid))
     elif options.output_kind == BRIDGE:
-        deliver(options, _bridge(options, made).encode())
+        deliver(options, _bridge_text(options, made).encode())
     else:
         deliver(options, FORMS[options.output_kind](table).encode())
 
 
-def _bridge(options: argparse.Namespace, made: Fleet) -> str:
+def _bridge_text(options: argparse.Namespace, made: Fleet) -> str:
     carried, left = bridged_topics(
         made.inventories, made.naming, made.models, made.table.runs, made.placed
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""With which options a rewrite can be taken back, where those that were given do not do it."""
+"""Finds options with which a rewrite can be undone, if the given ones do not do it."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def with_missing_options(
 
     What ``undo`` gives is verified: rewritten with these options it is the file again.
     """
-    words = _fullest(options, undo, robot)[1]
+    words = _best_options(options, undo, robot)[1]
     hint = f"the file was made with {words}: give that, too"
     return (
         RewriteRefused(tuple(it._replace(hint=hint) for it in error.findings)) if words else error
@@ -41,31 +41,30 @@ def with_missing_options(
 
 
 def more_to_undo(stripped: bytes, options: argparse.Namespace, undo: Undo, robot: str) -> str:
-    """Return the options with which more of the robot's name is taken out of its links; empty where
-    none of them has it, or no options do."""
+    """Return options that take more of the robot's name out of its links; empty for none."""
     tags = re.findall(rb"<link\b[^<>]*>", stripped)
     if not tags or any(robot.encode() not in it for it in tags):
         return ""
     other = argparse.Namespace(**{**vars(options), "affix": None, "separator": [], "layout": None})
-    left, words = _fullest(other, undo, robot)
+    left, words = _best_options(other, undo, robot)
     return words if left < stripped.count(robot.encode()) else ""
 
 
-def _fullest(options: argparse.Namespace, undo: Undo, robot: str) -> tuple[float, str]:
+def _best_options(options: argparse.Namespace, undo: Undo, robot: str) -> tuple[float, str]:
     """Return how often the name is left after the best added options, and the fewest such options."""
     best: tuple[float, str] = inf, ""
-    for more in _missing(options):
+    for more in _missing_options(options):
         try:
             made = undo(argparse.Namespace(**{**vars(options), **more}))
         except MultibotError:
             continue
         left = made.count(robot.encode())
-        best = best if best[0] <= left else (left, _written(more))
+        best = best if best[0] <= left else (left, _options_text(more))
     return best
 
 
-def _missing(options: argparse.Namespace) -> Iterator[dict[str, Any]]:
-    """Yield combinations of options that were not given, those of fewest options first."""
+def _missing_options(options: argparse.Namespace) -> Iterator[dict[str, Any]]:
+    """Yield combinations of missing options, the smallest ones first."""
     given = vars(options)
     open_ = {name: values for name, values in _TRIED.items() if not given[name]}
     every = (dict(zip(open_, values, strict=True)) for values in product(*open_.values()))
@@ -73,7 +72,7 @@ def _missing(options: argparse.Namespace) -> Iterator[dict[str, Any]]:
     yield from sorted(filter(None, named), key=len)
 
 
-def _written(more: dict[str, Any]) -> str:
+def _options_text(more: dict[str, Any]) -> str:
     return " ".join(
         f"--{name} {','.join(value) if isinstance(value, list) else value}"
         for name, value in more.items()

@@ -41,8 +41,7 @@ def rules() -> Mapping[str, Rule]:
 
 @cache
 def declared() -> tuple[Rule, ...]:
-    """Return the rules of commands other than the lint, in the order of the codes. If two have one
-    code and other examples, it is that of the declaring module."""
+    """Return the rules of commands other than the lint, in the order of the codes, each code once."""
     from multibot_rewrite.lint.registry import RULES
     from multibot_rewrite.rules import check
     from multibot_rewrite.rules.launch import judge

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """SVG of a group and of a tf tree, with places and states only; page.css has colours and styles.
-From left to right are publishers and servers, names, subscribers and clients.
 
-Lengths are pixels. Names and nodes are ordered by barycenters: each moves towards the middle of what
-it is connected to, which leaves few crossings. Faulty names are at the top.
-"""
+From left to right are publishers and servers, names, subscribers and clients. Lengths are pixels.
+Names and nodes are ordered by barycenters: each moves towards the middle of what it is connected to,
+which leaves few crossings. Faulty names are at the top."""
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -79,14 +78,14 @@ def group_svg(group: DrawnGroup, ids: Ids, prefix: str) -> str:
             f'<text class="head" x="{x + wide / 2:g}" y="16">{text}</text>'
             for (x, wide), text in zip((LEFT, MIDDLE, RIGHT), COLUMN_TITLES, strict=True)
         ),
-        *_edges(group, place, ids),
-        *_boxes(group, place, ids, prefix),
+        *_edges_svg(group, place, ids),
+        *_boxes_svg(group, place, ids, prefix),
         "</svg>",
     ]
     return "".join(parts)
 
 
-def _edges(group: DrawnGroup, place: "GroupLayout", ids: Ids) -> Iterator[str]:
+def _edges_svg(group: DrawnGroup, place: "GroupLayout", ids: Ids) -> Iterator[str]:
     """Yield the edges, faulty ones last and so above the others."""
     left = {node.name: y for node, y in place.left}
     right = {node.name: y for node, y in place.right}
@@ -103,7 +102,7 @@ def _edges(group: DrawnGroup, place: "GroupLayout", ids: Ids) -> Iterator[str]:
         yield f'<path class="e {edge.state}" data-e="{joined}" d="{path}"/>'
 
 
-def _boxes(group: DrawnGroup, place: "GroupLayout", ids: Ids, prefix: str) -> Iterator[str]:
+def _boxes_svg(group: DrawnGroup, place: "GroupLayout", ids: Ids, prefix: str) -> Iterator[str]:
     drawn = set()
     sides = ((LEFT, place.left), (RIGHT, place.right))
     for (x, wide), node, y in ((column, *it) for column, things in sides for it in things):
@@ -123,6 +122,7 @@ def _boxes(group: DrawnGroup, place: "GroupLayout", ids: Ids, prefix: str) -> It
 
 
 def _id_attributes(id_: str | None, ids: Ids, prefix: str) -> str:
+    """Return the attributes by which the script finds a thing; ``prefix`` is that of an anchor."""
     if id_ is None:
         return ""
     anchor = f' id="{prefix}{id_}"' if prefix and id_ in ids.anchors else ""
@@ -150,6 +150,7 @@ def _name_box(name: DrawnName, robot: str, y: float, id_attributes: str) -> str:
 
 
 def _meaning(state: str) -> str:
+    """Return what a state means; empty for one without fault."""
     return "" if state == OK else MEANINGS[state]
 
 
@@ -236,10 +237,7 @@ OFFERING = (PUBLISHES, SERVES)
 
 
 class GroupLayout(NamedTuple):
-    """The nodes and names of each column with their vertical middle, and the total height.
-
-    A node that offers and uses names is in both columns.
-    """
+    """The nodes and names of each column with their vertical middle, and the total height."""
 
     left: tuple[tuple[DrawnNode, float], ...]
     names: tuple[tuple[DrawnName, float], ...]
@@ -301,6 +299,7 @@ def _ordered_names(
 
 
 def _middle(values: Sequence[float]) -> float:
+    """Return the mean of the values, 0 for none."""
     return sum(values) / len(values) if values else 0.0
 
 

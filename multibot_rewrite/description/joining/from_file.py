@@ -56,7 +56,7 @@ def listed_in(path: str) -> tuple[tuple[Part, ...], int]:
         items = entries_of(keys, "join")
         if not items:
             raise UsageError(f"{path}: there are no parts; write {_EXAMPLE}")
-        parts = tuple(_part(it, os.path.dirname(path)) for it in items)
+        parts = tuple(_part_of_item(it, os.path.dirname(path)) for it in items)
         samples = word_of(keys, SAMPLES, "0")
         if not samples.isdecimal():
             wrong(keys[SAMPLES], f"samples is {samples}; write a number such as 10000")
@@ -99,7 +99,7 @@ def _without_banner(text: SourceText) -> bytes:
     return b'<?xml version="1.0"?>\n' + text.data[at:] if at > 0 else text.data
 
 
-def _part(item: YamlItem, folder: str) -> Part:
+def _part_of_item(item: YamlItem, folder: str) -> Part:
     keys = table(item, "a part", _KEYS)
     at = table_of(keys, "at")
     for key, value in at.items():
@@ -112,8 +112,10 @@ def _part(item: YamlItem, folder: str) -> Part:
             wrong(it, f"pose has {key}: {it.value}; write numbers for {', '.join(_POSE)}")
     pose = {key: number(word(it, key)) for key, it in table_of(at, "pose").items()}
     given: dict[str, Any] = {key: word_of(keys, key) for key in ("prefix", "name")}
-    given |= {key: _path(word_of(keys, key), folder) for key in ("description", "srdf", "rviz")}
-    given |= {key: [_path(it, folder) for it in words_of(keys, key)] for key in BESIDE}
+    given |= {
+        key: _path_from(word_of(keys, key), folder) for key in ("description", "srdf", "rviz")
+    }
+    given |= {key: [_path_from(it, folder) for it in words_of(keys, key)] for key in BESIDE}
     given["one_system"] = flag_of(keys, "one_system")
     given["at"] = {"parent": word_of(at, "parent"), "pose": pose}
     given["arguments"] = {
@@ -127,8 +129,7 @@ def _part(item: YamlItem, folder: str) -> Part:
 
 
 def part_of(keys: Mapping[str, Any]) -> Part:
-    """Return a part of checked data with the keys of a list of parts; raises UsageError for one that is
-    a list of parts itself."""
+    """Return a part from checked keys; raises UsageError if it is a list of parts itself."""
     described, at = keys["description"], keys.get("at", {})
     if described.endswith(JOIN):
         raise UsageError(f"{described} is a list of parts; name a URDF or xacro")
@@ -154,5 +155,5 @@ def _as_list(value: str | Sequence[str]) -> Sequence[str]:
     return [value] if isinstance(value, str) else value
 
 
-def _path(path: str, folder: str) -> str:
+def _path_from(path: str, folder: str) -> str:
     return os.path.normpath(os.path.join(folder, path)) if path else ""

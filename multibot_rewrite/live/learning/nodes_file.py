@@ -33,8 +33,7 @@ _NO_WRAP = 1 << 30
 
 
 def to_yaml(learned: Sequence[LearnedNode], node_set: str, library: NodeLibrary) -> str:
-    """Return the text of a file with the nodes and one node set of them. Raises ProofError if
-    reading it does not give the same nodes."""
+    """Return the text of a file with the nodes and a node set; raises ProofError if not read back."""
     text = "".join(f"{line}\n" for line in _lines(learned, node_set))
     facts = tuple(node.facts for node in learned)
     try:
@@ -50,6 +49,7 @@ def to_yaml(learned: Sequence[LearnedNode], node_set: str, library: NodeLibrary)
 
 
 def _lines(learned: Sequence[LearnedNode], node_set: str) -> Iterator[str]:
+    """Yield the lines of the file of nodes."""
     yield from HEAD.splitlines()
     yield from _comment(f"Of: {' '.join(node.seen for node in learned)}", "")
     yield from ("", "nodes:")
@@ -88,12 +88,14 @@ def _value(end: Endpoint) -> str:
 
 
 def _scalar(text: str) -> str:
+    """Return a text as YAML."""
     import yaml
 
     return str(yaml.safe_dump(text, width=_NO_WRAP)).removesuffix("...\n").rstrip("\n")
 
 
 def _flow(value: object) -> str:
+    """Return a value as YAML in one line."""
     import yaml
 
     dumped = yaml.safe_dump(value, width=_NO_WRAP, default_flow_style=True, sort_keys=False)
@@ -113,8 +115,7 @@ KEEP_LAST = "KEEP_LAST"
 def to_nodl(
     node: LearnedNode, graph: System, namespace: str, library: NodeLibrary, json: bool = False
 ) -> NodlFile:
-    """Return the document of a learned node; raises ProofError if reading it gives something else.
-    ``namespace`` is the robot's. QoS is as seen; what a graph does not show is SYSTEM_DEFAULT."""
+    """Return the NoDL document of a learned node, with QoS as seen; raises ProofError."""
     usual = {(it.role, it.name) for it in library.parts[EVERY_NODE]} | {("subscribes", CLOCK)}
     ends = [it for it in node.facts.endpoints if (it.role, it.name) not in usual]
     # One entry for each of its types.
@@ -122,7 +123,9 @@ def to_nodl(
     seen = _Seen(graph, node, namespace.rstrip("/"))
     written += [it for end in ends if end.transport for it in seen.transports(end)]
     description = f"Seen as {node.seen} in a running graph, by multibot snapshot"
-    return document_of(node.facts.name, description, written, lambda it: _qos(seen.qos(it)), json)
+    return document_of(
+        node.facts.name, description, written, lambda it: _nodl_qos(seen.qos(it)), json
+    )
 
 
 class _Seen(NamedTuple):
@@ -152,7 +155,7 @@ class _Seen(NamedTuple):
                 yield Endpoint(TOPIC, end.role, f"{end.name}/{transport}", found.type)
 
 
-def _qos(qos: Qos | None) -> dict[str, object]:
+def _nodl_qos(qos: Qos | None) -> dict[str, object]:
     if qos is None:
         return dict(UNKNOWN_QOS)
     found: dict[str, object] = {"history": DEFAULT, "reliability": DEFAULT}

@@ -158,7 +158,11 @@ def known_node(
     by_word = (node for node in of_package if {node.name, _snake_case(node.name)} & wanted)
     chosen = (node for node in known.values() if runs(node, program))
     found = next(of_set, None) or next(chosen, None) or next(by_word, None)
-    return as_started(found, it.executable, it.arguments) if found else None
+    if found is None:
+        return None
+    started = as_started(found, it.executable, it.arguments)
+    # Where no endpoint is left, it is started in a way that its entry does not tell.
+    return started if started.endpoints or not found.endpoints else None
 
 
 STATIC = "static_transform_publisher"

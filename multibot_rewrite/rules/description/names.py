@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""MB3: how names are written: those of links, joints and the robot that are not valid in URDF, SDF
-or tf, and those that are not valid in ROS: frames, topics, interfaces.
-"""
+"""MB3: names of links, joints, robots, frames, topics and interfaces that some reader refuses."""
 
 from __future__ import annotations
 

@@ -41,8 +41,9 @@ def starts_of(subject: Subject, elements: Collection[_Element]) -> Mapping[_Elem
 
 
 def is_fixed(subject: Subject, start: int, attribute: str, *, constants: bool = True) -> bool:
-    """Return whether no caller of xacro can set another value. ``start`` is that of the element's
-    tag; ``attribute`` is empty for text. False where that cannot be known. With ``constants``
+    """Return whether no caller of xacro can set another value; False where that is unknown.
+
+    ``start`` is that of the element's tag; ``attribute`` is empty for text. With ``constants``
     $(find ...) and the like count as text."""
     if not subject.origins:
         return True
@@ -94,5 +95,6 @@ def _passed_value(raw: bytes, call: Mapping[bytes, bytes]) -> bytes | None:
 
 
 def _attributes(source: bytes, start: int) -> dict[bytes, bytes]:
+    """Return the attributes of a tag as they are written."""
     tag = source[start : tag_end(source, start)]
     return {it[1]: it[2] if it[2] is not None else it[3] for it in _ATTRIBUTE.finditer(tag)}

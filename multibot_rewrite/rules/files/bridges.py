@@ -36,8 +36,7 @@ _BOTH_WAYS, _IN = DIRECTIONS[:2]
 
 @rule("MB855", "bridge-row", WARNING, formats=(BRIDGE,))
 def bridge_row(file: NamedFile) -> Iterator[Finding]:
-    """Report each fault of each row, and a row that is no item of a list (bridge_config.cpp: 'top
-    level must be a YAML sequence')."""
+    """Report each fault of each row, and a file that is no list of rows."""
     root = file.document.root if file.document else None
     if isinstance(root, yaml.MappingNode):
         hint = "write '- ' before it"
@@ -126,16 +125,16 @@ class GzTopic(NamedTuple):
 
 @rule("MB879", "bridge-row-without-gz-topic", WARNING, formats=(BRIDGE,), options={"build": True})
 def no_gz_topic(file: NamedFile) -> Iterator[Finding]:
-    """Report rows for a gz topic of the description with another type or direction, and rows that
-    read a missing one although another of their type exists: senders of other types are unknown."""
+    """Report rows whose gz topic the description lacks, or has with another type or direction."""
     known: GzTopics | None = file.memo.get(GzTopics)
     for row in map(row_of, _rows(file) if known else ()):
         _, node = row.get(GZ) or row.get(BOTH) or (None, None)
         if node is not None and known is not None:
-            yield from _of_row(node, row, known.topics)
+            yield from _topic_faults(node, row, known.topics)
 
 
-def _of_row(node: yaml.Node, row: Row, topics: Mapping[str, GzTopic]) -> Iterator[Finding]:
+def _topic_faults(node: yaml.Node, row: Row, topics: Mapping[str, GzTopic]) -> Iterator[Finding]:
+    """Yield what is wrong with the gz topic at a node, of one row."""
     topic = f"/{str(node.value).lstrip('/')}"
     way, type_ = text_in(row, "direction") or _BOTH_WAYS, _without_package(text_in(row, TYPES[1]))
     own = topics.get(topic)
@@ -159,6 +158,7 @@ def _of_row(node: yaml.Node, row: Row, topics: Mapping[str, GzTopic]) -> Iterato
 
 
 def _write(word: str, topic: GzTopic) -> str:
+    """Return the hint to write a word of the description's own topic."""
     return f"write {word}" + (f", see {topic.place}" if topic.place != NOWHERE else "")
 
 

@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Parameters that one node alone has in this form: the chains of filters of laser_filters, the
-commands of joy_teleop.
+"""Parameters of one node alone: the filter chains of laser_filters, the commands of joy_teleop.
 
 Sources: ros/filters 2.1.1 filter_chain.hpp (``load_chain_config``: filter1, filter2 ... up to the
 first number without name and type; one without the other, or a name twice, and the chain is not
 configured); ros-teleop/teleop_tools 99d16d74c joy_teleop/joy_teleop/joy_teleop.py
 (JoyTeleopCommand, JoyTeleopTopicCommand, ``get_interface_type``, ``get_parent_member``,
-JoyTeleop.__init__).
-"""
+JoyTeleop.__init__)."""
 
 from __future__ import annotations
 
@@ -39,7 +37,7 @@ _Values = Mapping[str, Setting]
 
 @rule("MB897", "joystick-command", ERROR, formats=(PARAMS,))
 def broken_commands(file: NamedFile) -> Iterator[Finding]:
-    """Report each command, at its first parameter."""
+    """Report each faulty command of joy_teleop, at its first parameter."""
     for section in sections(file):
         if section.node is None or section.node.name != "joy_teleop":
             continue
@@ -51,11 +49,11 @@ def broken_commands(file: NamedFile) -> Iterator[Finding]:
             if values.keys().isdisjoint(_WORDS):
                 continue  # another node may have that name: teleop_twist_joy has blocks, too
             first = next(iter(values.values()))
-            for words, hint in _faults(values):
+            for words, hint in _command_faults(values):
                 yield remark_at(first.key, f"{section.title}: command {name!r} {words}", hint)
 
 
-def _faults(values: _Values) -> Iterator[tuple[str, str]]:
+def _command_faults(values: _Values) -> Iterator[tuple[str, str]]:
     type_ = _text(values, "type")
     if type_ not in _TYPES:
         said = f"is of type {type_!r}" if type_ else "has no type"
@@ -71,10 +69,10 @@ def _faults(values: _Values) -> Iterator[tuple[str, str]]:
     if not any(it in values and values[it].value not in (None, []) for it in starts):
         yield "is started by nothing", f"add {starts[0]}, or {' or '.join(starts[1:])}"
     if type_ == "topic":
-        yield from _of_topic(values, kind)
+        yield from _topic_command_faults(values, kind)
 
 
-def _of_topic(values: _Values, kind: str) -> Iterator[tuple[str, str]]:
+def _topic_command_faults(values: _Values, kind: str) -> Iterator[tuple[str, str]]:
     mapped, fixed = (
         any(it.startswith(f"{name}.") for it in values) for name in (_MAPPINGS, _VALUE)
     )
@@ -120,6 +118,7 @@ def broken_chains(file: NamedFile) -> Iterator[Finding]:
 
 
 def _chains(section: Section) -> Mapping[str, _Filters]:
+    """Return the filters of each chain by their numbers."""
     found: dict[str, dict[str, dict[str, Setting]]] = {}
     for it in section.whole.values():
         if part := FILTER.fullmatch(it.name):

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Dangers of ``header.frame_id``: messages in a frame of another robot, or in one that is in no tf; and
-of latched descriptions: empty, of another robot, of other frames or joints."""
+"""Dangers of ``header.frame_id`` and of latched descriptions: another robot's, in no tf, empty."""
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
@@ -12,7 +11,7 @@ from multibot_rewrite.base.findings.finding import ERROR, WARNING, Finding, Sett
 from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import SEVERAL, only, shorten, unique
-from multibot_rewrite.rules.declaration import system_rule, where
+from multibot_rewrite.rules.declaration import last_place, system_rule
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import Index, Tree, at_work, nodes_of, once, robots_of, sent_on
 from multibot_rewrite.system.ownership import SEPARATORS
@@ -41,7 +40,7 @@ class _Message(NamedTuple):
 @system_rule("MG411", "frame-id-of-another-robot", ERROR)
 def frame_id_of_another_robot(seen: Index) -> Iterator[Finding]:
     """Report messages with another robot's frame, by the name of the frame."""
-    frames = _by_topic(seen)
+    frames = _frames_by_topic(seen)
     for (frame, robot, senders), messages in _by_sender(seen).items():
         # A sender of the frame's robot has the wrong topic, not the wrong frame.
         whose = {*map(seen.robot, senders)}
@@ -65,6 +64,7 @@ def _with_frame(messages: Iterable[_Message], frame: str) -> tuple[Setting, ...]
 
 
 def _is_of_another(seen: Index, frame: str, robot: str, messages: Sequence[_Message]) -> bool:
+    """Return whether measured messages are in a frame of another robot."""
     measured = any(it.type.startswith(_MEASURED) for it in messages)
     return bool(robot) and measured and seen.frame_robot(frame) not in ("", robot)
 
@@ -72,8 +72,8 @@ def _is_of_another(seen: Index, frame: str, robot: str, messages: Sequence[_Mess
 @system_rule("MG412", "frame-id-unknown", ERROR, absence=True)
 def frame_id_unknown(seen: Index) -> Iterator[Finding]:
     """Report unknown frames, if any transform was received; other rules report that none was."""
-    frames = _by_topic(seen)
-    yield from _nameless(seen)
+    frames = _frames_by_topic(seen)
+    yield from _without_frame(seen)
     yield from _with_slash(seen)
     for (frame, robot, senders), messages in _by_sender(seen).items():
         heard = [frames[it.topic] for it in trees_of(seen, robot) if it.edges]
@@ -85,7 +85,7 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
         last = frame.rpartition("/")[2]
         meant = sorted(it for it in own if seen.plain_frame(it) in (frame, last) or it == last)
         alike = [*filter(None, [nearest(frame, own, MISTYPED)])]
-        likely = meant or alike or _of_its_kind(messages, own)
+        likely = meant or alike or _frame_of_kind(messages, own)
         elsewhere = _topics_of_frames(seen).get(frame, ())
         topics, link = shorten([it.topic for it in messages]), messages[0].link
         # Of no use to their readers without a place; filters turn that of an IMU. Next to what a launch
@@ -98,10 +98,10 @@ def frame_id_unknown(seen: Index) -> Iterator[Finding]:
             # A sensor in a simulator sends what its description says, else a name that is in no tf.
             (f"write <gz_frame_id>{link}</gz_frame_id> in the sensor" if link else "")
             or (f"set the frame of {_one_of(senders)} to {_one_of(likely)}" if likely else "")
-            or _sent_there(seen, frame, robot, elsewhere)
+            or _elsewhere_hint(seen, frame, robot, elsewhere)
             or f"send a transform for it, or set the frame of {_one_of(senders)} to one that is in tf",
             level=ERROR if (meant and not link) or elsewhere or needed else WARNING,
-            robot=robot, node=senders[0], names=(frame,), **where(messages[:1]),
+            robot=robot, node=senders[0], names=(frame,), **last_place(messages[:1]),
             settings=() if link else _with_frame(messages, only(likely)),
         )  # fmt: skip
 
@@ -130,14 +130,14 @@ def _robot_of_joint(seen: Index, joint: str) -> str:
         return found
     named = [
         it
-        for it in _that_send(seen).get(joint, ())
+        for it in _robots_by_joint(seen).get(joint, ())
         if any(joint.startswith(f"{it}{m}") or joint.endswith(f"{m}{it}") for m in SEPARATORS)
     ]
     return min(filter(None, named), default="")
 
 
 @once
-def _that_send(seen: Index) -> Mapping[str, Set[str]]:
+def _robots_by_joint(seen: Index) -> Mapping[str, Set[str]]:
     """Return the robots on whose topics each joint is."""
     return sets_by_key(
         (joint, seen.robot(it.topic)) for it in seen.system.heard for joint in it.joints
@@ -145,7 +145,7 @@ def _that_send(seen: Index) -> Mapping[str, Set[str]]:
 
 
 @once
-def _by_topic(seen: Index) -> Mapping[str, Mapping[str, Set[str]]]:
+def _frames_by_topic(seen: Index) -> Mapping[str, Mapping[str, Set[str]]]:
     """Return the frames of each tree by their robot."""
     found: dict[str, dict[str, set[str]]] = {}
     for tree in seen.trees:
@@ -174,9 +174,8 @@ def _nodes_by_robot(seen: Index) -> Mapping[tuple[str, str], str]:
     return {(seen.robot(it), seen.plain(it)): it for it in reversed([*seen.nodes])}
 
 
-def _nameless(seen: Index) -> Iterator[Finding]:
-    """Yield sensor and odometry messages without a frame: tf2 refuses an empty frame_id; for a
-    speed readers guess one (robot_localization ros_filter.cpp: the base's)."""
+def _without_frame(seen: Index) -> Iterator[Finding]:
+    """Yield sensor and odometry messages without a frame, which tf2 refuses."""
     for it in seen.system.heard:
         type_, senders = sent_on(seen, it.topic)
         # Of odometry: its pose is known where all of the message was read.
@@ -194,8 +193,7 @@ def _nameless(seen: Index) -> Iterator[Finding]:
 
 
 def _with_slash(seen: Index) -> Iterator[Finding]:
-    """Report, once a sender, frames with a slash: tf2 takes it off in a transform, and refuses to
-    look up a frame with one (buffer_core.cpp validateFrameId)."""
+    """Report frames with a slash, once a sender: tf2 refuses to look them up (validateFrameId)."""
     found: dict[tuple[str, ...], dict[str, list[str]]] = defaultdict(lambda: defaultdict(list))
     for it in seen.system.heard:
         type_, senders = sent_on(seen, it.topic)
@@ -221,7 +219,7 @@ def _is_read(seen: Index, topic: str) -> bool:
     return bool(at_work(seen.ends_at(TOPIC, topic).subscribers))
 
 
-def _sent_there(seen: Index, frame: str, robot: str, elsewhere: Sequence[str]) -> str:
+def _elsewhere_hint(seen: Index, frame: str, robot: str, elsewhere: Sequence[str]) -> str:
     """Return which node of another robot sends it, and which one this robot has, or the other place."""
     there = _senders_of(seen).get(frame, "")
     if there and robot and seen.robot(there):
@@ -233,7 +231,7 @@ def _sent_there(seen: Index, frame: str, robot: str, elsewhere: Sequence[str]) -
     return ""
 
 
-def _of_its_kind(messages: Sequence[_Message], own: Sequence[str]) -> list[str]:
+def _frame_of_kind(messages: Sequence[_Message], own: Sequence[str]) -> list[str]:
     """Return the robot's frame that is named like one of such a sensor, if it has just one."""
     called = {word for it in messages for word in FRAMES_OF_SENSORS.get(it.type, ())}
     found = sorted(it for it in own if any(word in it for word in called))
@@ -241,8 +239,7 @@ def _of_its_kind(messages: Sequence[_Message], own: Sequence[str]) -> list[str]:
 
 
 def _by_sender(seen: Index) -> dict[tuple[str, str, tuple[str, ...]], list[_Message]]:
-    """Return frame, robot and senders -> the messages of nodes other than viewers; a camera has
-    several topics, and one fault. tf2 ignores a slash in front of a frame."""
+    """Return frame, robot and senders -> the messages of nodes other than viewers."""
     found: dict[tuple[str, str, tuple[str, ...]], list[_Message]] = defaultdict(list)
     for it in seen.system.heard:
         type_, senders = sent_on(seen, it.topic)
@@ -279,6 +276,7 @@ def frames_in(edges: Iterable[Edge]) -> set[str]:
 
 
 def _one_of(names: Sequence[str]) -> str:
+    """Return the only name, or ``one of`` several."""
     return only(names) or f"one of {shorten(names, SEVERAL)}"
 
 
@@ -324,8 +322,7 @@ def _other_frames(seen: Index, it: Description, robot: str) -> tuple[str, str] |
 
 
 def _other_joints(seen: Index, it: Description) -> tuple[str, str] | None:
-    """Return what is wrong where no sender of joint states in its namespace has a joint of it. One with
-    joints of its own alone is healthy among others, so each of them has to be heard."""
+    """Return what is wrong where no sender of joint states in its namespace has a joint of it."""
     space = it.topic.rpartition("/")[0]
     heard = [one for one in seen.system.heard if one.joints]
     for topic in unique(one.topic for one in heard):

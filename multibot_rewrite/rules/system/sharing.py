@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Dangers of what two have: one topic of several robots, a map or joint states twice, a device, a port
-or a file that only one process can open."""
+"""Dangers of sharing: a topic of several robots, two senders of a map, one device, port or file."""
 
 from __future__ import annotations
 
@@ -11,7 +10,7 @@ from multibot_rewrite.base.conventions import ROWS
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Remap
 from multibot_rewrite.base.wording import and_then, shorten
 from multibot_rewrite.rules import declaration
-from multibot_rewrite.rules.declaration import see, system_rule, where
+from multibot_rewrite.rules.declaration import last_place, see_all, system_rule
 from multibot_rewrite.rules.system.causes import Cause, names_another
 from multibot_rewrite.system import words
 from multibot_rewrite.system.index import NO_NAMESPACE, Ends, Index, at_work, nodes_of, robots_of
@@ -20,8 +19,7 @@ from multibot_rewrite.system.words import is_viewer, last_word
 
 
 def own_names(seen: Index, ends: Ends, robots: Sequence[str]) -> Cause:
-    """Return how each robot gets a topic of its own in place of one that they share; where a node of no
-    robot sends it, no remap rule gives each robot a sender."""
+    """Return how each robot gets a topic of its own in place of one that they share."""
     outside = [] if NO_NAMESPACE in robots else outsiders(seen, ends.publishers)
     if outside:
         one = "start one" if len(outside) == 1 else "start them"
@@ -130,8 +128,7 @@ def joint_states_twice(seen: Index) -> Iterator[Finding]:
 
 @system_rule("MG325", "sensor-twice", ERROR, meant=(PUBLISHES,))
 def sensor_twice(seen: Index) -> Iterator[Finding]:
-    """Yield sensor topics with two publishers. Played bags are no fault, nor are relays and bridges
-    in both directions, which read what they send."""
+    """Yield sensor topics with two publishers, other than played bags, relays and bridges."""
     for ends in seen.topics:
         described = last_word(ends.name) == words.DESCRIPTION
         if len(ends.publishers) < 2 or not (described or words.is_of_one_sensor(ends.type)):
@@ -171,9 +168,9 @@ def _one_device(seen: Index) -> Iterator[Finding]:
     for (kind, node, other_node), pairs in met.items():
         given = ", ".join(f"{it.name} {it.value}" for _, it in pairs)
         yield one_device.finding(
-            f"has the same as {other_node}: {given}", _ADVICE[kind] + see(pairs[0]),
+            f"has the same as {other_node}: {given}", _ADVICE[kind] + see_all(pairs[0]),
             level=NOTE if kind == COMPUTER else WARNING,
-            robot=seen.robot(node), node=node, names=(other_node,), **where(pairs[0]),
+            robot=seen.robot(node), node=node, names=(other_node,), **last_place(pairs[0]),
         )  # fmt: skip
 
 

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Dangers of what is not there: an end whose node's code or parameters name it, a frame or a
-transform that nodes ask tf for, and nothing sends.
-"""
+"""Dangers of what nothing sends: an end, a frame or a transform that nodes ask for."""
 
 from __future__ import annotations
 
@@ -13,7 +11,7 @@ from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.base.grouping import lists_by_key, sets_by_key
 from multibot_rewrite.base.nearest import MISTYPED, nearest
 from multibot_rewrite.base.wording import shorten
-from multibot_rewrite.rules.declaration import system_rule, where
+from multibot_rewrite.rules.declaration import last_place, system_rule
 from multibot_rewrite.rules.system.frame_ids import frames_in, trees_of
 from multibot_rewrite.rules.system.instead import is_needed, meant
 from multibot_rewrite.rules.system.likes import nodes_of_each
@@ -52,7 +50,7 @@ def nothing_known_sends(seen: Index) -> Iterator[Finding]:
         elsewhere: dict[str, str] = {}
         for name in sorted(names) if robot else ():
             given = _names_without_robot(seen).get(seen.plain(name), ())
-            if other := next((it for it in given if _of_its_kind(seen, it, robot)), ""):
+            if other := next((it for it in given if _is_of_like_robot(seen, it, robot)), ""):
                 elsewhere[name] = other
         if lacked := tuple(elsewhere):
             others = shorten(elsewhere.values(), _LISTED)
@@ -66,9 +64,8 @@ def nothing_known_sends(seen: Index) -> Iterator[Finding]:
             yield nothing_known_sends.finding(message, hint, robot=robot, names=rest)
 
 
-def _of_its_kind(seen: Index, name: str, robot: str) -> bool:
-    """Return whether a name is of another robot that runs nothing which the robot has not, except
-    its sender, and of which the nodes that both have send the same frames."""
+def _is_of_like_robot(seen: Index, name: str, robot: str) -> bool:
+    """Return whether a name is of a robot that is alike but for what sends that name."""
     other, nodes = seen.robot(name), nodes_of_each(seen)
     theirs, own = _frames(seen).get(other, {}), _frames(seen).get(robot, {})
     both = theirs.keys() & own.keys()
@@ -102,7 +99,7 @@ def no_longer_sent(end: End) -> Finding:
     does, gives = ("subscribes to", "publishes") if end.kind == TOPIC else ("calls", "serves")
     message = f"{does} {end.name}, which no node {gives} any more"
     return nothing_known_sends.finding(
-        message, level=ERROR, node=end.node, names=(end.name,), **where([end])
+        message, level=ERROR, node=end.node, names=(end.name,), **last_place([end])
     )
 
 
@@ -134,25 +131,29 @@ def frame_not_sent(seen: Index) -> Iterator[Finding]:
         readers.setdefault((robot, it.parent, it.frame), {}).setdefault(it.node, it)
     for (robot, *_), nodes in readers.items():
         it, *others = nodes.values()
-        found = _state(seen, it, sent[robot]) if it.parent else _read(seen, it, sent[robot])
+        found = (
+            _state_finding(seen, it, sent[robot])
+            if it.parent
+            else _usual_frame_finding(seen, it, sent[robot])
+        )
         if found:
             also = f"; the same for {', '.join(other.node for other in others)}" if others else ""
             yield found._replace(message=f"{found.message}{also}")
 
 
-def _read(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
+def _usual_frame_finding(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     plain = seen.plain_frame(it.frame)
     bare = it.frame.rpartition("/")[2]
     # Without a robot's name before it, it is sent.
     usual = plain in USUAL_FRAMES or (bare in USUAL_FRAMES and bare in frames_in(edges))
-    sender = _sender(seen, it.node, edges) if usual else None
+    sender = _sent_transform(seen, it.node, edges) if usual else None
     # One that hears no transforms writes the frame into messages, or into what it sends.
     hears = any(end.type == TF and end.role == SUBSCRIBES for end in seen.by_node.get(it.node, ()))
     if sender is None and usual and edges and not seen.in_doubt and hears:
         message = f"reads frame {it.frame}, but no known node sends it"
         return _finding(seen, it, message, "name the node or node set that sends it", NOTE)
     if sender is None:
-        return _unknown(seen, it, edges)
+        return _unknown_frame_finding(seen, it, edges)
     place = f" ({sender.place})" if sender.place != NOWHERE else ""
     who = next((it for it in sender.publishers if not seen.publishes_description(it)), "a node")
     sends = f"{who} sends {sender.parent} -> {sender.child}{place}"
@@ -162,7 +163,7 @@ def _read(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     return _finding(seen, it, f"reads frame {it.frame}, but no known node sends it", hint, level)
 
 
-def _unknown(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
+def _unknown_frame_finding(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     """Return a finding for an unknown frame: misspelled, or not sent in a running system; or None."""
     near = nearest(it.frame, sorted(frames_in(edges)), MISTYPED)
     if not near and (seen.system.environment.settled != QUIET or not edges):
@@ -171,9 +172,8 @@ def _unknown(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     return _finding(seen, it, f"reads frame {it.frame}, but nothing sends it", hint, WARNING)
 
 
-def _sender(seen: Index, node: str, edges: Sequence[Edge]) -> Edge | None:
-    """Return a transform that a node sends by its file, preferably one of the robot of ``node``. It
-    is None if only nodes without a file are known and others may run."""
+def _sent_transform(seen: Index, node: str, edges: Sequence[Edge]) -> Edge | None:
+    """Return a transform that a node sends by its file, preferably one of the robot of ``node``."""
     # Of all that send on one topic nobody can tell them apart: a description has no odometry.
     own = [
         it
@@ -186,7 +186,7 @@ def _sender(seen: Index, node: str, edges: Sequence[Edge]) -> Edge | None:
     return min(found, key=lambda it: robot not in map(seen.robot, it.publishers), default=None)
 
 
-def _state(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
+def _state_finding(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
     above = {edge.child: edge.parent for edge in edges}
     if it.frame in above and it.parent in {*above, *above.values()}:
         return None
@@ -210,5 +210,5 @@ def _state(seen: Index, it: Lookup, edges: Sequence[Edge]) -> Finding | None:
 def _finding(seen: Index, it: Lookup, message: str, hint: str, level: str) -> Finding:
     return frame_not_sent.finding(
         message, hint, level=level,
-        robot=seen.robot(it.node), node=it.node, names=(it.frame,), **where([it]),
+        robot=seen.robot(it.node), node=it.node, names=(it.frame,), **last_place([it]),
     )  # fmt: skip

@@ -23,8 +23,7 @@ _PASSED = "no findings"
 
 
 def as_junit(findings: Sequence[Finding], report: Report) -> str:
-    """Return the findings as JUnit XML: errors and warnings are failures, what is inconclusive is
-    skipped; a note passes, and so does a file without findings."""
+    """Return JUnit XML: errors and warnings fail, inconclusive ones are skipped, the rest passes."""
     suites = etree.Element("testsuites", {"name": report.tool, **_totals(findings, report)})
     for file, found in by_file(findings, report).items():
         path = one_line(path_below(file)) or "graph"
@@ -61,6 +60,7 @@ def as_junit(findings: Sequence[Finding], report: Report) -> str:
 
 
 def _totals(findings: Sequence[Finding], report: Report) -> dict[str, str]:
+    """Return the attributes of a suite: the numbers of tests, failures and skipped ones."""
     clean = set(report.files) - {file_of(it, report) for it in findings}
     failures = sum(it.level in (ERROR, WARNING) for it in findings)
     skipped = sum(it.level == INCONCLUSIVE for it in findings)

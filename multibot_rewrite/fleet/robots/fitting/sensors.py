@@ -68,19 +68,18 @@ def bridge_rows_of(spec: RobotSpec) -> Iterator[BridgeRow]:
 
 
 def bridged_commands(member: Member, spec: RobotSpec) -> dict[str, str]:
-    """Return the types of commands that go to the simulator, by the topics of the robot's own bridge
-    files; then those that the description names besides, for which the build has rows."""
+    """Return the types of commands that go to the simulator, by topic; bridge files come first."""
     rows = [it for it in bridge_rows_of(spec) if it.end.role == SUBSCRIBES]
     if spec.simulator == REAL or not rows:
         return {}
-    own = {_alone(it.inside): (it.end.name, it.end.type) for it in rows}
+    own = {_without_namespace(it.inside): (it.end.name, it.end.type) for it in rows}
     made, _ = bridged_topics({"": collect(member.source, member.tree)}, _NAMING)
     named = (it for it in made if it.direction == DIRECTIONS["out"] and not it.is_free)
-    every = own | {_alone(it.gz): (it.ros, it.ros_type) for it in named} | own
-    return {_alone(name): type_ for name, type_ in every.values() if type_ in COMMANDS}
+    every = own | {_without_namespace(it.gz): (it.ros, it.ros_type) for it in named} | own
+    return {_without_namespace(name): type_ for name, type_ in every.values() if type_ in COMMANDS}
 
 
-def _alone(name: str) -> str:
+def _without_namespace(name: str) -> str:
     return name.rpartition("<namespace>/")[2].strip("/")
 
 
@@ -88,10 +87,10 @@ def wanted(node: NodeFacts, end: Endpoint) -> str:
     """Return what an end hears; empty for none that a sensor sends, whatever else comes."""
     terms = (it for all_ in parse_condition(end.when) for it in all_)
     is_asked = end.role == SUBSCRIBES and all(it.parameter == HEARD for it in terms)
-    return _kind(node, end) if is_asked else ""
+    return _image_kind(node, end) if is_asked else ""
 
 
-def _kind(node: NodeFacts, end: Endpoint) -> str:
+def _image_kind(node: NodeFacts, end: Endpoint) -> str:
     deep = _DEPTH in f"{node.package}/{end.name}"
     of_depths = end.type == IMAGE and deep and end.name.partition("/")[0] not in _OF_COLOURS
     return DEPTHS if of_depths else end.type
@@ -100,13 +99,13 @@ def _kind(node: NodeFacts, end: Endpoint) -> str:
 def sent_as(nodes: Iterable[NodeFacts], kind: str) -> Collection[str]:
     """Return the topics that nodes surely send, without images of another kind."""
     every = ((node, it) for node in nodes for it in node.endpoints if it.role == PUBLISHES)
-    given = (it for it in every if not it[1].when and {kind, _kind(*it)} != {IMAGE, DEPTHS})
+    given = (it for it in every if not it[1].when and {kind, _image_kind(*it)} != {IMAGE, DEPTHS})
     return {topic_of(*it) for it in given}
 
 
 def by_sensor(node: NodeFacts, offered: Mapping[str, Sequence[str]]) -> NodeFacts:
-    """Return the node with the parameters by which it uses the sensors that its robot has one of; the
-    first in its entry count."""
+    """Return the node with the parameters for the sensors that its robot has one of."""
+    # The first in its entry count.
     chosen = [it for type_, it in node.by_sensor if len(offered.get(type_, ())) == 1]
     usual = dict((*node.usual, *(one for it in reversed(chosen) for one in it)))
     if not (node.by_sensor and usual):

@@ -40,10 +40,7 @@ class WrittenName(NamedTuple):
 
 
 class Scope(NamedTuple):
-    """The names in one macro, or outside of all of them (``macro`` is None then).
-
-    ``prefix_names`` are its prefixes and the properties made from them.
-    """
+    """The names in one ``macro`` or outside of all; ``prefix_names``: prefixes and what has them."""
 
     macro: _Element | None
     prefix_names: frozenset[str]
@@ -90,6 +87,7 @@ def _declares(element: _Element) -> bool:
 
 
 def _name_at(element: _Element, attribute: str, text: str) -> WrittenName:
+    """Return the name that an attribute or text of an element is."""
     words = frozenset(_names_in(text) if "$" in text else ())
     return WrittenName(element, attribute, text, words)
 
@@ -219,6 +217,7 @@ def _calls_others(macro: _Element) -> bool:
 
 
 def _hint(scope: Scope, text: str) -> str:
+    """Return how to write a name with the prefix, as another name of the scope has it."""
     own = next((it for it in scope.declared if it.words & scope.prefix_names), None)
     found = SUBSTITUTIONS.search(own.text) if own else None
     return f"use {found[0] + text!r}" if found else "put the prefix in front"

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Topics, namespaces, frames and tf that two robots of one description would share, those of Gazebo
-itself, and the robot description that plugins read.
-"""
+"""Topics, namespaces, frames and descriptions that two robots of one description would share."""
 
 from __future__ import annotations
 
@@ -33,8 +31,7 @@ ONE_TF = make_naming("frames-per-robot")
 
 
 def claims_of(subject: Subject, kinds: tuple[str, ...]) -> list[Claim]:
-    """Return claims whose first kind is one of ``kinds``, which are no names of links or joints;
-    only plugins, sensors and hardware have them."""
+    """Return claims whose first kind is one of ``kinds`` and that name no link or joint."""
     by_kind = _claims_by_kind(subject) if subject.inventory.hosts else {}
     found = [it for kind in kinds for it in by_kind.get(kind, ())]
     return [claim for _, claim in sorted(found, key=itemgetter(0))]
@@ -146,6 +143,7 @@ def gz_topic_shared(subject: Subject) -> Iterator[Problem]:
 
 
 def _is_gz(claim: Claim) -> bool:
+    """Return whether a claim is of a plugin or sensor of the new Gazebo."""
     return claim.site.section.startswith(GZ_SECTIONS)
 
 
