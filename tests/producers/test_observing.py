@@ -79,7 +79,7 @@ def test_when_the_graph_is_settled_the_names_that_came_last_are_known(
         observe, "overview", lambda _: (["/lidar"], [SCAN]) if clock.now > 1 else ([], [])
     )
     monkeypatch.setattr(observe, "view", lambda *_: (["/lidar"], [SCAN]))
-    monkeypatch.setattr(observe, "_enough", lambda *_: observe.assemble.QUIET_SECONDS)
+    monkeypatch.setattr(observe, "_quiet_seconds", lambda *_: observe.assemble.QUIET_SECONDS)
     updates: list[Any] = []
     heard: Any = SimpleNamespace(update=updates.append)
     made = session(clock)
@@ -118,7 +118,7 @@ def test_two_participants_see_whether_the_network_loses_packets(
     monkeypatch.setattr(look, "overview", overview)
     monkeypatch.setattr(observe, "overview", overview)
     monkeypatch.setattr(observe, "view", lambda *_: (["/lidar"], [SCAN]))
-    monkeypatch.setattr(observe, "_enough", lambda *_: observe.assemble.QUIET_SECONDS)
+    monkeypatch.setattr(observe, "_quiet_seconds", lambda *_: observe.assemble.QUIET_SECONDS)
     second = look.SecondParticipant(made, None)  # type: ignore[arg-type]
     second._second = other
     heard: Any = SimpleNamespace(update=lambda _: None)
@@ -157,7 +157,7 @@ def test_what_may_be_missing_in_a_snapshot_is_told(
     heard = SimpleNamespace(
         keep_waiting=keep_waiting, silent=lambda: ["/tf"], update=updates.append
     )
-    monkeypatch.setattr(observe, "Ears", lambda _: heard)
+    monkeypatch.setattr(observe, "GraphListeners", lambda _: heard)
     late = SimpleNamespace(starved=lambda: [Caveat("late", True, "")])
     monkeypatch.setattr(observe, "_wait_until_settled", lambda *_: (why, late, ("/a",), ()))
     monkeypatch.setattr(observe, "complete_view", lambda *_: (["/lidar"], [SCAN]))
