@@ -193,12 +193,12 @@ def source_of(keys: Mapping[str, YamlItem]) -> tuple[str, ...]:
 
 
 def variants(item: YamlItem) -> tuple[YamlItem, ...]:
-    """Return a fact, or a list of what it is in one release and another, as a list."""
+    """Return the variants of a fact in different releases as a list, also a single one."""
     return item.value if isinstance(item.value, tuple) else (item,)
 
 
 def check_apart(item: YamlItem, what: str, words: Sequence[str]) -> None:
-    """Check that a fact has a variant, and no two of them hold in one release."""
+    """Raise UsageError unless a fact has variants, no two of which hold in one release."""
     if not words:
         wrong(item, f"{what} is an empty list; write what it is")
     for release in RELEASES if len(words) > 1 else ():

@@ -355,7 +355,7 @@ _ROLES = {"GZ_TO_ROS": (PUBLISHES,), "ROS_TO_GZ": (SUBSCRIBES,)}
 
 
 def bridged_as(topics: Iterable[BridgedTopic]) -> tuple[Topic, ...]:
-    """Return the topics that descriptions have, each once."""
+    """Return the bridged topics as records of a plan, each once."""
     return once(
         Topic(it.ros, bridge=_ROLES.get(it.direction, BOTH), type=it.ros_type) for it in topics
     )

@@ -122,7 +122,7 @@ def virtual_lookups(semantics: Semantics) -> Iterator[Lookup]:
 
 
 def edges_off(given: Iterable[Run], known: Mapping[str, NodeFacts]) -> Iterator[Edge]:
-    """Yield what nodes would send, with the parameter that alone switches it off."""
+    """Yield the transforms that one parameter switches off, with the place of that parameter."""
     for it in given:
         node = known.get(it.fact.known)
         runs = filled(node, it) if node and node.sends else None

@@ -74,7 +74,7 @@ def guess_robots(graph: System) -> tuple[GuessedRobot, ...]:
 
 
 def _is_a_part(namespace: str, parts: Collection[str]) -> bool:
-    """Return whether a namespace's base hangs on that of a robot without a name."""
+    """Return whether a namespace's base frame is below that of a robot without a name."""
     word = namespace.rpartition("/")[2]
     return any(f"{word}{way}{base}" in parts for way in "/_" for base in BODY_FRAMES)
 
@@ -193,7 +193,7 @@ def _frame_robots(frames: Iterable[str], parents: Mapping[str, Set[str]]) -> Ite
 
 
 def _not_parts(words: Mapping[str, Collection[str]], parents: Mapping[str, Set[str]]) -> set[str]:
-    """Return the words whose frames hang on none of another word's."""
+    """Return the words whose frames are below none of another word's."""
     owners = {frame: word for word, frames in words.items() for frame in frames}
     above = {
         word: {owners.get(it, word) for it in _frames_above(frames, parents)}
@@ -214,7 +214,7 @@ def with_frames(robots: Iterable[GuessedRobot], frames: Iterable[str]) -> Iterat
 
 
 def _affixes(frame: str) -> Iterator[tuple[str, str]]:
-    """Yield the beginnings and ends of a frame up to each separator, with it."""
+    """Yield each beginning and each end of a frame that a separator bounds, with it."""
     for at, it in enumerate(frame):
         if it == "/" or it in SEPARATORS:
             yield frame[: at + 1], ""

@@ -130,7 +130,7 @@ class Index(NamedTuple):
     @property
     @once
     def sure(self) -> "Index":
-        """The same without the ends that only may be there."""
+        """The index without the ends that exist only on a condition."""
         system = surely(self.system)
         return self if system is self.system else self._replace(system=system, memo={})
 
@@ -278,7 +278,7 @@ class Index(NamedTuple):
 
     @property
     def nobody(self) -> str:
-        """Return words for no node: if others may run, for no known node."""
+        """Return ``no node``, or ``no known node`` if nodes may be missing in the view."""
         return "no known node" if incomplete(self.system) else "no node"
 
     def is_tool(self, node: str) -> bool:

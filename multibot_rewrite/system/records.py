@@ -424,7 +424,7 @@ def doubts(system: System) -> tuple[Caveat, ...]:
 
 
 def unseen(system: System) -> tuple[Caveat, ...]:
-    """Return the doubts about whether all nodes and ends are seen; those of a silent node are."""
+    """Return the doubts whether all nodes and ends are seen, without those about silent nodes."""
     return tuple(caveat for caveat in doubts(system) if caveat.code != SILENT)
 
 

@@ -225,7 +225,7 @@ def bridged_domains(running: Sequence[Run]) -> BridgedDomains:
 
 
 def _ends(it: Run, notes: list[LaunchNote]) -> Iterator[End]:
-    """Yield the ends of one bridge. All its files are for one name: the last that has one."""
+    """Yield the ends of one bridge; its files are all for one node, named by the last that does so."""
     options, paths = _domains_and_files(it.arguments)
     files: list[Mapping[str, Any]] = []
     for path in paths:
@@ -259,7 +259,7 @@ def _domains_and_files(words: Sequence[str]) -> tuple[dict[str, object], list[st
 
 
 def _of_topic(it: Run, bridge: str, topic: str, row: Mapping[str, Any]) -> Iterator[End]:
-    """Yield both ends of a topic, and those of the way back; of one domain nothing is bridged."""
+    """Yield the ends of a topic in both domains, and of the way back; none if these are one domain."""
     domains: tuple[int, ...] = ()
     with suppress(KeyError, TypeError, ValueError):
         domains = (int(row["from_domain"]), int(row["to_domain"]))

@@ -233,7 +233,7 @@ def _added(value: str, before: str) -> str:
 
 
 def _lasting_folders(text_: str) -> str:
-    """Return a list of folders as they are after the launch, each once; another text as it is."""
+    """Return a list of folders as they are after the launch, each once; another text unchanged."""
     real = real_paths(text_)
     if real == text_ and GONE not in real:
         return text_
@@ -279,7 +279,7 @@ def seconds(value: Any, here: Visit) -> float:
 
 
 def _description_in(package: str, words: tuple[str, ...]) -> Iterator[ParameterText]:
-    """Yield the description in a first argument (robot_state_publisher.cpp), a parameter's default."""
+    """Yield the description in robot_state_publisher's first argument: used without a parameter."""
     if package == "robot_state_publisher" and words and os.path.isfile(words[0]):
         yield _text_of_values({"robot_description": read_text(words[0])})
 

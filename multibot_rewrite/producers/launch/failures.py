@@ -112,7 +112,7 @@ def _lacking(error: BaseException) -> str:
 
 
 def _line(error: BaseException) -> str:
-    """Return the line of a launch file in Python that raised it."""
+    """Return the line of a launch file in Python that raised an error, for a message."""
     # launch has an error of its own around it.
     frames = reversed(_stack_frames(error.__cause__ or error))
     last = next((it for it in frames if it.filename.endswith("launch.py")), None)

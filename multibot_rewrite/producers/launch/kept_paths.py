@@ -31,7 +31,7 @@ def is_made(path: str) -> bool:
 
 
 def _top() -> str:
-    """Return the folder of what is made for launch files: each has its own in it."""
+    """Return the folder in which each launch file has a folder for what it makes."""
     own = tempfile.gettempdir()
     above = os.path.dirname(own)
     return above if os.path.basename(above).startswith(FOLDER) else own
@@ -93,7 +93,7 @@ def real_paths(text: str) -> str:
 
 
 def _real_path(path: str, below: str) -> str:
-    """Return what a path stands for that is ``below`` the folder of a launch file."""
+    """Return what a path ``below`` a launch file's folder is afterwards: a source, or GONE."""
     first, *inside = below.strip("/").split("/")
     if first == NOT_INSTALLED and len(inside) > 1:
         return "/".join((f"$(find-pkg-share {inside[1]})", *inside[2:]))

@@ -220,7 +220,7 @@ def _each_once(pairs: Iterable[_Pair]) -> tuple[list[_Pair], list[Finding]]:
 
 
 def _given_to(it: LaunchedNode) -> tuple[object, ...]:
-    """Return what a launch file sets for a node, except where it is."""
+    """Return what a launch file sets for a node, without the place."""
     return it.package, it.executable, it.remappings, it.parameters, it.arguments
 
 
@@ -245,7 +245,7 @@ def _handed_to(
 
 
 def _is_built(it: LaunchedNode) -> bool:
-    """Return whether a build makes it from the robot's own files: a spawner, or of a simulator."""
+    """Return whether a build makes it from the robot's own files: a spawner or a simulator's node."""
     is_simulator = it.package in SIMULATORS and it.executable == SIMULATOR
     return is_simulator or is_spawner(it) or _is_spawner_of_robot(it)
 
@@ -255,7 +255,7 @@ def _is_spawner_of_robot(it: LaunchedNode) -> bool:
 
 
 def _stands(include: LaunchedNode, node_set: Iterable[NodeFacts]) -> bool:
-    """Return whether the robot's node set has the nodes of a missing launch file."""
+    """Return whether the robot's node sets have the nodes of a missing launch file."""
     family = _FAMILIES.get(include.package, include.package)
     own = (it.package for it in node_set if it.origin != NO_ORIGIN)
     return any(it == family or (family[-1] == "_" and it.startswith(family)) for it in own)
@@ -264,7 +264,7 @@ def _stands(include: LaunchedNode, node_set: Iterable[NodeFacts]) -> bool:
 def _passing(
     it: LaunchedNode, words: Collection[str], of_all: Collection[tuple[str, str]]
 ) -> Passing:
-    """Return a process with its own environment, and its namespace below the robot's."""
+    """Return a process that is passed on, below the robot's namespace or once for all robots."""
     own = it._replace(environment=tuple(pair for pair in it.environment if pair not in of_all))
     once = bool(once_for_all(it)) and not is_of_robot(it.namespace, words)
     below = own if once else own._replace(namespace=f"/{_below(it.namespace, '', words)}")
@@ -389,7 +389,7 @@ def _is_left(node: NodeFacts, launched: Mapping[str, NodeFacts]) -> bool:
 def _hosted(
     pairs: Iterable[_Pair], known: Mapping[str, NodeFacts], there: Collection[str]
 ) -> Iterator[NodeFacts]:
-    """Yield the nodes that run inside launched ones, such as costmaps: where these run."""
+    """Yield the nodes that run inside launched ones, such as costmaps, in the namespaces of these."""
     hosts = {it.facts.known: it.facts for it in pairs}
     for node in known.values():
         if node.host and node.host in hosts and node.host != MANAGER and node.name not in there:
@@ -477,7 +477,7 @@ def _without_word(name: str, words: Collection[str]) -> str:
 
 
 def _in_process(node: NodeFacts, host: LaunchedNode) -> NodeFacts:
-    """Return the node under its process's rules, which are for all its nodes but controllers."""
+    """Return a node with the rules of its process, which reach all but controllers."""
     if node.host == MANAGER:
         return node
     below = node.name.rpartition("/")[0]

@@ -141,7 +141,7 @@ def _stand_in_for(error: BaseException, folder: str, missing: list[str]) -> None
 
 
 def _lost_packages(notes: Iterable[LaunchNote]) -> list[str]:
-    """Return the packages that are missing where something was started."""
+    """Return the missing packages that notes name, each once."""
     return list(dict.fromkeys(it.missing for it in notes if it.missing))
 
 
@@ -231,7 +231,7 @@ def _declared(description: Any) -> tuple[LaunchArgument, ...]:
 
 
 def _with_unset(notes: Iterable[LaunchNote], path: str) -> Iterator[LaunchNote]:
-    """Yield the notes; an included file fails without a configuration that nothing may have set."""
+    """Yield the notes; a later include fails if it needs a configuration that is surely not set."""
     known = True
     for it in notes:
         unset = it.unset and it.place.file != path

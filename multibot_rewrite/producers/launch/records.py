@@ -231,7 +231,7 @@ def joined(graphs: Sequence[LaunchGraph]) -> LaunchGraph:
 
 
 def _joined_nodes(graphs: Sequence[LaunchGraph], field: str) -> Iterator[LaunchedNode]:
-    """Yield the nodes of all, with the numbers of those that they wait for among all."""
+    """Yield the nodes of all graphs, renumbered so that each waits for the right one."""
     first = 0
     for graph in graphs:
         for it in getattr(graph, field):

@@ -319,7 +319,7 @@ def _settings_of(controller: Spawned, given: Sequence[Run]) -> Run:
 
 
 def _without_manager(lost: Sequence[Spawned]) -> Iterator[LaunchNote]:
-    """Note managers that no published description starts with a plugin either."""
+    """Note managers that neither the launch nor a plugin of a published description starts."""
     for manager in dict.fromkeys(it.manager for it in lost):
         mine = [it for it in lost if it.manager == manager]
         names = ", ".join(dict.fromkeys(it.name for it in mine))

@@ -49,7 +49,7 @@ def _robots(nodes: Iterable[LaunchedNode]) -> tuple[str, ...]:
 
 
 def _names(it: LaunchedNode) -> Iterator[str]:
-    """Yield what may be the name of its robot: its first namespace, its own name and words."""
+    """Yield texts that may name a node's robot: its first namespace, its own name and arguments."""
     yield it.namespace.split("/")[1]
     yield it.name
     for word in it.arguments:

@@ -124,7 +124,7 @@ def launched(graph: LaunchGraph, known: Knowledge) -> Launched:
 
 
 def _parts(nodes: Sequence[Run], inside: Sent) -> tuple[list[_Part], list[str]]:
-    """Return what each node adds while others subscribe to it, and the nodes that rcl refuses."""
+    """Return what each node adds, asked anew while topics get subscribers; and refused nodes."""
     parts, refused = [], []
     for it in nodes:
         try:
@@ -164,7 +164,7 @@ def _heard(nodes: Iterable[Run], sensors: Sequence[SensorFrame]) -> Iterator[Hea
 
 
 def _measured(parts: Iterable[_Part], frames: Mapping[str, str]) -> Iterator[Heard]:
-    """Yield the frames of sensor data from nodes of plugins."""
+    """Yield the frames of sensor data that nodes of plugins send."""
     for end in (it for part in parts if part.name in frames for it in part.endpoints):
         if end.sure == RUNS and end.role == PUBLISHES and end.type.startswith("sensor_msgs/"):
             yield Heard(end.name, frames[end.node])

@@ -200,7 +200,7 @@ def _options_of_each(words: Sequence[str]) -> Iterator[argparse.Namespace]:
 
 
 def _further(given: argparse.Namespace) -> Iterator[str]:
-    """Yield the words for how a controller is loaded; ``--inactive`` has its own field."""
+    """Yield the options by which a controller is loaded, without ``--inactive``."""
     for flag in _TIMES:
         if value := getattr(given, flag[2:].replace("-", "_"), None):
             yield from (flag, value)

@@ -289,7 +289,7 @@ def _later(entity: Any, seen: Visit) -> Iterable[Any] | None:
 
 
 def _wait(actions: Iterable[Any], word: str, seen: Visit, timer: bool = False) -> None:
-    """Keep actions with their context's locals: all for a timer, ours for an event handler."""
+    """Keep actions with their context's locals; for an event handler only those of this package."""
     actions, known = [*actions], seen.context.get_locals_as_dict()
     kept = {key: it for key, it in known.items() if timer or key.startswith(_OURS)}
     if actions and seen.events >= _MOST_EVENTS:
