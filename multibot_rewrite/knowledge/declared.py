@@ -45,12 +45,12 @@ class Declared(NamedTuple):
 
     @property
     def checks(self) -> tuple[tuple[str, str], ...]:
-        """Each of its checks with its arguments."""
+        """The names of its checks, each with the text of its arguments."""
         return checks_in(self.bounds)
 
 
 def checks_in(bounds: str) -> tuple[tuple[str, str], ...]:
-    """Return each check in a text with its arguments."""
+    """Return the name of each check in a text, with the text of its arguments."""
     if ")" not in bounds:
         return ()
     checks = (it.partition("(") for it in _BETWEEN_CHECKS.split(bounds) if it.endswith(")"))
@@ -156,7 +156,7 @@ class Base(NamedTuple):
 
 @cache
 def plugin_bases() -> Mapping[str, Base]:
-    """Return every base by its name."""
+    """Return the plugin classes known for each base class."""
     _, *parts = own_text(__file__, "plugin_classes.schema").split("\n[")
     return {part[: part.index("]")]: _base_of(part) for part in parts}
 

@@ -59,7 +59,7 @@ def entered(context: Context, group: Here) -> None:
 
 
 def here(context: Context) -> Here:
-    """Return fleet and robot of the enclosing group."""
+    """Return the fleet and the robot of the enclosing group; None outside of one."""
     known = context.get_locals_as_dict()
     return known.get(FLEET), known.get(ROBOT)
 

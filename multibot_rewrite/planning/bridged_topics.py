@@ -362,7 +362,7 @@ def bridged_as(topics: Iterable[BridgedTopic]) -> tuple[Topic, ...]:
 
 
 def once(topics: Iterable[Topic]) -> tuple[Topic, ...]:
-    """Return each topic once, with all that a bridge does with it."""
+    """Return each topic once, with all directions in which a bridge passes it on."""
     found: dict[str, Topic] = {}
     for topic in topics:
         first = found.setdefault(topic.name, topic)

@@ -207,7 +207,7 @@ _INCLUDE = lazy_compile(rb"^include:", re.MULTILINE)
 
 
 def to_yaml(plan: System) -> str:
-    """Return the text of a YAML file."""
+    """Return a plan as the text of a YAML file."""
     return HEAD + json.to_yaml(plan)
 
 

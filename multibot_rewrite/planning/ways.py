@@ -84,7 +84,7 @@ def merged(nodes: Iterable[Run]) -> tuple[Run, ...]:
 
 
 def way_of(node: Run, known: Nodes, release: str) -> str:
-    """Return how a node of the table gets its rules."""
+    """Return how a node gets its rules: PROCESS, HOST, COMPONENT, SPAWNER or PLUGIN."""
     if node.fact.plugin:
         return PLUGIN
     host = known.get((node.robot, node.fact.host))

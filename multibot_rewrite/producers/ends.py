@@ -54,7 +54,7 @@ _ROLES = {"GZ_TO_ROS": PUBLISHES, "ROS_TO_GZ": SUBSCRIBES}
 
 
 def either_way(end: End) -> Iterator[End]:
-    """Yield the end; one with an unknown role may be on both sides."""
+    """Yield an end; one of an unknown role twice, as publisher and as subscriber."""
     if end.role:
         yield end
         return

@@ -59,7 +59,7 @@ class Coverage(NamedTuple):
 
     @property
     def total(self) -> Covered:
-        """The sums over all robots."""
+        """The counts of all robots together."""
         columns = zip(*(it[1:] for it in self.robots), strict=True)
         return Covered("", *map(sum, columns)) if self.robots else Covered("", 0, 0, 0, 0)
 

@@ -203,7 +203,7 @@ def _not_parts(words: Mapping[str, Collection[str]], parents: Mapping[str, Set[s
 
 
 def with_frames(robots: Iterable[GuessedRobot], frames: Iterable[str]) -> Iterator[GuessedRobot]:
-    """Yield each with the way in which most frames have its name."""
+    """Yield each robot with the way in which most frames have its name."""
     times = Counter(way for frame in frames for way in _affixes(frame))
     for robot in robots:
         word = robot.namespace.rpartition("/")[2] or robot.name

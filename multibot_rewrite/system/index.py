@@ -179,7 +179,7 @@ class Index(NamedTuple):
     @property
     @once
     def sent(self) -> Sequence[Sent]:
-        """The transforms by the nodes that send them."""
+        """The transforms that a plan has, each with the node that sends it."""
         return [
             Sent(node, it.parent, it.child) for it in self.system.edges for node in it.publishers
         ]
@@ -187,13 +187,13 @@ class Index(NamedTuple):
     @property
     @once
     def by_key(self) -> Mapping[EndKey, End]:
-        """The last end of each key, hidden ones as well."""
+        """The last end with each node, kind, role and name; hidden ones, too."""
         return {(it.node, it.kind, it.role, it.name): it for it in self.system.ends}
 
     @property
     @once
     def by_node(self) -> Mapping[str, Sequence[End]]:
-        """The ends of each node, hidden ones as well."""
+        """The ends of each node; hidden ones, too."""
         return lists_by_key((end.node, end) for end in self.system.ends)
 
     @property
@@ -368,7 +368,7 @@ def nodes_of(ends: Iterable[End]) -> tuple[str, ...]:
 
 
 def at_work(ends: Iterable[End]) -> list[End]:
-    """Return the ends of nodes that are no viewers."""
+    """Return the ends without those of viewers."""
     return [end for end in ends if not is_viewer(end.node)]
 
 

@@ -65,7 +65,7 @@ def merged(looks: Sequence[Look]) -> System:
 
 
 def joined(first: System, *others: System) -> System:
-    """Return the first system, with what is in others as well."""
+    """Return the first system with the nodes, ends and other records of the others added."""
     every: dict[str, Any] = {
         key: tuple(it for one in (first, *others) for it in getattr(one, key)) for key in _HELD
     }

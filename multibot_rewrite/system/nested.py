@@ -112,7 +112,7 @@ def _row_of_end(end: End) -> object:
 
 
 def system_from(value: dict[str, Any]) -> System:
-    """Return the system of a file's value; raises WrongValue."""
+    """Return the system that the value of a file describes; raises WrongValue."""
     found: dict[str, list[Any]] = defaultdict(list)
     _read_below("robots", partial(_read_robot, found), value.pop("robots", ()))
     _read_below("nodes", partial(_read_node, found, ""), value.pop("nodes", ()))

@@ -429,7 +429,7 @@ def unseen(system: System) -> tuple[Caveat, ...]:
 
 
 def clocks(system: System) -> dict[str, bool]:
-    """Return by node whether it goes by simulated time, if known."""
+    """Return whether each node uses simulated time, if known."""
     told = (it for it in system.parameters if it.name == SIM_TIME and it.value != UNTOLD)
     return {it.node: it.value == "true" for it in told}
 

@@ -102,7 +102,7 @@ class Visit(NamedTuple):
 
     @property
     def waits(self) -> Process:
-        """What is waited for; what turns that off turns this off, too."""
+        """What a process waits for; its switches are also those of what it waits for."""
         _, after, above = self.numbers.get(id(self.target), (None, -1, ()))
         switches = tuple(dict.fromkeys((*above, *self.switches)))
         return Process(delay=self.delay, event=self.event, after=after, switches=switches)
@@ -120,7 +120,7 @@ class Visit(NamedTuple):
     def failed(
         self, error: BaseException, message: str = "", parameters: bool = False, fails: bool = False
     ) -> None:
-        """Note an error; ``message`` replaces its own text."""
+        """Note an error, whose text ``message`` may replace."""
         missing = missing_package(error) or missing_module(error)
         known = (message or failure(error), parameters, "", fails, missing, is_unset(error))
         self.notes.append(LaunchNote(self.place, *known))
@@ -358,7 +358,7 @@ def _known_arguments(given: Iterable[Any], who: str, here: Visit) -> Iterator[st
 
 
 def namespace_of(value: Any, context: Any) -> str:
-    """Return the full namespace, below those that groups push."""
+    """Return a full namespace, below the namespaces that groups push."""
     utilities = of_launch_ros("utilities")
     above = context.launch_configurations.get("ros_namespace")
     own = text(value, context) if value is not None else None

@@ -72,7 +72,7 @@ class HandedOn(NamedTuple):
 
     @property
     def names(self) -> list[str]:
-        """What all of it is called, for people."""
+        """The names of parameters, arguments and variables, for a message."""
         return [*self.values, *self.texts, *self.arguments, *self.environment]
 
 
@@ -110,13 +110,13 @@ def handed_on(
 
 
 def for_any(it: Any, robot: str) -> Any:
-    """Return what a launch for one robot gives, without that robot."""
+    """Return values with a placeholder for the name of a robot."""
     word = re.compile(rf"(?<![A-Za-z0-9]){re.escape(robot)}(?![A-Za-z0-9])")
     return _each(it, lambda text: word.sub(_ROBOT, text))
 
 
 def for_robot(it: Any, robot: str) -> Any:
-    """Return values with a robot's name filled in."""
+    """Return values with a robot's name in place of the placeholder."""
     return _each(it, lambda text: filled(text, robot))
 
 

@@ -97,7 +97,7 @@ class _Watched:
         self.words: set[str] = set()
 
     def perform_substitution(self, substitution: Any) -> Any:
-        """Return what a substitution is here."""
+        """Return the value of a substitution, and note the words in its texts."""
         made = substitution.perform(self)
         self.words.update(_WORD.findall(str(made)))
         return made

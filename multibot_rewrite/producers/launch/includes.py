@@ -135,7 +135,7 @@ def included(include: Any, here: Visit) -> LaunchInclude:
 
 
 def unread_of(path: str, names: Collection[str], here: Visit) -> None:
-    """Keep those of some arguments that a launch file does not read."""
+    """Note which of these arguments a launch file does not read."""
     for name, near in unread(path, names):
         here.unread.append(UnreadArgument(here.place, os.path.basename(path), name, near))
 

@@ -81,7 +81,7 @@ def with_options(words: Sequence[str], values: Mapping[str, Given]) -> Mapping[s
 
 
 def as_heard(node: NodeFacts, heard: Collection[str], bound: BoundNode) -> NodeFacts:
-    """Return the node as it is if these topics have a subscriber."""
+    """Return the node with the ends that it has while these topics have subscribers."""
 
     def decide(it: Condition) -> bool | None:
         own = it.values if it.how == ":" and it.parameter == HEARD else ()
@@ -190,7 +190,7 @@ def frames_in(words: Sequence[str]) -> Mapping[str, str]:
 
 
 def with_frames(words: Sequence[str], frames: Mapping[str, str]) -> tuple[str, ...]:
-    """Return the words with other frames."""
+    """Return the arguments of a static transform publisher with other frames."""
     named = frames_in(words)
     if not any(word.startswith("--") for word in words):
         return (

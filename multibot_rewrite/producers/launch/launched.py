@@ -143,7 +143,7 @@ NOT_WHOLE, NOT_KNOWN = "launch-not-whole", "node-not-known"
 
 
 def of_simulator(graph: LaunchGraph, models: Models) -> Iterator[Caveat]:
-    """Yield what makes the view of a simulator incomplete."""
+    """Yield why the view of a simulator may be incomplete."""
     # Plugins of a spawned model are nodes, which a robot brings with it.
     for it in models.lost[:1]:
         text = "nodes that plugins of a spawned model make are not known: its description is not"

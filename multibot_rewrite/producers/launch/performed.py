@@ -193,12 +193,12 @@ class _Seen(NamedTuple):
         return found
 
     def kept(self, it: Kept) -> dict[str, Any]:
-        """Return the values that an action keeps by keyword, evaluated."""
+        """Return the values that an action keeps, evaluated, by keyword."""
         given = {name: vars(it).get(name) for name in (*it.names, *it.others)}
         return self.evaluated({name: one for name, one in given.items() if name != "condition"})
 
     def evaluated(self, given: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the values that are there, evaluated."""
+        """Return the values that are not None, evaluated."""
         there = {name: it for name, it in given.items() if it is not None}
         own = there.pop("parameters", None)
         found = {name: self.plain(it) for name, it in there.items()}

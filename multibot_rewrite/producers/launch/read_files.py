@@ -30,7 +30,7 @@ class Reads(NamedTuple):
 
 
 def keep_reads() -> Reads:
-    """Keep from now on all that is read in this process."""
+    """Keep from now on which files this process reads; return the record that grows."""
     found = Reads([], [])
 
     def opened(event: str, words: tuple[Any, ...]) -> None:

@@ -123,7 +123,7 @@ class IdleAction(NamedTuple):
 
     @property
     def why(self) -> str:
-        """Return which arguments decide it."""
+        """Return the values of the arguments that decide its condition."""
         return ", ".join(f"{name}:={value}" for name, value in self.asked) or "its condition"
 
 
@@ -170,7 +170,7 @@ class LaunchGraph(NamedTuple):
 
     @property
     def whole(self) -> bool:
-        """Return whether these are all nodes."""
+        """Return whether all nodes of the launch files are known."""
         return all(it.parameters for it in self.notes)
 
     @property

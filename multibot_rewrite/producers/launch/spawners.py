@@ -34,7 +34,7 @@ class RosArguments(NamedTuple):
 
 
 def ros_arguments(words: Sequence[str]) -> RosArguments:
-    """Return what rcl reads in these words."""
+    """Return the names, rules and parameters that rcl reads in a program's arguments."""
     own: list[str] = []
     given: list[str] = []
     inside = False
@@ -105,7 +105,7 @@ class Spawned(NamedTuple):
 
     @property
     def full_name(self) -> str:
-        """It runs in the namespace of its manager."""
+        """Its full name, in the namespace of its manager."""
         return f"{self.manager.rpartition('/')[0]}/{self.name}"
 
 

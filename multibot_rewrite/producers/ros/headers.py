@@ -261,12 +261,12 @@ class DescriptionSamples:
             self._open.pop(topic)()
 
     def found(self) -> tuple[Description, ...]:
-        """Return what has come, by topic."""
+        """Return the descriptions that have come, by topic."""
         return tuple(self._found[it] for it in sorted(self._found))
 
 
 def described(topic: str, text: str) -> Description:
-    """Return what a URDF names; an empty description for no URDF."""
+    """Return the links and moving joints of a URDF; neither for another text."""
     from lxml import etree  # takes longer than the rest of a look's start
 
     parser = etree.XMLParser(resolve_entities=False, no_network=True)

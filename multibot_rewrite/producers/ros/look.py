@@ -51,7 +51,7 @@ class GraphSession(NamedTuple):
         return int(self.ros.context.get_domain_id())
 
     def over(self) -> bool:
-        """Return whether it has to end, also in the midst of queries."""
+        """Return whether the observation has to end, also in the midst of queries."""
         return self.stop.is_set() or self.now() >= self.request.timeout + GRACE_SECONDS
 
 
@@ -168,7 +168,7 @@ class GraphListeners:
         self.descriptions = DescriptionSamples(partial(_subscribe_to_last, session))
 
     def update(self, endpoints: Sequence[End]) -> None:
-        """Subscribe to what is published now."""
+        """Subscribe to the topics that are published now."""
         self.tf.update(endpoints, self._request.substitutes)
         if self._request.headers:
             self.headers.update(endpoints)
@@ -179,7 +179,7 @@ class GraphListeners:
         return sorted({*self.tf.silent(), *self.headers.silent()})
 
     def keep_waiting(self) -> bool:
-        """Return whether something may still come."""
+        """Return whether messages may still come on a topic."""
         return self.tf.keep_waiting(*TF_SECONDS) or self.headers.keep_waiting(HEADER_SECONDS)
 
 

@@ -263,7 +263,7 @@ class _ChangeTimes:
     def update(
         self, now: float, view: tuple[list[str], list[End]], request: Request
     ) -> assemble.LastChange:
-        """Return the times after a poll at ``now``."""
+        """Return when the graph last changed, after a poll at ``now``."""
         parts = (view, [end for end in view[1] if request.expects(end)])
         times = zip(self._changed, self._before, parts, strict=True)
         self._changed = assemble.LastChange(

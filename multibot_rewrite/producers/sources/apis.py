@@ -24,7 +24,7 @@ class Api(NamedTuple):
 
 @cache
 def apis() -> Mapping[str, tuple[Api, ...]]:
-    """Return the APIs by function."""
+    """Return the calls that declare endpoints, by function."""
     lines = own_text(__file__, "calls.txt").splitlines()
     every = (Api(*line.split()) for line in lines if line and not line.startswith("#"))
     found = lists_by_key((it.function, it) for it in every)

@@ -157,7 +157,7 @@ class CmakeCall(NamedTuple):
     folder: str
 
     def after(self, word: str) -> str:
-        """Return the word behind this one; empty for none."""
+        """Return the argument behind this word; empty for none."""
         return self.words[self.words.index(word) + 1] if word in self.words[:-1] else ""
 
 

@@ -81,7 +81,7 @@ class Spot(NamedTuple):
 
 
 def names_of(source: Source) -> Names:
-    """Return what was read, by name."""
+    """Return the look-ups for what was read of a program."""
     outside = (it for it in source.values if not it.function and not it.variable.startswith("@"))
     return Names(
         _grouped(source.classes, lambda it: it.name),

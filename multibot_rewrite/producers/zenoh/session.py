@@ -35,7 +35,7 @@ class RouterSession(NamedTuple):
     declared: list[Any]
 
     def deliver(self) -> None:
-        """Call what has arrived, on this thread."""
+        """Call the receivers of what has arrived, on this thread."""
         while self.inbox:
             call, values = self.inbox.popleft()
             call(*values)

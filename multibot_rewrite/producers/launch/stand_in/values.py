@@ -96,7 +96,7 @@ class LaunchContext:
 
     @property
     def depth(self) -> int:
-        """How many launch files are within each other."""
+        """The number of launch files that include each other here."""
         return len(self._locals)
 
     @property
