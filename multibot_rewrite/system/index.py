@@ -94,7 +94,7 @@ NOTHING_KNOWN = Known()
 
 
 def once(make: _Look) -> _Look:
-    """Decorate a look-up: it is made when first asked for, and kept by the last index asked."""
+    """Decorate a property: its value is made when first asked for, the last index asked keeps it."""
 
     @wraps(make)
     def found(*indices: Any) -> Any:

@@ -73,7 +73,7 @@ def sent_with(node: NodeFacts, values: Mapping[str, Given]) -> Iterator[SentTran
 
 
 def lookup(node: NodeFacts, values: Mapping[str, Given]) -> Values:
-    """Return a look-up for conditions: a parameter's value, or its default if it names a frame."""
+    """Return what finds the value of a parameter for a condition, or the default that names a frame."""
     defaults = {it.parameter: it.default for it in node.frames}
     return lambda name: values[name].value if name in values else defaults.get(name)
 

@@ -6,10 +6,10 @@ of a ``<ros2_control>``; an interface is called ``OWNER/INTERFACE``). What the c
 besides, and the nodes that it makes, are in ``hardware.yaml``.
 
 What a controller claims is a template in its node's table: a name with parameters in <>.
-``<joints>/<command_interfaces>`` stands for every joint with every interface. ``<a|b>`` is the first of
+``<joints>/<command_interfaces>`` is every joint with every interface. ``<a|b>`` is the first of
 them that is set, ``<a=x>`` is ``x`` where it is not, ``<a+_>`` is its value and ``_``. ``[0..17]``
-counts, ``[x,y]`` is each word. ``{a}`` in the name of a parameter, or in the condition, is what stands
-for ``<a>``. A parameter that is not set and has no default makes no name. ``<type>`` is the type of the
+counts, ``[x,y]`` is each word. ``{a}`` in the name of a parameter, or in the condition, is replaced as
+``<a>`` is. A parameter that is not set and has no default makes no name. ``<type>`` is the type of the
 controller."""
 
 import re
@@ -214,7 +214,7 @@ def claimed_twice(claims: Iterable[Claim], node: Run) -> Iterator[tuple[Claimed,
 
 
 def _lookup(values: Mapping[str, Given]) -> Values:
-    """Return a look-up of values by parameter; None for one that is not set."""
+    """Return what finds a value by its parameter; it gives None for one that is not set."""
     return lambda name: values[name].value if name in values else None
 
 

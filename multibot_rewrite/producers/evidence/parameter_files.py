@@ -168,7 +168,7 @@ def _typed(sections: Sequence[_Section], known: KnownNodes) -> Iterator[tuple[st
 
 
 def _by_name(sections: Sequence[_Section]) -> Callable[[str], list[_Section]]:
-    """Return a look-up of a node's possible sections, in order: by its name, and all with wildcards."""
+    """Return what finds the sections of a node, in order: those of its name, all with wildcards."""
     wild: list[tuple[int, _Section]] = []
     named: dict[str, list[tuple[int, _Section]]] = {}
     for number, it in enumerate(sections):

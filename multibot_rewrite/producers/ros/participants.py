@@ -48,7 +48,7 @@ def _lost_at(domain: int) -> Mapping[int, int]:
 
 
 def make_room() -> None:
-    """Enlarge this process's UDP buffers: Linux has room for 160 datagrams, lost ones cost 3 s."""
+    """Enlarge this process's UDP buffers: Linux keeps 160 datagrams, and lost ones cost 3 s."""
     _ask_own(lambda own: own.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, ROOM_BYTES))
 
 
