@@ -56,6 +56,7 @@ def running_nodes(table: Table, left_out: Collection[str] = ()) -> Iterator[tupl
 
 
 def _with_rules_of_process(it: Delivery, standing: _Standing) -> Run:
+    """Return the node with the rules that rcl has for it and its process."""
     node, own = it.node, standing.rules.get((it.node.robot, it.taker), ())
     if it.way == SPAWNER:
         # A tf listener that its code makes has the arguments of the manager's process alone.
@@ -277,6 +278,7 @@ def _is_for_controllers(source: str, known: frozenset[str], by_file: bool) -> bo
 
 
 def _asked_names(run: Run) -> _Names:
+    """Return the full names that a node asks for without its rules."""
     bare = bind(run.name, run.namespace, ())
     # What is known of a controller manager only by its rules proves none of them.
     known = [it for it in run.fact.endpoints if it.role or not run.process_wide]
@@ -300,6 +302,7 @@ def asked_for(name: str, endpoint: Endpoint, namespace: str) -> tuple[str, ...]:
 
 
 def _rule_matches(left: str, names: _Names) -> bool:
+    """Return whether the left side of a rule matches a name of its node."""
     whose, source = _split_left_side(left)
     if whose not in ("", names.bare.node):
         return False
