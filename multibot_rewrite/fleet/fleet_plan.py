@@ -21,7 +21,6 @@ from multibot_rewrite.fleet.launch.launched_files import (
 from multibot_rewrite.fleet.launch.launched_simulator import with_launched_world
 from multibot_rewrite.fleet.outputs.controller_files import with_loaded_files
 from multibot_rewrite.fleet.outputs.relays import with_relays
-from multibot_rewrite.fleet.robots.joined_robots import with_joined
 from multibot_rewrite.fleet.robots.rewritten_robots import (
     Jobs,
     RewrittenRobot,
@@ -89,7 +88,11 @@ def make_plan(
     ``jobs`` are the descriptions if they have been read already; ``trust`` lets xacro files do
     anything, and launch files run. Raises as ``rewrite_all``, and UsageError for an unknown node
     set."""
-    file, joined = with_joined(file, trust)
+    joined: Mapping[str, Sequence[Finding]] = {}
+    if any(it.parts for it in file.robots):
+        from multibot_rewrite.fleet.robots.joined_robots import with_joined  # few are joined
+
+        file, joined = with_joined(file, trust)
     file, notes = with_launched_files(_with_trust(with_shape(file)) if trust else with_shape(file))
     file = with_launched_world(with_one_map(with_bridge_namespaces(file)))
     with gc_paused():

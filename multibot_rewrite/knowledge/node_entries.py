@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.base.lazy import lazy_compile
+from multibot_rewrite.base.nearest import unknown
 from multibot_rewrite.base.rosnames import check_name_in_code, check_node_name
 from multibot_rewrite.knowledge.conditions import CHOSEN, OPEN_KIND, words_in
 from multibot_rewrite.knowledge.records import (
@@ -33,7 +34,6 @@ from multibot_rewrite.knowledge.yaml_with_lines import (
     table,
     table_of,
     text_and_words,
-    unknown,
     variants,
     word,
     word_of,

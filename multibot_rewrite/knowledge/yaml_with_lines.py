@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """YAML with the file and line of every value, for errors; and the keys that any fact may have."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple, NoReturn, TypeAlias, TypeVar
 
 from multibot_rewrite.base.bounded import compose_own_yaml, compose_yaml
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.base.nearest import did_you_mean_one_of
+from multibot_rewrite.base.nearest import unknown
 
 if TYPE_CHECKING:
     import yaml
@@ -142,13 +142,6 @@ def one_of(item: YamlItem, what: str, value: str, allowed: Sequence[str]) -> str
 def wrong(item: YamlItem, message: str) -> NoReturn:
     """Raise UsageError at the place of ``item``."""
     raise UsageError(f"{item.where}: {message}")
-
-
-def unknown(what: str, name: str, known: Iterable[str], more: Iterable[str] = ()) -> str:
-    """Return the message that ``name`` is unknown, with the nearest and the list of ``known``."""
-    known = sorted(known)
-    near = did_you_mean_one_of(name, [*known, *more])
-    return f"{what} {name!r} is not known; {near}{near and ' '}known: {', '.join(known) or 'none'}"
 
 
 def _type_in_words(item: YamlItem) -> str:

@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 
 from multibot_rewrite.base.findings.finding import NOTE, Finding
 from multibot_rewrite.base.model import UsageError
+from multibot_rewrite.base.nearest import unknown
 from multibot_rewrite.fleet.file.robot_spec import Pose
 from multibot_rewrite.fleet.robots.loaded_robot import LoadedRobot
-from multibot_rewrite.knowledge.yaml_with_lines import unknown
 from multibot_rewrite.library.loaded_fleet import LoadedFleet, load_fleet
 from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.launch.door import of_launch, of_launch_ros

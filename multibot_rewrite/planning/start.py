@@ -8,13 +8,8 @@ from typing import Any, NamedTuple, TypeAlias
 
 from multibot_rewrite.knowledge.programs import Program
 from multibot_rewrite.planning.records import Rules
-from multibot_rewrite.planning.ways import (
-    COMPONENT,
-    SPAWN,
-    Started,
-    ros_arguments,
-    spawner_arguments,
-)
+from multibot_rewrite.planning.ways import SPAWN, Started, ros_arguments, spawner_arguments
+from multibot_rewrite.system.records import COMPONENT
 
 # The share folder of a package, as launch files in XML have it.
 _SHARE = re.compile(r"\$\(find-pkg-share ([\w-]+)\)")

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 from multibot_rewrite.base.grouping import chain_ends
 from multibot_rewrite.base.naming import Naming, spelled
 from multibot_rewrite.knowledge.conditions import holds
-from multibot_rewrite.knowledge.records import NodeFacts
 from multibot_rewrite.system.records import PUBLISHES, Edge, edge_of
 
 if TYPE_CHECKING:
     from lxml.etree import _Element
 
     from multibot_rewrite.description.steps.collect import Inventory
+    from multibot_rewrite.knowledge.records import NodeFacts
 
 STATE_PUBLISHER = "robot_state_publisher"
 NO_PLAIN: Mapping[tuple[str, str], str] = {}

@@ -17,17 +17,16 @@ from multibot_rewrite.knowledge.node_sets import every_release
 from multibot_rewrite.knowledge.records import MANAGER, Endpoint, NodeFacts
 from multibot_rewrite.planning.of_runs import expanded, name_made_of_other_end, parsed, target_of
 from multibot_rewrite.planning.records import Names, Rule, Rules, Run, Table
-from multibot_rewrite.planning.ways import (
+from multibot_rewrite.planning.ways import Delivery, Key, deliveries, key_of, rules_by_taker
+from multibot_rewrite.system.records import (
+    ACTION,
     COMPONENT,
     PLUGIN,
+    PUBLISHES,
+    SERVICE,
     SPAWNER,
-    Delivery,
-    Key,
-    deliveries,
-    key_of,
-    rules_by_taker,
+    TOPIC,
 )
-from multibot_rewrite.system.records import ACTION, PUBLISHES, SERVICE, TOPIC
 
 
 class _Standing(NamedTuple):

@@ -16,10 +16,8 @@ from multibot_rewrite.knowledge.controller_ways import controller_way
 from multibot_rewrite.knowledge.records import MANAGER
 from multibot_rewrite.planning.of_runs import expanded
 from multibot_rewrite.planning.records import Rule, Rules, Run, Table
+from multibot_rewrite.system.records import COMPONENT, HOST, PLUGIN, PROCESS, SPAWNER
 
-PROCESS, HOST, COMPONENT = "process", "host", "component"
-SPAWNER, PLUGIN = "spawner", "plugin"
-WAYS = (PROCESS, HOST, COMPONENT, SPAWNER, PLUGIN)
 # A costmap has the remap rules of the component that makes it (navigation2 4cade8d2f, 1.5.0).
 COSTMAP_HAS_RULES_OF_ITS_PARENT = "lyrical+"
 

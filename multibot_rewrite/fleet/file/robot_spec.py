@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 
 from multibot_rewrite.base.model import InputError, UsageError
 from multibot_rewrite.base.naming import NAMESPACE, Naming
-from multibot_rewrite.description.joining.from_file import part_of, parts_of
 from multibot_rewrite.description.joining.part import Part, files_of
 from multibot_rewrite.description.sources.own_names import filled, name_robot
 from multibot_rewrite.description.sources.read import JOIN as LIST
@@ -239,7 +238,12 @@ def described(read: FleetData, at: int) -> tuple[str, tuple[Part, ...]]:
     given = own if JOIN in own or DESCRIPTION in own else data
     if JOIN not in given:
         path = given.get(DESCRIPTION, "")
-        return path, parts_of(path) if path.endswith(LIST) else ()
+        if not path.endswith(LIST):
+            return path, ()
+    from multibot_rewrite.description.joining.from_file import part_of, parts_of  # few are joined
+
+    if JOIN not in given:
+        return path, parts_of(path)
     like = next(it["name"] for it in data["robots"] if it.get(JOIN) == own.get(JOIN))
     try:
         parts = tuple(map(part_of, given[JOIN]))

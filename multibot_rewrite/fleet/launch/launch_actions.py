@@ -33,7 +33,6 @@ from multibot_rewrite.fleet.robots.node_names import NodeNames, names_of
 from multibot_rewrite.fleet.robots.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleet.robots.simulators import is_simulated
 from multibot_rewrite.knowledge.conditions import UNSENT, readable
-from multibot_rewrite.knowledge.controller_ways import names_its_process
 from multibot_rewrite.knowledge.parameters import load_known_nodes
 from multibot_rewrite.knowledge.programs import (
     LIFECYCLE_MANAGER,
@@ -44,7 +43,7 @@ from multibot_rewrite.knowledge.programs import (
     program_of,
     started_as,
 )
-from multibot_rewrite.knowledge.records import CARTOGRAPHER, MANAGER, NodeFacts
+from multibot_rewrite.knowledge.records import CARTOGRAPHER, MANAGER, NodeFacts, names_its_process
 from multibot_rewrite.planning.domain_bridge import bridge_name, bridge_path
 from multibot_rewrite.planning.of_runs import placed, target_of
 from multibot_rewrite.planning.start import (
@@ -56,7 +55,7 @@ from multibot_rewrite.planning.start import (
     spawner_of,
     start_of,
 )
-from multibot_rewrite.planning.ways import COMPONENT, SPAWNER, Started
+from multibot_rewrite.planning.ways import Started
 from multibot_rewrite.producers.ends import BRIDGE_FILE
 from multibot_rewrite.producers.evidence.parameter_files import OWN_TYPE
 from multibot_rewrite.producers.launch.bridges import services_in
@@ -69,7 +68,7 @@ from multibot_rewrite.producers.launch.handed_on import (
 )
 from multibot_rewrite.producers.launch.known_node import LUA_FLAGS, STATIC, with_frames
 from multibot_rewrite.producers.launch.records import LaunchedNode
-from multibot_rewrite.system.records import PUBLISHES, TOPIC
+from multibot_rewrite.system.records import COMPONENT, PUBLISHES, SPAWNER, TOPIC
 from multibot_rewrite.system.words import START_POSE, last_word
 
 STATE = "robot_state_publisher"

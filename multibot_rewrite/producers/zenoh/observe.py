@@ -15,10 +15,10 @@ from multibot_rewrite.base.wording import FEW, SEVERAL, plural, shorten
 from multibot_rewrite.producers.ros.assemble import TF_TYPES, frames
 from multibot_rewrite.producers.ros.request import Request
 from multibot_rewrite.producers.ros.tf_subscriptions import Callback, TfSubscriptions
-from multibot_rewrite.producers.zenoh import tokens
+from multibot_rewrite.producers.zenoh import SPACE, tokens
 from multibot_rewrite.producers.zenoh.cdr import read_tf
 from multibot_rewrite.producers.zenoh.session import NoRouter, RouterSession, opened
-from multibot_rewrite.producers.zenoh.tokens import SPACE, Token, read_token
+from multibot_rewrite.producers.zenoh.tokens import Token, read_token
 from multibot_rewrite.system.records import (
     CHANGING,
     EXPECTED,

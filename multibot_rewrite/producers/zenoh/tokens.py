@@ -15,6 +15,7 @@ from math import inf
 from typing import NamedTuple
 
 from multibot_rewrite.producers.rosgraph.reading import DURABILITY, HISTORY, LIVELINESS, RELIABILITY
+from multibot_rewrite.producers.zenoh import SPACE
 from multibot_rewrite.system.records import (
     ACTION,
     CALLS,
@@ -28,7 +29,6 @@ from multibot_rewrite.system.records import (
     Qos,
 )
 
-SPACE = "@ros2_lv"
 NODE = "NN"
 _ENDS = {
     "MP": (TOPIC, PUBLISHES),

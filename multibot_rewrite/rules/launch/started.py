@@ -23,9 +23,8 @@ from multibot_rewrite.base.nearest import nearest
 from multibot_rewrite.base.rosnames import check_node_name, expand, resolve_bound
 from multibot_rewrite.base.wording import shorten
 from multibot_rewrite.description.checks.numbers import number
-from multibot_rewrite.knowledge.controller_ways import names_its_process
 from multibot_rewrite.knowledge.programs import LIFECYCLE_MANAGER, NAV2
-from multibot_rewrite.knowledge.records import MANAGER, NodeFacts
+from multibot_rewrite.knowledge.records import MANAGER, NodeFacts, names_its_process
 from multibot_rewrite.planning.records import Run
 from multibot_rewrite.planning.transforms import STATE_PUBLISHER
 from multibot_rewrite.producers.evidence.hardware import COMMAND, claims_of

@@ -176,6 +176,8 @@ def _sections_of_no_node(launched: Launched) -> Iterator[Finding]:
 of_no_node = OF_NO_NODE._replace(check=_sections_of_no_node)
 
 
+# That of libyaml is faster.
+_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _LEFT = lazy_compile(rf"<[A-Za-z_]\w*>|\$\({IN_SUBSTITUTION}\)|\$\{{\w+\}}")
 
 
@@ -189,7 +191,7 @@ def _placeholders(launched: Launched) -> Iterator[Finding]:
             files.setdefault((given_file.file, given_file.text), it.place)
     for (file, text), start in files.items():
         with suppress(yaml.YAMLError):
-            for one in yaml.scan(text) if _LEFT.search(text) else ():
+            for one in yaml.scan(text, Loader=_LOADER) if _LEFT.search(text) else ():
                 line = Place(file, one.start_mark.line + 1) if file else start
                 given += [(line, one.value)] if isinstance(one, yaml.ScalarToken) else []
     told = set()

@@ -11,7 +11,6 @@ from multibot_rewrite.base.conventions import EVERYBODYS, STAMP_SWITCHES, switch
 from multibot_rewrite.base.findings.finding import ERROR, NOTE, WARNING, Finding, Setting
 from multibot_rewrite.base.grouping import lists_by_key
 from multibot_rewrite.base.wording import shorten
-from multibot_rewrite.knowledge.node_sets import older_node
 from multibot_rewrite.rules.declaration import last_place, see_all, system_rule
 from multibot_rewrite.rules.system.causes import Cause, caused, plugin_of, to_set
 from multibot_rewrite.system import words
@@ -88,6 +87,8 @@ def _type_finding(seen: Index, ends: Ends, own: Sequence[End], others: Sequence[
 
 def _stale(seen: Index, ends: Iterable[End]) -> str:
     """Say that the type of one of the ends is known of an earlier version of its node only."""
+    from multibot_rewrite.knowledge.node_sets import older_node  # a fault alone needs it
+
     known = ((seen.node[it.node].known, it.type) for it in ends if it.node in seen.node)
     return next(filter(None, (older_node(it, seen.system.release, own) for it, own in known)), "")
 
