@@ -38,6 +38,7 @@ from multibot_rewrite.fleet.robots.robot_nodes import (
 from multibot_rewrite.fleet.robots.simulators import (
     may_be_real,
     note,
+    with_model,
     without_world_systems,
 )
 from multibot_rewrite.planning.plan import words_of
@@ -101,7 +102,9 @@ def make_plan(
             file, said = with_own_arguments(file, naming, trust)
         read = jobs or read_jobs(file.robots, naming, file.definitions, trust, file.distro)
         robots = [
-            placed(with_loaded_files(it._replace(findings=(*it.findings, *own))), file.shape)
+            with_model(
+                placed(with_loaded_files(it._replace(findings=(*it.findings, *own))), file.shape)
+            )
             for it in without_world_systems(with_own_ports(rewrite_robots(file.robots, read)))
             for own in [(*said.get(it.spec.name, ()), *joined.get(it.spec.name, ()))]
         ]

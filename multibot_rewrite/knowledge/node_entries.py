@@ -130,7 +130,7 @@ def _read_param(path: str, item: YamlItem, absolute: str) -> Param:
 
 
 def read_guesses(keys: Mapping[str, YamlItem]) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """Yield kinds with the last words of paths that suggest them."""
+    """Yield kinds of parameters, with the last words of paths that suggest them."""
     given = table_of(keys, "guesses")
     for kind, item in given.items():
         yield one_of(item, "kind", kind, KINDS), words_of(given, kind)

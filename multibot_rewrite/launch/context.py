@@ -59,7 +59,7 @@ def entered(context: Context, group: Here) -> None:
 
 
 def here(context: Context) -> Here:
-    """Return fleet and robot of the enclosing group."""
+    """Return the fleet and the robot of the enclosing group; None outside of one."""
     known = context.get_locals_as_dict()
     return known.get(FLEET), known.get(ROBOT)
 
@@ -320,6 +320,7 @@ def as_value(value: Any) -> Any:
 
 
 def _value_of_words(context: Context, words: Sequence[str], of: RobotRef) -> str:
+    """Return the value of ``$(multibot ...)`` with these words."""
     options = [it for it in words if it.partition(":=")[0] in RobotRef._fields and ":=" in it]
     of = of._replace(**dict(it.split(":=", 1) for it in options))
     word, name = (*(it for it in words if it not in options), "", "")[:2]

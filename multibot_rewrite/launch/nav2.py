@@ -81,6 +81,7 @@ def _is_on(context: Context, argument: str) -> bool:
 
 
 def _starts(robot: LoadedRobot, context: Context) -> list[Action]:
+    """Return what a robot starts: its nodes of Nav2, their state publisher, bridges and relays."""
     names = robot.table
     # Other nodes that its files have sections for may run, too: the node sets say which do.
     known = nodes_of_nav2(it for it in robot.node_set if it in names.nodes)

@@ -53,7 +53,7 @@ _INCLUDE = lazy_compile(rb"^include:", re.MULTILINE)
 
 
 def to_yaml(plan: System) -> str:
-    """Return the text of a YAML file."""
+    """Return a plan as the text of a YAML file."""
     return HEAD + json.to_yaml(plan)
 
 
@@ -67,7 +67,7 @@ def read_plan(data: bytes, file: str) -> System:
 
 
 def _contradictions(plan: System) -> Iterator[str]:
-    """Yield what no graph can be like, or every graph, and what to do."""
+    """Yield what is wrong in a plan or fits no graph or any graph, and what to do."""
     if not plan.layout:
         yield f"layout: missing; it is needed; {json.REMEDY}"
     if nothing := vacuous(plan):

@@ -58,6 +58,7 @@ _LAUNCH = (
 
 
 def _python_table(found: list[Started], way: str, name: str, *words: str) -> str:
+    """Return a dictionary as Python: robot -> node -> arguments; empty without rows."""
     what, action, package = words
     rows = [
         f"# Arguments of {what}, by robot and node: {action}(**{name}[robot][node], {package}...)\n"

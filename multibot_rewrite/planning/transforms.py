@@ -70,7 +70,7 @@ def state_publisher_of(nodes: Sequence[NodeFacts]) -> str:
 
 
 def _named_once(by_naming: Callable[[str], str]) -> Callable[[str], str]:
-    """Return the naming for arguments, which may already have the robot's name before a frame."""
+    """Return a naming that leaves frames as they are which have the robot's name already."""
     own = by_naming("x").removesuffix("x")
     return lambda frame: frame if own and frame.startswith(own) else by_naming(frame)
 

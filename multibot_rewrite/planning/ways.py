@@ -82,7 +82,7 @@ def merged(nodes: Iterable[Run]) -> tuple[Run, ...]:
 
 
 def way_of(node: Run, known: Nodes, release: str) -> str:
-    """Return how a node of the table gets its rules."""
+    """Return how a node gets its rules: PROCESS, HOST, COMPONENT, SPAWNER or PLUGIN."""
     if node.fact.plugin:
         return PLUGIN
     host = known.get((node.robot, node.fact.host))
@@ -107,6 +107,7 @@ def taker_of(node: Run, known: Nodes, release: str) -> str:
 
 
 def _deliveries_of(node: Run, known: Nodes, release: str, helpers: Sources) -> Iterator[Delivery]:
+    """Yield where the rules of a node are written, and those of its helper nodes."""
     way, taker = way_of(node, known, release), taker_of(node, known, release)
     lead = f"{node.name}:" if way == HOST else ""
     yield Delivery(

@@ -96,7 +96,7 @@ def launch_rule(
 
 
 def of_robots(find: _FileCheck) -> _FileCheck:
-    """Return a rule about several robots: it skips a file for no certain robot if none are named."""
+    """Return the check, limited to files of certain robots unless robots are named."""
 
     @wraps(find)
     def found(file: NamedFile) -> Iterator[Finding]:

@@ -428,12 +428,12 @@ def doubts(system: System) -> tuple[Caveat, ...]:
 
 
 def unseen(system: System) -> tuple[Caveat, ...]:
-    """Return the doubts about whether all nodes and ends are seen; those of a silent node are."""
+    """Return the doubts whether all nodes and ends are seen, without those about silent nodes."""
     return tuple(caveat for caveat in doubts(system) if caveat.code != SILENT)
 
 
 def clocks(system: System) -> dict[str, bool]:
-    """Return by node whether it goes by simulated time, if known."""
+    """Return whether each node uses simulated time, if known."""
     told = (it for it in system.parameters if it.name == SIM_TIME and it.value != UNTOLD)
     return {it.node: it.value == "true" for it in told}
 

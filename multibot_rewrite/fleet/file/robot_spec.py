@@ -46,7 +46,8 @@ class RobotSpec(NamedTuple):
     """One robot of a fleet file; paths are absolute or relative to the working directory.
 
     ``namespace`` has no leading slash; ``tag`` is the prefix or postfix of its frames and joints;
-    ``pose`` is None if the file has none. ``related_files`` maps a kind of ``KINDS`` to files; a kind
+    ``pose`` is None if the file has none; ``model`` is empty until the description is rewritten if
+    the file has none. ``related_files`` maps a kind of ``KINDS`` to files; a kind
     without files is not there. ``line``
     is its line in ``file``. ``filled`` are texts of files that are not as on disk, by path: parameters
     in the fleet file itself, parameter files in which a launch replaces something, and what is made of
@@ -155,7 +156,7 @@ def robot_spec(read: FleetData, naming: Naming, at: int, release: str) -> RobotS
         given_arguments(data, own, [description, *(str(it.description) for it in parts)], place),
         namespace,
         str(own.get(side, name)),
-        own.get("model", name),
+        own.get("model", ""),
         _pose(own, place),
         _colour(own, place),
         node_sets,
@@ -229,7 +230,7 @@ _MADE = "robot.urdf"
 
 
 def described(read: FleetData, at: int) -> tuple[str, tuple[Part, ...]]:
-    """Return the description of a robot by number, and the parts that it is joined from."""
+    """Return a robot's description and the parts that it is joined from; raises InputError."""
     # A list of parts in the fleet file gets a path as if it were a file below.
     data, own = read.data, read.data["robots"][at]
     file, line = read.places["robots", at]

@@ -154,7 +154,7 @@ class HeardFrame(NamedTuple):
 
 
 class HeardTree(NamedTuple):
-    """Frames below ``root``, parents first; drawn at the pose of ``robot``, or at the origin."""
+    """Frames below ``root``, parents first, to be drawn at ``robot``'s planned pose or the origin."""
 
     topic: str
     root: str

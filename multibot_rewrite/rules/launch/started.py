@@ -66,7 +66,7 @@ def spawned_twice(launched: Launched) -> Iterator[Finding]:
 
 
 def _no_manager(launched: Launched) -> Iterator[Finding]:
-    """Yield the spawners whose manager nothing starts; inconclusive if another file may do so."""
+    """Yield the spawners whose manager nothing starts; inconclusive if other files may start it."""
     there = [it.full_name for it in launched.nodes if _is_known_as(it, MANAGER)]
     described = bool(launched.models.found) and not launched.models.lost
     for manager in dict.fromkeys(it.manager for it in launched.spawned):
@@ -119,7 +119,6 @@ def no_container(launched: Launched) -> Iterator[Finding]:
 
 
 def _is_known_as(it: Run, known: str) -> bool:
-    """Return whether a node is this one of the library."""
     return it.fact.known == known
 
 
@@ -217,7 +216,9 @@ def not_listed(launched: Launched) -> Iterator[Finding]:
 
 
 def keeps_no_bond(node: NodeFacts) -> bool:
-    """Return whether a node has a life cycle and no bond, without which its manager aborts."""
+    """Return whether a node has a life cycle and keeps no bond: its manager then aborts.
+
+    Source: nav2_lifecycle_manager jazzy, lifecycle_manager.cpp (``bond_timeout``)."""
     names = [it.name for it in node.endpoints]
     return f"~{_CHANGE}" in names and _BOND not in names
 
@@ -238,7 +239,9 @@ def is_managed(kind: str) -> bool:
 
 
 def _managed_nodes(it: Run) -> Iterator[str]:
-    """Yield the nodes whose services a manager calls, after its remap rules."""
+    """Yield the nodes whose services a manager calls, after its remap rules.
+
+    Source: nav2_lifecycle_manager, lifecycle_service_client.cpp."""
     names = it.value("node_names")
     bound = bound_of(it.name, it.namespace, it.rules)
     for one in names if isinstance(names, list) else ():

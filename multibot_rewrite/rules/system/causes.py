@@ -234,7 +234,7 @@ def _other_parts(parts: list[str], at: int) -> _Rest:
 
 
 def _is_slip(one: str, other: str) -> bool:
-    """Return whether each part between underscores is equal or nearly so; cmd_vel_ui is no slip."""
+    """Return whether each part between underscores is nearly equal: not cmd_vel_out and cmd_vel_ui."""
     parts = list(zip_longest(one.split("_"), other.split("_"), fillvalue=""))
     return all(here == there or nearest(here, (there,), CHOICE) for here, there in parts)
 

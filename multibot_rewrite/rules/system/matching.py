@@ -177,7 +177,9 @@ def _by_a_switch(some: Set[str], others: Set[str]) -> bool:
 
 @system_rule("MG307", "qos-incompatible", ERROR)
 def qos_never_meets(seen: Index) -> Iterator[Finding]:
-    """Report each subscription and what it lacks, or the one publisher that several lack it of."""
+    """Report each subscription and what it lacks; if several lack it of one publisher, that one.
+
+    Zenoh connects any two (rmw_zenoh design.md)."""
     for (kind, name), ends in seen.by_name.items() if seen.system.environment.rmw != ZENOH else ():
         if kind != TOPIC or name in EVERYBODYS or not _refuses(ends):
             continue
@@ -312,7 +314,7 @@ def _is_latched(ends: Ends) -> bool:
 
 @lru_cache(maxsize=1024)
 def qos_conflicts(offered: Qos, requested: Qos) -> tuple[tuple[str, str], ...]:
-    """Return where two QoS do not connect by the rules of DDS, as (offered, requested)."""
+    """Return where two QoS do not connect by the rules of DDS, as (offered, requested) texts."""
     words = (
         (offered.reliability, requested.reliability, RELIABILITY),
         (offered.durability, requested.durability, DURABILITY),
