@@ -8,6 +8,7 @@ Expectations: gz_ros2_control_plugin.cpp (the manager and the plugin's own node 
 
 from __future__ import annotations
 
+import textwrap
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,7 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.description.reports.xacro_arguments import find_arguments
 from multibot_rewrite.description.rewriters.tree import builtin_tree
 from multibot_rewrite.fleet.fleet_plan import FleetPlan
+from multibot_rewrite.fleet.launch.launched_robot import NOT_SPAWNED
 
 ROVER = """\
 <robot name="rover" xmlns:xacro="http://www.ros.org/wiki/xacro">
@@ -155,3 +157,18 @@ def test_the_manager_of_a_launch_file_in_the_plugins_namespace_is_one(tmp_path: 
     assert said(plan) == []
     names = {name for run, _, name in plan.fleet.table.ends if run.node == "arm/drive"}
     assert {"/robot1/arm/go", "/robot2/arm/go"} <= names
+
+
+def test_controllers_whose_spawners_a_condition_keeps_out_do_not_run(tmp_path: Path) -> None:
+    """Also beside a launch file of a package that is not here, which starts something else."""
+    path = xacro(tmp_path, "", "")
+    (tmp_path / "control.yaml").write_text(textwrap.dedent(CONTROLLED.partition("\n")[2]))
+    off = "from launch.conditions import IfCondition\n" + LAUNCHED.replace("'arm',", "'',").replace(
+        "arguments=['drive'])", "arguments=['drive'], condition=IfCondition('false')), MORE"
+    )
+    more = "Node(package='acme', executable='driver')"
+    (tmp_path / "up.launch.py").write_text(off.replace("MORE", more))
+    launch, files = str(tmp_path / "up.launch.py"), {"params": str(tmp_path / "control.yaml")}
+    plan = planned(path, node_sets=[], launch=launch, related_files=files)
+    whens = {run.fact.when for run in plan.fleet.table.runs if run.node == "drive"}
+    assert whens == {NOT_SPAWNED}
