@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """What one rewrite works on: everything it depends on but the robots, read once."""
 
+import re
 from collections.abc import Callable, Collection, Iterable, Sequence
 from contextlib import suppress
 from functools import cache
 from typing import NamedTuple
 
+from multibot_rewrite.base.lazy import lazy_compile
 from multibot_rewrite.base.model import InputError, UsageError
-from multibot_rewrite.base.naming import Naming, OwnNames
+from multibot_rewrite.base.naming import MODEL, SEPARATORS, Naming, OwnNames
 from multibot_rewrite.base.releases import ROS_2
 from multibot_rewrite.description.rewriters.forms import Declared
 from multibot_rewrite.description.rewriters.tree import Tree, builtin_tree
@@ -32,17 +34,25 @@ from multibot_rewrite.description.sources.release_said import release_said
 from multibot_rewrite.description.sources.whole import read_whole
 from multibot_rewrite.description.sources.world_systems import set_aside
 from multibot_rewrite.description.steps.apply import cut, fill
-from multibot_rewrite.description.steps.collect import NOTHING, Inventory, collect, declarations
+from multibot_rewrite.description.steps.collect import (
+    NOTHING,
+    Inventory,
+    collect,
+    declarations,
+    values_with_own_model,
+)
 from multibot_rewrite.description.steps.document import read_document
 from multibot_rewrite.description.steps.plan import make_plan
 
 # What an SRDF names of its URDF.
 PARTS = frozenset({"link", "joint"})
+_MODEL = lazy_compile(rb"""<(?:robot|model)\s[^>]*?\bname\s*=\s*["']([^"']+)""")
+# A value that may name the model, as its declaration does.
+_IN_VALUE = rb"""(?:>\s*|["'/])%s(?:\s*<|["'/]|::)"""
 
 
 class FilesRead(NamedTuple):
-    """The ``files`` that were read for a job, the ``arguments`` that their xacro knows, and those that
-    were given and that no file knows."""
+    """The files read for a job, the xacro arguments they know, and given ones that none knows."""
 
     files: tuple[str, ...] = ()
     arguments: tuple[str, ...] = ()
@@ -60,11 +70,11 @@ def joined_reads(one: FilesRead, other: FilesRead) -> FilesRead:
 
 
 class Job(NamedTuple):
-    """Bytes, options and file names; ``file`` is the name in messages, ``urdf`` the bytes and the
-    name of the URDF of an SRDF; ``own`` says more where it is one robot's own; ``release`` is that
-    whose facts count, ``why`` what says it, ``ros`` the ROS that
-    loads its plugins where that is known; ``aside`` are the systems that the world has to load,
-    names and texts. It holds no parsed document, so it can be pickled."""
+    """All that a rewrite depends on but the robots: bytes, options and names; it can be pickled.
+
+    ``file`` is the name in messages; ``urdf`` bytes and name of the URDF of an SRDF; ``own`` is
+    of a source made for one robot; ``why`` is the reason for the release; ``aside`` are names
+    and texts of the systems that the world has to load."""
 
     data: bytes
     file: str
@@ -145,7 +155,7 @@ def read_jobs(
 
 
 def _check_meant(given: Arguments, own: Iterable[str], others: Sequence[str]) -> None:
-    """Raise UsageError if an argument that makes names of one robot is given for another one."""
+    """Raise UsageError if an argument is given to a robot and names another one."""
     for robot in own:
         named = {name: text for name, text in given.items() if name_robot({name: text}, [robot])}
         values = " ".join(f"{name}:={text}" for name, text in named.items())
@@ -167,8 +177,7 @@ def reader(
     release: str,
     aside: bool = False,
 ) -> Reader:
-    """Return a function that reads the sources with xacro arguments, the same ones once; raises as
-    ``read_job``.
+    """Return a function that reads the sources with arguments, once each; raises as ``read_job``.
 
     Without a ``release`` it is the one in the sources.
     """
@@ -185,12 +194,28 @@ def reader(
         tree = builtin_tree(definitions, said.release)
         ros = ROS_2 if release else ros_shown(own.data, own.file, tree)
         job = Job(own.data, name, naming, definitions, pair, *said, ros, read=found)
+        job = job._replace(naming=_naming_of(job))
         if not aside:
             return job
         data, left = set_aside(job.data, job.file, job.tree)
         return job._replace(data=data, aside=left)
 
     return lambda args: read(frozenset(args.items()))
+
+
+def _naming_of(job: Job) -> Naming:
+    """Return the naming of a description. A layout that keeps models renames them if the description
+    has its own in a value: a plugin looks for it by the name that it is spawned with."""
+    naming = job.naming
+    name = _MODEL.search(job.urdf[0] if job.urdf else job.data)
+    found = name and re.findall(_IN_VALUE % re.escape(name[1]), name.string)
+    if naming.layout.renames_models or not found or len(found) == 1:
+        return naming
+    layout = naming.layout._replace(models=True)
+    separators = {**naming.separators, MODEL: SEPARATORS[MODEL]}
+    renamed = naming._replace(layout=layout, separators=separators)
+    described = job._replace(naming=renamed).inventories[-1]
+    return renamed if any(values_with_own_model(described)) else naming
 
 
 def _files_read(args: Arguments, texts: Sequence[SourceText]) -> FilesRead:
@@ -208,20 +233,19 @@ def _files_read(args: Arguments, texts: Sequence[SourceText]) -> FilesRead:
 def job_for(
     read: Reader, given: Arguments, words: Sequence[str], common: Collection[str] = ()
 ) -> Job:
-    """Return the job of the robot with these words. Arguments that are ``common`` to robots do not name
-    it; raises as ``read_job``."""
+    """Return the job of the robot with these names; ``common`` arguments do not name a robot."""
     job = read(filled(given, *words[:1]))
     if not name_robot(given, words, common):
         return job
-    other = _marked(read, given, words, common)
+    other = _marked_job(read, given, words, common)
     own = {key: None for part in other.inventories for key in own_names(part, words)}
     _check_links(job, own, given, words)
     twin = as_twin(other.data) if has_mark(other.data) else b""
     job = job._replace(naming=job.naming._replace(own=own), own=OwnSource(words[0], twin=twin))
-    plain = _plain(read, given, words, common)
+    plain = _unnamed_job(read, given, words, common)
     if plain is None:
         return job
-    if twin and job.urdf and _lacks_names(job) and not _lacks_names(plain):
+    if twin and job.urdf and _lacks_declarations(job) and not _lacks_declarations(plain):
         # The arguments make an SRDF of it that is not the URDF's: the one without them follows that.
         job, twin = job._replace(data=plain.data), b""
         texts = marked_texts(plain.inventories[1], other.inventories[1])
@@ -243,11 +267,10 @@ def job_for(
     return job._replace(urdf=plain.urdf, naming=job.naming._replace(own=affixes))
 
 
-def _plain(
+def _unnamed_job(
     read: Reader, given: Arguments, words: Sequence[str], common: Collection[str]
 ) -> Job | None:
-    """Return the sources with empty values for the arguments that name the robot. None if the names
-    without them are not known."""
+    """Return the job with empty values for arguments that name the robot; None if that fails."""
     named = [name for name, text in given.items() if name_robot({name: text}, words, common)]
     kept = {name: text for name, text in given.items() if name not in named}
     for empty in ([], *([it] for it in named), named):
@@ -257,7 +280,7 @@ def _plain(
 
 
 def _check_links(job: Job, own: OwnNames, given: Arguments, words: Sequence[str]) -> None:
-    """Raise InputError if an argument puts the robot's name before links and nodes do it, too."""
+    """Raise InputError if arguments and nodes both put the robot's name before links."""
     links = sorted(text for kind, text in own if kind == "link")
     if job.naming.layout.at_run_time and links:
         named = [f"{it}:={text}" for it, text in given.items() if words[0] in text or "{" in text]
@@ -266,8 +289,10 @@ def _check_links(job: Job, own: OwnNames, given: Arguments, words: Sequence[str]
         raise InputError(f"{what}, and {again}; leave it out, or take frames-per-robot")
 
 
-def _marked(read: Reader, given: Arguments, words: Sequence[str], common: Collection[str]) -> Job:
-    """Return the sources with marks for the robot's words in every argument that takes them."""
+def _marked_job(
+    read: Reader, given: Arguments, words: Sequence[str], common: Collection[str]
+) -> Job:
+    """Return the job with marks in place of the robot's name in all arguments."""
     with suppress(InputError):
         return read(marked(given, words, common))
     # Some file takes only words that it knows for one of them.
@@ -279,7 +304,7 @@ def _marked(read: Reader, given: Arguments, words: Sequence[str], common: Collec
     return read(args)
 
 
-def _lacks_names(job: Job) -> bool:
+def _lacks_declarations(job: Job) -> bool:
     said = job.inventories[0]
     found = (name for names in said.names for name in names if not name.kind)
     return any(not PARTS.isdisjoint(name.kinds) for name in found)

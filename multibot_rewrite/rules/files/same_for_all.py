@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values that stay the same for all robots, or that get a robot's name twice; sections of a
-parameter file that robots cannot have each for itself.
-"""
+"""Values and sections that stay the same for all robots, or get a robot's name twice."""
 
 from __future__ import annotations
 
@@ -69,7 +67,7 @@ def _same_message(key: str, text: str) -> str:
 
 @robots_rule("MB881", "value-not-renamed", WARNING, PARAMS, RVIZ)
 def not_renamed(file: NamedFile) -> Iterator[Finding]:
-    """Report patterns and expressions of nodes; values of displays."""
+    """Report patterns and expressions of nodes, and values of displays, that stay unchanged."""
     for site in file.names if file.kind == PARAMS else ():
         sure = site.kind == "pattern"
         sure = sure or (site.kind == "text" and _mentions(file.context, site.text))

@@ -181,8 +181,8 @@ def test_an_argument_in_the_old_form_is_a_rule() -> None:
 def test_a_rule_of_a_whole_process_is_the_same_for_all_robots(
     distro: str, inside: str, rule: str, added: list[str]
 ) -> None:
-    """Of two robots in one Gazebo the arguments of the first are used (rclcpp::init if
-    the context is not valid yet, gz_ros2_control_plugin.cpp); since Jazzy each manager has its own."""
+    """Of two robots in one Gazebo the first one's arguments are used on Humble, where rclcpp::init is
+    for the context (gz_ros2_control_plugin.cpp); since Jazzy each manager has its own."""
     control = 'filename="gz_ros2_control-system" name="gz_ros2_control::GazeboSimROS2ControlPlugin"'
     source = ROBOT.format(f"<plugin {control}><ros>{inside}{rules(rule)}</ros></plugin>")
     for robot in ("robot1", "robot2"):
