@@ -179,7 +179,7 @@ def _senders_of(seen: Index) -> Mapping[str, str]:
 
 
 def _without_frame(seen: Index) -> Iterator[Finding]:
-    """Yield sensor and odometry messages without a frame, which tf2 refuses."""
+    """Yield sensor and odometry messages without a frame: tf2 refuses an empty frame_id."""
     for it in seen.system.heard:
         type_, senders = sent_on(seen, it.topic)
         # Of odometry: its pose is known where all of the message was read.
