@@ -143,8 +143,8 @@ def _of_no_node(launched: Launched) -> Iterator[Finding]:
         for it in (one for one in node.parameters if one.file and names):
             readers[it.file, it.text] |= dict.fromkeys(names)
     found: dict[Place, tuple[str, list[str]]] = {}
-    for (file, text), reading in readers.items():
-        names = [*reading]
+    for (file, text), own in readers.items():
+        names = [*own]
         with suppress(InputError):
             sections = raw_sections(document_of(file, text))
             by_word = lists_by_key((last_word(it.path), it) for it in sections)

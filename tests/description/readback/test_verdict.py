@@ -93,8 +93,8 @@ def test_every_reason_is_a_warning_of_a_rewrite() -> None:
     [
         (LIDAR.format("scan"), ()),
         (LIDAR.format("{name}/scan"), ("1 topic shared by all robots",)),
-        # gz-sim Contact.cc and Classic's ContactSensor.cc read the topic in <contact> alone: without one
-        # there it is below the model, whose name the spawner gives.
+        # gz-sim Contact.cc and Classic's ContactSensor.cc read the topic in <contact> alone: else
+        # it is below the model, whose name the spawner gives.
         (LIDAR.format("{name}/scan").replace("gpu_lidar", "contact"), ()),
         (LIDAR.format("x").replace("<topic>x</topic>", ""), ()),
         (BELOW_MODEL, ()),
